@@ -38,7 +38,8 @@ VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::
     for (const LimitPassage& limit : *limits) {
       if (limit.outcome <= s.acceptance) continue;
       s.acceptance = limit.outcome;
-      s.first_unmet = "'" + limit.name + "' in event " + std::to_string(number) + (std::isfinite(limit.share) ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : "");
+      s.first_unmet = "'" + limit.name + "' in event " + std::to_string(number) +
+                      (std::isfinite(limit.share) ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : "");
     }
   if (passage.is_made && passage.verdict == Verdict::open && s.acceptance < Verdict::open) {
     s.acceptance = Verdict::open;
@@ -48,7 +49,8 @@ VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::
   return s;
 }
 
-void read_inputs(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options, Assessment& a) {
+void read_inputs(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options,
+                 Assessment& a) {
   a.criteria = read_criteria(options.criteria);
   a.accepted = options.accepted;
   std::vector<Diagnostic> problems;
@@ -66,7 +68,8 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
     a.records.push_back(read_events(record, options.reading));
   }
   if (options.reading.pulse && std::none_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.pulse.has_value(); }))
-    throw FileError(a.records.front().file, "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: assume none");
+    throw FileError(a.records.front().file,
+                    "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: assume none");
   std::string order;
   order_records(a.records, order);
   if (!order.empty()) a.assumptions.push_back(order);
@@ -78,7 +81,8 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   for (const DrivenModel& model : a.models) {
     std::vector<DriveHistory>& histories = a.histories.emplace_back();
     for (const VoyageEvent& event : a.events)
-      histories.push_back(drive_history(a.records[event.record], a.records[event.record].events[event.event], model.recorder, model.marker_angle));
+      histories.push_back(
+          drive_history(a.records[event.record], a.records[event.record].events[event.event], model.recorder, model.marker_angle));
   }
 }
 
@@ -93,7 +97,8 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
       Passage passage = travellers[m].pass(a.histories[m][e], options.estimating);
       passage.event = e, passage.model = m;
       if (passage.still_moving > k_still && !a.histories[m][e].goes_on)
-        passage.findings.push_back("The machine still moves at " + rounded_text(passage.still_moving, 2) + " m/s when the event is over: raise 'settle' of [[recorder]] if the next event begins from rest.");
+        passage.findings.push_back("The machine still moves at " + rounded_text(passage.still_moving, 2) +
+                                   " m/s when the event is over: raise 'settle' of [[recorder]] if the next event begins from rest.");
       worsen(a.summary, summary_of(passage, e + 1, a.models[m].name));
       a.events[e].passages.push_back(std::move(passage));
     }
@@ -104,11 +109,13 @@ void check_against_samples(Assessment& a) {
   const VoyageSummary twin = voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal()).summary;
   if (!a.summary.unknown.empty()) return;
   const VoyageSummary& own = a.summary;
-  const bool is_margin_same = (std::isinf(own.least_margin) && std::isinf(twin.least_margin)) || std::abs(twin.least_margin - own.least_margin) <= k_same_margin * std::abs(own.least_margin);
+  const bool is_margin_same = (std::isinf(own.least_margin) && std::isinf(twin.least_margin)) ||
+                              std::abs(twin.least_margin - own.least_margin) <= k_same_margin * std::abs(own.least_margin);
   const bool is_same = twin.unknown.empty() && own.slips == twin.slips && own.comes_apart == twin.comes_apart && is_margin_same;
   if (!is_same)
-    a.summary.unknown = "two ways of computing the voyage differ: a least margin of " + rounded_text(own.least_margin, 4) + " and " + rounded_text(twin.least_margin, 4) +
-                        (twin.unknown.empty() ? "" : " (" + twin.unknown + ")") + ". Tighten the tolerance of the models.";
+    a.summary.unknown = "two ways of computing the voyage differ: a least margin of " + rounded_text(own.least_margin, 4) + " and " +
+                        rounded_text(twin.least_margin, 4) + (twin.unknown.empty() ? "" : " (" + twin.unknown + ")") +
+                        ". Tighten the tolerance of the models.";
 }
 
 void sample(const AssessmentOptions& options, Assessment& a) {
@@ -132,10 +139,13 @@ void assume(Assessment& a) {
                             (model.recorder.rotation == "held" ? ", without turning." : ", turning freely about the recorder.") +
                             " It is rigid from there to where the rest stands on it.");
     for (const std::string& note : model.notes) a.assumptions.push_back(name + note);
-    if (model.recorder.drift == "line") a.assumptions.push_back(name + "of each event a constant is taken away, so that velocity ends where it began.");
+    if (model.recorder.drift == "line")
+      a.assumptions.push_back(name + "of each event a constant is taken away, so that velocity ends where it began.");
   }
-  a.assumptions.push_back("The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
-                          rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) + " g is not run, but for what is greatest of each axis.");
+  a.assumptions.push_back(
+      "The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
+      rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) +
+      " g is not run, but for what is greatest of each axis.");
   for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
@@ -143,7 +153,8 @@ void assume(Assessment& a) {
   for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
     const UncertainValue& value = a.uncertain->values()[i];
     if (value.nominal >= a.uncertain->quantile(i, k_unlikely) && value.nominal <= a.uncertain->quantile(i, 1.0 - k_unlikely)) continue;
-    a.assumptions.push_back("The models' own " + value.name + ", " + rounded_text(value.nominal, 4) + ", lies outside the middle 98 % of its distribution (" + a.uncertain->law_text(i) +
+    a.assumptions.push_back("The models' own " + value.name + ", " + rounded_text(value.nominal, 4) +
+                            ", lies outside the middle 98 % of its distribution (" + a.uncertain->law_text(i) +
                             "): events in detail and probabilities are of different machines. Give both the same value.");
   }
   if (a.uncertain->values().size() > 1) a.assumptions.push_back("Uncertain values are taken to be independent of each other.");
@@ -156,15 +167,19 @@ void assume(Assessment& a) {
     const std::string start = record.recording.layout.time.start;
     constexpr double k_hours = 7200.0; // s: beyond, people count in hours
     const double covered = facts.last - facts.first;
-    a.assumptions.push_back("'" + record.file + "' covers " + (covered > k_hours ? rounded_text(covered / 3600.0, 4) + " h" : rounded_text(covered, 4) + " s") + (start.empty() ? "" : "; it starts " + start) + ". What came before or after is in no record.");
-    if (facts.repeated.count > 0) a.assumptions.push_back("Of '" + record.file + "' " + counted(facts.repeated.count, "row", "rows") + " with the time of another are left out, as asked.");
-    if (facts.unended_line > 0) a.assumptions.push_back("The last line of '" + record.file + "' does not end with a line break: that the file is whole could not be seen.");
+    a.assumptions.push_back("'" + record.file + "' covers " +
+                            (covered > k_hours ? rounded_text(covered / 3600.0, 4) + " h" : rounded_text(covered, 4) + " s") +
+                            (start.empty() ? "" : "; it starts " + start) + ". What came before or after is in no record.");
+    if (facts.repeated.count > 0)
+      a.assumptions.push_back("Of '" + record.file + "' " + counted(facts.repeated.count, "row", "rows") +
+                              " with the time of another are left out, as asked.");
+    if (facts.unended_line > 0)
+      a.assumptions.push_back("The last line of '" + record.file +
+                              "' does not end with a line break: that the file is whole could not be seen.");
   }
 }
 
 } // namespace
-
-
 
 Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options) {
   Assessment a;

@@ -16,20 +16,20 @@ namespace steplap::assess {
 /// How an assessment is made.
 struct AssessmentOptions {
   EventReading reading;
-  std::vector<std::string> overrides;       ///< "path=value", laid over every model
-  std::vector<RecordFault> accepted;        ///< faults of records that the user takes upon himself
-  std::string criteria = "acceptance-3g";   ///< file or preset
+  std::vector<std::string> overrides;     ///< "path=value", laid over every model
+  std::vector<RecordFault> accepted;      ///< faults of records that the user takes upon himself
+  std::string criteria = "acceptance-3g"; ///< file or preset
   Estimating estimating = Estimating::cheap;
   SamplingOptions sampling;
   std::function<void(const std::string& what, long done, long all)> progress;
-  std::function<std::string()> stop;        ///< what it says is why to stop; ""
+  std::function<std::string()> stop; ///< what it says is why to stop; ""
 };
 
 /// An event of the voyage, in order of time over all records.
 struct VoyageEvent {
-  std::size_t record = 0, event = 0;        ///< indices
-  std::vector<Passage> passages;            ///< one for each model
-  std::vector<Probability> slip;            ///< the same; no runs without samples
+  std::size_t record = 0, event = 0; ///< indices
+  std::vector<Passage> passages;     ///< one for each model
+  std::vector<Probability> slip;     ///< the same; no runs without samples
 };
 
 /// Why the decision is what it is.
@@ -47,19 +47,20 @@ struct Assessment {
   std::vector<std::vector<DriveHistory>> histories; ///< per model, of the events
   std::unique_ptr<UncertainValues> uncertain;
   std::vector<VoyageSample> samples;
-  std::vector<double> shares;               ///< of the uncertain numbers; empty if not known
+  std::vector<double> shares; ///< of the uncertain numbers; empty if not known
   VoyageSummary summary;
   Probability damage;
   DecisionCriteria criteria;
   Decision decision = Decision::open;
   std::string reason;
-  std::vector<Reason> reasons;              ///< the gravest first; all criteria
+  std::vector<Reason> reasons; ///< the gravest first; all criteria
   std::vector<std::string> hangs_on, assumptions, tests;
   std::vector<RecordFault> accepted;
 };
 
 /// Throws RecordError, FileError and ModelError for what cannot be used, NumericalFailure if it was stopped.
-[[nodiscard]] Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options);
+[[nodiscard]] Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models,
+                                const AssessmentOptions& options);
 
 /// Judges what was found: fills decision, reason, reasons and tests.
 void decide(Assessment& assessment);

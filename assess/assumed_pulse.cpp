@@ -27,7 +27,9 @@ struct Shape {
   const char* name;
   double area; // of a pulse of height 1 and length 1
 };
-constexpr Shape k_shapes[] = {{PulseShape::half_sine, "half-sine", 2.0 / std::numbers::pi}, {PulseShape::haversine, "haversine", 0.5}, {PulseShape::triangle, "triangle", 0.5}};
+constexpr Shape k_shapes[] = {{PulseShape::half_sine, "half-sine", 2.0 / std::numbers::pi},
+                              {PulseShape::haversine, "haversine", 0.5},
+                              {PulseShape::triangle, "triangle", 0.5}};
 
 const Shape& shape_of(PulseShape shape) {
   return *std::find_if(std::begin(k_shapes), std::end(k_shapes), [&](const Shape& s) { return s.shape == shape; });
@@ -49,8 +51,10 @@ double greatest_of(const Peaks& a) { return std::max({std::abs(a[0]), std::abs(a
 
 class PulseMaker {
 public:
-  PulseMaker(const EventReading& reading, RecordEvents& record) : pulse_(*reading.pulse), gravity_(gravity_axis(reading, record)), record_(record) {
-    for (const PeakEntry& entry : record.recording.peaks) is_signed_ |= std::any_of(entry.axis.begin(), entry.axis.end(), [](double a) { return a < 0.0; });
+  PulseMaker(const EventReading& reading, RecordEvents& record)
+      : pulse_(*reading.pulse), gravity_(gravity_axis(reading, record)), record_(record) {
+    for (const PeakEntry& entry : record.recording.peaks)
+      is_signed_ |= std::any_of(entry.axis.begin(), entry.axis.end(), [](double a) { return a < 0.0; });
   }
 
   void make() {
@@ -69,7 +73,8 @@ public:
     const double least = chosen.empty() ? 0.0 : k_noticed * record_.rules.threshold;
     for (std::size_t i = 0; i < k_axes; ++i)
       if (quiet[i] && best[i] >= least && std::find(chosen.begin(), chosen.end(), quiet[i]) == chosen.end()) chosen.push_back(quiet[i]);
-    std::stable_sort(chosen.begin(), chosen.end(), [](const PeakEntry* a, const PeakEntry* b) { return a->line < b->line; }); // as the list has them
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [](const PeakEntry* a, const PeakEntry* b) { return a->line < b->line; }); // as the list has them
     for (const PeakEntry* const entry : chosen) add(*entry);
     say();
   }
@@ -78,12 +83,15 @@ private:
   // The axis that gravity is subtracted from, by its index.
   static std::optional<std::size_t> gravity_axis(const EventReading& reading, const RecordEvents& record) {
     if (!reading.gravity)
-      throw FileError(record.file, "whether the peaks of '" + record.file + "' have gravity in them cannot be seen: say that gravity is in none of them, or the axis that it is in");
+      throw FileError(record.file,
+                      "whether the peaks of '" + record.file +
+                          "' have gravity in them cannot be seen: say that gravity is in none of them, or the axis that it is in");
     if (*reading.gravity == "none") return {};
     const std::string letter = reading.gravity->substr(reading.gravity->starts_with('-') ? 1 : 0);
     const std::size_t axis = letter.size() == 1 ? std::string(k_letters).find(letter) : std::string::npos;
     if (axis >= k_axes || record.recording.layout.peaks.axis[axis] < 0)
-      throw FileError(record.file, "gravity along '" + *reading.gravity + "': '" + record.file + "' tells no peaks of that axis. Say that gravity is in none if the list is without it");
+      throw FileError(record.file, "gravity along '" + *reading.gravity + "': '" + record.file +
+                                       "' tells no peaks of that axis. Say that gravity is in none if the list is without it");
     return axis;
   }
 
@@ -99,9 +107,11 @@ private:
       return a;
     }
     if (!std::isfinite(entry.magnitude))
-      throw FileError(record_.file, "line " + std::to_string(entry.line) + " of '" + record_.file + "' tells no peak: give it, or take the line out");
+      throw FileError(record_.file,
+                      "line " + std::to_string(entry.line) + " of '" + record_.file + "' tells no peak: give it, or take the line out");
     if (!record_.pulse->axis)
-      throw FileError(record_.file, "the peak in line " + std::to_string(entry.line) + " of '" + record_.file + "' has no direction: say along which axis the pulse is taken");
+      throw FileError(record_.file, "the peak in line " + std::to_string(entry.line) + " of '" + record_.file +
+                                        "' has no direction: say along which axis the pulse is taken");
     a[static_cast<std::size_t>(*record_.pulse->axis - 'x')] = std::abs(entry.magnitude);
     return a;
   }
@@ -109,16 +119,20 @@ private:
   double length_of(const PeakEntry& entry, const Peaks& a) {
     if (entry.duration > 0.0) {
       const double change = shape_of(pulse_.shape).area * size_of(a) * entry.duration;
-      if (std::abs(entry.velocity_change) > 0.0 && std::abs(change - std::abs(entry.velocity_change)) > k_differs * std::abs(entry.velocity_change)) ++other_changes_;
+      if (std::abs(entry.velocity_change) > 0.0 &&
+          std::abs(change - std::abs(entry.velocity_change)) > k_differs * std::abs(entry.velocity_change))
+        ++other_changes_;
       return entry.duration;
     }
-    if (std::abs(entry.velocity_change) > 0.0 && size_of(a) > 0.0) return std::abs(entry.velocity_change) / (shape_of(pulse_.shape).area * size_of(a));
+    if (std::abs(entry.velocity_change) > 0.0 && size_of(a) > 0.0)
+      return std::abs(entry.velocity_change) / (shape_of(pulse_.shape).area * size_of(a));
     if (pulse_.duration) {
       ++assumed_lengths_;
       return *pulse_.duration;
     }
     throw FileError(record_.file, "line " + std::to_string(entry.line) + " of '" + record_.file +
-                                      "' tells neither how long the shock lasted nor how much the velocity changed: say how long it is taken to last, as in a pulse of \"" +
+                                      "' tells neither how long the shock lasted nor how much the velocity changed: say how long it is "
+                                      "taken to last, as in a pulse of \"" +
                                       shape_of(pulse_.shape).name + " 50 ms\"");
   }
 
@@ -143,7 +157,8 @@ private:
     for (int i = 0; i <= k_intervals; ++i) {
       const double share = static_cast<double>(i) / k_intervals;
       window.times.push_back(entry.t + share * length);
-      for (std::size_t axis = 0; axis < k_axes; ++axis) window.plain[axis].push_back(i == 0 || i == k_intervals ? 0.0 : a[axis] * height(pulse_.shape, share));
+      for (std::size_t axis = 0; axis < k_axes; ++axis)
+        window.plain[axis].push_back(i == 0 || i == k_intervals ? 0.0 : a[axis] * height(pulse_.shape, share));
     }
     window.filtered = window.plain;
     RecordedEvent event{describe_event(window, k_axes), window, greatest_of(a) <= record_.rules.threshold};
@@ -156,14 +171,21 @@ private:
   void say() {
     std::vector<std::string>& notes = record_.assumed;
     const std::string list = "Of '" + record_.file + "' only peaks are known: ";
-    notes.push_back(list + "each is taken for a " + shape_of(pulse_.shape).name + " along all axes at once, from rest to rest, and what it does not tell of an axis for nothing" +
-                    (assumed_lengths_ > 0 ? ", " + counted(assumed_lengths_, "of them", "of them") + " for " + quantity_text(*pulse_.duration, "s") + " as assumed" : "") + ".");
-    if (!is_signed_) notes.push_back(list + "no direction is told, so each is run both ways along every axis, one after the other; slid distances are sums over all of them.");
+    notes.push_back(list + "each is taken for a " + shape_of(pulse_.shape).name +
+                    " along all axes at once, from rest to rest, and what it does not tell of an axis for nothing" +
+                    (assumed_lengths_ > 0 ? ", " + counted(assumed_lengths_, "of them", "of them") + " for " +
+                                                quantity_text(*pulse_.duration, "s") + " as assumed"
+                                          : "") +
+                    ".");
+    if (!is_signed_)
+      notes.push_back(list + "no direction is told, so each is run both ways along every axis, one after the other; slid distances are "
+                             "sums over all of them.");
     if (record_.pulse->axis && record_.recording.layout.peaks.magnitude >= 0)
       notes.push_back(list + "magnitudes without a direction are taken to be along " + std::string(1, *record_.pulse->axis) + ".");
     if (gravity_) notes.push_back(list + "1 g of each peak along " + std::string(1, k_letters[*gravity_]) + " is taken for gravity.");
     if (other_changes_ > 0)
-      notes.push_back(list + "of " + counted(other_changes_, "entry", "entries") + " the change of velocity is told as more than 20 % other than that of a pulse of the peak and duration told.");
+      notes.push_back(list + "of " + counted(other_changes_, "entry", "entries") +
+                      " the change of velocity is told as more than 20 % other than that of a pulse of the peak and duration told.");
   }
 
   const AssumedPulse& pulse_;

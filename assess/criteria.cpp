@@ -21,9 +21,17 @@ struct Asked {
   enum class Limit { none, most, least } limit;
 };
 using Limit = Asked::Limit;
-constexpr Asked k_quantities[] = {{"peak", "m/s^2", Limit::most}, {"velocity_change", "m/s", Limit::most}, {"slip", "", Limit::none},
-  {"slid", "m", Limit::most}, {"overlap_left", "", Limit::least}, {"margin", "", Limit::least}, {"comes_apart", "", Limit::none}, {"lift", "", Limit::none},
-  {"acceptance", "", Limit::none}, {"slip_probability", "", Limit::most}, {"damage_probability", "", Limit::most}};
+constexpr Asked k_quantities[] = {{"peak", "m/s^2", Limit::most},
+                                  {"velocity_change", "m/s", Limit::most},
+                                  {"slip", "", Limit::none},
+                                  {"slid", "m", Limit::most},
+                                  {"overlap_left", "", Limit::least},
+                                  {"margin", "", Limit::least},
+                                  {"comes_apart", "", Limit::none},
+                                  {"lift", "", Limit::none},
+                                  {"acceptance", "", Limit::none},
+                                  {"slip_probability", "", Limit::most},
+                                  {"damage_probability", "", Limit::most}};
 
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names;
@@ -45,7 +53,9 @@ FieldTable criterion_fields() {
   t.add("name", &T::name).required().doc("of the criterion");
   t.add("quantity", &T::quantity).one_of(quantity_names()).required().doc("what is asked");
   t.add("axis", &T::axis).one_of({"any", "x", "y", "z"}).doc("of the record");
-  t.add("bandwidth", &T::bandwidth).one_of({"record", "100 Hz", "17 Hz"}).doc("of a peak: as the record was filtered, or filtered by CFC 60 or CFC 10");
+  t.add("bandwidth", &T::bandwidth)
+      .one_of({"record", "100 Hz", "17 Hz"})
+      .doc("of a peak: as the record was filtered, or filtered by CFC 60 or CFC 10");
   t.add("at_most", &T::at_most_text).as(FieldType::quantity).doc("largest value");
   t.add("at_least", &T::at_least_text).as(FieldType::quantity).doc("smallest value");
   t.add("outcome", &T::outcome).one_of({"inspect", "return"}).doc("if it is not met");
@@ -68,7 +78,8 @@ public:
     read_table(document_.root, header_fields(), &criteria_, reading);
     const Node* const array = document_.root.find("criterion");
     if (!array || !array->is_array_of_tables())
-      problems_.push_back({array ? array->where_key() : Location{criteria_.file, 1, 1}, "the criteria need a table [[criterion]] for each thing that is asked"});
+      problems_.push_back({array ? array->where_key() : Location{criteria_.file, 1, 1},
+                           "the criteria need a table [[criterion]] for each thing that is asked"});
     else
       for (const Node& entry : array->children) read_criterion(entry);
     if (!problems_.empty()) throw ModelError(problems_);
@@ -78,9 +89,11 @@ private:
   void read_table(const Node& table, const FieldTable& fields, void* object, const TableReading& reading) {
     for (const GivenField& given : read_fields(table, fields, object, reading, problems_)) {
       if (!given.is_usable) continue;
-      const std::string problem = given.node ? range_problem(*given.field, given.field->get(object)) : missing_field_message(*given.field, reading.subject);
+      const std::string problem =
+          given.node ? range_problem(*given.field, given.field->get(object)) : missing_field_message(*given.field, reading.subject);
       if (problem.empty()) continue;
-      problems_.push_back({given.node ? given.node->where() : table.where(), given.node ? "'" + given.field->name + "' of " + reading.subject + " " + problem : problem});
+      problems_.push_back({given.node ? given.node->where() : table.where(),
+                           given.node ? "'" + given.field->name + "' of " + reading.subject + " " + problem : problem});
     }
   }
   void read_criterion(const Node& entry) {
@@ -95,15 +108,19 @@ private:
     criteria_.criteria.push_back(std::move(criterion));
   }
   void read_limits(const Node& entry, DecisionCriterion& c) {
-    const auto& q = *std::find_if(std::begin(k_quantities), std::end(k_quantities), [&](const Asked& each) { return c.quantity == each.name; });
+    const auto& q =
+        *std::find_if(std::begin(k_quantities), std::end(k_quantities), [&](const Asked& each) { return c.quantity == each.name; });
     const auto at = [&](const char* key) { return entry.find(key) ? entry.find(key)->where() : entry.where(); };
-    const auto add = [&](const char* key, const std::string& message) { problems_.push_back({at(key), "criterion '" + c.name + "': " + message}); };
+    const auto add = [&](const char* key, const std::string& message) {
+      problems_.push_back({at(key), "criterion '" + c.name + "': " + message});
+    };
     if (q.limit == Limit::most && c.at_most_text.empty()) add("at_most", "'" + c.quantity + "' needs 'at_most'");
     if (q.limit == Limit::least && c.at_least_text.empty()) add("at_least", "'" + c.quantity + "' needs 'at_least'");
     if (q.limit != Limit::most && !c.at_most_text.empty()) add("at_most", "'" + c.quantity + "' takes no 'at_most'");
     if (q.limit != Limit::least && !c.at_least_text.empty()) add("at_least", "'" + c.quantity + "' takes no 'at_least'");
     if (c.quantity != "peak" && c.bandwidth != "record") add("bandwidth", "only a peak has a bandwidth");
-    if (!c.quantity.starts_with("peak") && c.quantity != "velocity_change" && c.axis != "any") add("axis", "only what the recorder read has an axis");
+    if (!c.quantity.starts_with("peak") && c.quantity != "velocity_change" && c.axis != "any")
+      add("axis", "only what the recorder read has an axis");
     c.at_most = limit(c.at_most_text, q.unit, at("at_most"), c);
     c.at_least = limit(c.at_least_text, q.unit, at("at_least"), c);
   }
@@ -112,7 +129,8 @@ private:
     Quantity quantity;
     const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), quantity.value);
     if (status != std::errc() || rest != text.data() + text.size()) quantity = parse_quantity(text, unit);
-    if (quantity.problem.empty() && !(quantity.value >= 0.0 && quantity.value < 1e300)) quantity.problem = "must be a number that is not negative, got " + text;
+    if (quantity.problem.empty() && !(quantity.value >= 0.0 && quantity.value < 1e300))
+      quantity.problem = "must be a number that is not negative, got " + text;
     if (quantity.problem.empty()) return quantity.value;
     problems_.push_back({where, "criterion '" + c.name + "': " + quantity.problem});
     return {};
@@ -147,7 +165,8 @@ DecisionCriteria read_criteria(const std::string& file_or_preset) {
   if (!std::filesystem::exists(file_or_preset)) {
     std::string known;
     for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw FileError(file_or_preset, "'" + file_or_preset + "' is neither a file of criteria nor one of those that come with the program (" + known + ")" + did_you_mean(file_or_preset, names));
+    throw FileError(file_or_preset, "'" + file_or_preset + "' is neither a file of criteria nor one of those that come with the program (" +
+                                        known + ")" + did_you_mean(file_or_preset, names));
   }
   return parse_criteria(read_input(file_or_preset, {shown_input(file_or_preset), 0, 0}, "the criteria "), shown_input(file_or_preset));
 }

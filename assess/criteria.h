@@ -23,21 +23,21 @@ enum class Decision { energise, open, inspect, send_back };
 /// One thing that is asked.
 struct DecisionCriterion {
   std::string name, quantity;
-  std::string axis = "any";            ///< of the record: "any", "x", "y" or "z"
-  std::string bandwidth = "record";    ///< of a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
+  std::string axis = "any";         ///< of the record: "any", "x", "y" or "z"
+  std::string bandwidth = "record"; ///< of a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
   std::string at_most_text, at_least_text;
   std::optional<double> at_most, at_least; ///< SI
-  std::string outcome = "inspect";     ///< if it is not met: "inspect" or "return"
+  std::string outcome = "inspect";         ///< if it is not met: "inspect" or "return"
   std::string text, source;
-  std::vector<std::string> tests;      ///< that would show the damage
+  std::vector<std::string> tests; ///< that would show the damage
   Location where;
 };
 
 /// A file of criteria.
 struct DecisionCriteria {
   std::string name, text, source;
-  std::string file;                    ///< or the name of the preset
-  std::string toml;                    ///< what was read
+  std::string file; ///< or the name of the preset
+  std::string toml; ///< what was read
   std::vector<DecisionCriterion> criteria;
 };
 

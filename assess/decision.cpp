@@ -70,7 +70,8 @@ void look_at_record(const DecisionCriterion& c, const Assessment& a, std::size_t
       continue;
     }
     for (std::size_t e = 0; e < a.events.size(); ++e)
-      if (a.events[e].record == r) take(largest, value_of(c, record.events[a.events[e].event].event.axes[i]), e, axes[i].axis, record.bandwidth);
+      if (a.events[e].record == r)
+        take(largest, value_of(c, record.events[a.events[e].event].event.axes[i]), e, axes[i].axis, record.bandwidth);
     largest.is_beneath |= c.quantity == "peak" && record.rules.threshold > *c.at_most && largest_row(record, i) > *c.at_most;
   }
 }
@@ -100,12 +101,23 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
   const Reading largest = largest_reading(c, a);
   const bool is_peak = c.quantity == "peak", has_event = largest.event < a.events.size();
   const auto shown = [&](double value) { return is_peak ? rounded_text(value / k_gravity, 3) + " g" : quantity_text(value, "m/s"); };
-  const std::string band = !is_peak ? "" : c.bandwidth != "record" ? ", up to " + c.bandwidth : largest.bandwidth > 0.0 ? ", up to " + rounded_text(largest.bandwidth, 3) + " Hz" : "";
-  const std::string where = largest.bandwidth > 0.0 ? " (axis " + std::string(1, largest.axis) + band + (has_event ? ", event " + std::to_string(largest.event + 1) : "") + ")" : "";
+  const std::string band = !is_peak                  ? ""
+                           : c.bandwidth != "record" ? ", up to " + c.bandwidth
+                           : largest.bandwidth > 0.0 ? ", up to " + rounded_text(largest.bandwidth, 3) + " Hz"
+                                                     : "";
+  const std::string where = largest.bandwidth > 0.0 ? " (axis " + std::string(1, largest.axis) + band +
+                                                          (has_event ? ", event " + std::to_string(largest.event + 1) : "") + ")"
+                                                    : "";
   const std::string what = is_peak ? "The recorder read at most " : "The largest change of velocity is ";
-  if (largest.value > *c.at_most) return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".");
-  if (!largest.is_known) return judged(c, Decision::open, "A record does not tell all that '" + c.name + "' asks: an axis, or frequencies that high, are not in it.");
-  if (largest.is_beneath) return judged(c, Decision::open, "Shocks above " + shown(*c.at_most) + " may lie below the threshold from which shocks are looked at. Lower the threshold.");
+  if (largest.value > *c.at_most)
+    return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".");
+  if (!largest.is_known)
+    return judged(c, Decision::open,
+                  "A record does not tell all that '" + c.name + "' asks: an axis, or frequencies that high, are not in it.");
+  if (largest.is_beneath)
+    return judged(c, Decision::open,
+                  "Shocks above " + shown(*c.at_most) +
+                      " may lie below the threshold from which shocks are looked at. Lower the threshold.");
   return judged(c, Decision::energise, what + shown(largest.value) + where + "; " + shown(*c.at_most) + " are allowed.");
 }
 
@@ -115,7 +127,8 @@ std::string joints_unknown(const Assessment& a) {
   for (const VoyageEvent& event : a.events)
     for (const Passage& passage : event.passages) {
       has_joints |= !passage.joints.empty();
-      if (!passage.unjudged.empty()) return "the joint '" + passage.unjudged.front() + "' has no sheets that overlap, and cannot be judged.";
+      if (!passage.unjudged.empty())
+        return "the joint '" + passage.unjudged.front() + "' has no sheets that overlap, and cannot be judged.";
     }
   return has_joints ? "" : "no model has a joint that can be judged.";
 }
@@ -123,7 +136,8 @@ std::string joints_unknown(const Assessment& a) {
 // Of criteria that look at runs: a record that no model was driven by; "".
 std::string waves_unknown(const Assessment& a) {
   for (const RecordEvents& record : a.records)
-    if (record.recording.layout.is_peaks && !record.pulse) return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them: a pulse can be assumed.";
+    if (record.recording.layout.is_peaks && !record.pulse)
+      return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them: a pulse can be assumed.";
   return a.events.empty() ? "no model was driven by a record." : "";
 }
 
@@ -149,9 +163,14 @@ Reason judge_acceptance(const DecisionCriterion& c, const VoyageSummary& s, cons
 
 Reason judge_probability(const DecisionCriterion& c, const Probability& p, const std::string& of, const std::string& waves) {
   if (!waves.empty()) return judged(c, Decision::open, "The probability of " + of + " is not known: " + waves);
-  if (p.runs == 0) return judged(c, Decision::open, "The probability of " + of + " is not known: no model says by [[uncertain]] what is not known exactly, or no samples were asked for.");
-  const std::string text = "The probability of " + of + " is " + percent(p.value) + " (95 % interval " + percent(p.low) + " to " + percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
-                           (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " + percent(*c.at_most) + " are allowed";
+  if (p.runs == 0)
+    return judged(c, Decision::open,
+                  "The probability of " + of +
+                      " is not known: no model says by [[uncertain]] what is not known exactly, or no samples were asked for.");
+  const std::string text = "The probability of " + of + " is " + percent(p.value) + " (95 % interval " + percent(p.low) + " to " +
+                           percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
+                           (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " +
+                           percent(*c.at_most) + " are allowed";
   if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".");
   if (p.high > *c.at_most) return judged(c, Decision::open, text + ", which lies within the interval: more samples are needed.");
   return judged(c, Decision::energise, text + ".");
@@ -168,12 +187,23 @@ Probability largest_slip(const Assessment& a) {
 Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
   if (c.quantity == "peak" || c.quantity == "velocity_change") return judge_reading(c, a);
   const std::string unknown = unknown_of(c, a, s);
-  if (c.quantity == "slip") return judge_flag(c, unknown, s.slips, s.first_slip.empty() ? "A joint slips." : s.first_slip + ".", "No joint slips in any event.");
+  if (c.quantity == "slip")
+    return judge_flag(c, unknown, s.slips, s.first_slip.empty() ? "A joint slips." : s.first_slip + ".", "No joint slips in any event.");
   if (c.quantity == "comes_apart") return judge_flag(c, unknown, s.comes_apart, "A joint comes apart.", "No joint comes apart.");
   if (c.quantity == "lift") return judge_flag(c, unknown, s.lifts, "A contact lifts.", "No contact lifts.");
-  if (c.quantity == "slid") return judge_flag(c, unknown, s.slid > *c.at_most, "A joint slid " + quantity_text(s.slid, "m") + " in all; " + quantity_text(*c.at_most, "m") + " are allowed.", "No joint slid further than " + quantity_text(s.slid, "m") + ".");
-  if (c.quantity == "overlap_left") return judge_flag(c, unknown, s.overlap_left < *c.at_least, percent(s.overlap_left) + " of an overlap are left; " + percent(*c.at_least) + " are asked.", "Of every overlap at least " + percent(s.overlap_left) + " are left.");
-  if (c.quantity == "margin") return judge_flag(c, unknown, s.least_margin < *c.at_least, "The least margin of a joint is " + rounded_text(s.least_margin, 3) + "; " + rounded_text(*c.at_least, 3) + " is asked.", "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
+  if (c.quantity == "slid")
+    return judge_flag(c, unknown, s.slid > *c.at_most,
+                      "A joint slid " + quantity_text(s.slid, "m") + " in all; " + quantity_text(*c.at_most, "m") + " are allowed.",
+                      "No joint slid further than " + quantity_text(s.slid, "m") + ".");
+  if (c.quantity == "overlap_left")
+    return judge_flag(c, unknown, s.overlap_left < *c.at_least,
+                      percent(s.overlap_left) + " of an overlap are left; " + percent(*c.at_least) + " are asked.",
+                      "Of every overlap at least " + percent(s.overlap_left) + " are left.");
+  if (c.quantity == "margin")
+    return judge_flag(c, unknown, s.least_margin < *c.at_least,
+                      "The least margin of a joint is " + rounded_text(s.least_margin, 3) + "; " + rounded_text(*c.at_least, 3) +
+                          " is asked.",
+                      "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
   if (c.quantity == "acceptance") return judge_acceptance(c, s, unknown);
   if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", waves_unknown(a));
   return judge_probability(c, a.damage, "damage in the voyage", waves_unknown(a));
@@ -181,15 +211,23 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
 
 // Of whatever the criteria say: what is not known forbids "energise".
 void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
-  const auto open = [&](const char* name, const std::string& text) { reasons.push_back({name, text, "rules of this program", Decision::open, {}}); };
+  const auto open = [&](const char* name, const std::string& text) {
+    reasons.push_back({name, text, "rules of this program", Decision::open, {}});
+  };
   for (const RecordEvents& record : a.records)
     for (const RecordFault& fault : record.faults)
       if (std::find(a.accepted.begin(), a.accepted.end(), fault) == a.accepted.end())
-        open("whole record", "'" + record.file + "': " + record.warnings()[static_cast<std::size_t>(&fault - record.faults.data())] + " What a record does not show cannot be judged.");
+        open("whole record", "'" + record.file + "': " + record.warnings()[static_cast<std::size_t>(&fault - record.faults.data())] +
+                                 " What a record does not show cannot be judged.");
   for (std::size_t e = 0; e < a.events.size(); ++e) {
-    const auto slips = [](const Passage& p) { return std::any_of(p.joints.begin(), p.joints.end(), [](const JointPassage& j) { return j.slips; }); };
-    if (!a.records[a.events[e].record].events[a.events[e].event].is_below || std::none_of(a.events[e].passages.begin(), a.events[e].passages.end(), slips)) continue;
-    open("threshold", "A joint slips in event " + std::to_string(e + 1) + ", which stays below the threshold of " + rounded_text(a.records[a.events[e].record].rules.threshold / k_gravity, 3) +
+    const auto slips = [](const Passage& p) {
+      return std::any_of(p.joints.begin(), p.joints.end(), [](const JointPassage& j) { return j.slips; });
+    };
+    if (!a.records[a.events[e].record].events[a.events[e].event].is_below ||
+        std::none_of(a.events[e].passages.begin(), a.events[e].passages.end(), slips))
+      continue;
+    open("threshold", "A joint slips in event " + std::to_string(e + 1) + ", which stays below the threshold of " +
+                          rounded_text(a.records[a.events[e].record].rules.threshold / k_gravity, 3) +
                           " g: others that were not run may slip it as well. Lower the threshold.");
     break;
   }

@@ -93,11 +93,13 @@ void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& 
   const std::set<std::string> gone(recorder.replaces.begin(), recorder.replaces.end());
   std::erase_if(model.elements, [&](const ElementEntry& e) { return gone.contains(e.element->name); });
   for (const TableEntry& entry : model.tables)
-    if (const auto* const c = dynamic_cast<const Criterion*>(entry.table.get()); c && (looks_at(c->channel, gone) || gone.contains(c->element)))
+    if (const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
+        c && (looks_at(c->channel, gone) || gone.contains(c->element)))
       notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
   std::erase_if(model.tables, [&](const TableEntry& entry) {
     const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
-    return (c && (looks_at(c->channel, gone) || gone.contains(c->element))) || dynamic_cast<const Plot*>(entry.table.get()); // nothing is drawn
+    return (c && (looks_at(c->channel, gone) || gone.contains(c->element))) ||
+           dynamic_cast<const Plot*>(entry.table.get()); // nothing is drawn
   });
   for (const std::string& name : recorder.replaces) notes.push_back("The record takes the place of '" + name + "'.");
 }
@@ -122,7 +124,9 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   const auto along = [&](const std::string& axis) -> std::vector<double> {
     if (axis == "none") return std::vector<double>(count, 0.0);
     const auto index = record.axis(axis.back());
-    if (!index) throw FileError(record.file, "the model wants axis " + axis.substr(axis.size() - 1) + " of the record, which '" + record.file + "' does not have");
+    if (!index)
+      throw FileError(record.file,
+                      "the model wants axis " + axis.substr(axis.size() - 1) + " of the record, which '" + record.file + "' does not have");
     std::vector<double> values = window.filtered[*index];
     if (axis.starts_with('-'))
       for (double& value : values) value = -value;
@@ -164,8 +168,10 @@ std::string check_gravity(const RecordEvents& record, const DrivenModel& model) 
     if (!index) continue;
     const double sign = axis.starts_with('-') ? -1.0 : 1.0, rest = record.recording.facts.axes[*index].rest / k_gravity;
     if (std::abs(sign * rest - share) < k_other) continue;
-    throw FileError(record.file, "axis " + axis.substr(axis.size() - 1) + " of '" + record.file + "' reads " + rounded_text(rest, 3) + " g in its first second, and would read " +
-                                     rounded_text(sign * share, 3) + " g at rest if it sat as '" + model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" + model.recorder.y +
+    throw FileError(record.file, "axis " + axis.substr(axis.size() - 1) + " of '" + record.file + "' reads " + rounded_text(rest, 3) +
+                                     " g in its first second, and would read " + rounded_text(sign * share, 3) +
+                                     " g at rest if it sat as '" + model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" +
+                                     model.recorder.y +
                                      "\" of [[recorder]]): correct the axes there, or choose columns and signs of the record");
   }
   return "";
@@ -174,7 +180,8 @@ std::string check_gravity(const RecordEvents& record, const DrivenModel& model) 
 DrivenModel driven_model(Model given, const std::string& name) {
   const Recorder* const found = recorder_of(given);
   if (!found)
-    throw ModelError({name, 0, 0}, "the model has no [[recorder]]: say where the recorder sat and which way it pointed (steplap elements recorder)");
+    throw ModelError({name, 0, 0},
+                     "the model has no [[recorder]]: say where the recorder sat and which way it pointed (steplap elements recorder)");
   DrivenModel driven;
   driven.name = name;
   driven.recorder = *found;

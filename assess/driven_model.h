@@ -37,12 +37,12 @@ struct DrivenModel;
 /// A model made ready to be driven.
 struct DrivenModel {
   std::string file, name, sha256;
-  std::string text;                   ///< the effective model; "" of one made in code
+  std::string text; ///< the effective model; "" of one made in code
   Recorder recorder;
-  std::string body;                   ///< that the recorder sits on, and that is driven
-  double marker_angle = 0.0;          ///< rad, of the marker's axes against the ground's in the reference pose
-  Model given;                        ///< as given, without what gives way, with drives at rest
-  std::vector<std::string> notes;     ///< what was changed, for people
+  std::string body;               ///< that the recorder sits on, and that is driven
+  double marker_angle = 0.0;      ///< rad, of the marker's axes against the ground's in the reference pose
+  Model given;                    ///< as given, without what gives way, with drives at rest
+  std::vector<std::string> notes; ///< what was changed, for people
 };
 
 /// Reads a model file for an assessment. Throws ModelError: it has no [[recorder]], or something else drives its body.

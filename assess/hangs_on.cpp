@@ -12,7 +12,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_tail = 0.005;  // of the distribution on either side: beyond, values are not looked at
+constexpr double k_tail = 0.005;   // of the distribution on either side: beyond, values are not looked at
 constexpr double k_located = 0.01; // of the way between the model's own value and that end
 
 struct Turn {
@@ -51,18 +51,24 @@ void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& a) {
       if (options.progress) options.progress("what it hangs on", static_cast<long>(i), static_cast<long>(values.size()));
       const std::optional<Turn> turn = turn_towards(a, i, a.uncertain->quantile(i, p));
       if (!turn) continue;
-      const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip : !turn->summary.unknown.empty() ? turn->summary.unknown : turn->summary.first_unmet;
+      const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip
+                              : !turn->summary.unknown.empty()        ? turn->summary.unknown
+                                                                      : turn->summary.first_unmet;
       const Decision own = decision_of(a, a.summary);
-      const std::string by_itself = own == a.decision ? "The decision" : "By the models' own values the decision would be \"" + std::string(name_of(own)) + "\". It";
-      a.hangs_on.push_back(by_itself + " hangs on the " + values[i].name + ": at " + quantity_text(turn->value, values[i].unit) + " instead of " + quantity_text(values[i].nominal, values[i].unit) +
-                           " it is \"" + name_of(decision_of(a, turn->summary)) + "\"" + (why.empty() ? "" : ", as " + why) + ".");
+      const std::string by_itself =
+          own == a.decision ? "The decision" : "By the models' own values the decision would be \"" + std::string(name_of(own)) + "\". It";
+      a.hangs_on.push_back(by_itself + " hangs on the " + values[i].name + ": at " + quantity_text(turn->value, values[i].unit) +
+                           " instead of " + quantity_text(values[i].nominal, values[i].unit) + " it is \"" +
+                           name_of(decision_of(a, turn->summary)) + "\"" + (why.empty() ? "" : ", as " + why) + ".");
     }
   if (!a.hangs_on.empty()) return;
   std::string text = "No uncertain value alone, anywhere in the middle 99 % of its distribution, makes the decision another";
   std::size_t most = 0;
   for (std::size_t i = 1; i < a.shares.size(); ++i)
     if (a.shares[i] > a.shares[most]) most = i;
-  if (!a.shares.empty()) text += "; the margin of the joints hangs most on the " + values[most].name + " (" + rounded_text(100.0 * a.shares[most], 2) + " % of its scatter)";
+  if (!a.shares.empty())
+    text += "; the margin of the joints hangs most on the " + values[most].name + " (" + rounded_text(100.0 * a.shares[most], 2) +
+            " % of its scatter)";
   a.hangs_on.push_back(text + ".");
 }
 

@@ -44,7 +44,8 @@ std::vector<FootPassage> feet_of(const Report& report) {
     const bool is_known = std::any_of(feet.begin(), feet.end(), [&](const FootPassage& f) { return f.name == event.element; });
     if (event.kind != EventKind::opens || is_known) continue;
     FootPassage foot{event.element, event.t, {}};
-    if (const ChannelRange* const gap = report.find(event.element + ".gap"); gap && std::isfinite(gap->high.value)) foot.height = gap->high.value;
+    if (const ChannelRange* const gap = report.find(event.element + ".gap"); gap && std::isfinite(gap->high.value))
+      foot.height = gap->high.value;
     feet.push_back(std::move(foot));
   }
   return feet;
@@ -90,7 +91,10 @@ void Traveller::look(const Report& report, Passage& passage) {
   }
   passage.feet = feet_of(report);
   for (const CriterionResult& criterion : report.judgement.criteria)
-    (criterion.unit == "N" ? passage.reactions : criterion.unit == "m" ? passage.clearances : passage.others).push_back(limit_of(criterion, overview));
+    (criterion.unit == "N"   ? passage.reactions
+     : criterion.unit == "m" ? passage.clearances
+                             : passage.others)
+        .push_back(limit_of(criterion, overview));
   for (const Finding& finding : report.findings)
     if (finding.level == FindingLevel::warning && !is_of_replaced(finding)) passage.findings.push_back(text_with_place(finding));
   if (!report.judgement.distrust.empty()) passage.findings.push_back(report.judgement.distrust);

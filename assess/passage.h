@@ -13,7 +13,9 @@
 namespace steplap::assess {
 
 /// Did it slide, or, of a joint that is watched and held, would it have?
-[[nodiscard]] inline bool would_slip(const JointAssessment& joint) { return joint.has_slipped || (joint.is_monitored && joint.smallest_margin < 1.0); }
+[[nodiscard]] inline bool would_slip(const JointAssessment& joint) {
+  return joint.has_slipped || (joint.is_monitored && joint.smallest_margin < 1.0);
+}
 
 /// What an event did to a step-lap joint.
 struct JointPassage {
@@ -43,18 +45,18 @@ struct LimitPassage {
 
 /// An event through a model.
 struct Passage {
-  std::size_t event = 0, model = 0;    ///< indices
-  bool is_made = false;                ///< false: the run could not be begun or finished, or an event before ended the voyage
+  std::size_t event = 0, model = 0; ///< indices
+  bool is_made = false;             ///< false: the run could not be begun or finished, or an event before ended the voyage
   Verdict verdict = Verdict::open;
   std::string reason, trust;
   TrustLevel trust_level = TrustLevel::none;
-  bool is_trusted = false;             ///< nothing forbids to believe it
+  bool is_trusted = false; ///< nothing forbids to believe it
   std::vector<JointPassage> joints;
-  std::vector<std::string> unjudged;   ///< joints of which nothing can be said
+  std::vector<std::string> unjudged; ///< joints of which nothing can be said
   std::vector<FootPassage> feet;
   std::vector<LimitPassage> reactions, clearances, others;
   std::vector<std::string> findings;
-  double still_moving = 0.0;           ///< m/s: fastest body against the tank at the end
+  double still_moving = 0.0; ///< m/s: fastest body against the tank at the end
 };
 
 /// A model on its way through the voyage.

@@ -37,8 +37,11 @@ void QuietWatch::put(double t, const double* plain, const double* filtered) {
     look_at(next_++);
   }
   if (window_.times.size() < 4 * reach + 8192) return; // seldom, so that dropping costs nothing
-  const std::size_t kept_from = std::min(next_, index + 1) - std::min(next_, before_), gone = kept_from > dropped_ ? kept_from - dropped_ : 0;
-  const auto drop = [&](std::vector<double>& samples) { samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(gone)); };
+  const std::size_t kept_from = std::min(next_, index + 1) - std::min(next_, before_),
+                    gone = kept_from > dropped_ ? kept_from - dropped_ : 0;
+  const auto drop = [&](std::vector<double>& samples) {
+    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(gone));
+  };
   drop(window_.times);
   for (std::size_t i = 0; i < axes_; ++i) drop(window_.plain[i]), drop(window_.filtered[i]);
   dropped_ += gone;
@@ -58,10 +61,13 @@ void QuietWatch::look_at(std::size_t index) {
     best.segment = segment_, best.line = line_;
     const std::size_t first = at - std::min(at, before_);
     const std::size_t last = std::min(window_.times.size(), at + after_ + 1);
-    const auto part = [&](const std::vector<double>& from, std::vector<double>& to) { to.assign(from.begin() + static_cast<std::ptrdiff_t>(first), from.begin() + static_cast<std::ptrdiff_t>(last)); };
+    const auto part = [&](const std::vector<double>& from, std::vector<double>& to) {
+      to.assign(from.begin() + static_cast<std::ptrdiff_t>(first), from.begin() + static_cast<std::ptrdiff_t>(last));
+    };
     best.window.rate = window_.rate;
     part(window_.times, best.window.times);
-    for (std::size_t i = 0; i < axes_; ++i) part(window_.plain[i], best.window.plain[i]), part(window_.filtered[i], best.window.filtered[i]);
+    for (std::size_t i = 0; i < axes_; ++i)
+      part(window_.plain[i], best.window.plain[i]), part(window_.filtered[i], best.window.filtered[i]);
   }
 }
 
@@ -73,11 +79,14 @@ std::vector<QuietWatch::Stretch> QuietWatch::greatest(double least) const {
   std::vector<Stretch> kept;
   for (const Stretch* each : order) {
     const auto meets = [&](const Stretch& other) {
-      return each->segment == other.segment && each->window.times.front() <= other.window.times.back() && other.window.times.front() <= each->window.times.back();
+      return each->segment == other.segment && each->window.times.front() <= other.window.times.back() &&
+             other.window.times.front() <= each->window.times.back();
     };
     if (std::none_of(kept.begin(), kept.end(), meets)) kept.push_back(*each);
   }
-  std::sort(kept.begin(), kept.end(), [](const Stretch& a, const Stretch& b) { return a.segment != b.segment ? a.segment < b.segment : a.window.times.front() < b.window.times.front(); });
+  std::sort(kept.begin(), kept.end(), [](const Stretch& a, const Stretch& b) {
+    return a.segment != b.segment ? a.segment < b.segment : a.window.times.front() < b.window.times.front();
+  });
   return kept;
 }
 

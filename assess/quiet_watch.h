@@ -33,9 +33,9 @@ private:
 
   EventRules rules_;
   std::size_t axes_ = 0, before_ = 0, after_ = 0, segment_ = 0, line_ = 0;
-  Window window_;                ///< the latest samples of the segment
-  std::size_t dropped_ = 0;      ///< samples of the segment before those
-  std::size_t next_ = 0;         ///< of the segment: to be looked at
+  Window window_;           ///< the latest samples of the segment
+  std::size_t dropped_ = 0; ///< samples of the segment before those
+  std::size_t next_ = 0;    ///< of the segment: to be looked at
   std::array<Stretch, 3> best_;
 };
 

@@ -61,8 +61,8 @@ std::array<double, 3> rest_of(const std::string& file, const EventReading& readi
   LineSource source(file);
   static_cast<void>(read_record(source, reading.read, mean));
   if (mean.count() < 2)
-    throw FileError(file, "'" + file + "' has no two samples from " + rounded_text((*reading.rest)[0]) + " s to " + rounded_text((*reading.rest)[1]) +
-                              " s: give a stretch at rest within the record");
+    throw FileError(file, "'" + file + "' has no two samples from " + rounded_text((*reading.rest)[0]) + " s to " +
+                              rounded_text((*reading.rest)[1]) + " s: give a stretch at rest within the record");
   return mean.means();
 }
 
@@ -75,12 +75,15 @@ public:
     if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // of peaks, see assumed_pulse.h
       const bool is_turned = reading_.gravity->starts_with('-');
       const std::string axis = reading_.gravity->substr(is_turned ? 1 : 0);
-      const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
-      if (found == layout.axes.end()) throw FileError(layout.file, "gravity along '" + *reading_.gravity + "': '" + layout.file + "' has no such axis");
+      const auto found =
+          std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
+      if (found == layout.axes.end())
+        throw FileError(layout.file, "gravity along '" + *reading_.gravity + "': '" + layout.file + "' has no such axis");
       conditioning_.offset[static_cast<std::size_t>(found - layout.axes.begin())] += is_turned ? -k_gravity : k_gravity;
     }
     if (conditioning_.rate && *conditioning_.rate < layout.time.rate * (1.0 - 1e-9))
-      throw FileError(layout.file, "'" + layout.file + "' has " + rounded_text(layout.time.rate) + " Hz: fewer samples would fold high frequencies into low ones");
+      throw FileError(layout.file, "'" + layout.file + "' has " + rounded_text(layout.time.rate) +
+                                       " Hz: fewer samples would fold high frequencies into low ones");
     axes_ = layout.axes.size();
     conditioner_.emplace(conditioning_, sink_);
     conditioner_->begin(layout);
@@ -143,7 +146,9 @@ void add_quiet(const QuietWatch& quiet, RecordEvents& record) {
     event.event.segment = stretch.segment, event.event.line = stretch.line;
     record.events.push_back(std::move(event));
   }
-  const auto is_before = [](const RecordedEvent& a, const RecordedEvent& b) { return a.event.segment != b.event.segment ? a.event.segment < b.event.segment : a.event.begin < b.event.begin; };
+  const auto is_before = [](const RecordedEvent& a, const RecordedEvent& b) {
+    return a.event.segment != b.event.segment ? a.event.segment < b.event.segment : a.event.begin < b.event.begin;
+  };
   std::stable_sort(record.events.begin(), record.events.end(), is_before);
 }
 
@@ -192,7 +197,9 @@ RecordEvents read_events(const std::string& file, const EventReading& reading) {
   conditioning.frequency_class = reading.frequency_class;
   conditioning.rate = reading.rate;
   if (reading.rest) conditioning.offset = rest_of(file, reading);
-  EventsAndQuiet finder(reading.rules, [&](const ShockEvent& event, const Window& window) { record.events.push_back({event, window, false}); });
+  EventsAndQuiet finder(reading.rules, [&](const ShockEvent& event, const Window& window) {
+    record.events.push_back({event, window, false});
+  });
   WithoutGravity first(conditioning, reading, finder);
   LineSource source(file);
   record.recording = read_record(source, reading.read, first);
@@ -226,7 +233,8 @@ void order_records(std::vector<RecordEvents>& records, std::string& note) {
     const RecordEvents &a = records[i - 1], &b = records[i];
     const double begins = 1e-9 * static_cast<double>(*b.clock_ns - *a.clock_ns) + b.recording.facts.first;
     if (begins < a.recording.facts.last)
-      throw FileError(b.file, "'" + b.file + "' begins before '" + a.file + "' ends: records of one time are not one voyage. Give one of them");
+      throw FileError(b.file,
+                      "'" + b.file + "' begins before '" + a.file + "' ends: records of one time are not one voyage. Give one of them");
   }
   note = "The records are taken in the order of their clocks.";
 }

@@ -59,15 +59,15 @@ struct RecordEvents {
   std::string file, sha256;
   Recording recording;
   EventRules rules;
-  std::array<double, 3> offset{};        ///< m/s², subtracted from the axes
-  double rate = 0.0, bandwidth = 0.0;    ///< Hz, of the conditioned signal
+  std::array<double, 3> offset{};     ///< m/s², subtracted from the axes
+  double rate = 0.0, bandwidth = 0.0; ///< Hz, of the conditioned signal
   bool is_filtered = false;
   FallWatch fall;
-  std::vector<RecordedEvent> events;     ///< in order of time
-  std::vector<RecordFault> faults;       ///< each once
-  std::optional<std::int64_t> clock_ns;  ///< since 1970, of the time 0 of the record; none: it does not tell
-  std::optional<AssumedPulse> pulse;     ///< of a list of peaks that models are driven by
-  std::vector<std::string> assumed;      ///< of such a list, in whole sentences
+  std::vector<RecordedEvent> events;    ///< in order of time
+  std::vector<RecordFault> faults;      ///< each once
+  std::optional<std::int64_t> clock_ns; ///< since 1970, of the time 0 of the record; none: it does not tell
+  std::optional<AssumedPulse> pulse;    ///< of a list of peaks that models are driven by
+  std::vector<std::string> assumed;     ///< of such a list, in whole sentences
 
   /// Letters of the axes that its events have.
   [[nodiscard]] std::string axes() const;

@@ -11,8 +11,8 @@ namespace steplap::assess {
 namespace {
 
 // All that a sample's outcome hangs on.
-std::string scene_of(const SamplingOptions& options, const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                     const UncertainValues& uncertain) {
+std::string scene_of(const SamplingOptions& options, const std::vector<DrivenModel>& models,
+                     const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain) {
   std::string scene = "seed " + std::to_string(options.seed) + "\n";
   for (std::size_t m = 0; m < models.size(); ++m) {
     Sha256 sum;
@@ -34,7 +34,13 @@ study::StoredSample stored(const VoyageSample& sample, long number) {
   const VoyageSummary& s = sample.summary;
   row.outcome.status = s.unknown.empty() ? study::SampleStatus::ok : study::SampleStatus::gave_up;
   row.outcome.reason = s.unknown;
-  row.outcome.numbers = {s.least_margin, s.slid, s.overlap_left, s.slips ? 1.0 : 0.0, s.lifts ? 1.0 : 0.0, s.comes_apart ? 1.0 : 0.0, static_cast<double>(s.acceptance)};
+  row.outcome.numbers = {s.least_margin,
+                         s.slid,
+                         s.overlap_left,
+                         s.slips ? 1.0 : 0.0,
+                         s.lifts ? 1.0 : 0.0,
+                         s.comes_apart ? 1.0 : 0.0,
+                         static_cast<double>(s.acceptance)};
   row.outcome.curve.assign(sample.slips.begin(), sample.slips.end());
   return row;
 }
@@ -52,8 +58,8 @@ void restore(const study::StoredSample& row, VoyageSample& sample) {
 
 } // namespace
 
-SampleStore::SampleStore(const SamplingOptions& options, const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                         const UncertainValues& uncertain) {
+SampleStore::SampleStore(const SamplingOptions& options, const std::vector<DrivenModel>& models,
+                         const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain) {
   if (options.store.empty()) return;
   study::StoreIdentity identity;
   identity.version = k_version;

@@ -15,9 +15,11 @@ namespace {
 
 using Runners = std::vector<std::unique_ptr<VoyageRunner>>; ///< one for each model
 
-Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain) {
+Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                   const UncertainValues& uncertain) {
   Runners runners;
-  for (std::size_t m = 0; m < models.size(); ++m) runners.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
+  for (std::size_t m = 0; m < models.size(); ++m)
+    runners.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
   return runners;
 }
 
@@ -56,16 +58,18 @@ std::vector<double> ranks_of(const std::vector<double>& values) {
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const double n = static_cast<double>(a.size()), ma = std::accumulate(a.begin(), a.end(), 0.0) / n, mb = std::accumulate(b.begin(), b.end(), 0.0) / n;
+  const double n = static_cast<double>(a.size()), ma = std::accumulate(a.begin(), a.end(), 0.0) / n,
+               mb = std::accumulate(b.begin(), b.end(), 0.0) / n;
   double aa = 0.0, bb = 0.0, ab = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) aa += (a[i] - ma) * (a[i] - ma), bb += (b[i] - mb) * (b[i] - mb), ab += (a[i] - ma) * (b[i] - mb);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    aa += (a[i] - ma) * (a[i] - ma), bb += (b[i] - mb) * (b[i] - mb), ab += (a[i] - ma) * (b[i] - mb);
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
 } // namespace
 
-VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain,
-                         const std::vector<double>& values) {
+VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                         const UncertainValues& uncertain, const std::vector<double>& values) {
   Runners runners = runners_of(models, histories, uncertain);
   VoyageSample sample;
   sample.values = values;

@@ -15,19 +15,19 @@ namespace steplap::assess {
 
 /// A voyage with values of its own.
 struct VoyageSample {
-  std::vector<double> values;        ///< of the uncertain numbers
-  VoyageSummary summary;             ///< of all models
-  std::vector<char> slips;           ///< per event of model 0, then of model 1, …
+  std::vector<double> values; ///< of the uncertain numbers
+  VoyageSummary summary;      ///< of all models
+  std::vector<char> slips;    ///< per event of model 0, then of model 1, …
 };
 
 /// How samples are made.
 struct SamplingOptions {
   long samples = 200;
   std::uint64_t seed = 1;
-  int threads = 0;                                ///< 0: OMP_NUM_THREADS, else as many as there are processors
-  std::string store;                              ///< file that keeps them; "": none
+  int threads = 0;   ///< 0: OMP_NUM_THREADS, else as many as there are processors
+  std::string store; ///< file that keeps them; "": none
   std::function<void(long done, long all)> progress;
-  std::function<std::string()> stop;              ///< what it says is why to stop; ""
+  std::function<std::string()> stop; ///< what it says is why to stop; ""
 };
 
 /// A probability with its interval (Clopper and Pearson, 95 %): runs of which nothing is known count as harmless for its low end and
@@ -38,14 +38,16 @@ struct Probability {
 };
 
 /// Throws NumericalFailure if it was stopped.
-[[nodiscard]] std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+[[nodiscard]] std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
+                                                       const std::vector<std::vector<DriveHistory>>& histories,
                                                        const UncertainValues& uncertain, const SamplingOptions& options);
 /// One voyage with these values; of all models.
 [[nodiscard]] VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
                                        const UncertainValues& uncertain, const std::vector<double>& values);
 
 /// Of a joint to slip in an event of a model.
-[[nodiscard]] Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event, std::size_t events);
+[[nodiscard]] Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event,
+                                           std::size_t events);
 /// Of a joint to slip, or an acceptance not to be met, in the voyage.
 [[nodiscard]] Probability damage_probability(const std::vector<VoyageSample>& samples);
 /// Does the summary tell of damage?

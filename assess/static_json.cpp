@@ -15,8 +15,10 @@ OrderedJson number(const std::optional<double>& value) { return number(value.val
 
 OrderedJson limit_json(const StaticRay& ray, std::size_t i) {
   const StaticLimit& limit = ray.limits[i];
-  return {{"kind", name_of(limit.kind)},          {"element", limit.element},
-          {"text", limit_words(ray, i)},          {"acceleration", number(limit.acceleration)},
+  return {{"kind", name_of(limit.kind)},
+          {"element", limit.element},
+          {"text", limit_words(ray, i)},
+          {"acceleration", number(limit.acceleration)},
           {"error", number(limit.error)}};
 }
 
@@ -26,7 +28,7 @@ OrderedJson reaction_json(const StaticReaction& one) {
 }
 
 OrderedJson criterion_json(const CriterionResult& one) {
-  return {{"name", one.name},   {"text", one.text},           {"where", one.where}, {"outcome", steplap::name_of(one.outcome)},
+  return {{"name", one.name},     {"text", one.text},           {"where", one.where},         {"outcome", steplap::name_of(one.outcome)},
           {"reason", one.reason}, {"value", number(one.value)}, {"limit", number(one.limit)}, {"unit", one.unit}};
 }
 

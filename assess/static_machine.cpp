@@ -133,9 +133,7 @@ Probe StaticMachine::probe(const State& start, const Vec2& pull) {
 
 Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->state, pull); }
 
-Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) {
-  return probe(before.rest->state, pull);
-}
+Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(before.rest->state, pull); }
 
 Probe StaticMachine::worked_loose(const Vec2& pull) {
   State loose = at_rest_.rest->state;

@@ -37,10 +37,10 @@ struct Watch {
 /// A rest under a pull, or why there is none.
 struct Probe {
   std::optional<Equilibrium> rest;
-  std::string failure;           ///< where there is no rest: a sentence
-  bool is_unknown = false;       ///< no rest was found, but that there is none is not said
-  std::vector<double> left;      ///< of each watch: positive while it holds, zero at its limit; in linear statics convex or linear in the pull
-  std::vector<double> values;    ///< of System::channels
+  std::string failure;        ///< where there is no rest: a sentence
+  bool is_unknown = false;    ///< no rest was found, but that there is none is not said
+  std::vector<double> left;   ///< of each watch: positive while it holds, zero at its limit; in linear statics convex or linear in the pull
+  std::vector<double> values; ///< of System::channels
 };
 
 class StaticMachine {

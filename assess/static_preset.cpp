@@ -12,15 +12,15 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_g = 9.81; // m/s², as models have it: 1 g upwards then takes away the whole weight and no more
-constexpr double k_most = 1e4;  // m/s²: more is a slip of the pen
+constexpr double k_g = 9.81;   // m/s², as models have it: 1 g upwards then takes away the whole weight and no more
+constexpr double k_most = 1e4; // m/s²: more is a slip of the pen
 
 // Along the axes and halfway between them.
 std::vector<StaticLoad> all_round(double a) {
   const double half = a * std::sqrt(0.5);
-  return {{"forward", {a, 0.0}, ""},         {"forward and up", {half, half}, ""}, {"up", {0.0, a}, ""},
-          {"back and up", {-half, half}, ""}, {"back", {-a, 0.0}, ""},              {"back and down", {-half, -half}, ""},
-          {"down", {0.0, -a}, ""},            {"forward and down", {half, -half}, ""}};
+  return {
+      {"forward", {a, 0.0}, ""}, {"forward and up", {half, half}, ""},  {"up", {0.0, a}, ""},    {"back and up", {-half, half}, ""},
+      {"back", {-a, 0.0}, ""},   {"back and down", {-half, -half}, ""}, {"down", {0.0, -a}, ""}, {"forward and down", {half, -half}, ""}};
 }
 
 std::vector<StaticLoad> road() {
@@ -71,7 +71,8 @@ private:
     if (!array || !array->is_array_of_tables()) {
       Location where = array ? array->where() : document_.root.where();
       if (where.file.empty()) where.file = path_;
-      problems_.push_back({where, "there are no loads: give each as [[case]] with a name and 'pull', its two accelerations beside gravity"});
+      problems_.push_back(
+          {where, "there are no loads: give each as [[case]] with a name and 'pull', its two accelerations beside gravity"});
       return;
     }
     FieldTable fields;
@@ -85,9 +86,11 @@ private:
       read_fields(entry, fields, &load, {"case '" + entry_name(entry) + "'", {}, {}, {}}, problems_);
       if (problems_.size() > before) continue;
       if (!(std::abs(load.pull.x()) <= k_most && std::abs(load.pull.y()) <= k_most))
-        problems_.push_back({entry.where(), "'pull' of case '" + load.name + "' is beyond 10000 m/s^2: is the unit right? \"0.8 gravity\" is 7.8 m/s^2"});
+        problems_.push_back(
+            {entry.where(), "'pull' of case '" + load.name + "' is beyond 10000 m/s^2: is the unit right? \"0.8 gravity\" is 7.8 m/s^2"});
       if (!load.plane.empty() && load.plane != name_of(Plane::lengthwise) && load.plane != name_of(Plane::transverse))
-        problems_.push_back({entry.find("plane")->where(), "'plane' of case '" + load.name + "' is '" + load.plane + "': give lengthwise or transverse, or leave it out for both"});
+        problems_.push_back({entry.find("plane")->where(), "'plane' of case '" + load.name + "' is '" + load.plane +
+                                                               "': give lengthwise or transverse, or leave it out for both"});
       if (!names.insert(load.name).second)
         problems_.push_back({entry.where(), "there are two cases '" + load.name + "': give each a name of its own"});
       preset_.loads.push_back(std::move(load));
@@ -102,16 +105,16 @@ private:
 
 } // namespace
 
-const char* name_of(Plane plane) {
-  return plane == Plane::lengthwise ? "lengthwise" : "transverse";
-}
+const char* name_of(Plane plane) { return plane == Plane::lengthwise ? "lengthwise" : "transverse"; }
 
 const std::vector<StaticPreset>& static_presets() {
   static const std::vector<StaticPreset> k_presets = {
-      {"iec-1g", "1 g in every direction beside gravity, as IEC 60076-1:2011, 5.7.4.2 is commonly quoted (the text itself was not read)", all_round(k_g)},
+      {"iec-1g", "1 g in every direction beside gravity, as IEC 60076-1:2011, 5.7.4.2 is commonly quoted (the text itself was not read)",
+       all_round(k_g)},
       {"road", "EN 12195-1 as the CTU code quotes it: 0.8 g forward, 0.5 g back, 0.5 g sideways, weight once", road()},
       {"sea",
-       "CSS code, annex 13, basic accelerations (from memory, not read): the largest of any place on board, 3.8 m/s^2 lengthwise, 7.4 m/s^2 "
+       "CSS code, annex 13, basic accelerations (from memory, not read): the largest of any place on board, 3.8 m/s^2 lengthwise, 7.4 "
+       "m/s^2 "
        "across, 9.2 m/s^2 of heave; a known place has less",
        sea()}};
   return k_presets;
@@ -124,7 +127,8 @@ StaticPreset static_preset(const std::string& name_or_file) {
     if (preset.name == name_or_file) return preset;
     known += preset.name + ", ";
   }
-  throw std::invalid_argument("'" + name_or_file + "' is no preset of static loads: take one of " + known + "or name a file of your own that ends with .toml");
+  throw std::invalid_argument("'" + name_or_file + "' is no preset of static loads: take one of " + known +
+                              "or name a file of your own that ends with .toml");
 }
 
 std::vector<StaticLoad> loads_for(const StaticPreset& preset, Plane plane) {

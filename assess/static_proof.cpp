@@ -116,8 +116,7 @@ private:
                   rounded_text(100.0 * end->acceleration / a, 3) + " % of this load";
     else if (end && end->acceleration < 1e-3 * a)
       case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
-    else
-      case_.why = "no rest is found, and whether there is none is not known: " + grown_.failure;
+    else case_.why = "no rest is found, and whether there is none is not known: " + grown_.failure;
     case_.verdict = is_explained ? Verdict::reject : Verdict::open;
   }
 
@@ -127,7 +126,9 @@ private:
     if (const Probe turned = machine_.ramped(-pull); turned.rest) {
       returned_ = machine_.ramped_from(turned, pull);
       if (returned_.rest) ways_.push_back(&returned_);
-      else note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " + returned_.failure);
+      else
+        note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " +
+                                returned_.failure);
     } else {
       case_.remarks.push_back("the load turned round is not borne, so what it would leave behind was not asked");
     }
@@ -206,16 +207,19 @@ private:
         if (w > 0 && weight(outcome) > weight(proof_of(case_.criteria[i].outcome))) case_.criteria[i] = criteria[i];
       }
       if (ways_[w] != &loose_ && !ways_[w]->rest->indifferent.empty())
-        note(Verdict::open, "nothing holds " + part_text(machine_.system(), ways_[w]->rest->indifferent.front()) + ": it rests wherever it is");
+        note(Verdict::open,
+             "nothing holds " + part_text(machine_.system(), ways_[w]->rest->indifferent.front()) + ": it rests wherever it is");
       for (std::string& remark : remarks_on(machine_.system(), *ways_[w]->rest))
-        if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end()) case_.remarks.push_back(std::move(remark));
+        if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end())
+          case_.remarks.push_back(std::move(remark));
     }
     for (const StaticJoint& joint : case_.joints)
       if (!(std::abs(joint.margin - 1.0) > k_close)) note(Verdict::open, "the margin of '" + joint.name + "' is 1 within rounding");
     for (const FrictionMargin& margin : grown_.rest->margins)
       if (margin.is_shared && margin.used > 0.0) {
         const int element = machine_.system().frictions[static_cast<std::size_t>(margin.friction)].element;
-        case_.remarks.push_back("'" + machine_.system().element_names[static_cast<std::size_t>(element)] + "' and others can share their load in several ways");
+        case_.remarks.push_back("'" + machine_.system().element_names[static_cast<std::size_t>(element)] +
+                                "' and others can share their load in several ways");
       }
   }
 
@@ -247,7 +251,8 @@ StaticDirection look_along(StaticMachine& machine, double angle, double largest)
 
 std::vector<std::string> assumptions_of(Plane plane) {
   return {std::string("x of the model points ") + (plane == Plane::lengthwise ? "forward" : "to one side of the vehicle") + ", y up",
-          "the vehicle is held by the drives of the model, and its acceleration is constant; the swing with which a sudden one begins is not part of it",
+          "the vehicle is held by the drives of the model, and its acceleration is constant; the swing with which a sudden one begins is "
+          "not part of it",
           "friction, pressures and stiffnesses are those of the model: their scatter is not part of the margins",
           "the bodies of the model are rigid: what bends in them, and the other plane, is not known to it"};
 }
@@ -265,7 +270,8 @@ void conclude(StaticProof& proof, const StaticMachine& machine) {
                         std::any_of(proof.cases.begin(), proof.cases.end(), [](const StaticCase& one) { return !one.criteria.empty(); });
   if (is_asked) return;
   proof.verdict = Verdict::open;
-  proof.reason = "at rest under every load, but nothing was asked: the model has no joint, contact or friction that could give way, and no criterion on a force or a place";
+  proof.reason = "at rest under every load, but nothing was asked: the model has no joint, contact or friction that could give way, and no "
+                 "criterion on a force or a place";
 }
 
 } // namespace

@@ -23,8 +23,8 @@ namespace steplap::assess {
 
 /// What something has to bear, and may.
 struct StaticReaction {
-  std::string name;      ///< of the channel
-  double value = 0.0;    ///< in `unit`, that of the way in which it is largest
+  std::string name;   ///< of the channel
+  double value = 0.0; ///< in `unit`, that of the way in which it is largest
   std::string unit;
   std::optional<double> allowed; ///< by a criterion of the model that bounds its size
 };
@@ -46,46 +46,46 @@ struct StaticJoint {
 /// What became of one load.
 struct StaticCase {
   StaticLoad load;
-  Vec2 apparent = Vec2::Zero(); ///< gravity and pull, m/s²
+  Vec2 apparent = Vec2::Zero();    ///< gravity and pull, m/s²
   Verdict verdict = Verdict::open; ///< never "inspect": what is not met is not proven
   std::string why;                 ///< a sentence, where it is not "hold"
   std::string first;               ///< what gives way first while the pull grows, and where; "" if nothing does
   std::vector<StaticJoint> joints; ///< empty without a rest
   std::vector<StaticFoot> feet;
-  std::vector<std::string> slid;   ///< friction that slid to where it holds
+  std::vector<std::string> slid; ///< friction that slid to where it holds
   std::vector<StaticReaction> reactions;
   std::vector<CriterionResult> criteria; ///< that a rest can answer
   std::vector<Tipping> tipping;
-  double moved = 0.0;              ///< m, the furthest, from the rest without acceleration
+  double moved = 0.0; ///< m, the furthest, from the rest without acceleration
   std::vector<std::string> remarks;
 };
 
 /// What a pull in one direction does.
 struct StaticDirection {
-  double angle = 0.0;      ///< rad, counter-clockwise from x, of the pull
+  double angle = 0.0; ///< rad, counter-clockwise from x, of the pull
   StaticRay ray;
-  bool is_unique = true;   ///< other ways to the load bear what is just below its first limit, too
+  bool is_unique = true; ///< other ways to the load bear what is just below its first limit, too
 };
 
 struct StaticProof {
   std::string model, file;
-  std::vector<std::string> overrides;    ///< "path=value", laid over the file
-  std::vector<std::string> assumptions;  ///< sentences
+  std::vector<std::string> overrides;   ///< "path=value", laid over the file
+  std::vector<std::string> assumptions; ///< sentences
   Plane plane = Plane::lengthwise;
   StaticPreset preset;
   Vec2 gravity = Vec2::Zero();
   std::vector<StaticCase> cases;
   std::vector<StaticDirection> polar;
-  double largest = 0.0;            ///< m/s², beyond which directions are not followed
-  Verdict verdict = Verdict::open; ///< the worst of the cases
-  std::string reason;              ///< a sentence
+  double largest = 0.0;             ///< m/s², beyond which directions are not followed
+  Verdict verdict = Verdict::open;  ///< the worst of the cases
+  std::string reason;               ///< a sentence
   std::vector<std::string> unasked; ///< criteria of the model that a rest cannot answer
 };
 
 struct StaticProofOptions {
   Plane plane = Plane::lengthwise;
   int directions = 72;
-  double largest = 98.1; ///< m/s²
+  double largest = 98.1;             ///< m/s²
   std::function<std::string()> stop; ///< asked between directions; what it says is why the work ends there
 };
 

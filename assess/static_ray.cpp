@@ -9,8 +9,8 @@ namespace {
 
 constexpr double k_first_step = 1.0 / 16.0; // of the machine's own gravity, or of the largest pull without any
 constexpr double k_growth = 1.3;
-constexpr double k_width = 1e-6;      // of the acceleration: how closely a limit is closed in on
-constexpr double k_at_limit = 1e-4;   // of what a watch has left at rest: hundred times what is left at the end of such an interval
+constexpr double k_width = 1e-6;    // of the acceleration: how closely a limit is closed in on
+constexpr double k_at_limit = 1e-4; // of what a watch has left at rest: hundred times what is left at the end of such an interval
 constexpr int k_most_probes = 80;
 
 struct Point {
@@ -124,8 +124,6 @@ private:
 
 } // namespace
 
-StaticRay grow_pull(StaticMachine& machine, const Vec2& direction, double most) {
-  return Ray(machine, direction, most).run();
-}
+StaticRay grow_pull(StaticMachine& machine, const Vec2& direction, double most) { return Ray(machine, direction, most).run(); }
 
 } // namespace steplap::assess

@@ -31,8 +31,9 @@ study::Variable variable_of(const Uncertain& u, const Model& model) {
 
 // Of two models that state one number: do they say the same?
 bool is_same_law(const study::Variable& a, const study::Variable& b) {
-  return a.is_factor == b.is_factor && a.distribution == b.distribution && a.mean == b.mean && a.standard_deviation == b.standard_deviation &&
-         a.cov == b.cov && a.low == b.low && a.high == b.high && a.mode == b.mode && a.lower == b.lower && a.upper == b.upper;
+  return a.is_factor == b.is_factor && a.distribution == b.distribution && a.mean == b.mean &&
+         a.standard_deviation == b.standard_deviation && a.cov == b.cov && a.low == b.low && a.high == b.high && a.mode == b.mode &&
+         a.lower == b.lower && a.upper == b.upper;
 }
 
 } // namespace
@@ -47,11 +48,16 @@ UncertainValues::UncertainValues(const std::vector<DrivenModel>& models) {
       int known = study.index_of_variable(u->name);
       if (known < 0) {
         known = static_cast<int>(values_.size());
-        UncertainValue value{u->name, u->is_factor ? "" : unit_of(given, u->paths.front()), u->source, u->source_text, u->paths.front(), u->is_factor ? 1.0 : own, u->is_factor, {}};
+        UncertainValue value{u->name,          u->is_factor ? "" : unit_of(given, u->paths.front()),
+                             u->source,        u->source_text,
+                             u->paths.front(), u->is_factor ? 1.0 : own,
+                             u->is_factor,     {}};
         values_.push_back(std::move(value));
         study.variables.push_back(std::move(variable));
       } else if (!is_same_law(study.variables[static_cast<std::size_t>(known)], variable)) {
-        throw ModelError(u->where, "uncertain '" + u->name + "' has another distribution in another of the models: a name stands for one number. Give it another name, or the same distribution");
+        throw ModelError(u->where, "uncertain '" + u->name +
+                                       "' has another distribution in another of the models: a name stands for one number. Give it another "
+                                       "name, or the same distribution");
       }
       for (const std::string& path : u->paths)
         values_[static_cast<std::size_t>(known)].settings.push_back({m, path, u->is_factor ? number_of(given, path) : 1.0});

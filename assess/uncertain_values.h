@@ -13,8 +13,8 @@ namespace steplap::assess {
 /// A number of the voyage that is not known exactly.
 struct UncertainValue {
   std::string name, unit, source, source_text;
-  std::string path;              ///< the first one
-  double nominal = 0.0;          ///< the models' own
+  std::string path;     ///< the first one
+  double nominal = 0.0; ///< the models' own
   bool is_factor = false;
   /// Where it goes: factor times it, or it.
   struct Setting {

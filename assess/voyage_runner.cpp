@@ -4,12 +4,12 @@
 #include "elements/step_lap_assessment.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/start.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/presentation.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/model/completion.h"
+#include "mbd/rest/start.h"
 #include "mbd/simulation/simulation.h"
 
 #include <algorithm>
@@ -55,7 +55,8 @@ VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHist
   for (TableEntry& entry : given_.tables)
     if (auto* const criterion = dynamic_cast<Criterion*>(entry.table.get()))
       for (const Criterion& known : whole.criteria)
-        if (known.name == criterion->name) criterion->at_least = known.at_least, criterion->at_most = known.at_most, criterion->within = known.within;
+        if (known.name == criterion->name)
+          criterion->at_least = known.at_least, criterion->at_most = known.at_most, criterion->within = known.within;
   const std::vector<std::string> wanted = channels_wanted(whole, *system);
   variants_ = std::make_unique<Variants>(given_, std::move(paths), &wanted);
 }
@@ -71,8 +72,8 @@ struct VoyageRunner::Course {
 };
 
 // What a stretch of the run tells.
-static void look(const Model& whole, const System& system, const RunResult& result, std::size_t event, VoyageOutcome& outcome, std::vector<double>& x,
-                 std::vector<double>& y, std::vector<double>& slid) {
+static void look(const Model& whole, const System& system, const RunResult& result, std::size_t event, VoyageOutcome& outcome,
+                 std::vector<double>& x, std::vector<double>& y, std::vector<double>& slid) {
   VoyageSummary now;
   const Judgement judgement = judge(whole, system, result, "");
   now.unknown = judgement.distrust;

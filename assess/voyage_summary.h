@@ -13,13 +13,13 @@ namespace steplap::assess {
 /// Of all models and events so far, the worst.
 struct VoyageSummary {
   double least_margin = std::numeric_limits<double>::infinity(); ///< of a joint's friction capacity over its demand
-  double slid = 0.0;                   ///< m, of the joint that slid most, sum over events
-  double overlap_left = 1.0;           ///< share, of the joint that has least
+  double slid = 0.0;                                             ///< m, of the joint that slid most, sum over events
+  double overlap_left = 1.0;                                     ///< share, of the joint that has least
   bool slips = false, lifts = false, comes_apart = false;
-  Verdict acceptance = Verdict::hold;  ///< of what the models ask: [[acceptance]] and elements' own
-  std::string unknown;                 ///< not empty: why a run of it could not be made or is not to be trusted
-  std::string first_slip;              ///< "'front joint' slips in event 3", for people
-  std::string first_unmet;             ///< "'bottom arresting devices' in event 1", of the worst acceptance
+  Verdict acceptance = Verdict::hold; ///< of what the models ask: [[acceptance]] and elements' own
+  std::string unknown;                ///< not empty: why a run of it could not be made or is not to be trusted
+  std::string first_slip;             ///< "'front joint' slips in event 3", for people
+  std::string first_unmet;            ///< "'bottom arresting devices' in event 1", of the worst acceptance
 };
 
 /// The worse of both.

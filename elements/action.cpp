@@ -91,7 +91,9 @@ private:
     std::vector<std::string> known;
     for (const Field& each : entry.kind->fields.fields())
       if (each.type == FieldType::number || each.type == FieldType::signal) known.push_back(each.name);
-    if (!field) throw std::invalid_argument("'" + text.name + "' is a " + entry.kind->name + " and has no '" + text.field + "'" + did_you_mean(text.field, known));
+    if (!field)
+      throw std::invalid_argument("'" + text.name + "' is a " + entry.kind->name + " and has no '" + text.field + "'" +
+                                  did_you_mean(text.field, known));
     step.field = text.field;
     if (field->type == FieldType::signal) {
       std::vector<std::string> signals;
@@ -101,7 +103,8 @@ private:
       step.value = text.value;
       return;
     }
-    if (field->type != FieldType::number) throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers and signals can");
+    if (field->type != FieldType::number)
+      throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers and signals can");
     step.value = number(text, *field, entry);
   }
 
@@ -118,14 +121,17 @@ private:
     const std::string subject = "'" + text.name + "." + text.field + "'";
     const bool is_low = value < field.minimum || (field.is_minimum_excluded && value <= field.minimum);
     if (is_low || value > field.maximum || !std::isfinite(value))
-      throw std::invalid_argument(subject + " cannot be " + text.value + ": it is " + (is_low ? (field.is_minimum_excluded ? "larger than " : "at least ") + number_text(field.minimum) : "at most " + number_text(field.maximum)));
+      throw std::invalid_argument(subject + " cannot be " + text.value + ": it is " +
+                                  (is_low ? (field.is_minimum_excluded ? "larger than " : "at least ") + number_text(field.minimum)
+                                          : "at most " + number_text(field.maximum)));
     return value;
   }
 
   bool read_trigger(ActionTrigger& trigger) {
     if (const auto event = event_text(action_.when)) {
       try {
-        trigger.element = find_element(event->element, [](const ElementEntry&) { return true; }, "element");
+        trigger.element = find_element(
+            event->element, [](const ElementEntry&) { return true; }, "element");
         trigger.event = event->kind;
       } catch (const std::invalid_argument& error) {
         builder_.error("'when': " + std::string(error.what()));
@@ -145,10 +151,13 @@ private:
   bool is_comparison() {
     try {
       const FormulaOp op = Formula(action_.when, "'when'", {}).tree().back().op;
-      if (op == FormulaOp::less || op == FormulaOp::less_or_equal || op == FormulaOp::both || op == FormulaOp::either || op == FormulaOp::negation) return true;
+      if (op == FormulaOp::less || op == FormulaOp::less_or_equal || op == FormulaOp::both || op == FormulaOp::either ||
+          op == FormulaOp::negation)
+        return true;
       builder_.error("'when' compares nothing: write \"a > b\", a time as \"2 s\", or an event of an element as \"foot opens\"");
     } catch (const ModelError& error) {
-      builder_.error("'when' is no time as \"2 s\", no event of an element as \"foot opens\", and as a comparison: " + error.diagnostics().front().message);
+      builder_.error("'when' is no time as \"2 s\", no event of an element as \"foot opens\", and as a comparison: " +
+                     error.diagnostics().front().message);
     }
     return false;
   }
@@ -213,8 +222,14 @@ const TableKind& action_kind() {
     k.doc = "Something that happens when a condition comes true: an element lets go or begins to hold, a brake is set, the run ends. "
             "`docs/reference/actions.md` tells what it may say.";
     FieldTable& f = k.fields;
-    f.add("when", &T::when).required().doc("a time, \"2 s\"; a comparison as formulas of forces make them, \"arm.theta > '60 deg'\"; or an event of an element, \"foot opens\"");
-    f.add("do", &T::steps).required().doc("one after the other: \"release NAME\", \"hold NAME\", \"set NAME.field = value\", \"arm ACTION\", \"disarm ACTION\", \"stop\"");
+    f.add("when", &T::when)
+        .required()
+        .doc("a time, \"2 s\"; a comparison as formulas of forces make them, \"arm.theta > '60 deg'\"; or an event of an element, \"foot "
+             "opens\"");
+    f.add("do", &T::steps)
+        .required()
+        .doc("one after the other: \"release NAME\", \"hold NAME\", \"set NAME.field = value\", \"arm ACTION\", \"disarm ACTION\", "
+             "\"stop\"");
     f.add("once", &T::once).doc("it happens once each time that it is armed; false: each time that its condition comes true");
     f.add("armed", &T::armed).doc("from the start; false: from where another action arms it");
     f.add("meaning", &T::meaning).doc("what it is, for lists and reports");

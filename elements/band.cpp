@@ -1,8 +1,8 @@
 #include "elements/band.h"
 
 #include "elements/sliding_band.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/model/method.h"
 #include "mbd/system/system.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 using Group = SlidingBandGroup;
 
-constexpr double k_shortest = 1e-6; // of a free part in the reference pose, as of a rope's parts
+constexpr double k_shortest = 1e-6;    // of a free part in the reference pose, as of a rope's parts
 constexpr double k_least_angle = 1e-6; // rad: less is a band that does not reach its drum
 
 bool is_followed(SystemBuilder& builder) {
@@ -33,7 +33,8 @@ bool is_followed(SystemBuilder& builder) {
 bool has_tangent(const CompiledMarker& wheel, const CompiledMarker& end, double c, const char* what, SystemBuilder& builder) {
   const double apart = (builder.marker_position(end) - builder.marker_position(wheel)).norm();
   if (apart > c && apart > 1e-12) return true;
-  builder.error(std::string(what) + " is " + rounded_text(apart) + " m from the drum's centre, but a straight part takes more than " + rounded_text(c) + " m");
+  builder.error(std::string(what) + " is " + rounded_text(apart) + " m from the drum's centre, but a straight part takes more than " +
+                rounded_text(c) + " m");
   return false;
 }
 
@@ -76,10 +77,11 @@ void add_shared_channels(const Group& group, int i, SystemBuilder& builder) {
                       [&group, i](const Snapshot& s) { return group.flow_now(i, *s.evaluation).slip; });
   builder.add_channel("share", "", "of what friction can hold, by the logarithm of the ratio of tensions; 1 where it slides",
                       [&group, i](const Snapshot& s) { return share_of(group.flow_now(i, *s.evaluation)); });
-  builder.add_channel("mode", "", {"what it does", "", "0 loose, 1 sticks, 2 slides"}, [unit = group.entries[static_cast<std::size_t>(i)].unit](const Snapshot& s) {
-    const UnitMode mode = s.evaluation->mode[unit];
-    return mode < Group::k_sticks ? 0.0 : mode == Group::k_sticks ? 1.0 : 2.0;
-  });
+  builder.add_channel("mode", "", {"what it does", "", "0 loose, 1 sticks, 2 slides"},
+                      [unit = group.entries[static_cast<std::size_t>(i)].unit](const Snapshot& s) {
+                        const UnitMode mode = s.evaluation->mode[unit];
+                        return mode < Group::k_sticks ? 0.0 : mode == Group::k_sticks ? 1.0 : 2.0;
+                      });
 }
 
 void compile_band(const Element& element, SystemBuilder& builder) {
@@ -88,9 +90,11 @@ void compile_band(const Element& element, SystemBuilder& builder) {
   if (!is_followed(builder)) return;
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), drum = builder.marker(e.drum);
   if (a.body == drum.body && b.body == drum.body) return builder.error("joins a drum with itself: name a marker on another body");
-  if (drum.body != k_ground && (a.body == drum.body || b.body == drum.body)) return builder.error("an end of it is fastened to a drum that moves: name a marker on another body");
+  if (drum.body != k_ground && (a.body == drum.body || b.body == drum.body))
+    return builder.error("an end of it is fastened to a drum that moves: name a marker on another body");
   if (e.radius == 0.0) return builder.error("'radius' is 0: a point holds nothing by friction");
-  if (!has_tangent(drum, a, std::abs(e.radius), "marker 'a'", builder) || !has_tangent(drum, b, std::abs(e.radius), "marker 'b'", builder)) return;
+  if (!has_tangent(drum, a, std::abs(e.radius), "marker 'a'", builder) || !has_tangent(drum, b, std::abs(e.radius), "marker 'b'", builder))
+    return;
   const double sense = e.radius < 0.0 ? -1.0 : 1.0;
   Group::Entry entry;
   entry.drum = drum.body;
@@ -105,17 +109,20 @@ void compile_band(const Element& element, SystemBuilder& builder) {
   const double between = sense * portable::atan2(first.x() * second.y() - first.y() * second.x(), first.dot(second)) - std::numbers::pi;
   constexpr double k_turn = 2.0 * std::numbers::pi;
   entry.angle = between - k_turn * std::floor(between / k_turn) + k_turn * static_cast<double>(e.turns);
-  if (entry.angle < k_least_angle) return builder.error("its free parts lie in one line, which only touches the drum: move an end, or change the sign of 'radius'");
+  if (entry.angle < k_least_angle)
+    return builder.error("its free parts lie in one line, which only touches the drum: move an end, or change the sign of 'radius'");
   set_free_lengths(entry, e.pretension, e.slack);
   Group& group = builder.group<Group>();
   const int i = add(group, std::move(entry), builder);
   for (const int side : {0, 1})
-    builder.add_channel(side == 0 ? "tension_a" : "tension_b", "N", {side == 0 ? "of its part at a" : "of its part at b", "positive: it pulls"},
-                        [&group, i, side](const Snapshot& s) { return group.flow_now(i, *s.evaluation).tension[static_cast<std::size_t>(side)]; });
-  builder.add_channel("couple", "N m", {"what it turns the drum with, about its centre", "positive counter-clockwise"}, [&group, i, radius = e.radius](const Snapshot& s) {
-    const auto flow = group.flow_now(i, *s.evaluation);
-    return radius * (flow.tension[1] - flow.tension[0]);
-  });
+    builder.add_channel(
+        side == 0 ? "tension_a" : "tension_b", "N", {side == 0 ? "of its part at a" : "of its part at b", "positive: it pulls"},
+        [&group, i, side](const Snapshot& s) { return group.flow_now(i, *s.evaluation).tension[static_cast<std::size_t>(side)]; });
+  builder.add_channel("couple", "N m", {"what it turns the drum with, about its centre", "positive counter-clockwise"},
+                      [&group, i, radius = e.radius](const Snapshot& s) {
+                        const auto flow = group.flow_now(i, *s.evaluation);
+                        return radius * (flow.tension[1] - flow.tension[0]);
+                      });
   builder.add_channel("angle", "rad", {"at which it lies on the drum", "never negative"},
                       [&group, i](const Snapshot& s) { return group.flow_now(i, *s.evaluation).angles[0]; });
   add_shared_channels(group, i, builder);
@@ -128,7 +135,8 @@ void compile_belt(const Element& element, SystemBuilder& builder) {
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("joins a body with itself: name markers on two different bodies");
   const double far = e.crossed ? e.radius_b : -e.radius_b;
-  const double c = e.crossed ? e.radius_a + e.radius_b : std::max(e.radius_a, e.radius_b); // wheels of an open belt do not stand in each other
+  const double c =
+      e.crossed ? e.radius_a + e.radius_b : std::max(e.radius_a, e.radius_b); // wheels of an open belt do not stand in each other
   if (!has_tangent(a, b, c, "the second wheel's centre", builder)) return;
   Group::Entry entry;
   entry.drum = a.body;
@@ -143,13 +151,16 @@ void compile_belt(const Element& element, SystemBuilder& builder) {
   Group& group = builder.group<Group>();
   const int i = add(group, std::move(entry), builder);
   for (const int side : {0, 1})
-    builder.add_channel(side == 0 ? "tension_1" : "tension_2", "N",
-                        {side == 0 ? "of the part that wheel a takes in when it turns counter-clockwise" : "of the part that it then lets out", "positive: it pulls"},
-                        [&group, i, side](const Snapshot& s) { return group.flow_now(i, *s.evaluation).tension[static_cast<std::size_t>(side)]; });
-  builder.add_channel("couple", "N m", {"what it turns wheel a with, about its centre", "positive counter-clockwise"}, [&group, i, radius = e.radius_a](const Snapshot& s) {
-    const auto flow = group.flow_now(i, *s.evaluation);
-    return radius * (flow.tension[1] - flow.tension[0]);
-  });
+    builder.add_channel(
+        side == 0 ? "tension_1" : "tension_2", "N",
+        {side == 0 ? "of the part that wheel a takes in when it turns counter-clockwise" : "of the part that it then lets out",
+         "positive: it pulls"},
+        [&group, i, side](const Snapshot& s) { return group.flow_now(i, *s.evaluation).tension[static_cast<std::size_t>(side)]; });
+  builder.add_channel("couple", "N m", {"what it turns wheel a with, about its centre", "positive counter-clockwise"},
+                      [&group, i, radius = e.radius_a](const Snapshot& s) {
+                        const auto flow = group.flow_now(i, *s.evaluation);
+                        return radius * (flow.tension[1] - flow.tension[0]);
+                      });
   add_shared_channels(group, i, builder);
 }
 
@@ -166,13 +177,19 @@ const ElementKind& band_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("where it begins");
     f.add("b", &T::b).as(FieldType::marker).doc("where it ends");
     f.add("drum", &T::drum).as(FieldType::marker).doc("centre of the drum");
-    f.add("radius", &T::radius).in("m").required().doc("of the drum: positive where it goes round it counter-clockwise on the way from a to b, negative where clockwise");
+    f.add("radius", &T::radius)
+        .in("m")
+        .required()
+        .doc("of the drum: positive where it goes round it counter-clockwise on the way from a to b, negative where clockwise");
     f.add("turns", &T::turns).at_least(0).at_most(100).doc("whole turns round the drum, besides the angle between its free parts");
     f.add("friction", &T::friction).positive().at_most(10.0).required().doc("coefficient between band and drum");
     f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of the free part at a");
     f.add("stiffness_b", &T::stiffness_b).in("N/m").positive().doc("of the free part at b; default: as at a");
-    f.add("damping", &T::damping).in("N s/m").positive().required().doc(
-        "of the free part at a, at b in proportion to the stiffness; damping/stiffness is the time that a slide takes to settle");
+    f.add("damping", &T::damping)
+        .in("N s/m")
+        .positive()
+        .required()
+        .doc("of the free part at a, at b in proportion to the stiffness; damping/stiffness is the time that a slide takes to settle");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");
     k.example = R"([[element]]
@@ -209,7 +226,11 @@ const ElementKind& belt_kind() {
     f.add("friction_a", &T::friction_a).positive().at_most(10.0).required().doc("coefficient on the first wheel");
     f.add("friction_b", &T::friction_b).positive().at_most(10.0).required().doc("coefficient on the second wheel");
     f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of each free part");
-    f.add("damping", &T::damping).in("N s/m").positive().required().doc("of each free part; damping/stiffness is the time that a slide takes to settle");
+    f.add("damping", &T::damping)
+        .in("N s/m")
+        .positive()
+        .required()
+        .doc("of each free part; damping/stiffness is the time that a slide takes to settle");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("of each free part in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");
     k.example = R"([[element]]

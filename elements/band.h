@@ -12,22 +12,22 @@ namespace steplap {
 
 struct Band : Element {
   std::string a, b = "ground", drum = "ground"; ///< ends; centre of the drum
-  double radius = 0.0;                    ///< m, of the drum; negative where it goes round it clockwise on the way from a to b
-  long turns = 0;                         ///< whole ones, besides the angle that the drawing shows
-  double friction = 0.0;                  ///< μ
-  double stiffness = 0.0;                 ///< N/m, of the part at a
-  std::optional<double> stiffness_b;      ///< N/m; default: as at a
-  double damping = 0.0;                   ///< N s/m, of the part at a; at b in proportion to the stiffness
-  std::optional<double> pretension, slack; ///< N, m, in the reference pose
+  double radius = 0.0;                          ///< m, of the drum; negative where it goes round it clockwise on the way from a to b
+  long turns = 0;                               ///< whole ones, besides the angle that the drawing shows
+  double friction = 0.0;                        ///< μ
+  double stiffness = 0.0;                       ///< N/m, of the part at a
+  std::optional<double> stiffness_b;            ///< N/m; default: as at a
+  double damping = 0.0;                         ///< N s/m, of the part at a; at b in proportion to the stiffness
+  std::optional<double> pretension, slack;      ///< N, m, in the reference pose
 };
 
 struct Belt : Element {
-  std::string a, b = "ground";            ///< centres of the wheels
-  double radius_a = 0.0, radius_b = 0.0;  ///< m
+  std::string a, b = "ground";           ///< centres of the wheels
+  double radius_a = 0.0, radius_b = 0.0; ///< m
   bool crossed = false;
   double friction_a = 0.0, friction_b = 0.0; ///< μ
-  double stiffness = 0.0, damping = 0.0;  ///< N/m, N s/m, of each free part
-  std::optional<double> pretension, slack; ///< N, m, in the reference pose
+  double stiffness = 0.0, damping = 0.0;     ///< N/m, N s/m, of each free part
+  std::optional<double> pretension, slack;   ///< N, m, in the reference pose
 };
 
 [[nodiscard]] const ElementKind& band_kind();

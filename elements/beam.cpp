@@ -2,8 +2,8 @@
 
 #include "elements/beam_part.h"
 #include "elements/section.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/model/model_building.h"
 
 #include <algorithm>
@@ -21,16 +21,16 @@ struct Material {
 };
 
 constexpr std::array<Material, 2> k_materials = {{
-    {"steel", 210e9, 7850.0},     // EN 1993-1-1, 3.2.6; EN 1991-1-1, A.4
+    {"steel", 210e9, 7850.0},    // EN 1993-1-1, 3.2.6; EN 1991-1-1, A.4
     {"aluminium", 70e9, 2700.0}, // EN 1999-1-1, 3.2.5
 }};
 
 /// What a beam is made of, all found.
 struct BeamValues {
-  double length = 0.0;      ///< m
+  double length = 0.0; ///< m
   Vec2 along = Vec2::UnitX();
-  double modulus = 0.0;     ///< Pa
-  double per_length = 0.0;  ///< kg/m
+  double modulus = 0.0;    ///< Pa
+  double per_length = 0.0; ///< kg/m
   SectionValues section;
   double damping_time = 0.0; ///< s
 };
@@ -86,7 +86,8 @@ void BeamMaker::find_section() {
   const int shapes = int{!beam_.profile.empty()} + int{beam_.width || beam_.height} + int{beam_.diameter || beam_.wall};
   const bool has_values = beam_.area || beam_.second_moment;
   if (shapes + int{has_values} != 1)
-    return error("give its cross section once: by 'profile', by 'width' and 'height', by 'diameter' and 'wall', or by 'area' and 'second_moment'");
+    return error(
+        "give its cross section once: by 'profile', by 'width' and 'height', by 'diameter' and 'wall', or by 'area' and 'second_moment'");
   if (has_values) {
     if (!beam_.area || !beam_.second_moment) return error("give both 'area' and 'second_moment'", beam_.area ? "area" : "second_moment");
     values_.section = {*beam_.area, *beam_.second_moment, std::sqrt(12.0 * *beam_.second_moment / *beam_.area)};
@@ -99,14 +100,17 @@ void BeamMaker::find_section() {
     values_.section = tubular_section(*beam_.diameter, *beam_.wall);
   } else {
     const auto found = profile_section(beam_.profile);
-    if (!found) return error("profile '" + beam_.profile + "' is not known" + did_you_mean(beam_.profile, profile_names()) +
-                                 "; give 'area' and 'second_moment' of others", "profile");
+    if (!found)
+      return error("profile '" + beam_.profile + "' is not known" + did_you_mean(beam_.profile, profile_names()) +
+                       "; give 'area' and 'second_moment' of others",
+                   "profile");
     values_.section = *found;
   }
 }
 
 void BeamMaker::find_material() {
-  const auto* const material = std::find_if(k_materials.begin(), k_materials.end(), [&](const Material& m) { return beam_.material == m.name; });
+  const auto* const material =
+      std::find_if(k_materials.begin(), k_materials.end(), [&](const Material& m) { return beam_.material == m.name; });
   const bool is_named = material != k_materials.end();
   if (is_named == beam_.modulus.has_value()) error("give either its 'material' or its 'modulus'", is_named ? "modulus" : "");
   values_.modulus = beam_.modulus.value_or(is_named ? material->modulus : 0.0);
@@ -118,11 +122,13 @@ void BeamMaker::find_material() {
 
 void BeamMaker::find_damping() {
   const bool has_ratio = beam_.damping_ratio || beam_.damping_frequency;
-  if (has_ratio && beam_.damping_time) return error("give either 'damping_time' or 'damping_ratio' with its 'damping_frequency'", "damping_time");
+  if (has_ratio && beam_.damping_time)
+    return error("give either 'damping_time' or 'damping_ratio' with its 'damping_frequency'", "damping_time");
   if (has_ratio && !(beam_.damping_ratio && beam_.damping_frequency))
     return error("a ratio holds at one frequency: give both 'damping_ratio' and 'damping_frequency'",
                  beam_.damping_ratio ? "damping_ratio" : "damping_frequency");
-  values_.damping_time = has_ratio ? *beam_.damping_ratio / (std::numbers::pi * *beam_.damping_frequency) : beam_.damping_time.value_or(0.0);
+  values_.damping_time =
+      has_ratio ? *beam_.damping_ratio / (std::numbers::pi * *beam_.damping_frequency) : beam_.damping_time.value_or(0.0);
 }
 
 void BeamMaker::add_segment(long i) {
@@ -178,15 +184,21 @@ const TableKind& beam_kind() {
     using T = Beam;
     TableKind k;
     k.name = "beam";
-    k.doc = "A straight elastic beam: rigid segments 'name.0' to 'name.n', which are bodies, with springs between them that are as stiff as the "
+    k.doc = "A straight elastic beam: rigid segments 'name.0' to 'name.n', which are bodies, with springs between them that are as stiff "
+            "as the "
             "beam is. Its ends are the markers 'name.start' and 'name.end', with their x axes along it. Forces and couples at segments "
             "bend it exactly as the elastic line has it; frequencies are too low by about (j π/n)²/24.";
     FieldTable& f = k.fields;
     f.add("from", &T::from).in("m").required().doc("where its axis begins");
     f.add("to", &T::to).in("m").required().doc("where its axis ends");
     f.add("frame", &T::frame).one_of({"ground"}).doc("axes of from and to: those of the ground, in a part those of the part");
-    f.add("segments", &T::segments).at_least(1).at_most(10000).doc("parts n into which it is divided: a mode needs several to each of its waves");
-    f.add("material", &T::material).one_of(material_names()).doc("gives modulus and density: steel 210 GPa, 7850 kg/m3; aluminium 70 GPa, 2700 kg/m3");
+    f.add("segments", &T::segments)
+        .at_least(1)
+        .at_most(10000)
+        .doc("parts n into which it is divided: a mode needs several to each of its waves");
+    f.add("material", &T::material)
+        .one_of(material_names())
+        .doc("gives modulus and density: steel 210 GPa, 7850 kg/m3; aluminium 70 GPa, 2700 kg/m3");
     f.add("modulus", &T::modulus).in("Pa").positive().doc("Young's modulus, where no material gives it");
     f.add("density", &T::density).in("kg/m^3").positive().doc("goes before that of the material");
     f.add("mass_per_length", &T::mass_per_length).in("kg/m").positive().doc("of the beam and what lies on it, instead of a density");
@@ -198,7 +210,10 @@ const TableKind& beam_kind() {
     f.add("area", &T::area).in("m^2").positive().doc("of the cross section, with second_moment");
     f.add("second_moment", &T::second_moment).in("m^4").positive().doc("second moment of area about the axis of bending");
     f.add("shear_stiffness", &T::shear_stiffness).in("N").positive().doc("shear modulus times shear area; not given: it does not shear");
-    f.add("damping_time", &T::damping_time).in("s").not_negative().doc("what dampers have of stiffnesses: a mode of angular frequency w gets the ratio damping_time*w/2");
+    f.add("damping_time", &T::damping_time)
+        .in("s")
+        .not_negative()
+        .doc("what dampers have of stiffnesses: a mode of angular frequency w gets the ratio damping_time*w/2");
     f.add("damping_ratio", &T::damping_ratio).not_negative().doc("the same, given as the ratio of damping at damping_frequency");
     f.add("damping_frequency", &T::damping_frequency).in("Hz").positive().doc("where damping_ratio holds, for one that of the first mode");
     k.holds<T>();

@@ -16,9 +16,9 @@ namespace steplap {
 /// One entry of [[beam]]. Its bodies are called "deck.0" … "deck.n", its parts "deck.part 1" … "deck.part n" and its end markers, whose
 /// x axes point along the beam, "deck.start" and "deck.end".
 struct Beam : BodyBuilder {
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero(); ///< m
-  std::string frame = "ground";                ///< axes of from and to: in a part those of the part
-  long segments = 10;                          ///< n
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();                 ///< m
+  std::string frame = "ground";                                ///< axes of from and to: in a part those of the part
+  long segments = 10;                                          ///< n
   std::optional<double> modulus, second_moment, area, density; ///< E, I, A, ρ
   std::optional<double> mass_per_length;                       ///< kg/m, with what lies on the beam; instead of ρ
   std::string material, profile;                               ///< "steel", "IPE 300"

@@ -123,7 +123,8 @@ private:
       sum.fy += w.force.y;
       sum.m += cross(p.lever_a, w.force) + w.couple;
       if (entry.time != 0.0)
-        e.dissipation += S(entry.time) * (S(entry.k_x) * p.q_rate * p.q_rate + S(entry.k_v) * p.v_rate * p.v_rate + S(entry.k_theta) * p.theta_rate * p.theta_rate);
+        e.dissipation += S(entry.time) * (S(entry.k_x) * p.q_rate * p.q_rate + S(entry.k_v) * p.v_rate * p.v_rate +
+                                          S(entry.k_theta) * p.theta_rate * p.theta_rate);
     }
   }
 };
@@ -148,7 +149,8 @@ void compile_beam_part(const Element& element, SystemBuilder& builder) {
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("tension", "N", {"along the beam, in the middle of the part", "positive: it pulls"},
                       [&group, i](const Snapshot& s) { return group.now(i, *s.evaluation).tension; });
-  builder.add_channel("shear", "N", {"across the beam, in the middle of the part", "positive: it draws the half ahead to the right of the axis"},
+  builder.add_channel("shear", "N",
+                      {"across the beam, in the middle of the part", "positive: it draws the half ahead to the right of the axis"},
                       [&group, i](const Snapshot& s) { return group.now(i, *s.evaluation).shear; });
   builder.add_channel("moment", "N m", {"bending moment in the middle of the part", "positive: the half ahead is turned counter-clockwise"},
                       [&group, i](const Snapshot& s) { return group.now(i, *s.evaluation).moment; });

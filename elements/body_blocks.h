@@ -32,7 +32,9 @@ template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double
 }
 
 /// Appends what the forces on the bodies change by with the motion of each.
-template <int N> void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForceOf<Dual<6 * N>>, N>& forces, std::vector<PairJacobian>& out) {
+template <int N>
+void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForceOf<Dual<6 * N>>, N>& forces,
+                     std::vector<PairJacobian>& out) {
   for (int row = 0; row < N; ++row)
     for (int column = 0; column < N; ++column) {
       const int x = bodies[static_cast<std::size_t>(row)], y = bodies[static_cast<std::size_t>(column)];
@@ -57,7 +59,8 @@ template <int N> void add_body_blocks(const std::array<int, N>& bodies, const st
 template <int N> void add_rate_by_motion(int inner, const std::array<int, N>& bodies, const Dual<6 * N>& rate, StateJacobian& out) {
   for (int j = 0; j < N; ++j)
     if (bodies[static_cast<std::size_t>(j)] != k_ground)
-      out.by_motion.push_back({inner, bodies[static_cast<std::size_t>(j)], rate.d.template segment<3>(3 * j).matrix(), rate.d.template segment<3>(3 * N + 3 * j).matrix()});
+      out.by_motion.push_back({inner, bodies[static_cast<std::size_t>(j)], rate.d.template segment<3>(3 * j).matrix(),
+                               rate.d.template segment<3>(3 * N + 3 * j).matrix()});
 }
 
 /// Adds a force at `lever` from the body's centre.

@@ -51,9 +51,7 @@ public:
     watch[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool) const override {
     return block_within(std::max(0.0, bound_at<double>(e)), a[0], b[0]);
@@ -173,14 +171,12 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
   friction->unit = unit;
 
   const int f = builder.next_friction(), slot = builder.next_friction_row();
-  builder.add_channel("depth", "m", {"by which it is pressed in", "negative: the gap that is left"}, [&group, i](const Snapshot& s) {
-    return group.entries[i].law.free - group.measured(i, *s.evaluation).value;
-  });
+  builder.add_channel("depth", "m", {"by which it is pressed in", "negative: the gap that is left"},
+                      [&group, i](const Snapshot& s) { return group.entries[i].law.free - group.measured(i, *s.evaluation).value; });
   builder.add_channel("rate", "m/s", {"of the depth", "positive: it is pressed in"},
                       [&group, i](const Snapshot& s) { return -group.measured(i, *s.evaluation).rate; });
-  builder.add_channel("force", "N", {"of spring and friction, zero while open", "positive: it presses"}, [&group, i, slot](const Snapshot& s) {
-    return group.force_of(i, *s.evaluation) + s.friction_force[slot];
-  });
+  builder.add_channel("force", "N", {"of spring and friction, zero while open", "positive: it presses"},
+                      [&group, i, slot](const Snapshot& s) { return group.force_of(i, *s.evaluation) + s.friction_force[slot]; });
   builder.add_channel("mode", "", {"what it does", "", "0 open, 1 sticks, 2 moves"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(friction));
@@ -199,9 +195,13 @@ const ElementKind& buffer_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker that is pushed off");
     f.add("b", &T::b).as(FieldType::marker).doc("marker in whose axes its axis is given");
     f.add("axis", &T::axis).doc("the way in which a is pushed, in marker b's axes");
-    f.add("loading", &T::loading).in("m", "N").required().doc(
-        "[depth, force] while it is pressed in, from [0, 0] on, straight between them and on beyond the last");
-    f.add("unloading", &T::unloading).in("m", "N").doc("the same while it comes out again, beyond the last point parallel to loading; default: as pressed in");
+    f.add("loading", &T::loading)
+        .in("m", "N")
+        .required()
+        .doc("[depth, force] while it is pressed in, from [0, 0] on, straight between them and on beyond the last");
+    f.add("unloading", &T::unloading)
+        .in("m", "N")
+        .doc("the same while it comes out again, beyond the last point parallel to loading; default: as pressed in");
     f.add("gap", &T::gap).in("m").doc("what is left in the reference pose; negative: pressed in by so much");
     f.add("count", &T::count).at_least(1).doc("equal buffers side by side");
     k.example = R"([[element]]

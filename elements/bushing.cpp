@@ -8,16 +8,15 @@ namespace steplap {
 namespace {
 
 template <class Measure>
-void add(SystemBuilder& builder, int a, int b, const Measure& measure, double k, double c,
-         const char* channel, const char* unit) {
+void add(SystemBuilder& builder, int a, int b, const Measure& measure, double k, double c, const char* channel, const char* unit) {
   if (k == 0.0 && c == 0.0) return;
   using Group = LawGroup<Measure, LinearSpring>;
   Group& group = builder.group<Group>();
-  const double now =
-      measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
+  const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   group.entries.push_back({a, b, measure, LinearSpring{k, c, now}});
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel(channel, unit, {"what it acts with on a", unit[1] == '\0' ? "along that axis of marker b" : "positive counter-clockwise"},
+  builder.add_channel(channel, unit,
+                      {"what it acts with on a", unit[1] == '\0' ? "along that axis of marker b" : "positive counter-clockwise"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
@@ -29,12 +28,8 @@ void compile_bushing(const Element& element, SystemBuilder& builder) {
     return builder.error("'stiffness' and 'damping' must not be negative");
   const AxisMeasure x{a.point, b.point, builder.direction(b, {1.0, 0.0})};
   const AxisMeasure y{a.point, b.point, builder.direction(b, {0.0, 1.0})};
-  with_cheapest(x, [&](const auto& m) {
-    add(builder, a.body, b.body, m, e.stiffness.x(), e.damping.x(), "force_x", "N");
-  });
-  with_cheapest(y, [&](const auto& m) {
-    add(builder, a.body, b.body, m, e.stiffness.y(), e.damping.y(), "force_y", "N");
-  });
+  with_cheapest(x, [&](const auto& m) { add(builder, a.body, b.body, m, e.stiffness.x(), e.damping.x(), "force_x", "N"); });
+  with_cheapest(y, [&](const auto& m) { add(builder, a.body, b.body, m, e.stiffness.y(), e.damping.y(), "force_y", "N"); });
   add(builder, a.body, b.body, AngleMeasure{}, e.rotational_stiffness, e.rotational_damping, "couple", "N m");
 }
 

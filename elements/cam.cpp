@@ -27,7 +27,7 @@ struct CamEntry {
 
 /// Gap and its rate, and what a unit force does.
 template <class S> struct CamGap {
-  MeasureValue<S> m; ///< of the follower alone
+  MeasureValue<S> m;             ///< of the follower alone
   S value{0}, rate{0}, slope{0}; ///< slope: h'
 };
 
@@ -94,7 +94,8 @@ public:
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries) {
-      const CamGap<Dual<18>> gap = gap_of(entry, seeded_of<3>(e.motion[entry.a], 0), seeded_of<3>(e.motion[entry.b], 1), seeded_of<3>(e.motion[entry.cam], 2));
+      const CamGap<Dual<18>> gap =
+          gap_of(entry, seeded_of<3>(e.motion[entry.a], 0), seeded_of<3>(e.motion[entry.b], 1), seeded_of<3>(e.motion[entry.cam], 2));
       const Dual<18> f = entry.law.force(gap.value, gap.rate, mode_of(entry, e));
       add_body_blocks<3>(entry.bodies(), forces_of(gap, f), out);
     }
@@ -127,7 +128,8 @@ private:
   // The lift is as exact as its angle is, of many turns.
   static double rounding_of(const Entry& entry, const CamGap<double>& gap, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b], &cam = e.motion[entry.cam];
-    return value_rounding(gap.m, a, b) + k_rounded_sum * (std::abs(gap.slope) * (std::abs(cam.theta) + std::abs(b.theta)) + std::abs(gap.value - gap.m.value));
+    return value_rounding(gap.m, a, b) +
+           k_rounded_sum * (std::abs(gap.slope) * (std::abs(cam.theta) + std::abs(b.theta)) + std::abs(gap.value - gap.m.value));
   }
 };
 
@@ -144,10 +146,12 @@ std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
     for (const MotionOperand& operand : formula.operands())
       if (operand.kind != MotionOperand::Kind::own_value) return fail("'formula' may hold the angle `value` and parameters alone");
     if (formula.program().uses_time()) return fail("'formula' may hold the angle `value` and parameters alone, not the time");
-    if (formula.program().switch_count() > 0) return fail("'formula' has a kink or a jump (abs, min, max or a comparison), which a cam has not: give 'lift', as points");
+    if (formula.program().switch_count() > 0)
+      return fail("'formula' has a kink or a jump (abs, min, max or a comparison), which a cam has not: give 'lift', as points");
     if (formula.operands().empty()) return fail("'formula' does not hold the angle `value`: such a cam lifts nothing");
     LiftCurve curve(formula.program());
-    if (!std::isfinite(curve.at(e.start_angle).value) || !std::isfinite(curve.at(e.start_angle).slope)) return fail("'formula' has no finite value and slope at the start");
+    if (!std::isfinite(curve.at(e.start_angle).value) || !std::isfinite(curve.at(e.start_angle).slope))
+      return fail("'formula' has no finite value and slope at the start");
     return curve;
   }
   if (e.lift.size() < 3) return fail("'lift' needs at least three points, [angle, lift]");
@@ -155,7 +159,8 @@ std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   for (std::size_t i = 1; i < e.lift.size(); ++i)
     if (!(e.lift[i].x() > e.lift[i - 1].x())) return fail("'lift' has to increase in angle from point to point");
   if (LiftCurve::is_whole_turn(e.lift) && e.lift.back().y() != e.lift.front().y())
-    return fail("'lift' spans a whole turn, but ends at " + rounded_text(e.lift.back().y()) + " m where it begins with " + rounded_text(e.lift.front().y()) + " m");
+    return fail("'lift' spans a whole turn, but ends at " + rounded_text(e.lift.back().y()) + " m where it begins with " +
+                rounded_text(e.lift.front().y()) + " m");
   if (e.lift.back().x() - e.lift.front().x() > 6.2831853072) return fail("'lift' spans more than a whole turn");
   return LiftCurve(e.lift);
 }
@@ -164,7 +169,8 @@ void compile_cam(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const Cam&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), cam = builder.marker(e.cam);
   if (a.body == b.body) return builder.error("lifts a body against itself: name markers on two different bodies");
-  if (cam.body == a.body || cam.body == b.body) return builder.error("'cam' has to be a body of its own: neither that of the follower nor that of the frame");
+  if (cam.body == a.body || cam.body == b.body)
+    return builder.error("'cam' has to be a body of its own: neither that of the follower nor that of the frame");
   if (e.axis.norm() == 0.0) return builder.error("'axis' has no direction");
   std::optional<LiftCurve> curve = curve_of(e, builder);
   if (!curve) return;
@@ -180,12 +186,16 @@ void compile_cam(const Element& element, SystemBuilder& builder) {
   const auto at = [&group, i](const Snapshot& s) { return CamGroup::gap_now(group.entries[static_cast<std::size_t>(i)], s.motion); };
   builder.add_channel("gap", "m", {"between follower and cam", "negative: pressed in"},
                       [at, &group, i](const Snapshot& s) { return at(s).value - group.entries[static_cast<std::size_t>(i)].law.offset; });
-  builder.add_channel("force", "N", {"on the follower", "positive: it is lifted"},
-                      [at, &group, i](const Snapshot& s) { return CamGroup::force(group.entries[static_cast<std::size_t>(i)], at(s), *s.evaluation); });
-  builder.add_channel("couple", "N m", {"on the cam", "positive counter-clockwise"},
-                      [at, &group, i](const Snapshot& s) { return -at(s).slope * CamGroup::force(group.entries[static_cast<std::size_t>(i)], at(s), *s.evaluation); });
+  builder.add_channel("force", "N", {"on the follower", "positive: it is lifted"}, [at, &group, i](const Snapshot& s) {
+    return CamGroup::force(group.entries[static_cast<std::size_t>(i)], at(s), *s.evaluation);
+  });
+  builder.add_channel("couple", "N m", {"on the cam", "positive counter-clockwise"}, [at, &group, i](const Snapshot& s) {
+    return -at(s).slope * CamGroup::force(group.entries[static_cast<std::size_t>(i)], at(s), *s.evaluation);
+  });
   builder.add_channel("lift", "m", {"of the curve at the cam's angle, from that in the reference pose", "positive: along the axis"},
-                      [at, start = group.entries[static_cast<std::size_t>(i)].curve.at(e.start_angle).value](const Snapshot& s) { return at(s).m.value - at(s).value - start; });
+                      [at, start = group.entries[static_cast<std::size_t>(i)].curve.at(e.start_angle).value](const Snapshot& s) {
+                        return at(s).m.value - at(s).value - start;
+                      });
 }
 
 } // namespace
@@ -195,14 +205,18 @@ const ElementKind& cam_kind() {
     using T = Cam;
     ElementKind k;
     k.name = "cam";
-    k.doc = "A cam lifts marker a along an axis of marker b by a curve of its angle against b. The follower is pressed and never held, so that it "
-            "leaves a cam that turns too fast, unless a groove holds it. The cam's bearing and the follower's guide are joints of their own.";
+    k.doc =
+        "A cam lifts marker a along an axis of marker b by a curve of its angle against b. The follower is pressed and never held, so that "
+        "it "
+        "leaves a cam that turns too fast, unless a groove holds it. The cam's bearing and the follower's guide are joints of their own.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is lifted");
     f.add("b", &T::b).as(FieldType::marker).doc("marker of the frame, in whose axes its axis is given");
     f.add("cam", &T::cam).as(FieldType::marker).required().doc("body that turns, or a marker on it");
     f.add("axis", &T::axis).doc("direction in which it is lifted, in marker b's axes");
-    f.add("lift", &T::lift).in("rad", "m").doc("[angle, lift] over at most one turn: a smooth curve through them, periodic over a whole turn");
+    f.add("lift", &T::lift)
+        .in("rad", "m")
+        .doc("[angle, lift] over at most one turn: a smooth curve through them, periodic over a whole turn");
     f.add("formula", &T::formula).doc("instead: lift in m over the angle `value`: \"'4 mm' * (1 - cos(value))\"");
     f.add("start_angle", &T::start_angle).in("rad").doc("of the cam in the reference pose, as the curve counts");
     f.add("gap", &T::gap).in("m").doc("between follower and cam in the reference pose; negative: pressed in");

@@ -20,8 +20,8 @@
 #include "elements/own_state.h"
 #include "elements/polygon_contact.h"
 #include "elements/prescribed_motion.h"
-#include "elements/rope.h"
 #include "elements/rolling_resistance.h"
+#include "elements/rope.h"
 #include "elements/round_contacts.h"
 #include "elements/shape.h"
 #include "elements/skate.h"
@@ -32,33 +32,50 @@
 #include "elements/tyre.h"
 #include "elements/unilateral_contact.h"
 #include "elements/wound_rope.h"
+#include "mbd/io/presentation.h"
 #include "mbd/io/record_signal.h"
 #include "mbd/model/shunting_signal.h"
-#include "mbd/io/presentation.h"
 
 namespace steplap {
 
 const Catalogue& element_catalog() {
   static const Catalogue catalogue = [] {
     Catalogue c;
-    c.elements = {&spring_damper_kind(),     &rotational_spring_damper_kind(),
-                  &bushing_kind(),           &unilateral_contact_kind(),
-                  &circle_contact_kind(),    &segment_contact_kind(),
-                  &polygon_contact_kind(),   &tyre_kind(),
-                  &buffer_kind(),            &tie_kind(),
+    c.elements = {&spring_damper_kind(),
+                  &rotational_spring_damper_kind(),
+                  &bushing_kind(),
+                  &unilateral_contact_kind(),
+                  &circle_contact_kind(),
+                  &segment_contact_kind(),
+                  &polygon_contact_kind(),
+                  &tyre_kind(),
+                  &buffer_kind(),
+                  &tie_kind(),
                   &beam_part_kind(),
-                  &coulomb_stick_kind(),     &step_lap_joint_kind(),
-                  &step_lap_interface_kind(), &rolling_resistance_kind(),
-                  &revolute_kind(),          &prismatic_kind(),
-                  &weld_kind(),              &distance_kind(),
-                  &point_on_line_kind(),     &prescribed_motion_kind(),
-                  &gear_kind(),              &rack_kind(),
-                  &motor_kind(),             &limit_kind(),
-                  &joint_friction_kind(),    &skate_kind(),
-                  &rope_kind(),              &wound_rope_kind(),
-                  &band_kind(),              &belt_kind(),
-                  &cam_kind(),               &freewheel_kind(),
-                  &lossy_gear_kind(),        &load_kind(),
+                  &coulomb_stick_kind(),
+                  &step_lap_joint_kind(),
+                  &step_lap_interface_kind(),
+                  &rolling_resistance_kind(),
+                  &revolute_kind(),
+                  &prismatic_kind(),
+                  &weld_kind(),
+                  &distance_kind(),
+                  &point_on_line_kind(),
+                  &prescribed_motion_kind(),
+                  &gear_kind(),
+                  &rack_kind(),
+                  &motor_kind(),
+                  &limit_kind(),
+                  &joint_friction_kind(),
+                  &skate_kind(),
+                  &rope_kind(),
+                  &wound_rope_kind(),
+                  &band_kind(),
+                  &belt_kind(),
+                  &cam_kind(),
+                  &freewheel_kind(),
+                  &lossy_gear_kind(),
+                  &load_kind(),
                   &formula_force_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());

@@ -5,8 +5,8 @@
 // whatever rounding and the joints' residuals leave of the gap there is no time in which it is released.
 #pragma once
 
-#include "mbd/system/law_group.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/system/law_group.h"
 
 #include <algorithm>
 
@@ -18,9 +18,7 @@ struct KelvinVoigtContact {
   static constexpr bool k_is_contact = true;
   double k = 0.0, c = 0.0, offset = 0.0;
 
-  template <class S> [[nodiscard]] S raw(const S& value, const S& rate) const {
-    return S(-k) * (value - S(offset)) - S(c) * rate;
-  }
+  template <class S> [[nodiscard]] S raw(const S& value, const S& rate) const { return S(-k) * (value - S(offset)) - S(c) * rate; }
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? raw(value, rate) : S(0);
   }
@@ -89,9 +87,7 @@ struct LiteralContact {
     const double closed = std::min(0.0, value - offset);
     return 0.5 * k * closed * closed;
   }
-  [[nodiscard]] UnitMode mode_at(double value, double) const {
-    return value - offset < 0.0 ? k_contact_pressed : k_contact_open;
-  }
+  [[nodiscard]] UnitMode mode_at(double value, double) const { return value - offset < 0.0 ? k_contact_pressed : k_contact_open; }
   template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     watch[0] = sign * (value - offset);
@@ -100,9 +96,7 @@ struct LiteralContact {
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int, double, double, double) const {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
-  static EventKind transition(UnitMode, UnitMode to) {
-    return to == k_contact_open ? EventKind::opens : EventKind::closes;
-  }
+  static EventKind transition(UnitMode, UnitMode to) { return to == k_contact_open ? EventKind::opens : EventKind::closes; }
 };
 
 /// f = k|δ|ⁿ (1 − α δ̇), never below zero (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440).
@@ -119,12 +113,9 @@ struct HuntCrossleyContact {
     if (mode != k_contact_pressed) return S(0);
     return S(k) * power(S(offset) - value) * (S(1) - S(alpha) * rate);
   }
-  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
-    return mode == k_contact_open ? 0.0 : k * power(offset - value);
-  }
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const { return mode == k_contact_open ? 0.0 : k * power(offset - value); }
   [[nodiscard]] double energy(double value) const {
-    return value < offset ? k * portable::pow(offset - value, exponent + 1.0) / (exponent + 1.0)
-                          : 0.0;
+    return value < offset ? k * portable::pow(offset - value, exponent + 1.0) / (exponent + 1.0) : 0.0;
   }
   [[nodiscard]] UnitMode mode_at(double value, double rate) const {
     if (value - offset >= 0.0) return k_contact_open;
@@ -141,9 +132,7 @@ struct HuntCrossleyContact {
     if (slot == 0) return k_contact_open;
     return mode == k_contact_pressed ? k_contact_released : k_contact_pressed;
   }
-  static EventKind transition(UnitMode from, UnitMode to) {
-    return KelvinVoigtContact::transition(from, to);
-  }
+  static EventKind transition(UnitMode from, UnitMode to) { return KelvinVoigtContact::transition(from, to); }
 
 private:
   template <class S> [[nodiscard]] S power(const S& depth) const {

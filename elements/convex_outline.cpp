@@ -23,8 +23,7 @@ std::string place_text(const Vec2& p) {
 
 double twice_area(const std::vector<Vec2>& ring) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i)
-    sum += cross(Vec2(ring[i] - ring[0]), Vec2(ring[(i + 1) % ring.size()] - ring[0]));
+  for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(Vec2(ring[i] - ring[0]), Vec2(ring[(i + 1) % ring.size()] - ring[0]));
   return sum;
 }
 

@@ -23,16 +23,12 @@ public:
   bool has_two_feet = false;
   double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
   double mu_static = 0.0, mu_kinetic = 0.0;
-  bool may_pull = false; ///< a contact's law lets it pull (literal): friction ends where the sum does
+  bool may_pull = false;                         ///< a contact's law lets it pull (literal): friction ends where the sum does
   double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts; of the lighter body; from its centre
 
   [[nodiscard]] int dimension() const override { return 1; }
-  [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override {
-    return &feet[state.foot];
-  }
-  void mark_bodies(std::vector<char>& is_used) const override {
-    is_used[feet[0].a] = is_used[feet[0].b] = 1;
-  }
+  [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override { return &feet[state.foot]; }
+  void mark_bodies(std::vector<char>& is_used) const override { is_used[feet[0].a] = is_used[feet[0].b] = 1; }
   template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
   /// As laws of motion have it: a step that goes beyond the end of a contact's force, where it will be cut, finds the force's law
   /// go on below zero there. A kink at that place would make the step, and what is read inside it, as inexact as its end is known.
@@ -41,19 +37,16 @@ public:
     return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
-    return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {
-      return e.mode[contact.unit] == k_contact_pressed;
-    });
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [&e](const ContactIndex& contact) { return e.mode[contact.unit] == k_contact_pressed; });
   }
-  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*,
-                   double* wrench) const override {
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = sliding_force(e, state);
   }
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return mu_static * normal_force(e) * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
-                   double* watch) const override {
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
     watch_bounds<double>(e, wrench, watch);
   }
   [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
@@ -68,15 +61,9 @@ public:
     watch[2] = turn_to_other_foot(e, state);
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
-    return turn_to_other_foot(e, state);
-  }
-  void change_place(const Evaluation&, FrictionState& state) const override {
-    state.foot = state.foot == 0 ? 1 : 0;
-  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override { return turn_to_other_foot(e, state); }
+  void change_place(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
   // The contacts' dampers make forces of errors of velocity, and friction with μ > 1 larger ones of these: against what
   // would accelerate the body as the motion does to which tolerances are absolute. Else the contact rattles: it would
   // lose and regain, by errors alone, a normal force so small that the tolerance does not show it and yet enough to
@@ -88,8 +75,8 @@ public:
     if (mu_kinetic > 1.0 && damping > 0.0) scale.speed = k_floor_acceleration * mass / ((mu_kinetic - 1.0) * damping);
     return scale;
   }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a,
-                                          const double* b, bool is_kinetic) const override {
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+                                          bool is_kinetic) const override {
     return block_within((is_kinetic ? mu_kinetic : mu_static) * normal_force(e), a[0], b[0]);
   }
 

@@ -73,8 +73,8 @@ bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
 }
 
 // All contacts must lie between the same two bodies on one line, so that one coordinate serves them.
-bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry,
-             std::vector<ContactIndex>& contacts, double& damping, bool& may_pull) {
+bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry, std::vector<ContactIndex>& contacts,
+             double& damping, bool& may_pull) {
   for (const std::string& name : e.contacts) {
     const ContactIndex* index = builder.contact(name);
     const ElementEntry* entry = builder.element(name);
@@ -92,8 +92,7 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
     may_pull = may_pull || contact->law == "literal";
     contacts.push_back(*index);
     const ContactGeometry &first = geometry.front(), &last = geometry.back();
-    if (first.a != last.a || first.b != last.b ||
-        (first.gap.normal - last.gap.normal).norm() > 1e-9) {
+    if (first.a != last.a || first.b != last.b || (first.gap.normal - last.gap.normal).norm() > 1e-9) {
       builder.error("contacts '" + e.contacts.front() + "' and '" + name +
                     "' are not between the same two bodies with the same normal: give each its own "
                     "coulomb_stick");
@@ -113,44 +112,35 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
   builder.add_channel("capacity", "N", {"largest friction force that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
   builder.add_channel("slip_rate", "m/s", {"velocity of a's last contact point against b", "along b's tangent"},
-                      [self, f](const Snapshot& s) {
-                        return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
-                      });
-  builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"}, [f](const Snapshot& s) {
-    return static_cast<double>(s.evaluation->friction[f].phase);
-  });
+                      [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
+  builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
+                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
 }
 
 // The row's value since the reference pose.
-void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction,
-                       std::size_t place) {
+void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction, std::size_t place) {
   const double start = evaluate_row<false>(friction.feet[place], &builder.reference(0)).value;
   builder.add_channel(name, "m", {doc, "along b's tangent"}, [&friction, place, start](const Snapshot& s) {
     return evaluate_row<false>(friction.feet[place], s.motion).value - start;
   });
 }
 
-void finish(const CoulombStick& e, std::unique_ptr<CoulombFriction> friction, bool is_rolling,
-            SystemBuilder& builder) {
+void finish(const CoulombStick& e, std::unique_ptr<CoulombFriction> friction, bool is_rolling, SystemBuilder& builder) {
   for (RowSpec& row : friction->feet) row.element = builder.element_index();
   friction->mu_static = e.static_friction;
   friction->mu_kinetic = e.kinetic_friction.value_or(e.static_friction);
   add_channels(builder, *friction);
   if (!is_rolling) {
-    add_slide_channel(builder, "slide", "tangential coordinate of the front-most contact since the reference pose",
-                      *friction, 1);
+    add_slide_channel(builder, "slide", "tangential coordinate of the front-most contact since the reference pose", *friction, 1);
     add_slide_channel(builder, "slide_rear", "the same of the rear-most contact", *friction, 0);
   }
   builder.add_friction(std::move(friction));
 }
 
-bool is_round(const ElementEntry* entry) {
-  return entry && dynamic_cast<const RoundContact*>(entry->element.get());
-}
+bool is_round(const ElementEntry* entry) { return entry && dynamic_cast<const RoundContact*>(entry->element.get()); }
 
 bool is_any_round(const CoulombStick& e, const SystemBuilder& builder) {
-  return std::any_of(e.contacts.begin(), e.contacts.end(),
-                     [&](const std::string& name) { return is_round(builder.element(name)); });
+  return std::any_of(e.contacts.begin(), e.contacts.end(), [&](const std::string& name) { return is_round(builder.element(name)); });
 }
 
 // Under one contact of a circle: sticking, it rolls.
@@ -216,19 +206,14 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
   if (!collect(e, builder, geometry, friction->contacts, friction->damping, friction->may_pull)) return;
 
   const int memory = builder.add_memory();
-  const auto slide_of = [&](const ContactGeometry& g) {
-    return evaluate_row<false>(slide_row(g, -1), &builder.reference(0)).value;
-  };
+  const auto slide_of = [&](const ContactGeometry& g) { return evaluate_row<false>(slide_row(g, -1), &builder.reference(0)).value; };
   const auto [rear, front] = std::minmax_element(
-      geometry.begin(), geometry.end(), [&](const ContactGeometry& x, const ContactGeometry& y) {
-        return slide_of(x) < slide_of(y);
-      });
+      geometry.begin(), geometry.end(), [&](const ContactGeometry& x, const ContactGeometry& y) { return slide_of(x) < slide_of(y); });
   friction->feet = {slide_row(*rear, memory), slide_row(*front, memory)};
   friction->has_two_feet = rear != front;
   if (friction->has_two_feet) friction->level = level_angle(*rear, *front, builder);
   friction->mass = lighter_mass(geometry.front(), builder);
-  for (const ContactGeometry& g : geometry)
-    friction->lever = std::max({friction->lever, g.gap.point_a.norm(), g.gap.point_b.norm()});
+  for (const ContactGeometry& g : geometry) friction->lever = std::max({friction->lever, g.gap.point_a.norm(), g.gap.point_b.norm()});
   finish(e, std::move(friction), false, builder);
 }
 
@@ -243,7 +228,10 @@ const ElementKind& coulomb_stick_kind() {
     k.doc = "Coulomb friction under a group of contacts of one pair of bodies: sticks exactly while the "
             "force it takes is within static_friction times the sum of their normal forces.";
     FieldTable& f = k.fields;
-    f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("the contacts that press: unilateral_contact elements, or one of a circle");
+    f.add("contacts", &T::contacts)
+        .as(FieldType::elements)
+        .required()
+        .doc("the contacts that press: unilateral_contact elements, or one of a circle");
     f.add("static_friction", &T::static_friction).not_negative().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
     k.holds<T>();

@@ -58,7 +58,8 @@ public:
     for (const Entry& entry : entries) {
       const UnitMode mode = law_mode(e.mode[entry.unit]);
       const Dual<12> f = add_pair_jacobian(
-          entry.a, entry.b, entry.gap, e, [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode); }, out);
+          entry.a, entry.b, entry.gap, e, [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode); },
+          out);
       out.back().contact = entry.contact;
       out.back().normal = f.d.matrix();
     }
@@ -132,8 +133,8 @@ private:
     if (mode == k_contact_open) return mode;
     return e.inner[entries[element].inner] == 0.0 && entries[element].is_on_face(along_of(element, e)) ? mode : k_contact_off;
   }
-  static void watch(const Entry& entry, const MeasureValue<double>& m, const MeasureValue<double>& at, UnitMode mode,
-                    double* watch, double* rate) {
+  static void watch(const Entry& entry, const MeasureValue<double>& m, const MeasureValue<double>& at, UnitMode mode, double* watch,
+                    double* rate) {
     std::fill_n(watch, k_watches, 1.0);
     std::fill_n(rate, k_watches, std::numeric_limits<double>::quiet_NaN());
     if (mode == k_contact_off) {

@@ -24,7 +24,8 @@ struct FollowingMeasure {
   }
 
 private:
-  template <class S, class B> static Pair<S> velocity_against(const Motion<S>& a, const Pair<S>& lever_a, const B& b, const Pair<S>& lever_b) {
+  template <class S, class B>
+  static Pair<S> velocity_against(const Motion<S>& a, const Pair<S>& lever_a, const B& b, const Pair<S>& lever_b) {
     if constexpr (k_is_origin<B>) return point_velocity(a, lever_a);
     else return point_velocity(a, lever_a) - point_velocity(b, lever_b);
   }
@@ -159,8 +160,8 @@ private:
   /// Value and derivatives of one entry where the motion is.
   struct Gradient {
     OwnCoordinate<D12> own;
-    D12 along[6];       ///< wrench on a and on b of a unit value
-    Vec3 on_ends[2];    ///< the same without derivatives
+    D12 along[6];    ///< wrench on a and on b of a unit value
+    Vec3 on_ends[2]; ///< the same without derivatives
     double value = 0.0;
     std::vector<double>& slopes; ///< by operands; good until the next one is made
 
@@ -224,15 +225,18 @@ template <class Group> void add(SystemBuilder& builder, ForceEntry entry, bool i
   if (switch_count > 0) builder.add_unit(group, switch_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const ForceEntry& added = group.entries.back();
-  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what its formula gives, on a along the coordinate", "positive: towards larger values of the coordinate"},
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N",
+                      {"what its formula gives, on a along the coordinate", "positive: towards larger values of the coordinate"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
-  builder.add_channel("power", "W", {"power that it gives", "negative while it brakes"},
-                      [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation) * group.entries[i].own_now(*s.evaluation).rate; });
+  builder.add_channel("power", "W", {"power that it gives", "negative while it brakes"}, [&group, i](const Snapshot& s) {
+    return group.force_of(i, *s.evaluation) * group.entries[i].own_now(*s.evaluation).rate;
+  });
   const RowSpec row = added.row;
   const double zero = added.zero;
   if (!added.is_following)
-    builder.offer_channel("value", is_angle ? "rad" : "m", {"of its coordinate", "as the coordinate counts"},
-                          MeasuredValue{[row, zero](const Snapshot& s) { return evaluate_row<false>(row, s.motion).value - zero; }, row, zero, false});
+    builder.offer_channel(
+        "value", is_angle ? "rad" : "m", {"of its coordinate", "as the coordinate counts"},
+        MeasuredValue{[row, zero](const Snapshot& s) { return evaluate_row<false>(row, s.motion).value - zero; }, row, zero, false});
   builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
                         [&group, i](const Snapshot& s) { return group.entries[i].own_now(*s.evaluation).rate; });
 }
@@ -250,8 +254,15 @@ void compile_formula_force(const Element& element, SystemBuilder& builder) {
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("acts on a body against itself: name markers on two different bodies");
   const bool is_angle = e.coordinate == "angle", is_following = e.coordinate == "own_x" || e.coordinate == "own_y";
-  ForceEntry entry{a.body, b.body, {}, false,
-                   MotionFormula(builder, {e.formula, "formula", is_angle ? "N m" : "N", is_following ? "-" : is_angle ? "rad" : "m", is_angle ? "rad/s" : "m/s"})};
+  ForceEntry entry{a.body,
+                   b.body,
+                   {},
+                   false,
+                   MotionFormula(builder, {e.formula, "formula", is_angle ? "N m" : "N",
+                                           is_following ? "-"
+                                           : is_angle   ? "rad"
+                                                        : "m",
+                                           is_angle ? "rad/s" : "m/s"})};
   if (!set_coordinate(e, a, b, builder, entry) || !entry.formula.is_valid()) return;
   const std::vector<double> inner = start_of_states(builder);
   const Evaluation start = reference_evaluation(builder, inner);
@@ -259,11 +270,16 @@ void compile_formula_force(const Element& element, SystemBuilder& builder) {
   FormulaProgram::Bits bits{0, 0};
   entry.formula.find_bits(start, own, bits);
   if (!std::isfinite(entry.formula.value<double>(start, own, SignalsNow{0.0}, bits.values, nullptr)))
-    return builder.error("'formula' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
+    return builder.error(
+        "'formula' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.formula, start, own);
   const bool jumps = entry.formula.program().has_comparisons();
-  if (e.energy == "work") jumps ? add<FormulaForceGroup<true, true>>(builder, std::move(entry), is_angle) : add<FormulaForceGroup<true, false>>(builder, std::move(entry), is_angle);
-  else jumps ? add<FormulaForceGroup<false, true>>(builder, std::move(entry), is_angle) : add<FormulaForceGroup<false, false>>(builder, std::move(entry), is_angle);
+  if (e.energy == "work")
+    jumps ? add<FormulaForceGroup<true, true>>(builder, std::move(entry), is_angle)
+          : add<FormulaForceGroup<true, false>>(builder, std::move(entry), is_angle);
+  else
+    jumps ? add<FormulaForceGroup<false, true>>(builder, std::move(entry), is_angle)
+          : add<FormulaForceGroup<false, false>>(builder, std::move(entry), is_angle);
 }
 
 } // namespace
@@ -273,15 +289,19 @@ const ElementKind& formula_force_kind() {
     using T = FormulaForce;
     ElementKind k;
     k.name = "force";
-    k.doc = "A force or couple on a along a coordinate, its opposite on b, whose value is a formula of places, angles, velocities, states, "
-            "signals, parameters and time: drag, magnets, tyres, controllers. `docs/reference/formulas_of_forces.md` tells what it may hold.";
+    k.doc =
+        "A force or couple on a along a coordinate, its opposite on b, whose value is a formula of places, angles, velocities, states, "
+        "signals, parameters and time: drag, magnets, tyres, controllers. `docs/reference/formulas_of_forces.md` tells what it may hold.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that it acts on");
     f.add("b", &T::b).as(FieldType::marker).doc("marker that its opposite acts on, whose axes count");
-    f.add("coordinate", &T::coordinate).one_of({"x", "y", "distance", "angle", "own_x", "own_y"}).doc(
-        "x, y: of marker a in marker b's axes; distance of the markers; angle of a against b; own_x, own_y: along marker a's own axes");
-    f.add("formula", &T::formula).required().doc(
-        "its value, in N or N m; `value` and `rate` are those of the coordinate: \"-'0.3 N s2/m2' * abs(rate) * rate\"");
+    f.add("coordinate", &T::coordinate)
+        .one_of({"x", "y", "distance", "angle", "own_x", "own_y"})
+        .doc(
+            "x, y: of marker a in marker b's axes; distance of the markers; angle of a against b; own_x, own_y: along marker a's own axes");
+    f.add("formula", &T::formula)
+        .required()
+        .doc("its value, in N or N m; `value` and `rate` are those of the coordinate: \"-'0.3 N s2/m2' * abs(rate) * rate\"");
     f.add("energy", &T::energy).one_of({"work", "dissipated"}).doc("how its power is booked: work of a drive, or heat");
     k.example = R"([[element]]
 name = 'push'

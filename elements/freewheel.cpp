@@ -26,7 +26,9 @@ public:
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
-  void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override { wrench[0] = bound(state); }
+  void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override {
+    wrench[0] = bound(state);
+  }
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
     return rate[0] > 0.0 ? -low * rate[0] : -high * rate[0];
   }
@@ -35,8 +37,11 @@ public:
     normal[0] = 1.0 / bound;
     return wrench[0] / bound;
   }
-  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override { watch_between<double>(wrench[0], watch); }
-  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench, Traced* watch) const override {
+  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
+    watch_between<double>(wrench[0], watch);
+  }
+  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
+                                    Traced* watch) const override {
     if (rate) {
       wrench[0] = Traced(sliding(state));
       watch[0] = state.sign * rate[0];
@@ -48,7 +53,9 @@ public:
     return true;
   }
   // At the bound that is nearer: the other one is far away.
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.5 * (low + high) ? -1 : 1; }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.5 * (low + high) ? -1 : 1;
+  }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b, bool) const override {
     constexpr double k_no_motion = 1e-12; // rad/s or rad/s²: rounding of an angle that a drive keeps at rest
     FrictionBlock block;
@@ -67,7 +74,10 @@ private:
   [[nodiscard]] double bound(const FrictionState& state) const {
     const double couple = sliding(state);
     if (std::abs(couple) < k_whatever) return couple;
-    throw ElementFailure("the bodies of the one-way clutch '" + name + "' turn against its lock, where it would have to join them at once: let them begin with the same rate, or give it 'holds'", {name});
+    throw ElementFailure(
+        "the bodies of the one-way clutch '" + name +
+            "' turn against its lock, where it would have to join them at once: let them begin with the same rate, or give it 'holds'",
+        {name});
   }
   template <class S> void watch_between(const S& wrench, S* watch) const {
     watch[0] = most() - wrench;
@@ -89,7 +99,8 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   clutch->high = is_forward ? holds : e.drags;
   double lighter = std::numeric_limits<double>::infinity();
   for (const Body& body : builder.model().bodies)
-    if (const int index = builder.body(body.name); !body.fixed && (index == a.body || index == b.body)) lighter = std::min(lighter, body.inertia);
+    if (const int index = builder.body(body.name); !body.fixed && (index == a.body || index == b.body))
+      lighter = std::min(lighter, body.inertia);
   clutch->rest = std::isfinite(lighter) ? k_least_acceleration * lighter : 0.0;
   RowSpec& row = clutch->row;
   row.kind = MeasureKind::angle;
@@ -102,10 +113,12 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   row.memory = builder.add_memory();
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   const OneWayClutch* const self = clutch.get();
-  builder.add_channel("couple", "N m", {"with which b takes a along, or drags on it", "positive: counter-clockwise on a"}, [slot](const Snapshot& s) { return s.friction_force[slot]; });
+  builder.add_channel("couple", "N m", {"with which b takes a along, or drags on it", "positive: counter-clockwise on a"},
+                      [slot](const Snapshot& s) { return s.friction_force[slot]; });
   builder.add_channel("slip_rate", "rad/s", {"rate of a against b", "positive counter-clockwise"},
                       [self](const Snapshot& s) { return evaluate_row<false>(self->row, s.motion).rate; });
-  builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"}, [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"},
+                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(clutch));
 }
 
@@ -116,8 +129,9 @@ const ElementKind& freewheel_kind() {
     using T = Freewheel;
     ElementKind k;
     k.name = "freewheel";
-    k.doc = "A one-way clutch: a may overrun b in one direction, and b takes a along in that direction, exactly, without play. A backstop is a "
-            "freewheel against the ground.";
+    k.doc =
+        "A one-way clutch: a may overrun b in one direction, and b takes a along in that direction, exactly, without play. A backstop is a "
+        "freewheel against the ground.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("body that may overrun");
     f.add("b", &T::b).as(FieldType::marker).doc("body that takes it along");

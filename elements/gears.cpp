@@ -16,7 +16,8 @@ void add_row(RowSpec row, SystemBuilder& builder) {
   row.quantity = "force";
   row.memory = builder.add_memory(evaluate_row<false>(row, &builder.reference(0)).value);
   const int r = builder.next_row();
-  builder.add_channel("force", "N", {"force between the teeth, on a", "along the common tangent, as a's rim moves when it turns counter-clockwise"},
+  builder.add_channel("force", "N",
+                      {"force between the teeth, on a", "along the common tangent, as a's rim moves when it turns counter-clockwise"},
                       [r](const Snapshot& s) { return s.row_force[r]; });
   builder.offer_channel("power", "W", "power that it gives: none but error of the computation",
                         [row, r](const Snapshot& s) { return s.row_force[r] * evaluate_row<false>(row, s.motion).rate; });

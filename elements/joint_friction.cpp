@@ -114,9 +114,7 @@ public:
     watch[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
     return block_within(share(e.t) * (is_kinetic ? sliding_bound(sliding_rate(e)) : holds), a[0], b[0]);
@@ -199,16 +197,19 @@ const ElementKind& joint_friction_kind() {
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is held");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
-    f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
-        "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
-    f.add("holds", &T::holds).in("N m|N").positive().required().doc(
-        "largest couple or force that it takes sticking");
+    f.add("coordinate", &T::coordinate)
+        .one_of({"angle", "x", "y", "distance"})
+        .doc("angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
+    f.add("holds", &T::holds).in("N m|N").positive().required().doc("largest couple or force that it takes sticking");
     f.add("drags", &T::drags).in("N m|N").not_negative().doc("couple or force while it slides; default: as holds");
-    f.add("stribeck_velocity", &T::stribeck_velocity).in("rad/s|m/s").positive().doc(
-        "rate v_s over which it falls: drags + (holds - drags)/(1 + (rate/v_s)^2); default: at once");
+    f.add("stribeck_velocity", &T::stribeck_velocity)
+        .in("rad/s|m/s")
+        .positive()
+        .doc("rate v_s over which it falls: drags + (holds - drags)/(1 + (rate/v_s)^2); default: at once");
     f.add("viscous", &T::viscous).in("N m s/rad|N s/m").not_negative().doc("added while it slides, times the rate");
-    f.add("signal", &T::signal).as(FieldType::signal).doc(
-        "multiplies holds, drags and viscous, as a brake's pressure does; never below zero");
+    f.add("signal", &T::signal)
+        .as(FieldType::signal)
+        .doc("multiplies holds, drags and viscous, as a brake's pressure does; never below zero");
     k.holds<T>();
     k.compile = compile_joint_friction;
     return k;

@@ -14,9 +14,7 @@ struct Ends {
   CompiledMarker a, b;
 };
 
-Ends ends_of(const Joint& e, const SystemBuilder& builder) {
-  return {builder.marker(e.a), builder.marker(e.b)};
-}
+Ends ends_of(const Joint& e, const SystemBuilder& builder) { return {builder.marker(e.a), builder.marker(e.b)}; }
 
 RowSpec row_between(const Ends& ends, MeasureKind kind, const Vec2& direction, const char* quantity) {
   RowSpec row;
@@ -61,11 +59,12 @@ void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = fals
   if (rows.size() > 1 && rows[1].kind == MeasureKind::axis)
     builder.offer_channel("reaction", "N", {"size of the reaction force", "never negative"},
                           [first](const Snapshot& s) { return portable::hypot(s.row_force[first], s.row_force[first + 1]); });
-  builder.offer_channel("power", "W", "power that the reactions give: none but error of the computation", [held, count = static_cast<int>(rows.size()), first](const Snapshot& s) {
-    double power = 0.0;
-    for (int i = 0; i < count; ++i) power += s.row_force[first + i] * evaluate_row<false>(held[i], s.motion).rate;
-    return power;
-  });
+  builder.offer_channel("power", "W", "power that the reactions give: none but error of the computation",
+                        [held, count = static_cast<int>(rows.size()), first](const Snapshot& s) {
+                          double power = 0.0;
+                          for (int i = 0; i < count; ++i) power += s.row_force[first + i] * evaluate_row<false>(held[i], s.motion).rate;
+                          return power;
+                        });
   builder.add_rows(std::move(rows), is_rigid);
 }
 
@@ -76,16 +75,20 @@ void offer_angle(const Ends& ends, SystemBuilder& builder) {
                                         return relative_angle(s.motion[a.body], s.motion[b.body]) + (a.angle - b.angle);
                                       },
                                       row, ends.b.angle - ends.a.angle});
-  builder.offer_channel("rate", "rad/s", {"of the angle", "positive: a turns counter-clockwise"},
-                        MeasuredValue{[a = ends.a.body, b = ends.b.body](const Snapshot& s) { return relative_spin(s.motion[a], s.motion[b]); }, row, 0.0, true});
+  builder.offer_channel(
+      "rate", "rad/s", {"of the angle", "positive: a turns counter-clockwise"},
+      MeasuredValue{[a = ends.a.body, b = ends.b.body](const Snapshot& s) { return relative_spin(s.motion[a], s.motion[b]); }, row, 0.0,
+                    true});
 }
 
 void offer_displacement(const Ends& ends, const Vec2& axis, SystemBuilder& builder) {
   const AxisMeasure along{ends.a.point, ends.b.point, builder.direction(ends.b, axis)};
   const auto measured = [along, a = ends.a.body, b = ends.b.body](const Snapshot& s) { return along.at<false>(s.motion[a], s.motion[b]); };
   const RowSpec row = row_of(ends.a.body, ends.b.body, along);
-  builder.offer_channel("displacement", "m", {"of marker a from marker b", "along the free axis"}, MeasuredValue{[measured](const Snapshot& s) { return measured(s).value; }, row});
-  builder.offer_channel("rate", "m/s", {"of the displacement", "along the free axis"}, MeasuredValue{[measured](const Snapshot& s) { return measured(s).rate; }, row, 0.0, true});
+  builder.offer_channel("displacement", "m", {"of marker a from marker b", "along the free axis"},
+                        MeasuredValue{[measured](const Snapshot& s) { return measured(s).value; }, row});
+  builder.offer_channel("rate", "m/s", {"of the displacement", "along the free axis"},
+                        MeasuredValue{[measured](const Snapshot& s) { return measured(s).rate; }, row, 0.0, true});
 }
 
 void compile_revolute(const Element& element, SystemBuilder& builder) {
@@ -99,10 +102,9 @@ void compile_revolute(const Element& element, SystemBuilder& builder) {
 void compile_weld(const Element& element, SystemBuilder& builder) {
   const Ends ends = ends_of(static_cast<const Joint&>(element), builder);
   if (!joins_two_bodies(ends, builder)) return;
-  std::vector<RowSpec> rows = {
-      row_between(ends, MeasureKind::axis, builder.direction(ends.b, {1.0, 0.0}), "force_x"),
-      row_between(ends, MeasureKind::axis, builder.direction(ends.b, {0.0, 1.0}), "force_y"),
-      row_between(ends, MeasureKind::angle, Vec2::Zero(), "couple")};
+  std::vector<RowSpec> rows = {row_between(ends, MeasureKind::axis, builder.direction(ends.b, {1.0, 0.0}), "force_x"),
+                               row_between(ends, MeasureKind::axis, builder.direction(ends.b, {0.0, 1.0}), "force_y"),
+                               row_between(ends, MeasureKind::angle, Vec2::Zero(), "couple")};
   for (RowSpec& row : rows) hold_as_given(row, builder);
   add(builder, rows, true);
 }
@@ -112,9 +114,8 @@ void compile_prismatic(const Element& element, SystemBuilder& builder) {
   const Ends ends = ends_of(e, builder);
   if (!joins_two_bodies(ends, builder)) return;
   if (e.axis.norm() == 0.0) return builder.error("'axis' has no direction");
-  std::vector<RowSpec> rows = {
-      row_between(ends, MeasureKind::axis, builder.direction(ends.b, perp(e.axis)), "force"),
-      row_between(ends, MeasureKind::angle, Vec2::Zero(), "couple")};
+  std::vector<RowSpec> rows = {row_between(ends, MeasureKind::axis, builder.direction(ends.b, perp(e.axis)), "force"),
+                               row_between(ends, MeasureKind::angle, Vec2::Zero(), "couple")};
   for (RowSpec& row : rows) hold_as_given(row, builder);
   add(builder, rows);
   offer_displacement(ends, e.axis, builder);
@@ -135,14 +136,12 @@ void compile_distance(const Element& element, SystemBuilder& builder) {
   if (!joins_two_bodies(ends, builder)) return;
   RowSpec row = row_between(ends, MeasureKind::distance, Vec2::Zero(), "force");
   const double now = (builder.marker_position(ends.a) - builder.marker_position(ends.b)).norm();
-  if (now < 1e-12)
-    return builder.error("its ends coincide, so its direction is undefined: use a revolute joint");
+  if (now < 1e-12) return builder.error("its ends coincide, so its direction is undefined: use a revolute joint");
   row.memory = builder.add_memory(e.length.value_or(now));
   add(builder, {row});
 }
 
-template <class Made = Joint>
-ElementKind joint_kind(const char* name, const char* doc, void (*compile)(const Element&, SystemBuilder&)) {
+template <class Made = Joint> ElementKind joint_kind(const char* name, const char* doc, void (*compile)(const Element&, SystemBuilder&)) {
   ElementKind k;
   k.name = name;
   k.doc = doc;
@@ -157,9 +156,7 @@ struct Slide : Joint {
   Slide() { is_slide = true; }
 };
 
-void add_axis(FieldTable& f) {
-  f.add("axis", &Joint::axis).doc("direction left free, in marker b's axes");
-}
+void add_axis(FieldTable& f) { f.add("axis", &Joint::axis).doc("direction left free, in marker b's axes"); }
 
 } // namespace
 
@@ -181,25 +178,23 @@ const char* Joint::idle_field() const {
 
 const ElementKind& revolute_kind() {
   static const ElementKind kind = [] {
-    ElementKind k = joint_kind("revolute", "A pin: the two markers stay together, the bodies turn freely.",
-                               compile_revolute);
-    k.fields.add("angle", &Joint::angle).in("rad").doc(
-        "of marker a's axes against marker b's in the reference pose: places the body that has no pose of its own");
-    k.fields.add("angular_velocity", &Joint::angular_velocity).in("rad/s").doc(
-        "with 'angle': its rate at the start; 0 if not given");
+    ElementKind k = joint_kind("revolute", "A pin: the two markers stay together, the bodies turn freely.", compile_revolute);
+    k.fields.add("angle", &Joint::angle)
+        .in("rad")
+        .doc("of marker a's axes against marker b's in the reference pose: places the body that has no pose of its own");
+    k.fields.add("angular_velocity", &Joint::angular_velocity).in("rad/s").doc("with 'angle': its rate at the start; 0 if not given");
     return k;
   }();
   return kind;
 }
 const ElementKind& prismatic_kind() {
   static const ElementKind kind = [] {
-    ElementKind k = joint_kind<Slide>(
-        "prismatic", "A slide: a moves along an axis of b and does not turn against it.", compile_prismatic);
+    ElementKind k = joint_kind<Slide>("prismatic", "A slide: a moves along an axis of b and does not turn against it.", compile_prismatic);
     add_axis(k.fields);
-    k.fields.add("displacement", &Joint::displacement).in("m").doc(
-        "of marker a from marker b along the axis in the reference pose: places the body that has no pose of its own");
-    k.fields.add("angle", &Joint::angle).in("rad").doc(
-        "with 'displacement': of marker a's axes against marker b's; 0 if not given");
+    k.fields.add("displacement", &Joint::displacement)
+        .in("m")
+        .doc("of marker a from marker b along the axis in the reference pose: places the body that has no pose of its own");
+    k.fields.add("angle", &Joint::angle).in("rad").doc("with 'displacement': of marker a's axes against marker b's; 0 if not given");
     k.fields.add("speed", &Joint::speed).in("m/s").doc("with 'displacement': its rate at the start; 0 if not given");
     return k;
   }();
@@ -207,10 +202,11 @@ const ElementKind& prismatic_kind() {
 }
 const ElementKind& weld_kind() {
   static const ElementKind kind = [] {
-    ElementKind k = joint_kind(
-        "weld", "Holds a and b together as in the reference pose; the two are integrated as one body.", compile_weld);
-    k.fields.add("angle", &Joint::angle).in("rad").doc(
-        "of marker a's axes against marker b's: places the body that has no pose of its own, marker on marker");
+    ElementKind k =
+        joint_kind("weld", "Holds a and b together as in the reference pose; the two are integrated as one body.", compile_weld);
+    k.fields.add("angle", &Joint::angle)
+        .in("rad")
+        .doc("of marker a's axes against marker b's: places the body that has no pose of its own, marker on marker");
     return k;
   }();
   return kind;
@@ -225,8 +221,7 @@ const ElementKind& distance_kind() {
 }
 const ElementKind& point_on_line_kind() {
   static const ElementKind kind = [] {
-    ElementKind k = joint_kind("point_on_line", "Marker a stays on a line of b and may turn and slide on it.",
-                               compile_point_on_line);
+    ElementKind k = joint_kind("point_on_line", "Marker a stays on a line of b and may turn and slide on it.", compile_point_on_line);
     add_axis(k.fields);
     return k;
   }();

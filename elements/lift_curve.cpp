@@ -19,13 +19,16 @@ std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
   std::vector<Eigen::Triplet<double>> entries;
   VecX right = VecX::Zero(count);
   const auto width = [&](Eigen::Index i) { return p[static_cast<std::size_t>(i + 1)].x() - p[static_cast<std::size_t>(i)].x(); };
-  const auto slope = [&](Eigen::Index i) { return (p[static_cast<std::size_t>(i + 1)].y() - p[static_cast<std::size_t>(i)].y()) / width(i); };
+  const auto slope = [&](Eigen::Index i) {
+    return (p[static_cast<std::size_t>(i + 1)].y() - p[static_cast<std::size_t>(i)].y()) / width(i);
+  };
   for (Eigen::Index i = 0; i < count; ++i) {
     if (!is_periodic && (i == 0 || i == count - 1)) {
       entries.emplace_back(i, i, 1.0);
       continue;
     }
-    const Eigen::Index left = i == 0 ? n - 2 : i - 1, after = is_periodic ? (i + 1) % count : i + 1, before = is_periodic ? left % count : left;
+    const Eigen::Index left = i == 0 ? n - 2 : i - 1, after = is_periodic ? (i + 1) % count : i + 1,
+                       before = is_periodic ? left % count : left;
     entries.emplace_back(i, before, width(left));
     entries.emplace_back(i, i, 2.0 * (width(left) + width(i)));
     entries.emplace_back(i, after, width(i));
@@ -42,7 +45,9 @@ std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
 
 } // namespace
 
-bool LiftCurve::is_whole_turn(const std::vector<Vec2>& points) { return std::abs(points.back().x() - points.front().x() - k_turn) <= k_turn_digits; }
+bool LiftCurve::is_whole_turn(const std::vector<Vec2>& points) {
+  return std::abs(points.back().x() - points.front().x() - k_turn) <= k_turn_digits;
+}
 
 LiftCurve::LiftCurve(std::vector<Vec2> points)
     : points_(std::move(points)), curvature_(curvatures(points_, is_whole_turn(points_))), is_periodic_(is_whole_turn(points_)) {}

@@ -72,16 +72,17 @@ struct StopsLaw {
   }
 };
 
-template <class Measure>
-void add(SystemBuilder& builder, int a, int b, const Measure& measure, const StopsLaw& law, bool is_angle) {
+template <class Measure> void add(SystemBuilder& builder, int a, int b, const Measure& measure, const StopsLaw& law, bool is_angle) {
   using Group = LawGroup<Measure, StopsLaw>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
   builder.add_unit(group, StopsLaw::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("value", is_angle ? "rad" : "m", {"of the coordinate that is limited", "as the coordinate counts"},
-                      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; }, row_of(a, b, measure)});
-  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what the stop acts with on a along the coordinate, zero between the stops", "positive: towards larger values"},
+  builder.add_channel(
+      "value", is_angle ? "rad" : "m", {"of the coordinate that is limited", "as the coordinate counts"},
+      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; }, row_of(a, b, measure)});
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N",
+                      {"what the stop acts with on a along the coordinate, zero between the stops", "positive: towards larger values"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
@@ -136,15 +137,17 @@ const ElementKind& limit_kind() {
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is stopped");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
-    f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
-        "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
-    f.add("lower", &T::lower).in("rad|m").doc(
-        "lower stop, from the reference pose (distance: the distance itself)");
+    f.add("coordinate", &T::coordinate)
+        .one_of({"angle", "x", "y", "distance"})
+        .doc("angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
+    f.add("lower", &T::lower).in("rad|m").doc("lower stop, from the reference pose (distance: the distance itself)");
     f.add("upper", &T::upper).in("rad|m").doc("upper stop");
     f.add("stiffness", &T::stiffness).in("N m/rad|N/m").positive().required().doc("of a stop");
     f.add("damping", &T::damping).in("N m s/rad|N s/m").not_negative().doc("of a stop");
-    f.add("restitution", &T::restitution).positive().at_most(1.0).doc(
-        "instead of damping: rate after a blow over that before it, of the two bodies alone in the reference pose");
+    f.add("restitution", &T::restitution)
+        .positive()
+        .at_most(1.0)
+        .doc("instead of damping: rate after a blow over that before it, of the two bodies alone in the reference pose");
     k.holds<T>();
     k.compile = compile_limit;
     return k;

@@ -14,7 +14,7 @@ namespace steplap {
 
 struct Limit : Element {
   std::string a, b = "ground";
-  std::string coordinate = "angle"; ///< angle, x, y (marker b's axes), distance
+  std::string coordinate = "angle";   ///< angle, x, y (marker b's axes), distance
   std::optional<double> lower, upper; ///< from the reference pose; distance: the distance itself
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> restitution; ///< instead of damping (restitution.h)

@@ -20,8 +20,7 @@ template <class S> struct AppliedLoad {
 };
 
 // `value`: of a signal, at the time.
-template <class S, class Value>
-AppliedLoad<S> load_by(const LoadEntry& entry, const Motion<S>& body, const Value& value) {
+template <class S, class Value> AppliedLoad<S> load_by(const LoadEntry& entry, const Motion<S>& body, const Value& value) {
   const auto sum = [&value](double constant, const Signal* signal) { return constant + (signal ? value(signal) : S(0.0)); };
   AppliedLoad<S> load;
   const Pair<S> local{sum(entry.force.x(), entry.x), sum(entry.force.y(), entry.y)};
@@ -94,14 +93,11 @@ void compile_load(const Element& element, SystemBuilder& builder) {
   const CompiledMarker marker = builder.marker(e.at);
   if (marker.body == k_ground) return builder.error("acts on the ground or a fixed body, which it cannot move");
   LoadGroup& group = builder.group<LoadGroup>();
-  group.entries.push_back({marker.body, marker.point, e.force, e.couple, marker.angle,
-                           builder.signal(e.force_x, SignalUse::force), builder.signal(e.force_y, SignalUse::force), builder.signal(e.torque, SignalUse::force),
-                           e.frame == "body"});
+  group.entries.push_back({marker.body, marker.point, e.force, e.couple, marker.angle, builder.signal(e.force_x, SignalUse::force),
+                           builder.signal(e.force_y, SignalUse::force), builder.signal(e.torque, SignalUse::force), e.frame == "body"});
   const auto* entries = &group.entries;
   const std::size_t i = group.entries.size() - 1;
-  const auto load = [entries, i](const Snapshot& s) {
-    return load_at((*entries)[i], *s.evaluation);
-  };
+  const auto load = [entries, i](const Snapshot& s) { return load_at((*entries)[i], *s.evaluation); };
   builder.add_channel("force_x", "N", {"its force", "along x of the ground axes"}, [load](const Snapshot& s) { return load(s).force.x; });
   builder.add_channel("force_y", "N", {"its force", "along y of the ground axes"}, [load](const Snapshot& s) { return load(s).force.y; });
   builder.add_channel("torque", "N m", {"its couple", "positive counter-clockwise"}, [load](const Snapshot& s) { return load(s).couple; });

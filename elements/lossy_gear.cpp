@@ -69,7 +69,9 @@ public:
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return entries[static_cast<std::size_t>(element)].couple(e.motion) < 0.0 ? k_backwards : k_forwards;
   }
-  [[nodiscard]] UnitMode next_mode(int, UnitMode mode, int, const Evaluation&) const override { return mode == k_forwards ? k_backwards : k_forwards; }
+  [[nodiscard]] UnitMode next_mode(int, UnitMode mode, int, const Evaluation&) const override {
+    return mode == k_forwards ? k_backwards : k_forwards;
+  }
   [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
 private:
@@ -96,12 +98,17 @@ public:
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[mesh.a] = is_used[mesh.b] = is_used[mesh.carrier] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
-  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override { wrench[0] = -state.sign * bound<double>(e); }
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
+    wrench[0] = -state.sign * bound<double>(e);
+  }
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return std::max(0.0, bound<double>(e)) * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override { watch_bounds<double>(bound<double>(e), wrench[0], watch); }
-  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench, Traced* watch) const override {
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
+    watch_bounds<double>(bound<double>(e), wrench[0], watch);
+  }
+  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
+                                    Traced* watch) const override {
     if (rate) {
       wrench[0] = -state.sign * bound<Traced>(e);
       watch[0] = state.sign * rate[0];
@@ -113,7 +120,8 @@ public:
     return true;
   }
   void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b, bool) const override {
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+                                          bool) const override {
     return block_within(std::max(0.0, bound<double>(e)), a[0], b[0]);
   }
 
@@ -129,7 +137,8 @@ void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
   constexpr double k_no_twist = 1e-12; // rad: what joints hold at zero is known no better
   const auto& e = static_cast<const LossyGear&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), carrier = builder.marker(e.carrier);
-  if (a.body == b.body || a.body == carrier.body || b.body == carrier.body) return builder.error("'a', 'b' and 'carrier' have to be three bodies, one of which may be the ground");
+  if (a.body == b.body || a.body == carrier.body || b.body == carrier.body)
+    return builder.error("'a', 'b' and 'carrier' have to be three bodies, one of which may be the ground");
   if (e.ratio == 0.0) return builder.error("'ratio' is 0: such a gear turns nothing");
   MeshGroup& group = builder.group<MeshGroup>();
   MeshEntry entry{a.body, b.body, carrier.body, e.ratio, e.stiffness, e.damping};
@@ -149,11 +158,14 @@ void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
   row.element = builder.element_index();
   row.memory = builder.add_memory();
   const int f = builder.next_friction(), slot = builder.next_friction_row();
-  builder.add_channel("twist", "rad", {"by which its teeth give, at shaft a", "positive: a is ahead"}, [mesh = added](const Snapshot& s) { return mesh.twist(s.motion); });
+  builder.add_channel("twist", "rad", {"by which its teeth give, at shaft a", "positive: a is ahead"},
+                      [mesh = added](const Snapshot& s) { return mesh.twist(s.motion); });
   builder.add_channel("couple", "N m", {"with which its teeth brake shaft a, without friction", "positive: a drives counter-clockwise"},
                       [mesh = added](const Snapshot& s) { return mesh.couple(s.motion); });
-  builder.add_channel("friction", "N m", {"between its teeth, on shaft a", "positive counter-clockwise"}, [slot](const Snapshot& s) { return s.friction_force[slot]; });
-  builder.add_channel("mode", "", {"what the friction does", "", "1 sticks, 2 slips"}, [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_channel("friction", "N m", {"between its teeth, on shaft a", "positive counter-clockwise"},
+                      [slot](const Snapshot& s) { return s.friction_force[slot]; });
+  builder.add_channel("mode", "", {"what the friction does", "", "1 sticks, 2 slips"},
+                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(friction));
 }
 
@@ -164,7 +176,8 @@ const ElementKind& lossy_gear_kind() {
     using T = LossyGear;
     ElementKind k;
     k.name = "lossy_gear";
-    k.doc = "A gear, worm or screw drive between two shafts on one carrier that loses by friction a share of what it carries: 'efficiency' where a "
+    k.doc = "A gear, worm or screw drive between two shafts on one carrier that loses by friction a share of what it carries: 'efficiency' "
+            "where a "
             "drives, 2 - 1/efficiency where b drives; with 1/2 or less it locks itself.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("shaft that usually drives");

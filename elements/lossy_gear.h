@@ -14,9 +14,9 @@
 namespace steplap {
 
 struct LossyGear : Element {
-  std::string a, b, carrier = "ground"; ///< shafts; what bears both
-  double ratio = 1.0;                   ///< i = ω_a/ω_b against the carrier; negative: they turn against each other
-  double efficiency = 1.0;              ///< η, where a drives
+  std::string a, b, carrier = "ground";  ///< shafts; what bears both
+  double ratio = 1.0;                    ///< i = ω_a/ω_b against the carrier; negative: they turn against each other
+  double efficiency = 1.0;               ///< η, where a drives
   double stiffness = 0.0, damping = 0.0; ///< N m/rad, N m s/rad, at shaft a
 };
 

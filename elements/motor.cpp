@@ -54,9 +54,7 @@ public:
   std::vector<Entry> entries;
   static constexpr bool k_does_work = true;
 
-  void add_forces(Evaluation& e) const override {
-    add_forces_to(e, InputsOf{e});
-  }
+  void add_forces(Evaluation& e) const override { add_forces_to(e, InputsOf{e}); }
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
     add_forces_to<Traced>(e, TracedInputsOf{e});
     return true;
@@ -64,8 +62,9 @@ public:
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries)
-      add_pair_jacobian(entry.a, entry.b, entry.measure, e,
-                        [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e); }, out);
+      add_pair_jacobian(
+          entry.a, entry.b, entry.measure, e, [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e); },
+          out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
@@ -89,13 +88,13 @@ private:
   }
 };
 
-template <class Measure>
-void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw law, bool is_angle) {
+template <class Measure> void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw law, bool is_angle) {
   MotorGroup<Measure>& group = builder.group<MotorGroup<Measure>>();
   law.start = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   group.entries.push_back({a, b, measure, law});
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what it acts with on a along the coordinate", "positive: towards larger values of the coordinate"},
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N",
+                      {"what it acts with on a along the coordinate", "positive: towards larger values of the coordinate"},
                       [&group, i](const Snapshot& s) {
                         const auto m = group.measured(i, *s.evaluation);
                         return group.entries[i].law.force(m.value, m.rate, *s.evaluation);
@@ -105,8 +104,10 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw 
     return m.rate * group.entries[i].law.force(m.value, m.rate, *s.evaluation);
   });
   const RowSpec row = row_of(a, b, measure);
-  builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
-                        MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.start; }, row, law.start});
+  builder.offer_channel(
+      is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
+      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.start; }, row,
+                    law.start});
   builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
                         MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; }, row, 0.0, true});
 }
@@ -119,8 +120,7 @@ bool check(const Motor& e, const Signal* target, SystemBuilder& builder) {
   };
   if (e.effort.empty() && e.constant_effort == 0.0 && e.proportional == 0.0 && e.derivative == 0.0)
     fail("gives no force: set 'effort', 'constant_effort', 'proportional' or 'derivative'");
-  if (!e.target.empty() && e.proportional == 0.0 && e.derivative == 0.0)
-    fail("'target' needs 'proportional' or 'derivative'");
+  if (!e.target.empty() && e.proportional == 0.0 && e.derivative == 0.0) fail("'target' needs 'proportional' or 'derivative'");
   if (target && e.derivative != 0.0)
     for (std::size_t k = 0; k < target->breakpoints().size(); ++k)
       if (target->breakpoints()[k] > 0.0 && target->jumps_at(k)) {
@@ -164,14 +164,16 @@ const ElementKind& motor_kind() {
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is driven");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
-    f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
-        "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
+    f.add("coordinate", &T::coordinate)
+        .one_of({"angle", "x", "y", "distance"})
+        .doc("angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
     f.add("effort", &T::effort).as(FieldType::signal).in("N m|N").doc("couple or force at standstill");
     f.add("constant_effort", &T::constant_effort).in("N m|N").doc("the same, constant, added to the signal");
-    f.add("no_load_speed", &T::no_load_speed).in("rad/s|m/s").positive().doc(
-        "rate in the direction of the effort at which it has fallen to zero; not given: it never falls");
-    f.add("target", &T::target).as(FieldType::signal).in("rad|m").doc(
-        "wanted value; not given: the reference pose");
+    f.add("no_load_speed", &T::no_load_speed)
+        .in("rad/s|m/s")
+        .positive()
+        .doc("rate in the direction of the effort at which it has fallen to zero; not given: it never falls");
+    f.add("target", &T::target).as(FieldType::signal).in("rad|m").doc("wanted value; not given: the reference pose");
     f.add("proportional", &T::proportional).in("N m/rad|N/m").not_negative().doc("of the servo");
     f.add("derivative", &T::derivative).in("N m s/rad|N s/m").not_negative().doc("of the servo");
     k.holds<T>();

@@ -18,7 +18,7 @@ struct Motor : Element {
   std::string effort;               ///< signal, N m or N
   double constant_effort = 0.0;
   std::optional<double> no_load_speed; ///< rad/s or m/s, in the direction of the effort
-  std::string target;               ///< signal, rad or m
+  std::string target;                  ///< signal, rad or m
   double proportional = 0.0, derivative = 0.0;
 };
 

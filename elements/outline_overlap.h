@@ -31,7 +31,7 @@
 
 namespace steplap {
 
-inline constexpr int k_most_corners = 16;                   ///< of one outline
+inline constexpr int k_most_corners = 16;                  ///< of one outline
 inline constexpr int k_most_ring = 4 * k_most_corners + 4; ///< a clip adds at most one corner
 
 /// A convex outline about its body's centre of gravity, counter-clockwise; edge k runs from corner k to the next. A half-plane
@@ -60,8 +60,7 @@ private:
   };
 };
 /// Of plain numbers; others are made.
-template <class S, class T, std::size_t N>
-using RoomFor = std::conditional_t<std::is_floating_point_v<S>, Room<T, N>, std::array<T, N>>;
+template <class S, class T, std::size_t N> using RoomFor = std::conditional_t<std::is_floating_point_v<S>, Room<T, N>, std::array<T, N>>;
 
 /// The same where its body is, seen from one origin.
 template <class S> struct PlacedOutline {
@@ -198,8 +197,8 @@ template <class S> struct EdgeLine {
 /// Of outlines placed about one origin. `stiffness` k in N/m², `dissipation` α in s/m. The volume is that of the whole roof only
 /// if `is_whole`; else cells that no force is asked of are left out.
 template <class S>
-OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>& b, const RelativeVelocity<S>& velocity,
-                              double stiffness, double dissipation, bool is_whole = false) {
+OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>& b, const RelativeVelocity<S>& velocity, double stiffness,
+                              double dissipation, bool is_whole = false) {
   using overlap_detail::EdgeLine;
   OverlapForce<S> result;
   CutRing<S> rings[3];
@@ -210,13 +209,13 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     rings[0].edge[i] = i;
   }
   for (int j = 0; j < b.edge_count && rings[now].size > 0; ++j) {
-    cut(rings[now], [&](const Pair<S>& x) { return b.offset[j] - dot(b.normal[j], x); }, a.edge_count + j, rings[1 - now]);
+    const auto depth = [&](const Pair<S>& x) { return b.offset[j] - dot(b.normal[j], x); };
+    cut(rings[now], depth, a.edge_count + j, rings[1 - now]);
     now = 1 - now;
   }
   CutRing<S>& overlap = rings[now];
   if (overlap.size < 3) return result;
-  // Thin as it is, it is measured from a corner of its own.
-  const Pair<S> origin = overlap.corner[0];
+  const Pair<S> origin = overlap.corner[0]; // thin as it is, it is measured from a corner of its own
   for (int i = 0; i < overlap.size; ++i) overlap.corner[i] = overlap.corner[i] - origin;
   const Pair<S> u = velocity.u + velocity.spin * perp(origin);
   RoomFor<S, EdgeLine<S>, k_most_ring> line;
@@ -239,7 +238,8 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     const CutRing<S>* source = &overlap;
     for (int j = 0; j < overlap.size && source->size > 0; ++j) {
       if (overlap.edge[j] == overlap.edge[i]) continue;
-      cut(*source, [&](const Pair<S>& x) { return line[j].depth(x) - line[i].depth(x); }, overlap.edge[j], *spare);
+      const auto below = [&](const Pair<S>& x) { return line[j].depth(x) - line[i].depth(x); };
+      cut(*source, below, overlap.edge[j], *spare);
       std::swap(cell, spare);
       source = cell;
     }

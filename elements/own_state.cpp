@@ -15,8 +15,11 @@ constexpr const char* k_reserved[] = {"value", "rate", "t", "pi"};
 
 // Formulas have to tell it from what stands around it.
 void check_state(const OwnState& state) {
-  const auto fail = [&](const char* field, const std::string& message) { throw ModelError(state.place(field), "state '" + state.name + "': " + message); };
-  if (state.name.empty() || state.name.find_first_of("{}[]") != std::string::npos) fail("name", "a state's name has letters, and no braces or brackets");
+  const auto fail = [&](const char* field, const std::string& message) {
+    throw ModelError(state.place(field), "state '" + state.name + "': " + message);
+  };
+  if (state.name.empty() || state.name.find_first_of("{}[]") != std::string::npos)
+    fail("name", "a state's name has letters, and no braces or brackets");
   if (std::any_of(std::begin(k_reserved), std::end(k_reserved), [&](const char* word) { return state.name == word; }))
     fail("name", "'value', 'rate', 't' and 'pi' mean something else in formulas: choose another name");
   if (!dimension_of(state.unit)) fail("unit", "the unit '" + state.unit + "' is not known to formulas");
@@ -41,7 +44,8 @@ void compile_state(const Element& element, SystemBuilder& builder) {
   FormulaProgram::Bits bits{0, 0};
   entry.rate.find_bits(start, {}, bits);
   if (!std::isfinite(entry.rate.value<double>(start, {}, SignalsNow{0.0}, bits.values, nullptr)))
-    return builder.error("'rate' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
+    return builder.error(
+        "'rate' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.rate, start, {});
   const int switch_count = entry.rate.program().switch_count();
   const StatePlace place = entry.place;
@@ -49,7 +53,8 @@ void compile_state(const Element& element, SystemBuilder& builder) {
   if (switch_count > 0) builder.add_unit(group, switch_count);
   const double shown = place.unit / state.factor();
   const std::string meaning = state.meaning.empty() ? "follows from its rate: " + state.rate : state.meaning;
-  builder.add_channel("value", state.unit, ChannelText(meaning, state.sign), [inner_at = place.inner, shown](const Snapshot& s) { return shown * s.evaluation->inner[inner_at]; });
+  builder.add_channel("value", state.unit, ChannelText(meaning, state.sign),
+                      [inner_at = place.inner, shown](const Snapshot& s) { return shown * s.evaluation->inner[inner_at]; });
 }
 
 // What a table becomes; no element of a file is of this kind.
@@ -80,7 +85,9 @@ const TableKind& own_state_kind() {
     f.add("unit", &T::unit).doc("unit of its value, one that formulas know; A and K count as numbers there, as radians do");
     f.add("start", &T::start).doc("its value at the start, in its unit; an equilibrium is sought with it as it is");
     f.add("rate", &T::rate).required().doc("formula of its change per second: \"(target - filtered) / '0.2 s'\"");
-    f.add("scale", &T::scale).positive().doc("what it is usually like, in its unit, for the control of its error; not given: the size of its start, or 1");
+    f.add("scale", &T::scale)
+        .positive()
+        .doc("what it is usually like, in its unit, for the control of its error; not given: the size of its start, or 1");
     f.add("meaning", &T::meaning).doc("what it is, for lists and reports; the formula if not given");
     f.add("sign", &T::sign).doc("when it is positive");
     k.holds<T>();

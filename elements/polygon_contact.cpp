@@ -133,7 +133,8 @@ public:
       bounds.gap = now.gap;
       bounds.normal = now.normal;
       bounds.reach_a = entry.outlines->reach_a;
-      bounds.reach_b = entry.outlines->b.corners.empty() ? size_of(placed.centre) + bounds.reach_a + std::max(0.0, bounds.gap) : entry.outlines->reach_b;
+      bounds.reach_b =
+          entry.outlines->b.corners.empty() ? size_of(placed.centre) + bounds.reach_a + std::max(0.0, bounds.gap) : entry.outlines->reach_b;
       bounds.through = entry.outlines->through;
     }
   }
@@ -276,7 +277,8 @@ public:
     double error = 4.0 * depth * spin;
     if (turned > k_same_face) return std::min(error, k_most_error);
     const RowSpec& row = feet[to.foot];
-    const Pair<double> lever_a = row.a == a ? to_ground(ma, row.point_a) : Pair<double>{mb.x - ma.x, mb.y - ma.y} + to_ground(mb, row.point_a);
+    const Pair<double> lever_a =
+        row.a == a ? to_ground(ma, row.point_a) : Pair<double>{mb.x - ma.x, mb.y - ma.y} + to_ground(mb, row.point_a);
     const Pair<double> lever_b = lever_a + Pair<double>{ma.x - mb.x, ma.y - mb.y};
     const Pair<double> w = Pair<double>{ma.vx - mb.vx, ma.vy - mb.vy} + ma.omega * perp(lever_a) - mb.omega * perp(lever_b);
     return std::min(error + turned * (std::abs(w.x) + std::abs(w.y)), k_most_error);
@@ -355,8 +357,8 @@ std::optional<ConvexOutline> outline_of(const std::vector<Vec2>& given, const st
 }
 
 bool is_half_plane(const PolygonContact& e, const SystemBuilder& builder) {
-  return e.normal.has_value() || (e.outline_b.empty() && builder.marker(e.b).body == k_ground &&
-                                  outline_of_body(body_of(e.b, builder), builder).empty());
+  return e.normal.has_value() ||
+         (e.outline_b.empty() && builder.marker(e.b).body == k_ground && outline_of_body(body_of(e.b, builder), builder).empty());
 }
 
 bool check(const PolygonContact& e, SystemBuilder& builder) {
@@ -365,8 +367,7 @@ bool check(const PolygonContact& e, SystemBuilder& builder) {
     builder.error(message);
     is_bad = true;
   };
-  if (builder.marker(e.a).body == builder.marker(e.b).body)
-    fail("touches its own body: name markers on two different bodies");
+  if (builder.marker(e.a).body == builder.marker(e.b).body) fail("touches its own body: name markers on two different bodies");
   if (e.normal && !e.outline_b.empty()) fail("give one of 'normal' (b is a half-plane) and 'outline_b'");
   if (e.normal && !(e.normal->norm() > 0.0)) fail("'normal' has no direction");
   if (e.kinetic_friction && !e.static_friction) fail("'kinetic_friction' needs 'static_friction'");
@@ -387,14 +388,13 @@ void add_friction(const PolygonContact& e, const PolygonGroup::Entry& entry, Sys
   friction->mu_kinetic = e.kinetic_friction.value_or(*e.static_friction);
   const int f = builder.next_friction(), row = builder.next_friction_row();
   const PolygonFriction* const self = friction.get();
-  builder.add_channel("friction", "N", {"friction force on a", "along the touching face, its normal towards a turned clockwise by a right angle"},
+  builder.add_channel("friction", "N",
+                      {"friction force on a", "along the touching face, its normal towards a turned clockwise by a right angle"},
                       [row](const Snapshot& s) { return s.friction_force[row]; });
   builder.add_channel("capacity", "N", {"largest friction force that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
   builder.add_channel("slip_rate", "m/s", {"velocity of a against b along the touching face", "as friction"},
-                      [self, f](const Snapshot& s) {
-                        return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
-                      });
+                      [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
   builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(friction));
@@ -405,8 +405,8 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   if (!check(e, builder)) return;
   const bool is_plane = is_half_plane(e, builder);
   const std::optional<ConvexOutline> a = outline_of(e.outline_a, e.a, "outline_a", builder);
-  const std::optional<ConvexOutline> b = is_plane ? half_plane(e.normal.value_or(Vec2(0.0, 1.0)), builder.marker(e.b))
-                                                  : outline_of(e.outline_b, e.b, "outline_b", builder);
+  const std::optional<ConvexOutline> b =
+      is_plane ? half_plane(e.normal.value_or(Vec2(0.0, 1.0)), builder.marker(e.b)) : outline_of(e.outline_b, e.b, "outline_b", builder);
   if (!a || !b) return;
   PolygonGroup& group = builder.group<PolygonGroup>();
   PolygonGroup::Entry entry;
@@ -422,7 +422,8 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   builder.add_unit(group, 1);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1, contact = group.entries.back().contact;
-  builder.add_channel("gap", "m", {"distance between the outlines; closed, the least way that would part them", "negative while it presses"},
+  builder.add_channel("gap", "m",
+                      {"distance between the outlines; closed, the least way that would part them", "negative while it presses"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).gap; });
   builder.add_channel("force", "N", {"size of the normal force, zero while open", "positive: it presses"},
                       [contact](const Snapshot& s) { return s.evaluation->contact_force[contact]; });
@@ -442,11 +443,15 @@ const ElementKind& polygon_contact_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("body that touches, or a marker of it");
     f.add("b", &T::b).as(FieldType::marker).doc("body that it touches, or a marker of it");
     f.add("outline_a", &T::outline_a).in("m").doc("corners in marker a's axes; default: the outline of its body");
-    f.add("outline_b", &T::outline_b).in("m").doc(
-        "corners in marker b's axes; default: the outline of its body, of the ground the half-plane below marker b");
+    f.add("outline_b", &T::outline_b)
+        .in("m")
+        .doc("corners in marker b's axes; default: the outline of its body, of the ground the half-plane below marker b");
     f.add("normal", &T::normal).doc("b is the half-plane behind the line through marker b; in marker b's axes, towards a");
-    f.add("stiffness", &T::stiffness).in("N/m^2").positive().required().doc(
-        "pressure of faces on each other for each metre of depth: k of a width w is w times this");
+    f.add("stiffness", &T::stiffness)
+        .in("N/m^2")
+        .positive()
+        .required()
+        .doc("pressure of faces on each other for each metre of depth: k of a width w is w times this");
     f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
     f.add("static_friction", &T::static_friction).not_negative().doc("mu_s; default: no friction");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");

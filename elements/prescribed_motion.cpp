@@ -30,12 +30,11 @@ int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
 std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
   const std::string what = jump.is_of_rate ? "the rate of signal '" : "signal '";
   const std::string moved = !jump.is_of_rate && e.as == "position" ? "body" : "body's velocity";
-  const std::string remedy = jump.is_of_rate
-                                 ? "give the motion as = \"velocity\" or as = \"acceleration\" by the signal's "
-                                   "derivative, or use a smooth signal such as haversine"
-                                 : "use a signal without jumps or as = \"acceleration\"";
-  return what + e.signal + "' jumps from " + number_text(jump.before) + " to " + number_text(jump.after) + " at t = " +
-         number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;
+  const std::string remedy = jump.is_of_rate ? "give the motion as = \"velocity\" or as = \"acceleration\" by the signal's "
+                                               "derivative, or use a smooth signal such as haversine"
+                                             : "use a signal without jumps or as = \"acceleration\"";
+  return what + e.signal + "' jumps from " + number_text(jump.before) + " to " + number_text(jump.after) +
+         " at t = " + number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;
 }
 
 // Poses are given to a few digits; what is further off is no rounding of them.
@@ -47,8 +46,8 @@ bool jumps(double now, double wanted) {
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
   if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // a sine's rounding
   const std::string unit = row.kind == MeasureKind::angle ? " rad" : " m";
-  std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " +
-                     number_text(wanted) + unit + " at t = 0: the body would have to jump. ";
+  std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " + number_text(wanted) + unit +
+                     " at t = 0: the body would have to jump. ";
   if (e.zero != "reference")
     return text + "A position counts from the coordinate's own zero: place the body there, or let it count from the reference "
                   "pose with zero = \"reference\"";
@@ -71,20 +70,19 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   else row.direction = builder.direction(b, e.coordinate == "x" ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0));
   row.drive = builder.signal(e.signal);
   row.level = level_of(e.as);
-  if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end))
-    return builder.error(jump_message(e, *jump));
+  if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end)) return builder.error(jump_message(e, *jump));
   const double now = evaluate_row<false>(row, &builder.reference(0)).value;
   const double base = e.zero == "reference" ? now : 0.0;
   if (row.level == DriveLevel::position) // wherever the model comes from: a start would move the body there without a word
-    if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted))
-      return builder.error(start_message(e, row, now, wanted));
+    if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
   row.memory = builder.add_memory(base);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
                       {"force or couple on a that the motion takes", "positive: towards larger values of the coordinate"},
                       [r](const Snapshot& s) { return s.row_force[r]; });
   const bool is_angle = row.kind == MeasureKind::angle;
-  builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
+  builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m",
+                        {"its coordinate, since the reference pose", "as the coordinate counts"},
                         MeasuredValue{[row, now](const Snapshot& s) { return evaluate_row<false>(row, s.motion).value - now; }, row, now});
   builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
                         MeasuredValue{[row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; }, row, 0.0, true});
@@ -104,14 +102,20 @@ const ElementKind& prescribed_motion_kind() {
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is driven");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
-    f.add("coordinate", &T::coordinate).one_of({"x", "y", "angle", "distance"}).doc(
-        "x, y: of marker a in marker b's axes; angle of a against b; distance of the markers");
-    f.add("signal", &T::signal).as(FieldType::signal).in("rad|m").required().doc(
-        "signal that it follows (a velocity's per s, an acceleration's per s^2)");
-    f.add("as", &T::as).one_of({"acceleration", "velocity", "position"}).doc(
-        "what the signal is; acceleration and velocity start from the initial pose, a position is absolute (see zero)");
-    f.add("zero", &T::zero).one_of({"origin", "reference"}).doc(
-        "as = \"position\": the signal is the coordinate itself, or counts from its value in the reference pose");
+    f.add("coordinate", &T::coordinate)
+        .one_of({"x", "y", "angle", "distance"})
+        .doc("x, y: of marker a in marker b's axes; angle of a against b; distance of the markers");
+    f.add("signal", &T::signal)
+        .as(FieldType::signal)
+        .in("rad|m")
+        .required()
+        .doc("signal that it follows (a velocity's per s, an acceleration's per s^2)");
+    f.add("as", &T::as)
+        .one_of({"acceleration", "velocity", "position"})
+        .doc("what the signal is; acceleration and velocity start from the initial pose, a position is absolute (see zero)");
+    f.add("zero", &T::zero)
+        .one_of({"origin", "reference"})
+        .doc("as = \"position\": the signal is the coordinate itself, or counts from its value in the reference pose");
     k.holds<T>();
     k.compile = compile_prescribed;
     return k;

@@ -23,8 +23,7 @@ double log_loss(double ratio) {
 double inverse_mass(int index, const double* j, const SystemBuilder& builder) {
   if (index == k_ground) return 0.0;
   for (const Body& body : builder.model().bodies)
-    if (builder.body(body.name) == index && !body.fixed)
-      return (j[0] * j[0] + j[1] * j[1]) / body.mass + j[2] * j[2] / body.inertia;
+    if (builder.body(body.name) == index && !body.fixed) return (j[0] * j[0] + j[1] * j[1]) / body.mass + j[2] * j[2] / body.inertia;
   return 0.0;
 }
 

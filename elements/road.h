@@ -44,9 +44,7 @@ public:
 
 private:
   /// Half of the second derivative of the squared distance from a point at height y, by x.
-  static double pull_of(const CurveJet<double>& at, double y) {
-    return 1.0 + at.slope * at.slope - (y - at.value) * at.curvature;
-  }
+  static double pull_of(const CurveJet<double>& at, double y) { return 1.0 + at.slope * at.slope - (y - at.value) * at.curvature; }
   [[nodiscard]] double nearest_x(double x, double y) const;
   void find_hollowest();
   bool is_flat_ = true;

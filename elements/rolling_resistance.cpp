@@ -79,7 +79,11 @@ const ElementKind& rolling_resistance_kind() {
             "takes within that.";
     FieldTable& f = k.fields;
     f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("what rolls: one tyre, circle_contact or segment_contact");
-    f.add("arm", &T::arm).in("m").positive().required().doc("couple over normal force; a coefficient of rolling resistance times the radius");
+    f.add("arm", &T::arm)
+        .in("m")
+        .positive()
+        .required()
+        .doc("couple over normal force; a coefficient of rolling resistance times the radius");
     k.example = R"([[element]]
 name = 'roller'
 kind = 'segment_contact'

@@ -75,8 +75,7 @@ public:
     Left least;
     for (const RopePart& part : entry.parts) {
       const double now = part.measure.at<false, double>(motion[part.a], motion[part.b]).value;
-      const double none =
-          std::max(OneSidedRow::k_least_part * -entry.law.offset, std::min(stretch, k_run_in * part.given));
+      const double none = std::max(OneSidedRow::k_least_part * -entry.law.offset, std::min(stretch, k_run_in * part.given));
       if (now - none < least.length) least = {&part, now - none};
     }
     return least;
@@ -93,8 +92,7 @@ public:
       const double f = entry.law.force(-way.length, -way.rate, mode);
       entry.law.watch(-way.length, -way.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
       const bool is_watched = mode == k_contact_pressed && entry.parts.size() > 1;
-      e.watch[entry.watch + k_on_pulley] =
-          is_watched ? least_left(entry, way.length + entry.law.offset, e.motion).length : 1.0;
+      e.watch[entry.watch + k_on_pulley] = is_watched ? least_left(entry, way.length + entry.law.offset, e.motion).length : 1.0;
       e.dissipation -= (entry.law.elastic_force(-way.length, mode) - f) * way.rate;
       if (f == 0.0) continue;
       for (const RopePart& part : entry.parts) {
@@ -174,8 +172,7 @@ private:
     sum.fy += force.y;
     sum.m += cross(lever, force);
   }
-  static void add_whole(const RopePart& part, const Gradient& g, double f, const D12& change,
-                        std::vector<PairJacobian>& out) {
+  static void add_whole(const RopePart& part, const Gradient& g, double f, const D12& change, std::vector<PairJacobian>& out) {
     PairJacobian& j = out.emplace_back();
     j.a = part.a;
     j.b = part.b;
@@ -186,8 +183,7 @@ private:
       }
   }
   // Forces of one part by the motion of the other's bodies.
-  static void add_blocks(const RopePart& one, const RopePart& other, const Gradient& g, const D12& change,
-                         std::vector<PairJacobian>& out) {
+  static void add_blocks(const RopePart& one, const RopePart& other, const Gradient& g, const D12& change, std::vector<PairJacobian>& out) {
     for (int row = 0; row < 2; ++row)
       for (int column = 0; column < 2; ++column) {
         const int x = row == 0 ? one.a : one.b, y = column == 0 ? other.a : other.b;
@@ -212,8 +208,8 @@ bool check(const Rope& e, SystemBuilder& builder) {
     if (is_wrong) builder.error(message);
     return is_wrong;
   };
-  bool is_bad = fails(e.length.has_value() + e.pretension.has_value() + e.slack.has_value() > 1,
-                      "give one of 'length', 'pretension' and 'slack'");
+  bool is_bad =
+      fails(e.length.has_value() + e.pretension.has_value() + e.slack.has_value() > 1, "give one of 'length', 'pretension' and 'slack'");
   if (!e.inextensible) return !fails(!e.stiffness, "give its 'stiffness', or inextensible = true") && !is_bad;
   is_bad |= fails(e.stiffness.has_value(), "give either 'stiffness' or inextensible = true");
   is_bad |= fails(e.damping > 0.0, "with inextensible = true it has no 'damping': it does not stretch");
@@ -225,7 +221,8 @@ void refuse_time_stepping(SystemBuilder& builder) {
   const std::string& integrator = builder.model().simulation.integrator;
   for (const Method& m : methods())
     if (m.name == integrator && m.is_time_stepping)
-      builder.error("'" + integrator + "' does not locate where an inextensible rope becomes taut or slack: choose another "
+      builder.error("'" + integrator +
+                    "' does not locate where an inextensible rope becomes taut or slack: choose another "
                     "'integrator', auto for one, or give the rope a 'stiffness'");
 }
 
@@ -257,7 +254,7 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
 
 // `entry`: as of an elastic rope, `now` its way in the reference pose.
 void add_inextensible(const RopeGroup::Entry& entry, double now, double length, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that gives less to the lightest body is rounding
+  constexpr double k_least_acceleration = 1e-11;              // m/s²: a tension that gives less to the lightest body is rounding
   constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // of the length; m, above what projection leaves
   refuse_time_stepping(builder);
   if (now > length * (1.0 + OneSidedRow::k_too_long))

@@ -18,7 +18,7 @@ namespace steplap {
 
 struct Rope : Element {
   std::string a, b = "ground";
-  std::vector<std::string> over;    ///< markers between its ends, in order
+  std::vector<std::string> over; ///< markers between its ends, in order
   std::optional<double> stiffness;
   bool inextensible = false;
   double damping = 0.0;

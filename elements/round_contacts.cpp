@@ -9,17 +9,15 @@ namespace steplap {
 
 namespace {
 
-template <class Measure, class Law>
-void add(int a, int b, const Measure& measure, const Law& law, SystemBuilder& builder) {
+template <class Measure, class Law> void add(int a, int b, const Measure& measure, const Law& law, SystemBuilder& builder) {
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
   builder.add_unit(group, Law::k_watches);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"}, [&group, i](const Snapshot& s) {
-    return group.measured(i, *s.evaluation).value - group.entries[i].law.offset;
-  });
+  builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"},
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.offset; });
   builder.add_channel("rate", "m/s", {"of the gap", "positive: it opens"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
   builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
@@ -28,8 +26,7 @@ void add(int a, int b, const Measure& measure, const Law& law, SystemBuilder& bu
 
 template <class Measure>
 void add_with_law(const RoundContact& e, int a, int b, const Measure& measure, double offset, SystemBuilder& builder) {
-  if (e.law == "hunt_crossley")
-    add(a, b, measure, HuntCrossleyContact{e.stiffness, e.exponent, e.dissipation, offset}, builder);
+  if (e.law == "hunt_crossley") add(a, b, measure, HuntCrossleyContact{e.stiffness, e.exponent, e.dissipation, offset}, builder);
   else
     add(a, b, measure,
         KelvinVoigtContact{e.stiffness, contact_damping(e.damping, e.restitution, e.stiffness, a, b, measure, builder), offset}, builder);
@@ -41,8 +38,7 @@ bool check(const RoundContact& e, SystemBuilder& builder) {
     builder.error(message);
     is_bad = true;
   };
-  if (builder.marker(e.a).body == builder.marker(e.b).body)
-    fail("touches its own body: name markers on two different bodies");
+  if (builder.marker(e.a).body == builder.marker(e.b).body) fail("touches its own body: name markers on two different bodies");
   if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
   if (e.restitution && e.damping != 0.0) fail("give 'damping' or 'restitution', not both");
   if (e.restitution && e.law != "kelvin_voigt")
@@ -125,8 +121,10 @@ template <class T> void add_fields(FieldTable& f) {
   f.add("law", &T::law).one_of({"kelvin_voigt", "hunt_crossley"}).doc("kelvin_voigt: max(0, -k d - c d'); hunt_crossley");
   f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("k (Hunt-Crossley: per m^exponent)");
   f.add("damping", &T::damping).in("N s/m").not_negative().doc("c");
-  f.add("restitution", &T::restitution).positive().at_most(1.0).doc(
-      "instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
+  f.add("restitution", &T::restitution)
+      .positive()
+      .at_most(1.0)
+      .doc("instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
   f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
   f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
 }

@@ -23,8 +23,8 @@ struct RoundContact : Element {
   std::string law = "kelvin_voigt";
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> restitution; ///< instead of damping (restitution.h)
-  double exponent = 1.0;    ///< Hunt–Crossley n
-  double dissipation = 0.0; ///< Hunt–Crossley α
+  double exponent = 1.0;             ///< Hunt–Crossley n
+  double dissipation = 0.0;          ///< Hunt–Crossley α
 };
 
 struct CircleContact : RoundContact {

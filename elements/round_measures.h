@@ -12,8 +12,7 @@ namespace steplap {
 /// −|p_A − p_B|: a circle of a inside a ring of b.
 struct InsideMeasure {
   Vec2 point_a, point_b;
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     static_assert(!WithBias, "no row takes it");
     MeasureValue<S> m = DistanceMeasure{point_a, point_b}.at<false, S>(a, b);
     m.value = -m.value;
@@ -45,18 +44,13 @@ struct SegmentMeasure {
     if (p.x > S(length)) return SegmentPart::to;
     return p.y < S(0) ? SegmentPart::right : SegmentPart::left;
   }
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     static_assert(!WithBias, "no row takes it");
     switch (part(a, b)) {
-    case SegmentPart::left:
-      return AxisMeasure{point_a, from, perp(tangent)}.at<false, S>(a, b);
-    case SegmentPart::right:
-      return AxisMeasure{point_a, from, -perp(tangent)}.at<false, S>(a, b);
-    case SegmentPart::from:
-      return DistanceMeasure{point_a, from}.at<false, S>(a, b);
-    case SegmentPart::to:
-      break;
+    case SegmentPart::left: return AxisMeasure{point_a, from, perp(tangent)}.at<false, S>(a, b);
+    case SegmentPart::right: return AxisMeasure{point_a, from, -perp(tangent)}.at<false, S>(a, b);
+    case SegmentPart::from: return DistanceMeasure{point_a, from}.at<false, S>(a, b);
+    case SegmentPart::to: break;
     }
     return DistanceMeasure{point_a, to()}.at<false, S>(a, b);
   }

@@ -65,8 +65,9 @@ void check_fields(const BodyShape& shape) {
   if (!shape.places.empty() && shape.places.count("centre") > 0 && !shape.diameter) fail(shape, "centre", "'centre' goes with 'diameter'");
   const std::size_t centres = shape.hole_centres.size(), diameters = shape.hole_diameters.size();
   if (centres != diameters && diameters != 1)
-    fail(shape, "hole_diameters", "has " + counted(centres, "hole centre", "hole centres") + " and " + counted(diameters, "diameter", "diameters") +
-                                       ": give one diameter for all, or one for each");
+    fail(shape, "hole_diameters",
+         "has " + counted(centres, "hole centre", "hole centres") + " and " + counted(diameters, "diameter", "diameters") +
+             ": give one diameter for all, or one for each");
   if (centres == 0 && diameters > 0) fail(shape, "hole_diameters", "'hole_diameters' go with 'hole_centres'");
   if (shape.density.has_value() != shape.thickness.has_value())
     fail(shape, shape.density ? "density" : "thickness", "'density' and 'thickness' go together; a mass per area is 'area_density'");
@@ -78,11 +79,14 @@ void check_fields(const BodyShape& shape) {
 Area area_of(const BodyShape& shape, const Body& body) {
   check_fields(shape);
   const std::vector<Vec2>& outline = shape.outline.empty() ? body.outline : shape.outline;
-  if (!shape.diameter && outline.empty()) fail(shape, "body", "needs 'outline' or 'diameter', since body '" + body.name + "' has no outline");
+  if (!shape.diameter && outline.empty())
+    fail(shape, "body", "needs 'outline' or 'diameter', since body '" + body.name + "' has no outline");
   Polygon polygon;
   polygon.outer = shape.diameter ? circle(shape.centre, *shape.diameter, true) : outline;
   polygon.holes = shape.holes;
-  const auto diameter = [&](std::size_t k) { return shape.hole_diameters.size() == 1 ? shape.hole_diameters.front() : shape.hole_diameters[k]; };
+  const auto diameter = [&](std::size_t k) {
+    return shape.hole_diameters.size() == 1 ? shape.hole_diameters.front() : shape.hole_diameters[k];
+  };
   std::vector<std::string> names;
   for (std::size_t k = 0; k < shape.holes.size(); ++k) names.push_back("hole " + std::to_string(k + 1));
   for (std::size_t k = 0; k < shape.hole_centres.size(); ++k) {
@@ -92,7 +96,11 @@ Area area_of(const BodyShape& shape, const Body& body) {
   try {
     polygon = repaired(std::move(polygon), names);
   } catch (const PolygonError& error) {
-    fail(shape, shape.holes.empty() && shape.hole_centres.empty() ? "outline" : shape.holes.empty() ? "hole_centres" : "holes", error.what());
+    fail(shape,
+         shape.holes.empty() && shape.hole_centres.empty() ? "outline"
+         : shape.holes.empty()                             ? "hole_centres"
+                                                           : "holes",
+         error.what());
   }
   const Area whole = shape.diameter ? disc(shape.centre, *shape.diameter) : ring(polygon.outer);
   std::vector<Area> holes;
@@ -121,14 +129,17 @@ double mass_of(const BodyShape& shape, const Area& area, double given_mass, bool
   if (shape.density) return *shape.density * *shape.thickness * area.size;
   if (shape.area_density) return *shape.area_density * area.size;
   if (shape.mass) return *shape.mass;
-  if (!is_only_one) fail(shape, "body", "needs 'mass', 'area_density' or 'density' with 'thickness', as every shape of a body that has several");
-  if (!(given_mass > 0.0)) fail(shape, "body", "needs 'mass', 'area_density' or 'density' with 'thickness', since body '" + shape.body + "' has no mass either");
+  if (!is_only_one)
+    fail(shape, "body", "needs 'mass', 'area_density' or 'density' with 'thickness', as every shape of a body that has several");
+  if (!(given_mass > 0.0))
+    fail(shape, "body", "needs 'mass', 'area_density' or 'density' with 'thickness', since body '" + shape.body + "' has no mass either");
   return given_mass;
 }
 
 std::string unlike(const Body& body, const char* field, double given, double made, const char* unit) {
-  return "'" + std::string(field) + "' of body '" + body.name + "', " + rounded_text(given) + " " + unit + ", contradicts its shape, which makes it " + rounded_text(made) +
-         " " + unit + ": leave '" + field + "' out to take it from the shape";
+  return "'" + std::string(field) + "' of body '" + body.name + "', " + rounded_text(given) + " " + unit +
+         ", contradicts its shape, which makes it " + rounded_text(made) + " " + unit + ": leave '" + field +
+         "' out to take it from the shape";
 }
 
 std::string point_text(const Vec2& p) { return "[" + rounded_text(p.x()) + ", " + rounded_text(p.y()) + "] m"; }
@@ -170,12 +181,15 @@ std::vector<ShapeRemark> contradicted_shapes(const Model& model) {
   for (const Body& body : model.bodies) {
     const std::optional<MassOfShapes> made = mass_of_shapes(model, body, body.mass);
     if (!made || body.fixed) continue;
-    if (std::abs(body.mass - made->mass) > k_noticeable * made->mass) remarks.push_back({body.where, unlike(body, "mass", body.mass, made->mass, "kg")});
+    if (std::abs(body.mass - made->mass) > k_noticeable * made->mass)
+      remarks.push_back({body.where, unlike(body, "mass", body.mass, made->mass, "kg")});
     const double inertia = made->inertia * body.mass / made->mass;
-    if (std::abs(body.inertia - inertia) > k_noticeable * inertia) remarks.push_back({body.where, unlike(body, "inertia", body.inertia, inertia, "kg m²")});
+    if (std::abs(body.inertia - inertia) > k_noticeable * inertia)
+      remarks.push_back({body.where, unlike(body, "inertia", body.inertia, inertia, "kg m²")});
     const double size = std::sqrt(made->inertia / made->mass); // radius of gyration
     if ((body.cg - made->centre).norm() > k_noticeable * size)
-      remarks.push_back({body.where, "'cg' of body '" + body.name + "', " + point_text(body.cg) + ", contradicts its shape, whose centre is " + point_text(made->centre) +
+      remarks.push_back({body.where, "'cg' of body '" + body.name + "', " + point_text(body.cg) +
+                                         ", contradicts its shape, whose centre is " + point_text(made->centre) +
                                          ": leave 'cg' out to take it from the shape"});
   }
   return remarks;
@@ -186,7 +200,8 @@ const TableKind& shape_kind() {
     using T = BodyShape;
     TableKind k;
     k.name = "shape";
-    k.doc = "An area of a body, from which the body gets what it does not give itself: mass, centre of gravity, inertia, outline. An outline or a disc, with holes; "
+    k.doc = "An area of a body, from which the body gets what it does not give itself: mass, centre of gravity, inertia, outline. An "
+            "outline or a disc, with holes; "
             "several shapes of a body add up.";
     FieldTable& f = k.fields;
     f.add("body", &T::body).as(FieldType::body).required().doc("the body that it is of");
@@ -199,7 +214,10 @@ const TableKind& shape_kind() {
     f.add("density", &T::density).in("kg/m^3").positive().doc("of the material, with 'thickness'");
     f.add("thickness", &T::thickness).in("m").positive().doc("across the plane of the model");
     f.add("area_density", &T::area_density).in("kg/m^2").positive().doc("mass per area, instead of density and thickness");
-    f.add("mass", &T::mass).in("kg").positive().doc("of the shape with its holes taken off, instead of a density; default: the body's mass, if this is its only shape");
+    f.add("mass", &T::mass)
+        .in("kg")
+        .positive()
+        .doc("of the shape with its holes taken off, instead of a density; default: the body's mass, if this is its only shape");
     k.holds<T>();
     k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) { apply_shape(static_cast<const T&>(table), model); };

@@ -26,16 +26,16 @@ namespace steplap {
 
 struct BodyShape : TableObject {
   std::string body;
-  std::vector<Vec2> outline;               ///< m, body frame; empty: the body's
-  Vec2 centre = Vec2::Zero();              ///< m, of a disc
-  std::optional<double> diameter;          ///< m, of a disc
-  std::vector<std::vector<Vec2>> holes;    ///< m, rings of corners, either sense
-  std::vector<Vec2> hole_centres;          ///< m, of round holes
-  std::vector<double> hole_diameters;      ///< m, one for all or one for each
-  std::optional<double> density;           ///< kg/m³, with thickness
-  std::optional<double> thickness;         ///< m
-  std::optional<double> area_density;      ///< kg/m²
-  std::optional<double> mass;              ///< kg, of the shape without its holes
+  std::vector<Vec2> outline;            ///< m, body frame; empty: the body's
+  Vec2 centre = Vec2::Zero();           ///< m, of a disc
+  std::optional<double> diameter;       ///< m, of a disc
+  std::vector<std::vector<Vec2>> holes; ///< m, rings of corners, either sense
+  std::vector<Vec2> hole_centres;       ///< m, of round holes
+  std::vector<double> hole_diameters;   ///< m, one for all or one for each
+  std::optional<double> density;        ///< kg/m³, with thickness
+  std::optional<double> thickness;      ///< m
+  std::optional<double> area_density;   ///< kg/m²
+  std::optional<double> mass;           ///< kg, of the shape without its holes
 };
 
 /// Of a body: its mass, centre of gravity in its frame, and inertia about that.

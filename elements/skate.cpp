@@ -41,9 +41,7 @@ public:
     watch[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
     return block_within(is_kinetic ? drags : grip, a[0], b[0]);

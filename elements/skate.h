@@ -20,7 +20,7 @@ namespace steplap {
 
 struct Skate : Element {
   std::string a, b = "ground";
-  Vec2 axis{1.0, 0.0};          ///< in marker a's axes: where it runs
+  Vec2 axis{1.0, 0.0};         ///< in marker a's axes: where it runs
   std::optional<double> grip;  ///< N; none: whatever it takes
   std::optional<double> drags; ///< N
 };

@@ -72,7 +72,8 @@ template <class S> Group::Flow<S> flow_with(const Group::Entry& entry, const std
 
 Group::Flow<D18> seeded_flow(const Group::Entry& entry, const Evaluation& e) {
   const std::array<int, 3> bodies = entry.bodies();
-  const std::array<Motion<D18>, 3> motion = {seeded_of<3>(e.motion[bodies[0]], 0), seeded_of<3>(e.motion[bodies[1]], 1), seeded_of<3>(e.motion[bodies[2]], 2)};
+  const std::array<Motion<D18>, 3> motion = {seeded_of<3>(e.motion[bodies[0]], 0), seeded_of<3>(e.motion[bodies[1]], 1),
+                                             seeded_of<3>(e.motion[bodies[2]], 2)};
   return flow_with<D18>(entry, motion, D18(e.inner[entry.inner]), e.mode[entry.unit]);
 }
 
@@ -97,7 +98,8 @@ double joint_stiffness(const Group::Entry& entry) {
 }
 
 double stored(const Group::Entry& entry, const Group::Flow<double>& flow) {
-  return 0.5 * (entry.parts[0].stiffness * flow.stretch[0] * flow.stretch[0] + entry.parts[1].stiffness * flow.stretch[1] * flow.stretch[1]);
+  return 0.5 *
+         (entry.parts[0].stiffness * flow.stretch[0] * flow.stretch[0] + entry.parts[1].stiffness * flow.stretch[1] * flow.stretch[1]);
 }
 
 } // namespace
@@ -116,9 +118,12 @@ void SlidingBandGroup::check(const Entry& entry, const Flow<double>& flow) {
     if (flow.straight[i].length < entry.parts[i].shortest)
       throw ElementFailure("what '" + entry.name + "' is fastened to has run onto its drum: a limit keeps it off", {entry.name});
     if (!entry.is_belt && std::abs(entry.parts[i].measure.turned(flow.straight[i].u)) > k_most_turned)
-      throw ElementFailure("a free part of '" + entry.name + "' has turned by half a turn against the reference pose: so far it is not followed", {entry.name});
+      throw ElementFailure("a free part of '" + entry.name +
+                               "' has turned by half a turn against the reference pose: so far it is not followed",
+                           {entry.name});
   }
-  if (!(flow.angles[0] > 0.0)) throw ElementFailure("'" + entry.name + "' has come off its drum: its free parts meet no longer there", {entry.name});
+  if (!(flow.angles[0] > 0.0))
+    throw ElementFailure("'" + entry.name + "' has come off its drum: its free parts meet no longer there", {entry.name});
 }
 
 void SlidingBandGroup::watch(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e) {
@@ -258,7 +263,8 @@ double SlidingBandGroup::rounding_of(const Entry& entry, const Evaluation& e, co
   for (std::size_t i = 0; i < 2; ++i) {
     const WoundMeasure& m = entry.parts[i].measure;
     const Motion<double>& end = e.motion[entry.parts[i].end];
-    const double wound = std::abs(m.taken) + std::abs(m.radius_a * drum.theta) + std::abs(m.radius_b * end.theta) + std::abs(e.inner[entry.inner]);
+    const double wound =
+        std::abs(m.taken) + std::abs(m.radius_a * drum.theta) + std::abs(m.radius_b * end.theta) + std::abs(e.inner[entry.inner]);
     sum += value_rounding(flow.measured[i], drum, end) + k_rounded_sum * wound;
   }
   return sum;

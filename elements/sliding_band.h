@@ -69,7 +69,8 @@ public:
 
   [[nodiscard]] static Flow<double> flow_of(const Entry& entry, const Motion<double>* motion, double s, UnitMode mode);
   [[nodiscard]] Flow<double> flow_now(int i, const Evaluation& e) const {
-    return flow_of(entries[static_cast<std::size_t>(i)], e.motion, e.inner[entries[static_cast<std::size_t>(i)].inner], e.mode[entries[static_cast<std::size_t>(i)].unit]);
+    return flow_of(entries[static_cast<std::size_t>(i)], e.motion, e.inner[entries[static_cast<std::size_t>(i)].inner],
+                   e.mode[entries[static_cast<std::size_t>(i)].unit]);
   }
   /// s with one tension in both parts.
   [[nodiscard]] static double balanced(const Entry& entry, const Flow<double>& flow, double s);

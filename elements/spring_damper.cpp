@@ -15,35 +15,31 @@ bool is_increasing(const std::vector<Vec2>& table) {
 }
 
 // `free`, `table`: what the fields are called.
-bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'", const std::string& table = "'force_table'") {
+bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'",
+           const std::string& table = "'force_table'") {
   const auto fails = [&builder](bool is_wrong, const std::string& message) {
     if (is_wrong) builder.error(message);
     return is_wrong;
   };
   bool is_bad = fails(e.preload && e.free_length, "give either 'preload' or " + free + ", not both");
   is_bad |= fails(e.preload && *e.preload != 0.0 && e.stiffness == 0.0, "'preload' needs a 'stiffness'");
-  is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0,
-                  "give either 'stiffness' or " + table + ", not both");
-  is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0,
-                  "give either 'damping' or 'damping_table', not both");
-  is_bad |= fails(e.force_table.size() == 1 || e.damping_table.size() == 1,
-                  "a table needs at least two points");
-  is_bad |= fails(!is_increasing(e.force_table) || !is_increasing(e.damping_table),
-                  "the first column of a table must increase from row to row");
+  is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0, "give either 'stiffness' or " + table + ", not both");
+  is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0, "give either 'damping' or 'damping_table', not both");
+  is_bad |= fails(e.force_table.size() == 1 || e.damping_table.size() == 1, "a table needs at least two points");
+  is_bad |=
+      fails(!is_increasing(e.force_table) || !is_increasing(e.damping_table), "the first column of a table must increase from row to row");
   is_bad |= fails(e.gap > 0.0 && (!e.force_table.empty() || !e.damping_table.empty()),
                   "'gap' and tables exclude each other: put the dead band into the table");
   is_bad |= fails(std::max(e.force_table.size(), e.damping_table.size()) > PiecewiseLinear::k_most_points,
                   "a table may have at most 65536 points");
   is_bad |= fails(e.between != "lines" && e.force_table.empty() && e.damping_table.empty(),
                   "'between' says how the points of a table are joined: give " + table + " or 'damping_table'");
-  is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() &&
-                      e.damping_table.empty(),
+  is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() && e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");
   return !is_bad;
 }
 
-template <class Measure, class Law>
-void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law& law) {
+template <class Measure, class Law> void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law& law) {
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
@@ -51,24 +47,22 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law
   const int i = static_cast<int>(group.entries.size()) - 1;
   const bool is_angle = std::is_same_v<Measure, AngleMeasure>;
   const RowSpec row = row_of(a, b, measure);
-  builder.add_channel("elongation", is_angle ? "rad" : "m", {"its length or angle less the free one", "positive: stretched"},
-                      MeasuredValue{[&group, i](const Snapshot& s) {
-                                      return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
-                                    },
-                                    row, law.free});
+  builder.add_channel(
+      "elongation", is_angle ? "rad" : "m", {"its length or angle less the free one", "positive: stretched"},
+      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.free; }, row,
+                    law.free});
   builder.add_channel("rate", is_angle ? "rad/s" : "m/s", {"of the elongation", "positive: it grows"},
                       MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; }, row, 0.0, true});
-  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what it acts with on a along its axis, away from b", "negative: it pulls a towards b"},
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N",
+                      {"what it acts with on a along its axis, away from b", "negative: it pulls a towards b"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
 template <class Measure>
-void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, const Measure& measure,
-                  double default_free) {
+void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, const Measure& measure, double default_free) {
   const double n = static_cast<double>(e.count);
   const double k = n * e.stiffness, c = n * e.damping;
-  const double now =
-      measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
+  const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   double free = e.free_length.value_or(default_free);
   if (e.preload && k > 0.0) free = now + *e.preload / k;
   if (!e.force_table.empty() || !e.damping_table.empty()) {
@@ -139,14 +133,14 @@ const ElementKind& spring_damper_kind() {
     f.add("stiffness", &T::stiffness).in("N/m").not_negative().doc("k of one element");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");
-    f.add("free_length", &T::free_length).in("m").doc(
-        "distance at which it gives no force; default: that of the reference pose");
+    f.add("free_length", &T::free_length).in("m").doc("distance at which it gives no force; default: that of the reference pose");
     f.add("preload", &T::preload).in("N").doc("force f of all in the reference pose, instead of free_length");
     f.add("gap", &T::gap).in("m").not_negative().doc("width of a dead band around the free length");
     f.add("force_table", &T::force_table).in("m", "N").doc("[d, -f] pairs instead of stiffness, linear between");
     f.add("damping_table", &T::damping_table).in("m/s", "N").doc("[d', -f] pairs instead of damping");
-    f.add("between", &T::between).one_of({"lines", "curve"}).doc(
-        "how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
+    f.add("between", &T::between)
+        .one_of({"lines", "curve"})
+        .doc("how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
     k.holds<T>();
     k.compile = compile_spring_damper;
     return k;
@@ -172,8 +166,9 @@ const ElementKind& rotational_spring_damper_kind() {
     f.add("gap", &T::gap).in("rad").not_negative().doc("width of a dead band around the free angle");
     f.add("couple_table", &T::couple_table).in("rad", "N m").doc("[d, -couple] pairs instead of stiffness");
     f.add("damping_table", &T::damping_table).in("rad/s", "N m").doc("[d', -couple] pairs instead of damping");
-    f.add("between", &T::between).one_of({"lines", "curve"}).doc(
-        "how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
+    f.add("between", &T::between)
+        .one_of({"lines", "curve"})
+        .doc("how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
     k.holds<T>();
     k.compile = compile_rotational;
     return k;

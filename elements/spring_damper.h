@@ -11,7 +11,7 @@ namespace steplap {
 
 struct SpringDamper : Element {
   std::string a, b = "ground";
-  std::optional<Vec2> axis;          ///< in marker b's axes; absent: point to point
+  std::optional<Vec2> axis; ///< in marker b's axes; absent: point to point
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> free_length; ///< value of the measure without force
   std::optional<double> preload;     ///< f in the reference pose

@@ -19,9 +19,7 @@ struct LinearSpring {
     return S(-k) * (value - S(free)) - S(c) * rate;
   }
   template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode) const { return -k * (value - free); }
-  [[nodiscard]] double energy(double value) const {
-    return 0.5 * k * (value - free) * (value - free);
-  }
+  [[nodiscard]] double energy(double value) const { return 0.5 * k * (value - free) * (value - free); }
 };
 
 /// No force within ± half a gap around the free length, neither elastic nor damping; beyond it a spring
@@ -31,9 +29,7 @@ struct GapSpring {
   static constexpr bool k_is_contact = false;
   double k = 0.0, c = 0.0, free = 0.0, half_gap = 0.0;
 
-  [[nodiscard]] double edge(UnitMode mode) const {
-    return mode == 0 ? free - half_gap : free + half_gap;
-  }
+  [[nodiscard]] double edge(UnitMode mode) const { return mode == 0 ? free - half_gap : free + half_gap; }
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     if (mode == 1) return S(0);
     return S(-k) * (value - S(edge(mode))) - S(c) * rate;
@@ -61,9 +57,7 @@ struct GapSpring {
     if (mode != 1) return 1;
     return slot == 0 ? 0 : 2;
   }
-  static EventKind transition(UnitMode, UnitMode to) {
-    return to == 1 ? EventKind::enters_gap : EventKind::closes_gap;
-  }
+  static EventKind transition(UnitMode, UnitMode to) { return to == 1 ? EventKind::enters_gap : EventKind::closes_gap; }
 };
 
 /// Piecewise linear characteristic y(x), continued with its end slopes.
@@ -81,16 +75,12 @@ public:
     at_zero_ = primitive(0.0);
   }
   [[nodiscard]] int segments() const { return std::max(1, static_cast<int>(points_.size()) - 1); }
-  [[nodiscard]] double low(int segment) const {
-    return segment == 0 ? -1e300 : points_[segment].x();
-  }
-  [[nodiscard]] double high(int segment) const {
-    return segment == segments() - 1 ? 1e300 : points_[segment + 1].x();
-  }
+  [[nodiscard]] double low(int segment) const { return segment == 0 ? -1e300 : points_[segment].x(); }
+  [[nodiscard]] double high(int segment) const { return segment == segments() - 1 ? 1e300 : points_[segment + 1].x(); }
   [[nodiscard]] int segment_at(double x) const {
     if (points_.size() < 3) return 0;
-    const auto after = std::upper_bound(points_.begin() + 1, points_.end() - 1, x,
-                                        [](double value, const Vec2& p) { return value < p.x(); });
+    const auto after =
+        std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
     return static_cast<int>(after - points_.begin()) - 1;
   }
   /// The segment that follows `segment` on one side; a jump of x may have left more than one behind.
@@ -104,8 +94,7 @@ public:
     return S(p.y()) + S(slope(segment)) * (x - S(p.x()));
   }
   [[nodiscard]] double slope(int s) const {
-    return points_.size() < 2 ? 0.0
-                              : (points_[s + 1].y() - points_[s].y()) / (points_[s + 1].x() - points_[s].x());
+    return points_.size() < 2 ? 0.0 : (points_[s + 1].y() - points_[s].y()) / (points_[s + 1].x() - points_[s].x());
   }
   /// ∫ from 0 to x.
   [[nodiscard]] double integral(double x) const { return primitive(x) - at_zero_; }
@@ -136,7 +125,8 @@ public:
   explicit SmoothCurve(std::vector<Vec2> points) : points_(std::move(points)) {
     find_curvatures();
     primitive_.resize(points_.size());
-    for (std::size_t i = 1; i < points_.size(); ++i) primitive_[i] = primitive_[i - 1] + from_left(i - 1, points_[i].x() - points_[i - 1].x());
+    for (std::size_t i = 1; i < points_.size(); ++i)
+      primitive_[i] = primitive_[i - 1] + from_left(i - 1, points_[i].x() - points_[i - 1].x());
     at_zero_ = primitive(0.0);
   }
   template <class S> [[nodiscard]] S value(const S& x) const {
@@ -192,7 +182,8 @@ private:
   }
   [[nodiscard]] std::size_t piece_at(double x) const {
     if (points_.size() < 3) return 0;
-    const auto after = std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
+    const auto after =
+        std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
     return static_cast<std::size_t>(after - points_.begin()) - 1;
   }
   /// ∫ over the first d of piece i, within it.
@@ -247,8 +238,7 @@ struct TabulatedSpring {
   }
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
-    return S(-count) * (spring.value(value - S(free), spring_segment(mode)) +
-                        damper.value(rate, damper_segment(mode)));
+    return S(-count) * (spring.value(value - S(free), spring_segment(mode)) + damper.value(rate, damper_segment(mode)));
   }
   template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode mode) const {
     return -count * spring.value(S(value - free), spring_segment(mode));
@@ -272,8 +262,7 @@ struct TabulatedSpring {
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
     const bool is_above = slot == 1 || slot == 3;
-    return slot < 2 ? mode_of(spring.segment_beyond(s, is_above, value - free), d)
-                    : mode_of(s, damper.segment_beyond(d, is_above, rate));
+    return slot < 2 ? mode_of(spring.segment_beyond(s, is_above, value - free), d) : mode_of(s, damper.segment_beyond(d, is_above, rate));
   }
   static EventKind transition(UnitMode, UnitMode) { return EventKind::passes_kink; }
 };

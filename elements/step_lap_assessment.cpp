@@ -103,8 +103,7 @@ std::vector<SharedLoad> shared_with(const StepLapJoint& joint, const Model& mode
   for (const ElementEntry& entry : model.elements) {
     if (entry.element->name == joint.name || bodies_of(entry, model) != both) continue;
     const ChannelRange* force = find_range(result, entry.element->name + ".force");
-    shared.push_back({entry.element->name,
-                      force ? std::max(std::abs(force->low.value), std::abs(force->high.value)) : k_unknown});
+    shared.push_back({entry.element->name, force ? std::max(std::abs(force->low.value), std::abs(force->high.value)) : k_unknown});
   }
   return shared;
 }
@@ -172,7 +171,8 @@ JointAssessment assess_joint(const StepLapJoint& joint, const Model& model, cons
 std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& result) {
   std::vector<JointAssessment> assessments;
   for (const ElementEntry& entry : model.elements)
-    if (const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get())) assessments.push_back(assess_joint(*joint, model, result));
+    if (const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get()))
+      assessments.push_back(assess_joint(*joint, model, result));
   return assessments;
 }
 
@@ -190,8 +190,7 @@ Verdict outcome_of(JointVerdict verdict) {
   }
 }
 
-JointErrors joint_errors(const JointAssessment& joint, const System& system, const RunResult& run,
-                         const GlobalErrorEstimate& estimate) {
+JointErrors joint_errors(const JointAssessment& joint, const System& system, const RunResult& run, const GlobalErrorEstimate& estimate) {
   const auto of = [&](const char* channel, double ChannelError::*which) {
     const ChannelError* error = find_error(joint.joint + channel, system, estimate);
     return error ? error->*which : k_unknown_error;

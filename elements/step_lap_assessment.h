@@ -3,9 +3,9 @@
 #pragma once
 
 #include "mbd/acceptance/judgement.h"
-#include "mbd/trust/global_error.h"
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/global_error.h"
 
 #include <cstdint>
 #include <optional>
@@ -18,18 +18,18 @@ struct StepLapJoint;
 
 /// From the gravest down.
 enum class JointVerdict : std::uint8_t {
-  not_assessed,       ///< a joint without interfaces, which holds whatever it takes
+  not_assessed, ///< a joint without interfaces, which holds whatever it takes
   came_apart,
   corner_parted,
-  unpressed,          ///< nothing presses some interface, or a corner or packet has nothing to hold by
+  unpressed, ///< nothing presses some interface, or a corner or packet has nothing to hold by
   slid_too_far,
   crushed_edges,
   closed_clearance,
   slipped,
-  not_known,          ///< no figures
-  would_slip,         ///< a monitored joint beyond its limit
-  weak_part,          ///< a corner or a packet of sheets cannot hold its share of the weight
-  little_reserve,     ///< less margin than the model asks for
+  not_known,      ///< no figures
+  would_slip,     ///< a monitored joint beyond its limit
+  weak_part,      ///< a corner or a packet of sheets cannot hold its share of the weight
+  little_reserve, ///< less margin than the model asks for
   holds
 };
 
@@ -45,7 +45,7 @@ struct SharedLoad {
 };
 
 struct JointAssessment {
-  static constexpr double k_touching = 1e-9; ///< m: a clearance of zero is not closed by rounding
+  static constexpr double k_touching = 1e-9;    ///< m: a clearance of zero is not closed by rounding
   static constexpr double k_held_beyond = 1e-6; ///< of the margin: what locating an onset of slip may leave
   static constexpr double k_off_surface = 1e-2; ///< of the margin: what steps of a usual tolerance leave of a joint that slides
   std::string joint;
@@ -93,9 +93,7 @@ struct JointAssessment {
     return !is_monitored && !has_slipped && !has_come_apart && smallest_margin < 1.0 - k_held_beyond;
   }
   /// A part of the motion, it was found to bear more than it can: what the method says of the motion within a step is not so.
-  [[nodiscard]] bool bears_too_much() const {
-    return !is_monitored && !has_come_apart && smallest_margin < 1.0 - k_off_surface;
-  }
+  [[nodiscard]] bool bears_too_much() const { return !is_monitored && !has_come_apart && smallest_margin < 1.0 - k_off_surface; }
   [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
 
   JointVerdict verdict = JointVerdict::not_assessed;

@@ -52,9 +52,11 @@ void judge_least(const JointAssessment& joint, const Extreme& least, const char*
 // Each corner and packet by itself: what one of them lacks is not made good by the others.
 void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
   if (joint.verdict == JointVerdict::not_assessed) return;
-  judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject, criteria);
+  judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject,
+              criteria);
   if (!std::isnan(joint.least_pressure.value)) criteria.back().unit = "Pa";
-  judge_least(joint, joint.corner_margin, ".corner_margin", "each corner holds its share of the limb's weight: margin >= 1", 1.0, Verdict::inspect, criteria);
+  judge_least(joint, joint.corner_margin, ".corner_margin", "each corner holds its share of the limb's weight: margin >= 1", 1.0,
+              Verdict::inspect, criteria);
   judge_least(joint, joint.part_margin, ".part_margin", "each packet of sheets holds its share of the load: margin >= 1", 1.0,
               Verdict::inspect, criteria);
 }
@@ -85,9 +87,7 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   if (joint.allowed_line_load) {
     CriterionResult crushed = joint_result(joint, "line load of its sheet edges, of the allowed one <= 1");
     crushed.consequence = Verdict::reject;
-    crushed.outcome = std::isnan(joint.edge_share.value) ? Verdict::open
-                      : joint.has_crushed_edges()        ? Verdict::reject
-                                                         : Verdict::hold;
+    crushed.outcome = std::isnan(joint.edge_share.value) ? Verdict::open : joint.has_crushed_edges() ? Verdict::reject : Verdict::hold;
     crushed.value = joint.edge_share.value;
     crushed.limit = 1.0;
     crushed.t = joint.edge_share.t;
@@ -114,8 +114,8 @@ std::string contradiction_of(const JointAssessment& joint, const SimulationSetti
   const char* does = joint.contradicts_itself() ? "holds" : joint.bears_too_much() ? "slides" : "";
   const std::string then = joint.contradicts_itself() ? "it has to slip" : "nothing bears what it is said to bear";
   if (*does == '\0') return "";
-  return "'" + joint.joint + "' " + does + " with a margin of " + limit_text(joint.smallest_margin) + " at t = " + limit_text(joint.time_of_smallest) +
-         " s, and below 1 " + then + ": " + remedy(settings);
+  return "'" + joint.joint + "' " + does + " with a margin of " + limit_text(joint.smallest_margin) +
+         " at t = " + limit_text(joint.time_of_smallest) + " s, and below 1 " + then + ": " + remedy(settings);
 }
 
 } // namespace
@@ -127,7 +127,8 @@ ElementJudgement judge_step_lap_joint(const Element& element, const Model& model
   judge_shares(joint, judgement.criteria);
   judge_overlap(joint, judgement.criteria);
   if (joint.is_known() && !joint.is_loaded)
-    judgement.caps.push_back("nothing loaded '" + joint.joint + "' but its limb's weight: a run that asks nothing of a joint does not show that it holds");
+    judgement.caps.push_back("nothing loaded '" + joint.joint +
+                             "' but its limb's weight: a run that asks nothing of a joint does not show that it holds");
   judgement.distrust = contradiction_of(joint, model.simulation);
   return judgement;
 }

@@ -96,9 +96,7 @@ double EdgeGroup::potential(const Motion<double>* motion) const {
   double sum = 0.0;
   for (const Entry& entry : entries)
     for (const Line& line : entry.lines) {
-      const auto depth = [&](int end) {
-        return -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
-      };
+      const auto depth = [&](int end) { return -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value; };
       sum += energy(depth(0), depth(1), line.stiffness, line.length);
     }
   return sum;
@@ -120,13 +118,11 @@ void EdgeGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out
 }
 
 void EdgeGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
-    is_used[entry.a] = is_used[entry.b] = 1;
+  for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
 void EdgeGroup::enter_links(LinkTable& links) {
-  for (Entry& entry : entries)
-    entry.link = links.add(entry.a, entry.b);
+  for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
 UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
@@ -142,7 +138,9 @@ UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation&
   double length = 0.0;
   for (const Line& line : entry.lines) length = std::max(length, line.length);
   const BedGaps gaps = gaps_of(entry, e.motion);
-  const auto is_pressed = [&](double gap, double rate, bool is_asked) { return is_asked || std::abs(gap) < k_parallel * length ? rate < 0.0 : gap < 0.0; };
+  const auto is_pressed = [&](double gap, double rate, bool is_asked) {
+    return is_asked || std::abs(gap) < k_parallel * length ? rate < 0.0 : gap < 0.0;
+  };
   if (is_pressed(gaps.most, gaps.most_rate, slot == 1)) return k_bed_whole;
   return is_pressed(gaps.least, gaps.least_rate, slot == 0) ? k_bed_partly : k_bed_open;
 }
@@ -157,12 +155,10 @@ EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion)
   Bearing bearing;
   for (const Line& line : entry.lines) {
     double depth[2];
-    for (int end = 0; end < 2; ++end)
-      depth[end] = -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
+    for (int end = 0; end < 2; ++end) depth[end] = -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
     const auto p = press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // by the sign of the depths
     bearing.force += p.force[0] + p.force[1];
-    for (int end = 0; end < 2; ++end)
-      bearing.load[end] += line.stiffness * std::max(0.0, depth[end]);
+    for (int end = 0; end < 2; ++end) bearing.load[end] += line.stiffness * std::max(0.0, depth[end]);
   }
   return bearing;
 }
@@ -172,8 +168,8 @@ EdgeLine find_edge_line(const SheetPair& sheets, const Pose& reference) {
   Region region;
   EdgeLine line;
   intersect_exactly(sheets.yoke, sheets.limb, reference, workspace, region);
-  Vec2 to_yoke = sheets.across ? Vec2(-*sheets.across)
-                               : Vec2(centroid(sheets.yoke.polygon) - placed(centroid(sheets.limb.polygon), reference));
+  Vec2 to_yoke =
+      sheets.across ? Vec2(-*sheets.across) : Vec2(centroid(sheets.yoke.polygon) - placed(centroid(sheets.limb.polygon), reference));
   if (region.empty() || to_yoke.isZero(0.0)) return line;
   to_yoke.normalize();
   double longest = 0.0;

@@ -16,21 +16,13 @@ constexpr double k_on_surface = 1e-15; // of u
 constexpr double k_strain_step = 1e-5; // of the strain, for differences of the flow
 constexpr double k_least_step = 1e-12; // m
 
-Pose slid_at(const double* inner) {
-  return {inner[0], inner[1], inner[2]};
-}
+Pose slid_at(const double* inner) { return {inner[0], inner[1], inner[2]}; }
 
-bool is_apart(UnitMode mode) {
-  return (mode & k_elastic_apart) != 0;
-}
-bool is_yielding(UnitMode mode) {
-  return (mode & (k_elastic_yields | k_elastic_apart)) == k_elastic_yields;
-}
+bool is_apart(UnitMode mode) { return (mode & k_elastic_apart) != 0; }
+bool is_yielding(UnitMode mode) { return (mode & (k_elastic_yields | k_elastic_apart)) == k_elastic_yields; }
 
 /// s − p.
-Vec3 strain(const Pose& now, const double* slid) {
-  return {now.x - slid[0], now.y - slid[1], now.theta - slid[2]};
-}
+Vec3 strain(const Pose& now, const double* slid) { return {now.x - slid[0], now.y - slid[1], now.theta - slid[2]}; }
 
 double stored(const ElasticGripGroup::Entry& entry, const Motion<double>* motion, const double* inner) {
   if (inner[entry.inner + 3] != 0.0) return 0.0;
@@ -44,8 +36,7 @@ struct Measures {
   Measures(const ElasticGripGroup::Entry& entry, const Evaluation& e) {
     const Motion<D12> a = seeded(e.motion[entry.a], 0), b = seeded(e.motion[entry.b], 3);
     const RowSpec* hold = entry.friction->hold;
-    for (int r = 0; r < 2; ++r)
-      m[r] = AxisMeasure{hold[r].point_a, hold[r].point_b, hold[r].direction}.at<false, D12>(a, b);
+    for (int r = 0; r < 2; ++r) m[r] = AxisMeasure{hold[r].point_a, hold[r].point_b, hold[r].direction}.at<false, D12>(a, b);
     m[2] = AngleMeasure{}.at<false, D12>(a, b);
   }
   /// Force on a, force on b of a unit wrench along measure r.
@@ -79,15 +70,13 @@ void ElasticGripGroup::add_forces(Evaluation& e) const {
     Vec3::Map(e.inner_rate + entry.inner) = flow.rate;
     e.dissipation += force.dot(flow.rate);
     watch[0] = flow.speed;
-    watch[1] = std::min(entry.friction->parting(e, slid_at(p), mode >> k_elastic_parted),
-                        entry.friction->grip_beyond_last(e, slid_at(p)));
+    watch[1] = std::min(entry.friction->parting(e, slid_at(p), mode >> k_elastic_parted), entry.friction->grip_beyond_last(e, slid_at(p)));
   }
 }
 
 double ElasticGripGroup::inner_energy(const Motion<double>* motion, const double* inner) const {
   double sum = 0.0;
-  for (const Entry& entry : entries)
-    sum += stored(entry, motion, inner);
+  for (const Entry& entry : entries) sum += stored(entry, motion, inner);
   return sum;
 }
 
@@ -111,11 +100,9 @@ void ElasticGripGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobia
     D12 total[6];
     for (int r = 0; r < 3; ++r) {
       D12 wrench(0.0), along[6];
-      for (int c = 0; c < 3; ++c)
-        wrench -= D12(k(r, c)) * (measures.m[c].value - D12(e.inner[entry.inner + c]));
+      for (int c = 0; c < 3; ++c) wrench -= D12(k(r, c)) * (measures.m[c].value - D12(e.inner[entry.inner + c]));
       measures.gradient(r, along);
-      for (int i = 0; i < 6; ++i)
-        total[i] += wrench * along[i];
+      for (int i = 0; i < 6; ++i) total[i] += wrench * along[i];
     }
     for (int i = 0; i < 6; ++i) {
       j.stiffness.row(i) = total[i].d.template head<6>().matrix().transpose();
@@ -140,8 +127,7 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
     for (int r = 0; r < 3; ++r) {
       D12 along[6];
       measures.gradient(r, along);
-      for (int i = 0; i < 6; ++i)
-        gradient(r, i) = along[i].v;
+      for (int i = 0; i < 6; ++i) gradient(r, i) = along[i].v;
       turning.row(r) = measures.m[r].rate.d.template head<6>().matrix().transpose();
       moving.row(r) = measures.m[r].rate.d.template tail<6>().matrix().transpose();
     }
@@ -150,8 +136,8 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
     const double* const p = e.inner + entry.inner;
     const Vec3 s(measures.m[0].value.v, measures.m[1].value.v, measures.m[2].value.v);
     const Vec3 rate(measures.m[0].rate.v, measures.m[1].rate.v, measures.m[2].rate.v), now = s - Vec3::Map(p);
-    const double size = std::max(
-        {std::abs(now[0]), std::abs(now[1]), friction.gyration() * std::abs(now[2]), k_least_step / k_strain_step});
+    const double size =
+        std::max({std::abs(now[0]), std::abs(now[1]), friction.gyration() * std::abs(now[2]), k_least_step / k_strain_step});
     Mat3 by_strain, by_overlap;
     for (int c = 0; c < 3; ++c) {
       const double step = k_strain_step * size / (c < 2 ? 1.0 : friction.gyration());
@@ -197,13 +183,11 @@ void ElasticGripGroup::start_inner(const Motion<double>* motion, double* inner) 
 }
 
 void ElasticGripGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
-    is_used[entry.a] = is_used[entry.b] = 1;
+  for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
 void ElasticGripGroup::enter_links(LinkTable& links) {
-  for (Entry& entry : entries)
-    entry.link = links.add(entry.a, entry.b);
+  for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
 UnitMode ElasticGripGroup::initial_mode(int element, const Evaluation& e) const {

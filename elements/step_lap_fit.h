@@ -55,9 +55,9 @@ struct StepLapFriction::Scratch final : SlipScratch {
   bool was_stuck = false; ///< then: the answer came from the table
   bool was_known = false; ///< then: it came from the law of a slip
   RequiredPressure answer;
-  PressureState pressed; ///< at the last usage()
+  PressureState pressed;                                   ///< at the last usage()
   double onset_time = k_onset_time, end_time = k_end_time; ///< s, of the slip law's beginning and end
-  OverlapLoss lost; ///< at this pose
+  OverlapLoss lost;                                        ///< at this pose
   Pose lost_at;
   bool is_lost_known = false;
 

@@ -26,9 +26,9 @@ constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
 // within F/(K |ν|), which goes to zero with the overlap: to follow it to the end would take for ever.
 constexpr double k_last_grip = 1e-2;
 constexpr double k_surely_overlap = 0.25; // of the depth in the reference pose: above it a bound of the depth does
-constexpr double k_trial = 1.01;     // u beyond which a yielding joint is at a stage of a step, not at its end
-constexpr double k_tilt_step = 1e-3; // m/s²: of pressures that are linear in it
-constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre, of differences of the overlap
+constexpr double k_trial = 1.01;          // u beyond which a yielding joint is at a stage of a step, not at its end
+constexpr double k_tilt_step = 1e-3;      // m/s²: of pressures that are linear in it
+constexpr double k_slid_step = 1e-6;      // m at a corner 1 m from the centre, of differences of the overlap
 
 // What an iteration may leave, in shares of the capacity. u is then good to 1e-14, its square: what is decided by u is
 // not touched. The direction in which a slip begins is good to 1e-7, and forgotten as soon as it has begun. A wrench of
@@ -46,8 +46,8 @@ void insist(double residual, double bound, const std::string& name, double t, co
 
 } // namespace
 
-StepLapFriction::StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets,
-                                 bool is_monitor, bool stops_when_apart)
+StepLapFriction::StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
+                                 bool stops_when_apart)
     : name_(std::move(name)), index_(index), row_(row), sheets_(std::move(sheets)), is_monitor_(is_monitor),
       stops_when_apart_(stops_when_apart) {
   constexpr double k_same_ratio = 4e-16; // quotients of the same coefficients, rounded
@@ -69,8 +69,7 @@ std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
   return scratch;
 }
 
-void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, const BodyData& limb,
-                                 const BodyData& active_part) {
+void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part) {
   if (at_reference.empty()) return;
   auto fit = std::make_shared<Fit>(); // of no acceleration across the sheets
   fit->patch = std::move(at_reference);
@@ -118,8 +117,7 @@ Pose StepLapFriction::present(const Snapshot& s) const {
   return is_stuck ? anchor(s.memory) : pose_of(s.motion);
 }
 
-void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region,
-                            Patch& patch) const {
+void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region, Patch& patch) const {
   patch.clear({pose.x, pose.y});
   for (const SheetPair& s : sheets_) {
     intersect(s.yoke, s.limb, pose, workspace, region);
@@ -127,8 +125,7 @@ void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapW
   }
 }
 
-void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, GripLaw law, double tilt,
-                                  Patch& patch) const {
+void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, GripLaw law, double tilt, Patch& patch) const {
   const double traction = traction_of(s, law, tilt);
   if (s.gradient.isZero(0.0)) return patch.add(region, traction);
   for (const Polygon& piece : region) {
@@ -169,9 +166,8 @@ PressureState StepLapFriction::pressure_at(double t) const {
     now.factor *= pressure_signal_->value(t);
     now.factor_rate = kept_ * pressure_signal_->drive(t, DriveLevel::position).rate;
     if (!(now.factor > 0.0))
-      throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(t) +
-                             " s: the factor of its pressures is " + number_text(now.factor) +
-                             ": it has to stay above zero");
+      throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(t) + " s: the factor of its pressures is " +
+                             number_text(now.factor) + ": it has to stay above zero");
   }
   if (!acceleration_) return now;
   now.tilt = acceleration_->value(t) / now.factor;
@@ -190,12 +186,10 @@ Patch StepLapFriction::patch_at(const Pose& pose, GripLaw law) const {
   return patch;
 }
 
-StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law,
-                                           double tilt) const {
+StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law, double tilt) const {
   auto& own = static_cast<Scratch&>(*scratch[index_]);
   Fit& f = own.fits[is_one_law_ || law == GripLaw::holding ? 0 : 1];
-  const bool is_same =
-      f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
+  const bool is_same = f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
   if (is_same) return f;
   const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
                             reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
@@ -217,8 +211,7 @@ RequiredPressure StepLapFriction::required(const Patch& patch, const Vec3& wrenc
 
 // --- holding ----------------------------------------------------------------------------------------------
 
-void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
-                                  double* watch) const {
+void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const {
   watch[0] = watch[1] = 1.0;
   if (!never_slips()) watch[0] = spare(e, anchor(e.memory), Vec3(wrench[0], wrench[1], wrench[2]));
 }
@@ -243,8 +236,7 @@ double StepLapFriction::yield_usage(const Evaluation& e, const Pose& slid, const
 
 // ∂h/∂p along n, and what h changes by as the pressures do: central differences, whose share in the balance is that of
 // the strain at the bound to the overlap's width.
-StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force,
-                                            const Vec3& rate) const {
+StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
   Flow flow;
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
@@ -260,18 +252,17 @@ StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& sli
   Fit& moved = own.fits[1]; // free: an elastic joint has one law
   const double step = k_slid_step * std::min(1.0, gyration_);
   const auto power = [&](double way, double tilt) {
-    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace,
-          own.region, moved.patch);
+    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace, own.region,
+          moved.patch);
     return moved.patch.empty() ? 0.0 : evaluate_gradient(moved.patch, n).h;
   };
   moved.is_valid = false;
   const double change = now.factor * (power(step, now.tilt) - power(-step, now.tilt)) / (2.0 * step);
-  double tightening = now.factor_rate == 0.0
-                          ? 0.0
-                          : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
+  double tightening =
+      now.factor_rate == 0.0 ? 0.0 : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
   if (now.tilt_rate != 0.0)
-    tightening += now.factor * now.tilt_rate *
-                  (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
+    tightening +=
+        now.factor * now.tilt_rate * (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
   flow.direction = n;
   flow.resistance = n.dot(pull) + need.u * change;
   if (!(flow.resistance > 0.0) && need.u > k_trial) { // of a step that goes too far: it will be made again
@@ -279,10 +270,9 @@ StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& sli
     return flow;
   }
   if (!(flow.resistance > 0.0))
-    throw NumericalFailure(
-        "step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
-        " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
-        "tangential stiffness, or leave it rigid");
+    throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
+                           " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
+                           "tangential stiffness, or leave it rigid");
   flow.speed = (pull.dot(rate) - need.u * tightening) / flow.resistance;
   flow.rate = flow.speed * n;
   return flow;
@@ -312,9 +302,9 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const PressureState now = pressure_at(s.t);
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
   const bool is_known = knows_usage(s, w);
-  const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
-                       own.asked_at.theta == pose.theta && own.pressed.factor == now.factor &&
-                       own.pressed.tilt == now.tilt && own.was_stuck == is_stuck && own.was_known == is_known;
+  const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y && own.asked_at.theta == pose.theta &&
+                       own.pressed.factor == now.factor && own.pressed.tilt == now.tilt && own.was_stuck == is_stuck &&
+                       own.was_known == is_known;
   if (is_same) return own.answer;
   if (is_known) {
     own.answer = usage_of_slip(s, pose);
@@ -344,8 +334,7 @@ ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
 const OverlapLoss& StepLapFriction::loss(const Snapshot& s) const {
   auto& own = static_cast<Scratch&>(*s.evaluation->scratch[index_]);
   const Pose pose = present(s);
-  const bool is_same = own.is_lost_known && own.lost_at.x == pose.x && own.lost_at.y == pose.y &&
-                       own.lost_at.theta == pose.theta;
+  const bool is_same = own.is_lost_known && own.lost_at.x == pose.x && own.lost_at.y == pose.y && own.lost_at.theta == pose.theta;
   if (is_same) return own.lost;
   own.lost = overlaps_.loss_at(sheets_, pose, own.workspace, own.region);
   own.lost_at = pose;
@@ -357,21 +346,19 @@ double StepLapFriction::area(const Snapshot& s) const {
   return fit(s.evaluation->scratch, present(s), GripLaw::holding, pressure_at(s.t).tilt).patch.area();
 }
 
-FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a,
-                                           const double* b, bool is_kinetic) const {
+FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+                                           bool is_kinetic) const {
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
   const PressureState now = pressure_at(e.t);
   Fit& f = fit(e.scratch, anchor(e.memory), law, now.tilt);
   // Wrenches in units of the factor: ½ f² wᵀA w + f bᵀw over the set at a factor of 1.
   const Mat3 mobility = now.factor * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
-  const AdmissibleWrench w =
-      admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
+  const AdmissibleWrench w = admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
   insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
   FrictionBlock block;
   block.is_inside = !w.slips;
   Vec3::Map(block.wrench) = now.factor * w.wrench;
-  if (const double size = scaled(w.acceleration).norm(); size > 0.0)
-    Vec3::Map(block.direction) = w.acceleration / size;
+  if (const double size = scaled(w.acceleration).norm(); size > 0.0) Vec3::Map(block.direction) = w.acceleration / size;
   return block;
 }
 
@@ -408,8 +395,7 @@ void StepLapFriction::change_place(const Evaluation& e, FrictionState& state) co
 }
 
 double StepLapFriction::grip_beyond_last(const Evaluation& e, const Pose& slid) const {
-  return fit(e.scratch, slid, GripLaw::holding, pressure_at(e.t).tilt).patch.force() / reference_->patch.force() -
-         k_last_grip;
+  return fit(e.scratch, slid, GripLaw::holding, pressure_at(e.t).tilt).patch.force() / reference_->patch.force() - k_last_grip;
 }
 
 std::uint32_t StepLapFriction::parted_at(const Pose& pose, bool& is_any_left) const {

@@ -51,8 +51,7 @@ class StepLapFriction final : public FrictionElement {
 public:
   /// `index` among the friction elements, `row` its slot in Snapshot::friction_force. Without sheets,
   /// or as a monitor, it holds whatever it takes.
-  StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
-                  bool stops_when_apart);
+  StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor, bool stops_when_apart);
 
   RowSpec hold[3]; ///< x and y in the active part's axes, angle
   /// Signals of PressureState: factor (1 − loss) · `factor`, acceleration across the sheets; null where there is none.
@@ -124,31 +123,23 @@ public:
   void mark_bodies(std::vector<char>&) const override {}
   [[nodiscard]] std::unique_ptr<FrictionScratch> make_scratch() const override;
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return !is_elastic(); }
-  void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
-                   double* wrench) const override;
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override;
   [[nodiscard]] double support(const Evaluation& e, const FrictionState& state, const double* rate) const override;
-  [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench,
-                             double* normal) const override;
-  void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
-                   double* watch) const override;
+  [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench, double* normal) const override;
+  void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench, double* watch) const override;
   void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const override;
   void aim(FrictionState& state, const double* rate) const override;
-  void watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
-                  double* watch) const override;
-  [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state,
-                                     const double* rate) const override;
-  [[nodiscard]] double decay_rate(const Evaluation& e, const FrictionState& state,
-                                  const double* rate) const override;
-  [[nodiscard]] bool goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
-                                      int slot) const override;
+  void watch_slip(const Evaluation& e, const FrictionState& state, const double* rate, double* watch) const override;
+  [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const override;
+  [[nodiscard]] double decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const override;
+  [[nodiscard]] bool goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate, int slot) const override;
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override;
   void change_place(const Evaluation& e, FrictionState& state) const override;
   [[nodiscard]] EventKind place_change(const FrictionState& from, const FrictionState& to) const override {
     return (to.foot & ~from.foot) != 0 ? EventKind::loses_interface : EventKind::meets_interface;
   }
   [[nodiscard]] bool stops_when_apart() const override { return stops_when_apart_; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,
-                                          const double* a, const double* b,
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& state, const double* a, const double* b,
                                           bool is_kinetic) const override;
 
 private:
@@ -157,8 +148,7 @@ private:
   [[nodiscard]] Fit& fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law, double tilt) const;
   [[nodiscard]] Pose anchor(const double* memory) const;
   [[nodiscard]] Pose present(const Snapshot& s) const;
-  void build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region,
-             Patch& patch) const;
+  void build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region, Patch& patch) const;
   void add_pressed(const SheetPair& sheets, const Region& region, GripLaw law, double tilt, Patch& patch) const;
   [[noreturn]] void refuse_pressure() const;
   [[nodiscard]] Vec3 gradient_at(const Pose& pose, double tilt, const Vec3& nu, Scratch& own) const;
@@ -179,19 +169,19 @@ private:
   std::vector<SheetPair> sheets_;
   OverlapReference overlaps_; ///< in the reference pose
   bool is_monitor_ = false, stops_when_apart_ = true;
-  bool is_one_law_ = true;         ///< static and kinetic coefficients are the same
-  Vec2 arm_ = Vec2::Zero();        ///< from the limb's centre of gravity to the joint's centre, m
-  double gyration_ = 1.0;          ///< of the traction about the joint's centre, m
-  double grip_acceleration_ = 1.0; ///< about the largest that it can give, m/s²
+  bool is_one_law_ = true;               ///< static and kinetic coefficients are the same
+  Vec2 arm_ = Vec2::Zero();              ///< from the limb's centre of gravity to the joint's centre, m
+  double gyration_ = 1.0;                ///< of the traction about the joint's centre, m
+  double grip_acceleration_ = 1.0;       ///< about the largest that it can give, m/s²
   double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/inertia
   double part_mobility_[2] = {0.0, 0.0};
   const Signal* pressure_signal_ = nullptr;
   const Signal* acceleration_ = nullptr;
-  double kept_ = 1.0;              ///< share of the pressures that relaxation leaves
-  int inner_ = -1, unit_ = -1;     ///< of an elastic joint
+  double kept_ = 1.0;          ///< share of the pressures that relaxation leaves
+  int inner_ = -1, unit_ = -1; ///< of an elastic joint
   Mat3 stiffness_ = Mat3::Zero();
-  double slip_usage_ = 1.0;        ///< u of what slides: the ratio of its coefficients; not-a-number where interfaces differ in it
-  std::vector<DepthBound> depth_;  ///< by interface, from the reference pose
+  double slip_usage_ = 1.0;       ///< u of what slides: the ratio of its coefficients; not-a-number where interfaces differ in it
+  std::vector<DepthBound> depth_; ///< by interface, from the reference pose
 };
 
 } // namespace steplap

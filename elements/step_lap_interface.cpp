@@ -16,8 +16,7 @@ namespace steplap {
 namespace {
 
 /// A point of the model file, in the axes of `body` about its centre of gravity.
-Vec2 in_body(const Vec2& point, bool is_in_body_frame, const std::string& body,
-             const SystemBuilder& builder) {
+Vec2 in_body(const Vec2& point, bool is_in_body_frame, const std::string& body, const SystemBuilder& builder) {
   Vec2 ground = point;
   const Body* frame = builder.model().find_body(body);
   if (is_in_body_frame && frame) ground = frame->position + rotated(point, frame->angle);
@@ -65,8 +64,7 @@ const Outline& outline_of(Polygon polygon) {
   return place.outline;
 }
 
-const Outline& make_sheet(const StepLapInterface& e, const Sheet& sheet, const std::string& body,
-                          const SystemBuilder& builder) {
+const Outline& make_sheet(const StepLapInterface& e, const Sheet& sheet, const std::string& body, const SystemBuilder& builder) {
   const bool is_in_body_frame = e.frame == "body";
   const auto ring_in_body = [&](const std::vector<Vec2>& points) {
     Ring ring;
@@ -76,8 +74,7 @@ const Outline& make_sheet(const StepLapInterface& e, const Sheet& sheet, const s
   Polygon polygon;
   polygon.outer = ring_in_body(*sheet.outline);
   for (const Vec2& p : *sheet.holes)
-    polygon.holes.push_back(
-        round_hole(in_body(p, is_in_body_frame, body, builder), e.hole_diameter, e.hole_sides));
+    polygon.holes.push_back(round_hole(in_body(p, is_in_body_frame, body, builder), e.hole_diameter, e.hole_sides));
   for (const std::vector<Vec2>& cutout : *sheet.cutouts) polygon.holes.push_back(ring_in_body(cutout));
   return outline_of(std::move(polygon));
 }
@@ -132,13 +129,11 @@ Ring round_hole(const Vec2& centre, double diameter, long sides) {
   const double step = 2.0 * std::numbers::pi / static_cast<double>(sides);
   const double radius = 0.5 * diameter * std::sqrt(step / portable::sin(step));
   Ring ring;
-  for (long i = 0; i < sides; ++i)
-    ring.push_back(centre + radius * rotated({1.0, 0.0}, step * static_cast<double>(i)));
+  for (long i = 0; i < sides; ++i) ring.push_back(centre + radius * rotated({1.0, 0.0}, step * static_cast<double>(i)));
   return ring;
 }
 
-SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
-                      const std::string& active_part, const SystemBuilder& builder) {
+SheetPair make_sheets(const StepLapInterface& e, const std::string& limb, const std::string& active_part, const SystemBuilder& builder) {
   SheetPair pair;
   pair.yoke = make_sheet(e, yoke_of(e), active_part, builder);
   pair.limb = make_sheet(e, limb_of(e), limb, builder);
@@ -150,8 +145,7 @@ SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
   pair.transverse = e.transverse_pressure / e.pressure;
   pair.count = e.count;
   pair.clearance = e.clearance;
-  if (e.across)
-    pair.across = e.frame == "body" || !part ? e.across->normalized() : rotated(e.across->normalized(), -part->angle);
+  if (e.across) pair.across = e.frame == "body" || !part ? e.across->normalized() : rotated(e.across->normalized(), -part->angle);
   return pair;
 }
 
@@ -176,12 +170,18 @@ const ElementKind& step_lap_interface_kind() {
     f.add("limb_cutouts", &T::limb_cutouts).in("m").doc("holes in the limb sheet of any shape: corners of each, either sense");
     f.add("hole_diameter", &T::hole_diameter).in("m").not_negative().doc("of all round holes");
     f.add("hole_sides", &T::hole_sides).at_least(3).at_most(360).doc("a round hole is a polygon of the circle's area");
-    f.add("pressure", &T::pressure).in("Pa").positive().required().doc("clamping pressure, at the middle of the overlap in the reference pose");
-    f.add("pressure_gradient", &T::pressure_gradient).in("Pa/m").doc(
-        "by which the pressure grows along x and y of the corners' frame; it may be negative nowhere in the overlap");
-    f.add("transverse_pressure", &T::transverse_pressure).in("Pa s^2/m").doc(
-        "by which the pressure grows per m/s² of the joint's transverse_acceleration: density × distance of this packet from "
-        "the free side of the stack, less what it loses on the other; may be negative");
+    f.add("pressure", &T::pressure)
+        .in("Pa")
+        .positive()
+        .required()
+        .doc("clamping pressure, at the middle of the overlap in the reference pose");
+    f.add("pressure_gradient", &T::pressure_gradient)
+        .in("Pa/m")
+        .doc("by which the pressure grows along x and y of the corners' frame; it may be negative nowhere in the overlap");
+    f.add("transverse_pressure", &T::transverse_pressure)
+        .in("Pa s^2/m")
+        .doc("by which the pressure grows per m/s² of the joint's transverse_acceleration: density × distance of this packet from "
+             "the free side of the stack, less what it loses on the other; may be negative");
     f.add("transverse_spread", &T::transverse_spread)
         .in("Pa s^2/m")
         .not_negative()
@@ -191,10 +191,15 @@ const ElementKind& step_lap_interface_kind() {
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
     f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");
     f.add("part", &T::part).doc("name of the packet of the limb's sheets that it holds, if packets are to be judged one by one");
-    f.add("part_share", &T::part_share).not_negative().at_most(1.0).doc("share of the limb's weight that this packet has; needed with part");
-    f.add("clearance", &T::clearance).in("m").not_negative().doc(
-        "by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
-        "not known, and not looked at");
+    f.add("part_share", &T::part_share)
+        .not_negative()
+        .at_most(1.0)
+        .doc("share of the limb's weight that this packet has; needed with part");
+    f.add("clearance", &T::clearance)
+        .in("m")
+        .not_negative()
+        .doc("by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
+             "not known, and not looked at");
     f.add("across", &T::across)
         .doc("direction from the yoke to the limb, in which a limb moves away from the yoke; axes "
              "by "

@@ -42,8 +42,7 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
   if (!signal) return nullptr;
   for (std::size_t k = 0; k < signal->breakpoints().size(); ++k)
     if (signal->breakpoints()[k] > 0.0 && signal->jumps_at(k)) {
-      builder.error("'" + std::string(field) + "': signal '" + name +
-                    "' jumps at t = " + rounded_text(signal->breakpoints()[k]) +
+      builder.error("'" + std::string(field) + "': signal '" + name + "' jumps at t = " + rounded_text(signal->breakpoints()[k]) +
                     " s; a clamping pressure changes within some time: a trapezoid, or a record between lines");
       break;
     }
@@ -53,13 +52,13 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
 void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, const StepLapInterface& first) {
   const auto* self = &friction;
   // What the first interface is pressed by now, at the middle of its overlap.
-  const auto pressure_at = [self, nominal = first.pressure,
-                            share = first.transverse_pressure / first.pressure](double t) {
+  const auto pressure_at = [self, nominal = first.pressure, share = first.transverse_pressure / first.pressure](double t) {
     const PressureState now = self->pressure_at(t);
     return nominal * now.factor * std::max(0.0, 1.0 + share * now.tilt);
   };
-  builder.add_channel("u", "", {"share of the friction capacity in use; slides at 1", "never negative"},
-                      [self](const Snapshot& s) { return self->usage(s).u; })
+  builder
+      .add_channel("u", "", {"share of the friction capacity in use; slides at 1", "never negative"},
+                   [self](const Snapshot& s) { return self->usage(s).u; })
       .bounds = [self](const Snapshot& s) { return self->usage_between(s); };
   builder
       .add_channel("p_req", "Pa",
@@ -74,24 +73,25 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
   if (self->has_changing_pressure())
     builder.add_channel("pressure", "Pa", "clamping pressure that the first interface has now, at the middle of its overlap",
                         [pressure_at](const Snapshot& s) { return pressure_at(s.t); });
-  builder.add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
-                      [self](const Snapshot& s) { return self->usage(s).margin(); })
+  builder
+      .add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
+                   [self](const Snapshot& s) { return self->usage(s).margin(); })
       .bounds = [self](const Snapshot& s) {
     const ValueBounds u = self->usage_between(s);
     return ValueBounds{1.0 / u.high, 1.0 / u.low};
   };
   for (const int axis : {0, 1})
-    builder.add_channel(axis == 0 ? "centre_x" : "centre_y", "m",
-                        {"centre about which the limb would start to turn, from the active part's centre of gravity; not a "
-                         "number at infinity (translation)",
-                         axis == 0 ? "along x of the active part's axes" : "along y of the active part's axes"},
-                        [self, axis](const Snapshot& s) {
-                          const auto& centre = self->usage(s).centre;
-                          return centre ? (*centre)[axis] : k_nan;
-                        })
+    builder
+        .add_channel(axis == 0 ? "centre_x" : "centre_y", "m",
+                     {"centre about which the limb would start to turn, from the active part's centre of gravity; not a "
+                      "number at infinity (translation)",
+                      axis == 0 ? "along x of the active part's axes" : "along y of the active part's axes"},
+                     [self, axis](const Snapshot& s) {
+                       const auto& centre = self->usage(s).centre;
+                       return centre ? (*centre)[axis] : k_nan;
+                     })
         .has_extremes = false; // it passes through infinity
-  builder.add_channel("area", "m^2", "overlap of one interface of each kind, added",
-                      [self](const Snapshot& s) { return self->area(s); });
+  builder.add_channel("area", "m^2", "overlap of one interface of each kind, added", [self](const Snapshot& s) { return self->area(s); });
 }
 
 // What sliding has done to the overlaps, against the reference pose.
@@ -108,9 +108,7 @@ void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, 
                         [self](const Snapshot& s) { return self->loss(s).clearance_left; });
 }
 
-double coordinate(const Pose& pose, int r) {
-  return r == 0 ? pose.x : r == 1 ? pose.y : pose.theta;
-}
+double coordinate(const Pose& pose, int r) { return r == 0 ? pose.x : r == 1 ? pose.y : pose.theta; }
 
 void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction) {
   const auto* self = &friction;
@@ -134,12 +132,13 @@ void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction)
   if (!is_elastic) return;
   static constexpr const char* strains[] = {"strain_x", "strain_y", "strain_angle"};
   for (int r = 0; r < 3; ++r)
-    builder.add_channel(strains[r], r < 2 ? "m" : "rad",
-                        {"how far the joint's spring is strained: displacement of the limb's centre of gravity",
-                         r == 0 ? "along x of the active part's axes" : r == 1 ? "along y of the active part's axes" : "positive counter-clockwise"},
-                        [self, r](const Snapshot& s) {
-                          return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r);
-                        });
+    builder.add_channel(
+        strains[r], r < 2 ? "m" : "rad",
+        {"how far the joint's spring is strained: displacement of the limb's centre of gravity",
+         r == 0   ? "along x of the active part's axes"
+         : r == 1 ? "along y of the active part's axes"
+                  : "positive counter-clockwise"},
+        [self, r](const Snapshot& s) { return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r); });
 }
 
 // The interfaces that name this joint. What is wrong with an outline is reported at the interface.
@@ -198,18 +197,15 @@ bool check_elastic(const StepLapJoint& e, SystemBuilder& builder, const StepLapF
     if (is_wrong) builder.error(message);
     return is_wrong;
   };
-  bool is_bad = fails(e.tangential_stiffness && e.contact_stiffness,
-                      "give either 'tangential_stiffness' or 'contact_stiffness', not both");
-  is_bad |= fails(e.sheet_thickness.has_value() != e.shear_modulus.has_value(),
-                  "give both 'sheet_thickness' and 'shear_modulus', or neither");
+  bool is_bad = fails(e.tangential_stiffness && e.contact_stiffness, "give either 'tangential_stiffness' or 'contact_stiffness', not both");
+  is_bad |=
+      fails(e.sheet_thickness.has_value() != e.shear_modulus.has_value(), "give both 'sheet_thickness' and 'shear_modulus', or neither");
   is_bad |= fails(e.mode == "monitor", "an elastic joint cannot be a monitor: a monitored one is rigid");
-  is_bad |= fails(!friction.has_sheets(),
-                  "an elastic joint needs step_lap_interface elements, over which its stiffness is spread");
+  is_bad |= fails(!friction.has_sheets(), "an elastic joint needs step_lap_interface elements, over which its stiffness is spread");
   for (const SheetPair& s : friction.sheets())
-    is_bad |= fails(
-        s.kinetic_traction != s.static_traction,
-        "an elastic joint has one friction coefficient: leave out 'kinetic_friction' of its interfaces (the kinetic "
-        "one as 'static_friction' is on the safe side)");
+    is_bad |= fails(s.kinetic_traction != s.static_traction,
+                    "an elastic joint has one friction coefficient: leave out 'kinetic_friction' of its interfaces (the kinetic "
+                    "one as 'static_friction' is on the safe side)");
   return !is_bad;
 }
 
@@ -226,8 +222,7 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
   builder.add_unit(group, ElasticGripGroup::k_watches);
-  friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner,
-                        group.entries.back().unit);
+  friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);
   return true;
 }
 
@@ -244,8 +239,7 @@ EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, 
   for (const int bed : corner.beds) {
     const auto b = group.bearing(bed, motion);
     sum.force += b.force;
-    for (int end = 0; end < 2; ++end)
-      sum.load[end] += b.load[end];
+    for (int end = 0; end < 2; ++end) sum.load[end] += b.load[end];
   }
   return sum;
 }
@@ -259,22 +253,19 @@ double largest_load(const EdgeGroup& group, const std::vector<EdgeCorner>& corne
   return largest;
 }
 
-void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group,
-                       const std::vector<EdgeCorner>& corners) {
+void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group, const std::vector<EdgeCorner>& corners) {
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const EdgeCorner corner = corners[c];
     const std::string number = "_" + std::to_string(c + 1);
     std::ostringstream at;
     at.precision(4);
-    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y()
-       << ") m from the active part's centre of gravity";
+    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y() << ") m from the active part's centre of gravity";
     builder.add_channel("edge_force" + number, "N", "with which sheet edges press the limb off the yoke, " + at.str(),
                         [&group, corner](const Snapshot& s) { return bearing_of(group, corner, s.motion).force; });
     for (const int end : {0, 1})
-      builder.add_channel(
-          "edge_load" + number + (end == 0 ? "_start" : "_end"), "N/m",
-          "line load of sheet edges at one end of the mitre, " + at.str() + "; straight in between",
-          [&group, corner, end](const Snapshot& s) { return bearing_of(group, corner, s.motion).load[end]; });
+      builder.add_channel("edge_load" + number + (end == 0 ? "_start" : "_end"), "N/m",
+                          "line load of sheet edges at one end of the mitre, " + at.str() + "; straight in between",
+                          [&group, corner, end](const Snapshot& s) { return bearing_of(group, corner, s.motion).load[end]; });
   }
   builder.add_channel("edge_load", "N/m", "largest line load of sheet edges at any corner",
                       [&group, corners](const Snapshot& s) { return largest_load(group, corners, s.motion); });
@@ -284,10 +275,9 @@ void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const Edge
                           return largest_load(group, corners, s.motion) / thickness;
                         });
   if (e.allowed_line_load)
-    builder.add_channel("edge_share", "", "largest line load of sheet edges, of the allowed one",
-                        [&group, corners, allowed = *e.allowed_line_load](const Snapshot& s) {
-                          return largest_load(group, corners, s.motion) / allowed;
-                        });
+    builder.add_channel(
+        "edge_share", "", "largest line load of sheet edges, of the allowed one",
+        [&group, corners, allowed = *e.allowed_line_load](const Snapshot& s) { return largest_load(group, corners, s.motion) / allowed; });
 }
 
 // The bed of a corner that a line with this clearance belongs to: parallel lines of one clearance close together.
@@ -337,8 +327,7 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
     }
     bed_of(corner, line, *sheets[i].clearance, friction, builder, group).lines.push_back(own);
   }
-  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.beds.empty(); }),
-                corners.end());
+  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.beds.empty(); }), corners.end());
   if (corners.empty()) return fails("'edge_stiffness' needs the 'clearance' of its step_lap_interface elements");
   add_edge_channels(e, builder, group, corners);
   return true;
@@ -346,8 +335,7 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
 
 void compile_joint(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const StepLapJoint&>(element);
-  if (builder.body(e.limb) == builder.body(e.active_part))
-    return builder.error("joins a body to itself: name two different bodies");
+  if (builder.body(e.limb) == builder.body(e.active_part)) return builder.error("joins a body to itself: name two different bodies");
   const auto interfaces = interfaces_of(e, builder);
   std::vector<SheetPair> sheets;
   try {
@@ -358,9 +346,8 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   } catch (const PolygonError&) {
     return;
   }
-  auto friction = std::make_unique<StepLapFriction>(
-      e.name, builder.next_friction(), builder.next_friction_row(), std::move(sheets), e.mode == "monitor",
-      e.on_apart == "stop");
+  auto friction = std::make_unique<StepLapFriction>(e.name, builder.next_friction(), builder.next_friction_row(), std::move(sheets),
+                                                    e.mode == "monitor", e.on_apart == "stop");
   add_rows(e, builder, *friction);
   const Pose reference = friction->pose_of(&builder.reference(0));
   friction->centre_pressures(reference);
@@ -368,15 +355,13 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
                          steady_signal(builder, e.transverse_acceleration, "transverse_acceleration"));
   if (!e.transverse_acceleration.empty() &&
       std::none_of(interfaces.begin(), interfaces.end(), [](const auto* i) { return i->transverse_pressure != 0.0; }))
-    return builder.error(
-        "'transverse_acceleration' changes nothing: give its step_lap_interface elements a 'transverse_pressure'");
+    return builder.error("'transverse_acceleration' changes nothing: give its step_lap_interface elements a 'transverse_pressure'");
   Patch patch;
   try {
     patch = friction->patch_at(reference, GripLaw::holding);
   } catch (const NumericalFailure&) {
-    return builder.error(
-        "the pressure of one of its step_lap_interface elements is negative somewhere in the overlap: a smaller "
-        "'pressure_gradient', or more 'pressure'");
+    return builder.error("the pressure of one of its step_lap_interface elements is negative somewhere in the overlap: a smaller "
+                         "'pressure_gradient', or more 'pressure'");
   }
   if (friction->has_sheets() && patch.empty())
     return builder.error("its sheets do not overlap in the reference pose: check the polygons and the "
@@ -386,12 +371,12 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, *interfaces.front());
-    constexpr double k_standard_gravity = 9.80665; // m/s²: of a model that shows the limb from above, whose gravity has no part in its plane
+    constexpr double k_standard_gravity =
+        9.80665; // m/s²: of a model that shows the limb from above, whose gravity has no part in its plane
     const double gravity = builder.model().header.gravity.norm();
     add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * (gravity > 0.0 ? gravity : k_standard_gravity));
-    add_loss_channels(builder, *friction, std::any_of(interfaces.begin(), interfaces.end(), [](const auto* i) {
-                        return i->clearance.has_value();
-                      }));
+    add_loss_channels(builder, *friction,
+                      std::any_of(interfaces.begin(), interfaces.end(), [](const auto* i) { return i->clearance.has_value(); }));
   }
   add_slide_channels(builder, *friction);
   if (!add_edges(e, reference, builder, *friction)) return;
@@ -461,10 +446,7 @@ void add_elastic_fields(FieldTable& f) {
       .in("N/m^3")
       .positive()
       .doc("the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
-  f.add("sheet_thickness", &T::sheet_thickness)
-      .in("m")
-      .positive()
-      .doc("in series with contact_stiffness: sheets in shear");
+  f.add("sheet_thickness", &T::sheet_thickness).in("m").positive().doc("in series with contact_stiffness: sheets in shear");
   f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
 }
 
@@ -500,30 +482,26 @@ const ElementKind& step_lap_joint_kind() {
     FieldTable& f = k.fields;
     f.add("limb", &T::limb).as(FieldType::body).required().doc("the limb");
     f.add("active_part", &T::active_part).as(FieldType::body).required().doc("the part with the yokes");
-    f.add("mode", &T::mode)
-        .one_of({"slip", "monitor"})
-        .doc("monitor: never slides, but reports the pressure that it would take");
+    f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("monitor: never slides, but reports the pressure that it would take");
     f.add("on_apart", &T::on_apart)
         .one_of({"stop", "continue"})
         .doc("what happens when no overlap is left: the run ends, or goes on without friction");
     add_elastic_fields(f);
     add_edge_fields(f);
-    f.add("pressure_signal", &T::pressure_signal)
-        .as(FieldType::signal)
-        .doc("factor of all its pressures in time, above 0; not given: 1");
-    f.add("pressure_loss", &T::pressure_loss)
-        .not_negative()
-        .at_most(0.99)
-        .doc("share of all its pressures that relaxation has taken");
+    f.add("pressure_signal", &T::pressure_signal).as(FieldType::signal).doc("factor of all its pressures in time, above 0; not given: 1");
+    f.add("pressure_loss", &T::pressure_loss).not_negative().at_most(0.99).doc("share of all its pressures that relaxation has taken");
     f.add("transverse_acceleration", &T::transverse_acceleration)
         .as(FieldType::signal)
         .in("m/s^2")
         .doc("across the sheets, out of the plane of motion: changes the pressure of each interface by its "
              "transverse_pressure");
-    f.add("least_margin", &T::least_margin).at_least(1.0).doc(
-        "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
-    f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(
-        "largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
+    f.add("least_margin", &T::least_margin)
+        .at_least(1.0)
+        .doc("smallest margin (capacity over what is in use) that a run must leave: inspect below it");
+    f.add("most_slide", &T::most_slide)
+        .positive()
+        .at_most(1.0)
+        .doc("largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
     k.holds<T>();
     k.compile = compile_joint;
     k.example = k_example;

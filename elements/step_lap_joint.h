@@ -17,19 +17,19 @@ namespace steplap {
 
 struct StepLapJoint : Element {
   std::string limb, active_part;
-  std::string mode = "slip";     ///< "slip" or "monitor": never slides, reports what it would take
-  std::string on_apart = "stop"; ///< "stop" or "continue"
-  std::optional<double> tangential_stiffness; ///< N/m, of the whole joint in translation
-  std::optional<double> contact_stiffness;    ///< N/m³: of one interface, a square metre of it
+  std::string mode = "slip";                            ///< "slip" or "monitor": never slides, reports what it would take
+  std::string on_apart = "stop";                        ///< "stop" or "continue"
+  std::optional<double> tangential_stiffness;           ///< N/m, of the whole joint in translation
+  std::optional<double> contact_stiffness;              ///< N/m³: of one interface, a square metre of it
   std::optional<double> sheet_thickness, shear_modulus; ///< m, Pa: what a sheet adds to its compliance, t/G
-  std::optional<double> edge_stiffness;       ///< N/m²: line load over depth, of all sheets at a corner
-  std::optional<double> allowed_line_load;    ///< N/m, of all sheets at a corner
-  std::optional<double> steel_thickness;      ///< m, of all sheets at a corner: a line load over it is a pressure
-  std::string pressure_signal;         ///< factor of all pressures in time; empty: 1
-  double pressure_loss = 0.0;          ///< share of all pressures that is lost by relaxation
-  std::string transverse_acceleration; ///< signal, m/s²; empty: none
-  double least_margin = 1.0;     ///< that a run must leave for the joint to be held good
-  double most_slide = 0.1;       ///< of a corner, of the width of its overlap: beyond, the joint is rejected
+  std::optional<double> edge_stiffness;                 ///< N/m²: line load over depth, of all sheets at a corner
+  std::optional<double> allowed_line_load;              ///< N/m, of all sheets at a corner
+  std::optional<double> steel_thickness;                ///< m, of all sheets at a corner: a line load over it is a pressure
+  std::string pressure_signal;                          ///< factor of all pressures in time; empty: 1
+  double pressure_loss = 0.0;                           ///< share of all pressures that is lost by relaxation
+  std::string transverse_acceleration;                  ///< signal, m/s²; empty: none
+  double least_margin = 1.0;                            ///< that a run must leave for the joint to be held good
+  double most_slide = 0.1;                              ///< of a corner, of the width of its overlap: beyond, the joint is rejected
 };
 
 [[nodiscard]] inline bool is_elastic(const StepLapJoint& joint) {

@@ -21,8 +21,7 @@ bool contains(const Ring& ring, const Vec2& p) {
   bool is_inside = false;
   for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
     const Vec2 &a = ring[i], &b = ring[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      is_inside = !is_inside;
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) is_inside = !is_inside;
   }
   return is_inside;
 }
@@ -63,8 +62,7 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
       const bool is_over = overlaps_[i].area > 0.0 && overlaps_[j].area > 0.0 &&
                            (contains(sheets[i].limb.polygon.outer, unplaced(middle[j], reference)) ||
                             contains(sheets[j].limb.polygon.outer, unplaced(middle[i], reference))) &&
-                           (contains(sheets[i].yoke.polygon.outer, middle[j]) ||
-                            contains(sheets[j].yoke.polygon.outer, middle[i]));
+                           (contains(sheets[i].yoke.polygon.outer, middle[j]) || contains(sheets[j].yoke.polygon.outer, middle[i]));
       if (is_over) overlaps_[i].corner = overlaps_[j].corner;
     }
   std::vector<std::size_t> number(sheets.size(), sheets.size());
@@ -84,8 +82,8 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
     corner_width_.push_back(corner_around[corner] > 0.0 ? 2.0 * corner_area_[corner] / corner_around[corner] : 0.0);
 }
 
-OverlapLoss OverlapReference::loss_at(const std::vector<SheetPair>& sheets, const Pose& pose,
-                                      OverlapWorkspace& workspace, Region& region) const {
+OverlapLoss OverlapReference::loss_at(const std::vector<SheetPair>& sheets, const Pose& pose, OverlapWorkspace& workspace,
+                                      Region& region) const {
   OverlapLoss loss;
   for (std::size_t corner = 0; corner < corner_area_.size(); ++corner) {
     if (!(corner_area_[corner] > 0.0)) {

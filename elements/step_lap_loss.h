@@ -26,8 +26,8 @@ public:
   OverlapReference() = default;
   OverlapReference(const std::vector<SheetPair>& sheets, const Pose& reference);
 
-  [[nodiscard]] OverlapLoss loss_at(const std::vector<SheetPair>& sheets, const Pose& pose,
-                                    OverlapWorkspace& workspace, Region& region) const;
+  [[nodiscard]] OverlapLoss loss_at(const std::vector<SheetPair>& sheets, const Pose& pose, OverlapWorkspace& workspace,
+                                    Region& region) const;
   [[nodiscard]] std::size_t corner_count() const { return corner_area_.size(); }
   [[nodiscard]] std::size_t corner_of(std::size_t sheets) const { return overlaps_[sheets].corner; }
   [[nodiscard]] double area_of(std::size_t sheets) const { return overlaps_[sheets].area; } ///< m², of one interface
@@ -37,8 +37,8 @@ public:
 private:
   struct Overlap {
     double area = 0.0;
-    Vec2 across = Vec2::Zero();            ///< active part's axes, length 1
-    std::vector<Vec2> in_part, in_limb;    ///< vertices of the overlap, in either body's axes
+    Vec2 across = Vec2::Zero();         ///< active part's axes, length 1
+    std::vector<Vec2> in_part, in_limb; ///< vertices of the overlap, in either body's axes
     std::size_t corner = 0;
   };
   std::vector<Overlap> overlaps_;    ///< as the sheets

@@ -55,7 +55,8 @@ GripShares::GripShares(const StepLapFriction& friction, const std::vector<const 
 
 double GripShares::least_pressure(const PressureState& now) const {
   double least = std::numeric_limits<double>::infinity();
-  for (const Sheet& sheet : sheets_) least = std::min(least, sheet.pressure * (left_by_tilt(sheet.transverse, now) - sheet.spread * std::abs(now.tilt)));
+  for (const Sheet& sheet : sheets_)
+    least = std::min(least, sheet.pressure * (left_by_tilt(sheet.transverse, now) - sheet.spread * std::abs(now.tilt)));
   return std::max(0.0, least * now.factor);
 }
 
@@ -81,10 +82,11 @@ void add_share_channels(SystemBuilder& builder, const StepLapFriction& friction,
                         "of the corner that holds least by itself: capacity over its share of the limb's weight, one corner like the other",
                         [self, shares](const Snapshot& s) { return shares->corner_margin(self->pressure_at(s.t)); });
   if (shares->has_parts())
-    builder.add_channel("part_margin", "",
-                        "of the packet of sheets that holds itself least: capacity over its share of the limb's weight or of the force on the limb, "
-                        "whichever is larger",
-                        [self, shares, demand](const Snapshot& s) { return shares->part_margin(self->pressure_at(s.t), demand(s)); });
+    builder.add_channel(
+        "part_margin", "",
+        "of the packet of sheets that holds itself least: capacity over its share of the limb's weight or of the force on the limb, "
+        "whichever is larger",
+        [self, shares, demand](const Snapshot& s) { return shares->part_margin(self->pressure_at(s.t), demand(s)); });
   builder.add_channel("demand", "N", {"size of the force on the limb", "never negative"}, demand);
 }
 

@@ -26,7 +26,9 @@ public:
   /// Capacity over what it has to hold, of the corner that has least.
   [[nodiscard]] double corner_margin(const PressureState& now) const { return least_margin(corners_, now, weight_); }
   /// The same of packets; only where has_parts(). `demand`: N, size of the force on the limb.
-  [[nodiscard]] double part_margin(const PressureState& now, double demand) const { return least_margin(parts_, now, std::max(weight_, demand)); }
+  [[nodiscard]] double part_margin(const PressureState& now, double demand) const {
+    return least_margin(parts_, now, std::max(weight_, demand));
+  }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
   [[nodiscard]] bool has_parts() const { return !parts_.empty(); }
 

@@ -17,11 +17,11 @@ constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer count
 // of δ, four times what a step's velocities are known to beside |ν| (Integrator). A slip that never gets that far, in a dip of the
 // clamping pressure, ends there.
 constexpr double k_moving = 0.2, k_backward = 2e-3;
-constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
+constexpr double k_cone = 0.5; // cosine of the cone about the direction last looked at
 // |ν| over grip acceleration from which on a slip ends, s: k_end_time, or this times the tolerance, at most the other. What that
 // misses is this time, times what the direction had still to turn by.
 constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
-constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
+constexpr double k_no_end = 2.0; // times that |ν|: it has not come to rest after all
 // |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
 constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
 
@@ -63,9 +63,7 @@ Vec3 StepLapFriction::gradient_at(const Pose& pose, double tilt, const Vec3& nu,
 }
 
 /// Velocity of the joint's centre, and ω as a velocity at the gyration radius.
-Vec3 StepLapFriction::scaled(const Vec3& nu) const {
-  return {nu[0] - nu[2] * arm_.y(), nu[1] + nu[2] * arm_.x(), gyration_ * nu[2]};
-}
+Vec3 StepLapFriction::scaled(const Vec3& nu) const { return {nu[0] - nu[2] * arm_.y(), nu[1] + nu[2] * arm_.x(), gyration_ * nu[2]}; }
 
 void StepLapFriction::set_direction(FrictionState& state, const Vec3& nu) const {
   const double size = scaled(nu).norm();
@@ -79,8 +77,7 @@ double StepLapFriction::onset_speed(const Evaluation& e) const {
 double StepLapFriction::end_speed(const Evaluation& e) const {
   const Motion<double>&l = e.motion[hold[0].a], &p = e.motion[hold[0].b];
   const double lever = gyration_ + arm_.norm();
-  const double speed = std::abs(l.vx) + std::abs(l.vy) + std::abs(p.vx) + std::abs(p.vy) +
-                       lever * (std::abs(l.omega) + std::abs(p.omega));
+  const double speed = std::abs(l.vx) + std::abs(l.vy) + std::abs(p.vx) + std::abs(p.vy) + lever * (std::abs(l.omega) + std::abs(p.omega));
   const double time = std::max(static_cast<const Scratch&>(*e.scratch[index_]).end_time, k_time_rounding * std::abs(e.t));
   return std::max(time * grip_acceleration_, k_rounding * speed);
 }
@@ -114,15 +111,13 @@ Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state,
   return nu;
 }
 
-void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
-                                  double* wrench) const {
+void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const {
   const PressureState now = pressure_at(e.t);
   const Vec3 nu = law_twist(e, state, Vec3(rate[0], rate[1], rate[2]));
   Vec3::Map(wrench) = -now.factor * gradient_at(pose_of(e.motion), now.tilt, nu, static_cast<Scratch&>(*e.scratch[index_]));
 }
 
-void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
-                                 double* watch) const {
+void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate, double* watch) const {
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm();
@@ -165,12 +160,11 @@ double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& sta
   const Fit& f = fit(e.scratch, pose, GripLaw::sliding, now.tilt);
   const Mat3 curvature = now.factor * evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
   const Vec3 turned(pose.y, -pose.x, -1.0); // of ν as the active part turns
-  return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) +
-         limb_mobility_[1] * curvature(2, 2) + part_mobility_[1] * turned.dot(curvature * turned);
+  return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) + limb_mobility_[1] * curvature(2, 2) +
+         part_mobility_[1] * turned.dot(curvature * turned);
 }
 
-bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
-                                       int slot) const {
+bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate, int slot) const {
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm(), end = end_speed(e);

@@ -22,9 +22,7 @@ struct TieLaw {
   double strength = std::numeric_limits<double>::infinity(); ///< of all
   bool is_linear = false;
 
-  static UnitMode contact_mode(UnitMode mode) {
-    return mode == k_pulls || mode == k_presses ? k_contact_pressed : k_contact_released;
-  }
+  static UnitMode contact_mode(UnitMode mode) { return mode == k_pulls || mode == k_presses ? k_contact_pressed : k_contact_released; }
   static bool is_pull(UnitMode mode) { return mode == k_pulls || mode == k_pulls + 1; }
   static bool is_push(UnitMode mode) { return mode == k_presses || mode == k_presses + 1; }
   static UnitMode tie_mode(UnitMode contact, UnitMode side) {
@@ -126,9 +124,7 @@ public:
     inner[entry.inner] = 1.0;
     return entry.law.energy(value(entry, e.motion));
   }
-  [[nodiscard]] bool stops_in(int element, UnitMode to) const override {
-    return to == k_broken && entries[element].stops;
-  }
+  [[nodiscard]] bool stops_in(int element, UnitMode to) const override { return to == k_broken && entries[element].stops; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries)
       add_pair_jacobian(
@@ -136,12 +132,10 @@ public:
           [&](const Dual<12>& v, const Dual<12>& rate) { return entry.law.force(v, rate, e.mode[entry.unit]); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries)
-      is_used[entry.a] = is_used[entry.b] = 1;
+    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
   void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries)
-      entry.link = links.add(entry.a, entry.b);
+    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const Entry& entry = entries[element];
@@ -205,19 +199,16 @@ template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, i
   group.entries.push_back(entry);
   builder.add_unit(group, TieLaw::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("elongation", "m", {"its length less the free one", "positive: stretched"}, [&group, i](const Snapshot& s) {
-    return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
-  });
+  builder.add_channel("elongation", "m", {"its length less the free one", "positive: stretched"},
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.free; });
   builder.add_channel("force", "N", {"force of all of them together", "positive: tension"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   if (!e.strength) return;
-  builder.add_channel("strength_share", "", {"size of its force, of its strength; breaks at 1", "never negative"},
-                      [&group, i](const Snapshot& s) {
-                        return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength;
-                      });
-  builder.add_channel("mode", "", {"whether it holds", "", "1 whole, 0 broken"}, [&group, i](const Snapshot& s) {
-    return s.evaluation->mode[group.entries[i].unit] == k_broken ? 0.0 : 1.0;
-  });
+  builder.add_channel(
+      "strength_share", "", {"size of its force, of its strength; breaks at 1", "never negative"},
+      [&group, i](const Snapshot& s) { return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength; });
+  builder.add_channel("mode", "", {"whether it holds", "", "1 whole, 0 broken"},
+                      [&group, i](const Snapshot& s) { return s.evaluation->mode[group.entries[i].unit] == k_broken ? 0.0 : 1.0; });
 }
 
 bool check(const Tie& e, SystemBuilder& builder) {
@@ -294,10 +285,7 @@ const ElementKind& tie_kind() {
     f.add("count", &T::count).at_least(1).doc("equal ones side by side");
     f.add("slack", &T::slack).in("m").not_negative().doc("elongation without force, on each side on which it acts");
     f.add("preload", &T::preload).in("N").doc("of all in the reference pose, tension positive");
-    f.add("strength", &T::strength)
-        .in("N")
-        .positive()
-        .doc("size of the force at which one breaks; not given: it does not");
+    f.add("strength", &T::strength).in("N").positive().doc("size of the force at which one breaks; not given: it does not");
     f.add("on_break", &T::on_break).one_of({"continue", "stop"}).doc("whether the run goes on without it");
     f.add("consequence", &T::consequence)
         .one_of({"reject", "inspect", "none"})

@@ -18,10 +18,10 @@ struct Tie : Element {
   std::optional<Vec2> axis;     ///< in marker b's axes; absent: point to point
   std::string acts = "tension"; ///< "tension", "compression", "both"
   double stiffness = 0.0, damping = 0.0;
-  double slack = 0.0;                ///< m, on each side on which it acts, before it does
-  std::optional<double> preload;     ///< N, tension positive, of all in the reference pose
-  std::optional<double> strength;    ///< N, of one
-  std::string on_break = "continue"; ///< or "stop"
+  double slack = 0.0;                 ///< m, on each side on which it acts, before it does
+  std::optional<double> preload;      ///< N, tension positive, of all in the reference pose
+  std::optional<double> strength;     ///< N, of one
+  std::string on_break = "continue";  ///< or "stop"
   std::string consequence = "reject"; ///< of its breaking, for the verdict: "reject", "inspect", or "none": it is meant to go first
   long count = 1;
 };

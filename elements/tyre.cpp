@@ -16,8 +16,7 @@ bool check(const Tyre& e, SystemBuilder& builder) {
     builder.error(message);
     return false;
   };
-  if (builder.marker(e.a).body == builder.marker(e.b).body)
-    return fail("rolls on its own body: name markers on two different bodies");
+  if (builder.marker(e.a).body == builder.marker(e.b).body) return fail("rolls on its own body: name markers on two different bodies");
   if (e.road.size() == 1) return fail("'road' needs at least two points, [x, height]; without it the road is flat");
   if (e.road.size() > PiecewiseLinear::k_most_points) return fail("'road' may have at most 65536 points");
   for (std::size_t i = 1; i < e.road.size(); ++i)
@@ -91,14 +90,18 @@ const ElementKind& tyre_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("centre of the wheel: it turns with this marker's body");
     f.add("b", &T::b).as(FieldType::marker).doc("marker in whose axes the road is given");
     f.add("radius", &T::radius).in("m").positive().required().doc("of the wheel");
-    f.add("road", &T::road).in("m", "m").doc(
-        "[x, height] of points of the road, joined by a smooth curve, straight beyond its ends; default: flat at height 0");
+    f.add("road", &T::road)
+        .in("m", "m")
+        .doc("[x, height] of points of the road, joined by a smooth curve, straight beyond its ends; default: flat at height 0");
     f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("k, along the road's normal");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c, along the road's normal");
     f.add("friction", &T::friction).not_negative().required().doc("mu, of the tread on the road");
     f.add("slip_stiffness", &T::slip_stiffness).in("N").positive().required().doc("C: force of the tread over its slip, for small slips");
-    f.add("relaxation_length", &T::relaxation_length).in("m").positive().required().doc(
-        "sigma: way over which the force follows the slip; at standstill the tread is a spring C/sigma");
+    f.add("relaxation_length", &T::relaxation_length)
+        .in("m")
+        .positive()
+        .required()
+        .doc("sigma: way over which the force follows the slip; at standstill the tread is a spring C/sigma");
     f.add("tread_damping", &T::tread_damping).in("N s/m").positive().required().doc("b, of the bristles, beside that spring");
     k.example = R"([[element]]
 name = 'wheel'

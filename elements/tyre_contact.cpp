@@ -21,7 +21,8 @@ UnitMode sliding_of(UnitMode mode) { return mode >> 2U & 3U; }
 bool turns_forward(UnitMode mode) { return (mode >> 4U & 1U) != 0; }
 UnitMode mode_of(UnitMode contact, UnitMode sliding, bool is_forward) { return contact | sliding << 2U | (is_forward ? 1U : 0U) << 4U; }
 
-template <class S> TreadState<S> tread_at(const TyreGroup::Entry& entry, const WheelMotion<S>& w, const S& p, const S& normal, UnitMode mode) {
+template <class S>
+TreadState<S> tread_at(const TyreGroup::Entry& entry, const WheelMotion<S>& w, const S& p, const S& normal, UnitMode mode) {
   const TreadLaw& law = entry.tread;
   TreadState<S> t;
   t.bent = w.tread.value - p;
@@ -52,7 +53,8 @@ UnitMode sliding_at(double trial, double most) {
 UnitMode mode_with(const TyreGroup::Entry& entry, const WheelMotion<double>& w, double p, UnitMode contact) {
   const bool is_forward = w.rolling < 0.0;
   if (contact != k_contact_pressed) return mode_of(contact, k_adheres, is_forward);
-  const TreadState<double> t = tread_at(entry, w, p, entry.press.force(w.gap.value, w.gap.rate, contact), mode_of(contact, k_adheres, is_forward));
+  const TreadState<double> t =
+      tread_at(entry, w, p, entry.press.force(w.gap.value, w.gap.rate, contact), mode_of(contact, k_adheres, is_forward));
   return mode_of(contact, sliding_at(t.trial, t.most), is_forward);
 }
 

@@ -58,11 +58,11 @@ struct TreadLaw {
 
 /// Bristles at one instant: N, N, m, m/s.
 template <class S> struct TreadState {
-  S most{0.0};   ///< μ N
-  S trial{0.0};  ///< what it takes to adhere
-  S force{0.0};  ///< T
-  S bent{0.0};   ///< u
-  S rate{0.0};   ///< u̇
+  S most{0.0};  ///< μ N
+  S trial{0.0}; ///< what it takes to adhere
+  S force{0.0}; ///< T
+  S bent{0.0};  ///< u
+  S rate{0.0};  ///< u̇
 };
 
 class TyreGroup final : public ForceGroup, public GapSource {

@@ -10,25 +10,22 @@ namespace steplap {
 
 namespace {
 
-template <class Measure, class Law>
-void add(const ContactGeometry& g, const Measure& measure, const Law& law, SystemBuilder& builder) {
+template <class Measure, class Law> void add(const ContactGeometry& g, const Measure& measure, const Law& law, SystemBuilder& builder) {
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({g.a, g.b, measure, law});
   builder.add_unit(group, Law::k_watches);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"}, [&group, i](const Snapshot& s) {
-    return group.measured(i, *s.evaluation).value - group.entries[i].law.offset;
-  });
+  builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"},
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.offset; });
   builder.add_channel("rate", "m/s", {"of the gap", "positive: it opens"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
   builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
-template <class Law>
-void add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
+template <class Law> void add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
   using Group = EndedContactGroup<Law>;
   Group& group = builder.group<Group>();
   typename Group::Entry entry;
@@ -44,11 +41,9 @@ void add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, Syste
   builder.add_unit(group, Group::k_watches);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("gap", "m", "δ, negative while closed or off", [&group, i](const Snapshot& s) {
-    return group.measured(i, *s.evaluation).value - group.entries[i].law.offset;
-  });
-  builder.add_channel("rate", "m/s", "of the gap",
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+  builder.add_channel("gap", "m", "δ, negative while closed or off",
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.offset; });
+  builder.add_channel("rate", "m/s", "of the gap", [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
   builder.add_channel("force", "N", "normal force, positive in compression",
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   builder.add_channel("along", "m", "place of the foot along the face, from marker b",
@@ -83,8 +78,7 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   const Motion<double>&a = builder.reference(g.a), &b = builder.reference(g.b);
   if (g.gap.is_axis_in_a) {
     const Pair<double> normal = to_ground(b, g.gap.normal), axis = to_ground(a, g.gap.axis);
-    if (!(dot(normal, axis) > 0.0))
-      return builder.error("the contact axis must point away from the line: normal · axis > 0 is required");
+    if (!(dot(normal, axis) > 0.0)) return builder.error("the contact axis must point away from the line: normal · axis > 0 is required");
   }
   const double now = g.gap.at<false, double>(a, b).value;
   const double n = static_cast<double>(e.count), k = n * e.stiffness;
@@ -101,8 +95,7 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
     return;
   }
   if (e.law == "literal") add(g, g.gap, LiteralContact{k, c, offset}, builder);
-  else if (e.law == "hunt_crossley")
-    add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
+  else if (e.law == "hunt_crossley") add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
   else if (g.gap.is_axis_in_a) add(g, g.gap, kelvin_voigt, builder);
   else // n through p_A and n through the tip act along the same line
     with_cheapest(AxisMeasure{g.gap.point_a, g.gap.point_b, g.gap.normal},
@@ -141,21 +134,24 @@ const ElementKind& unilateral_contact_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker on the line");
     f.add("normal", &T::normal).doc("normal of the line in marker b's axes, towards a");
     f.add("axis", &T::axis).doc("contact axis in marker a's axes; default: the normal");
-    f.add("law", &T::law).one_of({"kelvin_voigt", "literal", "hunt_crossley"}).doc(
-        "kelvin_voigt: max(0, -k d - c d'); literal: -k d - c d', may pull; hunt_crossley");
-    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc(
-        "k of one element (Hunt-Crossley: per m^exponent)");
+    f.add("law", &T::law)
+        .one_of({"kelvin_voigt", "literal", "hunt_crossley"})
+        .doc("kelvin_voigt: max(0, -k d - c d'); literal: -k d - c d', may pull; hunt_crossley");
+    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("k of one element (Hunt-Crossley: per m^exponent)");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
-    f.add("restitution", &T::restitution).positive().at_most(1.0).doc(
-        "instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
+    f.add("restitution", &T::restitution)
+        .positive()
+        .at_most(1.0)
+        .doc("instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
     f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
     f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");
     f.add("preload", &T::preload).in("N").not_negative().doc("force of all in the reference pose");
     f.add("interference", &T::interference).in("m").not_negative().doc("depth in the reference pose");
     f.add("gap", &T::gap).in("m").not_negative().doc("gap in the reference pose");
-    f.add("ends", &T::ends).in("m").doc(
-        "where the face ends, [low, high] along (n_y, -n_x) from marker b; beyond it nothing is carried; default: endless");
+    f.add("ends", &T::ends)
+        .in("m")
+        .doc("where the face ends, [low, high] along (n_y, -n_x) from marker b; beyond it nothing is carried; default: endless");
     k.holds<T>();
     k.compile = compile_contact;
     return k;

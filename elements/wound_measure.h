@@ -36,8 +36,7 @@ struct WoundMeasure {
     static_assert(!WithBias, "no row takes it");
     return along(straight(a, b), a, b);
   }
-  template <class S>
-  [[nodiscard]] MeasureValue<S> along(const Straight<S>& part, const Motion<S>& a, const Motion<S>& b) const {
+  template <class S> [[nodiscard]] MeasureValue<S> along(const Straight<S>& part, const Motion<S>& a, const Motion<S>& b) const {
     const double c = radius_a + radius_b;
     MeasureValue<S> m;
     m.value = S(taken) - part.length - S(radius_a) * a.theta - S(radius_b) * b.theta;

@@ -51,20 +51,17 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
-      sum += entry.law.energy(measured(entry, motion).value);
+    for (const Entry& entry : entries) sum += entry.law.energy(measured(entry, motion).value);
     return sum;
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries)
       add_pair_jacobian(
           entry.a, entry.b, entry.measure, e,
-          [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e.mode[entry.unit]); },
-          out);
+          [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e.mode[entry.unit]); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries)
-      is_used[entry.a] = is_used[entry.b] = 1;
+    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const auto m = measured(entries[element], e.motion);
@@ -89,7 +86,8 @@ private:
   // What is wound on the wheels is in the value, beside what the measure's terms are.
   static double rounding_of(const Entry& entry, const MeasureValue<double>& m, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
-    const double wound = std::abs(entry.measure.taken) + std::abs(entry.measure.radius_a * a.theta) + std::abs(entry.measure.radius_b * b.theta);
+    const double wound =
+        std::abs(entry.measure.taken) + std::abs(entry.measure.radius_a * a.theta) + std::abs(entry.measure.radius_b * b.theta);
     return value_rounding(m, a, b) + k_rounded_sum * wound;
   }
   static void add_at(BodyForce& sum, const Pair<double>& lever, const Pair<double>& force) {
@@ -100,22 +98,19 @@ private:
   static void check(const Entry& entry, const WoundMeasure::Straight<double>& part) {
     const WoundMeasure& measure = entry.measure;
     if (part.length < entry.shortest)
-      throw ElementFailure("what hangs on wound_rope '" + entry.name + "' has run onto its wheel: a limit keeps it off",
-                           {entry.name});
+      throw ElementFailure("what hangs on wound_rope '" + entry.name + "' has run onto its wheel: a limit keeps it off", {entry.name});
     if (measure.radius_a + measure.radius_b == 0.0 || !(std::abs(measure.turned(part.u)) > k_most_turned)) return;
-    throw ElementFailure("wound_rope '" + entry.name +
-                             "' has turned by half a turn against the reference pose: so far it is not followed",
+    throw ElementFailure("wound_rope '" + entry.name + "' has turned by half a turn against the reference pose: so far it is not followed",
                          {entry.name});
   }
 };
 
 // The centres must be so far apart that there is a tangent.
 bool has_tangent(const WoundRope& e, const CompiledMarker& a, const CompiledMarker& b, SystemBuilder& builder) {
-  const double apart = (builder.marker_position(b) - builder.marker_position(a)).norm(),
-               c = std::abs(e.radius_a + e.radius_b);
+  const double apart = (builder.marker_position(b) - builder.marker_position(a)).norm(), c = std::abs(e.radius_a + e.radius_b);
   if (apart > c && apart > 1e-12) return true;
-  builder.error("its wheels' centres are " + rounded_text(apart) +
-                " m apart, but a straight part of rope between them takes more than " + rounded_text(c) + " m");
+  builder.error("its wheels' centres are " + rounded_text(apart) + " m apart, but a straight part of rope between them takes more than " +
+                rounded_text(c) + " m");
   return false;
 }
 
@@ -142,12 +137,9 @@ void compile_wound_rope(const Element& element, SystemBuilder& builder) {
     return own.measure.straight(s.motion[own.a], s.motion[own.b]).length;
   });
   builder.add_channel("stretch", "m", {"by which it is longer than without load", "negative: slack"},
-                      [&group, i, free](const Snapshot& s) {
-                        return -WoundRopeGroup::measured(group.entries[i], s.motion).value - free;
-                      });
-  builder.add_channel("rate", "m/s", {"of its stretch", "positive: it grows"}, [&group, i](const Snapshot& s) {
-    return -WoundRopeGroup::measured(group.entries[i], s.motion).rate;
-  });
+                      [&group, i, free](const Snapshot& s) { return -WoundRopeGroup::measured(group.entries[i], s.motion).value - free; });
+  builder.add_channel("rate", "m/s", {"of its stretch", "positive: it grows"},
+                      [&group, i](const Snapshot& s) { return -WoundRopeGroup::measured(group.entries[i], s.motion).rate; });
   builder.add_channel("tension", "N", {"force along it, zero while it is slack", "positive: it pulls"},
                       [&group, i](const Snapshot& s) { return group.tension(i, *s.evaluation); });
 }
@@ -170,11 +162,7 @@ const ElementKind& wound_rope_kind() {
         .doc("of the first wheel: positive where turning it counter-clockwise winds the rope up, negative where "
              "turning it clockwise does; 0: a point");
     f.add("radius_b", &T::radius_b).in("m").doc("of the second wheel, likewise");
-    f.add("stiffness", &T::stiffness)
-        .in("N/m")
-        .positive()
-        .required()
-        .doc("of the whole rope; it does not change with what is wound up");
+    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of the whole rope; it does not change with what is wound up");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("while it is taut; never pushes");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");

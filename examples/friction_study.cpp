@@ -1,9 +1,9 @@
 // How far does the block slide on the vehicle that brakes, if the deck holds better or worse? One model, many values,
 // on all processors:
 //   friction_study braked_block.toml
-#include <steplap/mbd/rest/start.h>
 #include <steplap/mbd/io/reader.h>
 #include <steplap/mbd/model/completion.h>
+#include <steplap/mbd/rest/start.h>
 #include <steplap/mbd/simulation/simulation.h>
 #include <steplap/mbd/system/instance.h>
 #include <steplap/transformer/catalog.h>
@@ -41,8 +41,7 @@ int main(int argc, char** argv) try {
 
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t i = next++; i < samples.size(); i = next++)
-      samples[i].slide = slide_with(samples[i].friction, given, whole);
+    for (std::size_t i = next++; i < samples.size(); i = next++) samples[i].slide = slide_with(samples[i].friction, given, whole);
   };
   std::vector<std::thread> threads(std::max(1u, std::thread::hardware_concurrency()));
   for (std::thread& thread : threads) thread = std::thread(work);

@@ -20,7 +20,10 @@ struct OrificeLaw { // f = −c rate |rate| on a, away from b. Nothing is stored
   static constexpr int k_watches = 0; // smooth: no events of its own
   static constexpr bool k_is_contact = false;
   double c = 0.0;
-  template <class S> S force(const S&, const S& rate, UnitMode) const { using std::abs; return S(-c) * rate * abs(rate); }
+  template <class S> S force(const S&, const S& rate, UnitMode) const {
+    using std::abs;
+    return S(-c) * rate * abs(rate);
+  }
   template <class S> S elastic_force(const S&, UnitMode) const { return S(0); }
   double energy(double) const { return 0.0; }
 };

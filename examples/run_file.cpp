@@ -1,7 +1,7 @@
 // Runs a model file as the program `steplap` does, and tells what happened and between which values everything stayed:
 //   run_file braked_block.toml [simulation.end=0.5 …]
-#include <steplap/mbd/rest/start.h>
 #include <steplap/mbd/io/reader.h>
+#include <steplap/mbd/rest/start.h>
 #include <steplap/mbd/simulation/simulation.h>
 #include <steplap/transformer/catalog.h>
 
@@ -23,11 +23,9 @@ int main(int argc, char** argv) try {
 
   std::printf("%s\n", model.header.title.c_str());
   for (const Event& event : run.events)
-    if (event.kind != EventKind::changes_foot)
-      std::printf("%.4f s  %s %s\n", event.t, event.element.c_str(), event.words().c_str());
+    if (event.kind != EventKind::changes_foot) std::printf("%.4f s  %s %s\n", event.t, event.element.c_str(), event.words().c_str());
   for (const ChannelRange& range : run.ranges)
-    std::printf("%-24s %13.6g to %13.6g %s\n", range.channel->name.c_str(), range.low.value, range.high.value,
-                range.channel->unit.c_str());
+    std::printf("%-24s %13.6g to %13.6g %s\n", range.channel->name.c_str(), range.low.value, range.high.value, range.channel->unit.c_str());
 } catch (const std::exception& error) { // ModelError: file, line, what would be right; NumericalFailure: time, advice
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

@@ -20,7 +20,9 @@ constexpr std::size_t k_most_values = 200; ///< varied at a time
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("The request is not one that the page sends: " + what + "."); }
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("The request is not one that the page sends: " + what + ".");
+}
 
 Json parsed(const std::string& text) {
   Json json = Json::parse(text, nullptr, false);
@@ -114,8 +116,11 @@ RunRequest report_request(const std::string& query, std::size_t models) {
   const std::size_t mark = query.find(k_values);
   if (!query.starts_with(k_model) || mark == std::string::npos) refuse("its address names no values");
   const std::string number = query.substr(k_model.size(), mark - k_model.size());
-  if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos) refuse("its address names no model");
-  return run_request("{\"model\":" + std::to_string(std::stoul(number)) + ",\"values\":" + without_escapes(query.substr(mark + k_values.size())) + "}", models);
+  if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos)
+    refuse("its address names no model");
+  return run_request("{\"model\":" + std::to_string(std::stoul(number)) +
+                         ",\"values\":" + without_escapes(query.substr(mark + k_values.size())) + "}",
+                     models);
 }
 
 std::string errors_json(const std::vector<Diagnostic>& problems) {
@@ -127,7 +132,8 @@ std::string errors_json(const std::vector<Diagnostic>& problems) {
 std::string superseded_json() { return dumped({{"is_superseded", true}}); }
 
 std::string run_json(const Report& report, long version, std::size_t budget) {
-  return "{\"version\":" + std::to_string(version) + ",\"data\":" + report_data(results_of(report, SummaryText::left_out), summary_document(report), budget) + "}";
+  return "{\"version\":" + std::to_string(version) +
+         ",\"data\":" + report_data(results_of(report, SummaryText::left_out), summary_document(report), budget) + "}";
 }
 
 std::string map_json(const std::vector<MapCell>& cells) {
@@ -149,17 +155,28 @@ std::string saved_json(const std::string& file) { return dumped({{"file", file}}
 std::string model_state_json(const ExploredModel& model, const std::vector<Diagnostic>& problems) {
   Json sliders = Json::array(), errors = Json::array();
   for (const Slider& s : model.sliders())
-    sliders.push_back({{"path", s.path}, {"group", s.group}, {"unit", s.unit}, {"meaning", s.meaning}, {"value", s.value}, {"least", s.least}, {"most", s.most},
-                       {"is_whole", s.is_whole}, {"has_own_range", s.has_own_range}});
+    sliders.push_back({{"path", s.path},
+                       {"group", s.group},
+                       {"unit", s.unit},
+                       {"meaning", s.meaning},
+                       {"value", s.value},
+                       {"least", s.least},
+                       {"most", s.most},
+                       {"is_whole", s.is_whole},
+                       {"has_own_range", s.has_own_range}});
   for (const Diagnostic& problem : problems) errors.push_back(error_json(problem));
-  return dumped({{"name", std::filesystem::path(model.path()).stem().string()}, {"path", model.path()}, {"title", model.title()},
-                 {"sliders", std::move(sliders)}, {"errors", std::move(errors)}});
+  return dumped({{"name", std::filesystem::path(model.path()).stem().string()},
+                 {"path", model.path()},
+                 {"title", model.title()},
+                 {"sliders", std::move(sliders)},
+                 {"errors", std::move(errors)}});
 }
 
 std::string state_json(long version, const std::vector<std::string>& models) {
   std::string list;
   for (const std::string& model : models) list += (list.empty() ? "" : ",") + model;
-  return "{\"program\":" + dumped(std::string("steplap ") + k_version) + ",\"version\":" + std::to_string(version) + ",\"models\":[" + list + "]}";
+  return "{\"program\":" + dumped(std::string("steplap ") + k_version) + ",\"version\":" + std::to_string(version) + ",\"models\":[" +
+         list + "]}";
 }
 
 } // namespace steplap

@@ -78,6 +78,8 @@ std::shared_ptr<const LoadedModel> ExploredModel::loaded_with(const ExploredValu
 
 Report ExploredModel::run(const ExploredValues& values, const RunOptions& options) { return judged_run(loaded_with(values), options); }
 
-Report ExploredModel::run_from_file(const ExploredValues& values, const RunOptions& options) const { return judged_run(loaded_from_file(values), options); }
+Report ExploredModel::run_from_file(const ExploredValues& values, const RunOptions& options) const {
+  return judged_run(loaded_from_file(values), options);
+}
 
 } // namespace steplap

@@ -17,11 +17,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Scripts and styles are the server's own; styles that scripts set on elements stand in attributes.
-constexpr const char* k_page_policy = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; img-src 'self' data: blob:; "
-                                      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+constexpr const char* k_page_policy =
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; img-src 'self' data: blob:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 // A report is one file with its scripts in it. In its sandbox it has an origin of its own, which the gate refuses.
-constexpr const char* k_report_policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
-                                        "form-action 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads allow-modals";
+constexpr const char* k_report_policy =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads allow-modals";
 
 Diagnostic problem_at(const std::string& file, const std::string& message) {
   Diagnostic problem;
@@ -202,8 +204,11 @@ void Explorer::answer_state(const std::string& query, const SendReply& send) {
   waiting_.push_back({since, Clock::now() + std::chrono::seconds(k_longest_wait), send});
 }
 
-void Explorer::do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send, std::function<PageReply(const WorkQueue::IsStale&)> work) {
-  const bool is_taken = queue_->add(urgency, owner, [send, work = std::move(work)](const WorkQueue::IsStale& is_stale) { send(guarded([&] { return work(is_stale); })); });
+void Explorer::do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send,
+                        std::function<PageReply(const WorkQueue::IsStale&)> work) {
+  const bool is_taken = queue_->add(urgency, owner, [send, work = std::move(work)](const WorkQueue::IsStale& is_stale) {
+    send(guarded([&] { return work(is_stale); }));
+  });
   if (!is_taken) send(plain_reply(503, "Too much is waiting."));
 }
 
@@ -226,8 +231,9 @@ void Explorer::answer_post(const PageRequest& request, const SendReply& send) {
   }
   if (request.path == "save") {
     const RunRequest asked = run_request(request.body, models_.size());
-    return do_later(WorkQueue::Urgency::page, "", send,
-                    [this, asked](const WorkQueue::IsStale&) { return json_reply(saved_json(save_changes(models_[asked.model]->model, asked.values, asked.name))); });
+    return do_later(WorkQueue::Urgency::page, "", send, [this, asked](const WorkQueue::IsStale&) {
+      return json_reply(saved_json(save_changes(models_[asked.model]->model, asked.values, asked.name)));
+    });
   }
   send(plain_reply(404, "There is nothing of that name."));
 }

@@ -29,10 +29,10 @@ namespace steplap {
 /// Answers the requests of pages. Its own thread does the work.
 class Explorer {
 public:
-  static constexpr double k_map_seconds = 0.2;        ///< computing for one request for a map
-  static constexpr std::size_t k_most_cells = 400;    ///< of one request for a map
+  static constexpr double k_map_seconds = 0.2;         ///< computing for one request for a map
+  static constexpr std::size_t k_most_cells = 400;     ///< of one request for a map
   static constexpr std::size_t k_drag_budget = 300000; ///< bytes of curves in the answer to a run
-  static constexpr int k_longest_wait = 20;           ///< s, of a request for the state
+  static constexpr int k_longest_wait = 20;            ///< s, of a request for the state
 
   /// Reads the models. Throws ModelError with all that is wrong with any of them.
   Explorer(const std::vector<std::string>& paths, const std::vector<std::string>& overrides);
@@ -54,9 +54,9 @@ private:
     SendReply send;
   };
   struct Watched {
-    ExploredModel model; ///< only the queue's thread uses it, once it runs
-    std::string state;   ///< JSON of the model in the answer to "state"; guarded by the mutex
-    FileWatch watch;     ///< only tick()'s thread uses it
+    ExploredModel model;                   ///< only the queue's thread uses it, once it runs
+    std::string state;                     ///< JSON of the model in the answer to "state"; guarded by the mutex
+    FileWatch watch;                       ///< only tick()'s thread uses it
     bool is_reading = false;               ///< guarded by the mutex
     std::vector<std::string> files_read{}; ///< by a reading that has ended; guarded by the mutex
     bool has_read = false;                 ///< those are to be watched now; guarded by the mutex
@@ -67,7 +67,8 @@ private:
   void answer_state(const std::string& query, const SendReply& send);
   void answer_post(const PageRequest& request, const SendReply& send);
   void answer_report(const std::string& query, const SendReply& send);
-  void do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send, std::function<PageReply(const WorkQueue::IsStale&)> work);
+  void do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send,
+                std::function<PageReply(const WorkQueue::IsStale&)> work);
   [[nodiscard]] std::string state_text();
 
   std::vector<std::unique_ptr<Watched>> models_;

@@ -9,7 +9,8 @@ namespace {
 std::string look_at(const std::string& file) {
   struct stat seen {};
   if (stat(file.c_str(), &seen) != 0) return "";
-  return std::to_string(seen.st_size) + " " + std::to_string(seen.st_mtim.tv_sec) + "." + std::to_string(seen.st_mtim.tv_nsec) + " " + std::to_string(seen.st_ino);
+  return std::to_string(seen.st_size) + " " + std::to_string(seen.st_mtim.tv_sec) + "." + std::to_string(seen.st_mtim.tv_nsec) + " " +
+         std::to_string(seen.st_ino);
 }
 
 } // namespace

@@ -28,12 +28,14 @@ std::string random_token() {
 bool is_same_secret(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
   return difference == 0;
 }
 
 Gate::Gate(unsigned short port, std::string token)
-    : host_("127.0.0.1:" + std::to_string(port)), origin_("http://" + host_), folder_("/" + std::move(token) + "/"), first_path_("/first/" + random_token()) {}
+    : host_("127.0.0.1:" + std::to_string(port)), origin_("http://" + host_), folder_("/" + std::move(token) + "/"),
+      first_path_("/first/" + random_token()) {}
 
 bool Gate::is_first_path(const std::string& target) const { return is_same_secret(target, first_path_); }
 
@@ -42,7 +44,8 @@ std::string Gate::refusal(const Knock& knock) const {
   if (knock.host_headers != 1 || knock.host != host_) return "the server is to be called by its own address";
   const bool is_own = knock.origin == origin_;
   if (!knock.origin.empty() && !is_own) return "pages of other sites are refused";
-  if (!knock.fetch_site.empty() && knock.fetch_site != "same-origin" && knock.fetch_site != "none") return "pages of other sites are refused";
+  if (!knock.fetch_site.empty() && knock.fetch_site != "same-origin" && knock.fetch_site != "none")
+    return "pages of other sites are refused";
   if (knock.method == "GET" && is_first_path(knock.target)) return "";
   if (knock.target.size() < folder_.size() || !is_same_secret(knock.target.substr(0, folder_.size()), folder_))
     return "the address lacks the token: use the whole address that steplap has printed";

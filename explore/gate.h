@@ -11,13 +11,13 @@ namespace steplap {
 
 /// Of a request, what the gate looks at. Texts are "" where a header is missing.
 struct Knock {
-  std::string method;         ///< "GET"
-  std::string target;         ///< "/TOKEN/run?…"
-  std::string host;           ///< header Host
-  std::string origin;         ///< header Origin
-  std::string fetch_site;     ///< header Sec-Fetch-Site
-  std::string content_type;   ///< header Content-Type
-  int host_headers = 1;       ///< how many headers Host there are
+  std::string method;       ///< "GET"
+  std::string target;       ///< "/TOKEN/run?…"
+  std::string host;         ///< header Host
+  std::string origin;       ///< header Origin
+  std::string fetch_site;   ///< header Sec-Fetch-Site
+  std::string content_type; ///< header Content-Type
+  int host_headers = 1;     ///< how many headers Host there are
 };
 
 /// 32 hexadecimal digits from the system's source of randomness. Throws std::runtime_error if that gives none.

@@ -29,7 +29,8 @@ Knock knock_of(const http::request<http::string_body>& request) {
     return found == request.end() ? std::string() : text_of(found->value());
   };
   const int hosts = static_cast<int>(request.count(http::field::host));
-  return {text_of(request.method_string()), text_of(request.target()), header("Host"), header("Origin"), header("Sec-Fetch-Site"), header("Content-Type"), hosts};
+  return {text_of(request.method_string()), text_of(request.target()), header("Host"), header("Origin"),
+          header("Sec-Fetch-Site"),         header("Content-Type"),    hosts};
 }
 
 // Nothing is kept by the browser or told to others, and nothing of it stands in another site's frame.
@@ -61,7 +62,9 @@ struct Shared {
 // One connection: a request, its reply, the next request.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
-  Connection(tcp::socket socket, std::shared_ptr<Shared> shared) : stream_(std::move(socket)), shared_(std::move(shared)) { ++shared_->connections; }
+  Connection(tcp::socket socket, std::shared_ptr<Shared> shared) : stream_(std::move(socket)), shared_(std::move(shared)) {
+    ++shared_->connections;
+  }
   ~Connection() { --shared_->connections; }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -71,20 +74,23 @@ public:
     parser_->header_limit(LocalServer::k_longest_header);
     parser_->body_limit(LocalServer::k_longest_body);
     stream_.expires_after(std::chrono::seconds(LocalServer::k_patience));
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
   }
 
 private:
   void on_read(beast::error_code error) {
     if (error == http::error::body_limit || error == http::error::buffer_overflow || error == http::error::header_limit)
       return send({413, "text/plain; charset=utf-8", "The request is too long.\n"}, false);
-    if (error && error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream && error != http::error::partial_message)
+    if (error && error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
+        error != http::error::partial_message)
       return send({400, "text/plain; charset=utf-8", "That is no request.\n"}, false);
     if (error) return; // closed, or too slow
     const http::request<http::string_body>& request = parser_->get();
     const Knock knock = knock_of(request);
     keeps_open_ = request.keep_alive();
-    if (const std::string why = shared_->gate.refusal(knock); !why.empty()) return send({403, "text/plain; charset=utf-8", "Refused: " + why + ".\n"}, false);
+    if (const std::string why = shared_->gate.refusal(knock); !why.empty())
+      return send({403, "text/plain; charset=utf-8", "Refused: " + why + ".\n"}, false);
     if (shared_->gate.takes_first(knock)) {
       PageReply reply{303, "text/plain; charset=utf-8", ""};
       reply.location = shared_->gate.folder();
@@ -173,7 +179,9 @@ LocalServer::~LocalServer() = default;
 
 std::string LocalServer::address() const { return implementation_->shared->gate.origin() + implementation_->shared->gate.folder(); }
 
-std::string LocalServer::first_address() const { return implementation_->shared->gate.origin() + implementation_->shared->gate.first_path(); }
+std::string LocalServer::first_address() const {
+  return implementation_->shared->gate.origin() + implementation_->shared->gate.first_path();
+}
 
 void LocalServer::run(const std::function<bool()>& tick) {
   implementation_->accept();

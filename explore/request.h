@@ -16,11 +16,11 @@ struct PageRequest {
 
 /// What is sent back.
 struct PageReply {
-  int status = 200;               ///< of HTTP
+  int status = 200; ///< of HTTP
   std::string type = "text/plain; charset=utf-8";
   std::string body;
-  std::string policy{};           ///< Content-Security-Policy; "": nothing may be loaded or run
-  std::string location{};         ///< where to go on, of a status of 303
+  std::string policy{};   ///< Content-Security-Policy; "": nothing may be loaded or run
+  std::string location{}; ///< where to go on, of a status of 303
 };
 
 /// To be called once, from any thread.

@@ -62,7 +62,8 @@ bool take_over(const Node& whole, const std::string& path, Node& changes) {
     const Node* const value = entry->find(key);
     if (!value) return false;
     Node& array = child_of(changes, top, Node::Type::array);
-    const auto same = std::find_if(array.children.begin(), array.children.end(), [&](const Node& other) { return entry_name(other) == name; });
+    const auto same =
+        std::find_if(array.children.begin(), array.children.end(), [&](const Node& other) { return entry_name(other) == name; });
     Node& over = same == array.children.end() ? array.children.emplace_back() : *same;
     over.type = Node::Type::table;
     put(over, text_node("name", name));
@@ -111,7 +112,8 @@ std::string text_of_changes(const ExploredModel& model, const ExploredValues& va
 
 std::string save_changes(const ExploredModel& model, const ExploredValues& values, const std::string& name) {
   const fs::path folder = fs::path(model.path()).parent_path();
-  const bool is_name = name.size() > 5 && name.size() <= 200 && name.ends_with(".toml") && name.front() != '.' && name.find_first_of("/\\") == std::string::npos && !has_control_character(name);
+  const bool is_name = name.size() > 5 && name.size() <= 200 && name.ends_with(".toml") && name.front() != '.' &&
+                       name.find_first_of("/\\") == std::string::npos && !has_control_character(name);
   if (!is_name) throw FileError(name, "'" + shown(name) + "' is no name to save under: give one without a folder that ends with .toml");
   const std::string file = (folder / name).string();
   write_file(file, text_of_changes(model, values));

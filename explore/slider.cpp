@@ -101,7 +101,8 @@ private:
     if (const auto* points = std::get_if<std::vector<Vec2>>(&value); points && 2 * points->size() <= k_longest_list)
       for (std::size_t k = 0; k < points->size(); ++k)
         for (int c = 0; c < 2; ++c)
-          add(path + "." + std::to_string(k) + "." + std::to_string(c), (*points)[k][c], c == 1 && !field.unit2.empty() ? field.unit2 : unit);
+          add(path + "." + std::to_string(k) + "." + std::to_string(c), (*points)[k][c],
+              c == 1 && !field.unit2.empty() ? field.unit2 : unit);
   }
 
   void add_number(const std::string& path, double number, const std::string& unit, const Field& field) {

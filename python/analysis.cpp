@@ -27,7 +27,8 @@ std::vector<PyMode> modes(const PyModel& model, int count, std::optional<double>
   State state = equilibrium_of(*model.loaded).state;
   std::fill(state.v.begin(), state.v.end(), 0.0);
   std::vector<PyMode> all;
-  for (VibrationMode& mode : vibration_modes(*model.loaded->system, state, {count, near}).modes) all.push_back({std::move(mode), model.loaded});
+  for (VibrationMode& mode : vibration_modes(*model.loaded->system, state, {count, near}).modes)
+    all.push_back({std::move(mode), model.loaded});
   return all;
 }
 
@@ -55,8 +56,8 @@ py::list interfaces(const PyJoint& j) {
   py::list all;
   for (std::size_t i = 0; i < j.view.interfaces.size(); ++i) {
     const StepLapInterface& one = *j.view.interfaces[i];
-    all.append(py::dict(py::arg("name") = one.name, py::arg("overlap") = j.view.areas[i], py::arg("count") = one.count, py::arg("pressure") = one.pressure,
-                        py::arg("static_friction") = one.static_friction));
+    all.append(py::dict(py::arg("name") = one.name, py::arg("overlap") = j.view.areas[i], py::arg("count") = one.count,
+                        py::arg("pressure") = one.pressure, py::arg("static_friction") = one.static_friction));
   }
   return all;
 }
@@ -71,36 +72,49 @@ py::dict required(const PyJoint& j, double fx, double fy, double m) {
   if (!j.view.interfaces.empty()) pressure = found.u * j.view.interfaces.front()->pressure;
   std::optional<std::array<double, 2>> centre;
   if (found.centre) centre = {found.centre->x(), found.centre->y()};
-  return py::dict(py::arg("usage") = found.u, py::arg("margin") = found.margin(), py::arg("pressure") = pressure, py::arg("centre") = centre);
+  return py::dict(py::arg("usage") = found.u, py::arg("margin") = found.margin(), py::arg("pressure") = pressure,
+                  py::arg("centre") = centre);
 }
 
 } // namespace
 
 void add_analysis(py::module_& module) {
   py::class_<PyMode>(module, "Mode", "One mode of small vibrations about equilibrium.")
-      .def_property_readonly("frequency", [](const PyMode& m) { return m.mode.frequency(); }, "Hz, of the damped vibration; 0 if it does not oscillate")
-      .def_property_readonly("natural_frequency", [](const PyMode& m) { return m.mode.natural_frequency(); }, "Hz")
-      .def_property_readonly("damping_ratio", [](const PyMode& m) { return m.mode.damping_ratio(); }, "below zero: it grows")
-      .def_property_readonly("eigenvalue", [](const PyMode& m) { return m.mode.eigenvalue; }, "1/s")
-      .def_property_readonly("residual", [](const PyMode& m) { return m.mode.residual; }, "acceleration that is out of balance, as a share of its own")
-      .def_property_readonly("shape", shape, "body -> (x, y, theta), complex, m and rad; the largest is 1 m, angles taken at the radius of gyration")
+      .def_property_readonly(
+          "frequency", [](const PyMode& m) { return m.mode.frequency(); }, "Hz, of the damped vibration; 0 if it does not oscillate")
+      .def_property_readonly(
+          "natural_frequency", [](const PyMode& m) { return m.mode.natural_frequency(); }, "Hz")
+      .def_property_readonly(
+          "damping_ratio", [](const PyMode& m) { return m.mode.damping_ratio(); }, "below zero: it grows")
+      .def_property_readonly(
+          "eigenvalue", [](const PyMode& m) { return m.mode.eigenvalue; }, "1/s")
+      .def_property_readonly(
+          "residual", [](const PyMode& m) { return m.mode.residual; }, "acceleration that is out of balance, as a share of its own")
+      .def_property_readonly("shape", shape,
+                             "body -> (x, y, theta), complex, m and rad; the largest is 1 m, angles taken at the radius of gyration")
       .def("__repr__", [](const PyMode& m) { return "<steplap.Mode of " + std::to_string(m.mode.natural_frequency()) + " Hz>"; });
-  module.attr("Model").attr("modes") = py::cpp_function(
-      modes, py::name("modes"), py::is_method(module.attr("Model")), py::arg("count") = 0, py::arg("near") = py::none(),
-      "Modes of small vibrations about equilibrium, the slowest first. `count`: so many, 0 all (of large models 20); `near`: those nearest to this frequency, Hz. Raises "
-      "NumericalFailure where it does not rest.");
-  py::class_<PyJoint>(module, "Joint", "A step-lap joint in the reference pose. Wrenches are about the limb's centre of gravity, in the active part's axes.")
+  module.attr("Model").attr("modes") =
+      py::cpp_function(modes, py::name("modes"), py::is_method(module.attr("Model")), py::arg("count") = 0, py::arg("near") = py::none(),
+                       "Modes of small vibrations about equilibrium, the slowest first. `count`: so many, 0 all (of large models 20); "
+                       "`near`: those nearest to this frequency, Hz. Raises "
+                       "NumericalFailure where it does not rest.");
+  py::class_<PyJoint>(module, "Joint",
+                      "A step-lap joint in the reference pose. Wrenches are about the limb's centre of gravity, in the active part's axes.")
       .def_property_readonly("name", [](const PyJoint& j) { return j.view.joint->name; })
       .def_property_readonly("limb", [](const PyJoint& j) { return j.view.joint->limb; })
       .def_property_readonly("active_part", [](const PyJoint& j) { return j.view.joint->active_part; })
-      .def_property_readonly("interfaces", interfaces, "name, overlap of one (m^2), count, pressure (Pa), static_friction of each; none: it holds whatever it takes")
+      .def_property_readonly("interfaces", interfaces,
+                             "name, overlap of one (m^2), count, pressure (Pa), static_friction of each; none: it holds whatever it takes")
       .def_property_readonly("sliding", three<&JointView::sliding>, "friction while it slides along x, along y or turns, N, N, N m")
-      .def_property_readonly("alone", three<&JointView::alone>, "largest force along x, along y or couple that it holds by itself, N, N, N m")
+      .def_property_readonly("alone", three<&JointView::alone>,
+                             "largest force along x, along y or couple that it holds by itself, N, N, N m")
       .def("required", required, py::arg("fx"), py::arg("fy"), py::arg("m"),
-           "What a wrench on the limb takes (N, N, N m): usage of the capacity, margin, pressure at the first interface (Pa; None without interfaces) and centre of rotation "
+           "What a wrench on the limb takes (N, N, N m): usage of the capacity, margin, pressure at the first interface (Pa; None without "
+           "interfaces) and centre of rotation "
            "(m, from the active part's centre of gravity; None at infinity). Raises NumericalFailure.")
       .def("__repr__", [](const PyJoint& j) { return "<steplap.Joint " + j.view.joint->name + ">"; });
-  module.attr("Model").attr("joints") = py::cpp_function(joints, py::name("joints"), py::is_method(module.attr("Model")), "The step-lap joints of the model, in its order.");
+  module.attr("Model").attr("joints") =
+      py::cpp_function(joints, py::name("joints"), py::is_method(module.attr("Model")), "The step-lap joints of the model, in its order.");
 }
 
 } // namespace steplap::python

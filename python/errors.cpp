@@ -49,9 +49,12 @@ void translate(std::exception_ptr thrown) {
 
 void add_errors(py::module_& module) {
   py::class_<Diagnostic>(module, "Diagnostic", "One thing that is wrong with a model.")
-      .def_property_readonly("file", [](const Diagnostic& d) { return d.where.file; }, "the model's file")
-      .def_property_readonly("line", [](const Diagnostic& d) { return d.where.line; }, "from 1; 0: unknown")
-      .def_property_readonly("column", [](const Diagnostic& d) { return d.where.column; }, "from 1; 0: unknown")
+      .def_property_readonly(
+          "file", [](const Diagnostic& d) { return d.where.file; }, "the model's file")
+      .def_property_readonly(
+          "line", [](const Diagnostic& d) { return d.where.line; }, "from 1; 0: unknown")
+      .def_property_readonly(
+          "column", [](const Diagnostic& d) { return d.where.column; }, "from 1; 0: unknown")
       .def_readonly("message", &Diagnostic::message, "cause and remedy")
       .def("__str__", &Diagnostic::text)
       .def("__repr__", &Diagnostic::text);
@@ -59,11 +62,14 @@ void add_errors(py::module_& module) {
       .def_readonly("code", &Finding::code, "for programs: what it stands for does not change")
       .def_readonly("text", &Finding::text, "one or two sentences")
       .def_property_readonly("is_warning", [](const Finding& f) { return f.level == FindingLevel::warning; })
-      .def_property_readonly("caps_verdict", [](const Finding& f) { return caps_verdict(f); }, "does it forbid 'hold'?")
+      .def_property_readonly(
+          "caps_verdict", [](const Finding& f) { return caps_verdict(f); }, "does it forbid 'hold'?")
       .def_property_readonly("file", [](const Finding& f) { return f.where.file; })
-      .def_property_readonly("line", [](const Finding& f) { return f.where.line; }, "from 1; 0: of no one place")
+      .def_property_readonly(
+          "line", [](const Finding& f) { return f.where.line; }, "from 1; 0: of no one place")
       .def("__repr__", [](const Finding& f) { return text_with_place(f); });
-  const py::object error = new_exception(module, "Error", "What steplap raises on purpose.", py::reinterpret_borrow<py::object>(PyExc_Exception));
+  const py::object error =
+      new_exception(module, "Error", "What steplap raises on purpose.", py::reinterpret_borrow<py::object>(PyExc_Exception));
   exceptions().model = new_exception(module, "ModelError", "The model cannot be used as it stands: see `diagnostics`.", error);
   exceptions().numerical = new_exception(module, "NumericalFailure", "A computation could not be finished.", error);
   exceptions().file = new_exception(module, "FileError", "A file cannot be read or written: see `path` and `line`.", error);

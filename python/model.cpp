@@ -95,11 +95,15 @@ std::vector<std::string> overrides_of(const py::object& given) {
 
 void add_model(py::module_& module) {
   py::class_<PyModel>(module, "Model", "A model that has been read and checked. It does not change; `with_values` makes another one.")
-      .def_property_readonly("path", [](const PyModel& m) { return m.loaded->path; }, "of its file, as given")
+      .def_property_readonly(
+          "path", [](const PyModel& m) { return m.loaded->path; }, "of its file, as given")
       .def_property_readonly("title", [](const PyModel& m) { return m.loaded->model.header.title; })
-      .def_property_readonly("text", [](const PyModel& m) { return m.loaded->text; }, "the model as TOML that stands alone")
-      .def_property_readonly("overrides", [](const PyModel& m) { return m.loaded->overrides; }, "laid over the file, 'path=value'")
-      .def_property_readonly("findings", [](const PyModel& m) { return findings_of(*m.loaded); }, "what is unusual about it, before any run")
+      .def_property_readonly(
+          "text", [](const PyModel& m) { return m.loaded->text; }, "the model as TOML that stands alone")
+      .def_property_readonly(
+          "overrides", [](const PyModel& m) { return m.loaded->overrides; }, "laid over the file, 'path=value'")
+      .def_property_readonly(
+          "findings", [](const PyModel& m) { return findings_of(*m.loaded); }, "what is unusual about it, before any run")
       .def_property_readonly(
           "channels",
           [](const PyModel& m) {
@@ -108,14 +112,19 @@ void add_model(py::module_& module) {
             return all;
           },
           "names of all channels, with their SI units")
-      .def_property_readonly("drawing_text", [](const PyModel& m) { return drawing_json(m.loaded->model); }, "the text of drawing.json: docs/reference/results.md")
-      .def("value", [](const PyModel& m, const std::string& path) { return number_of(m.loaded->model, path); }, py::arg("path"),
-           "A number of the model by its path, in SI: value('body.tank.mass').")
-      .def("unit", [](const PyModel& m, const std::string& path) { return unit_of(m.loaded->model, path); }, py::arg("path"),
-           "The SI unit of that number; '*': any.")
+      .def_property_readonly(
+          "drawing_text", [](const PyModel& m) { return drawing_json(m.loaded->model); },
+          "the text of drawing.json: docs/reference/results.md")
+      .def(
+          "value", [](const PyModel& m, const std::string& path) { return number_of(m.loaded->model, path); }, py::arg("path"),
+          "A number of the model by its path, in SI: value('body.tank.mass').")
+      .def(
+          "unit", [](const PyModel& m, const std::string& path) { return unit_of(m.loaded->model, path); }, py::arg("path"),
+          "The SI unit of that number; '*': any.")
       .def("with_values", with_overrides, py::arg("values"),
            "The same model with other values: {'element.rope.stiffness': '2 MN/m', 'simulation.end': 0.5}. Raises ModelError.")
-      .def("equilibrium", equilibrium, "Where it rests: body -> (x, y, theta) of the centre of gravity, m and rad. Raises NumericalFailure if it does not.")
+      .def("equilibrium", equilibrium,
+           "Where it rests: body -> (x, y, theta) of the centre of gravity, m and rad. Raises NumericalFailure if it does not.")
       .def("__repr__", [](const PyModel& m) { return "<steplap.Model " + m.loaded->path + ">"; });
   module.def(
       "load",
@@ -134,7 +143,8 @@ void add_model(py::module_& module) {
         return PyModel{load_model_text(text, path, overrides), std::make_shared<const std::string>(text)};
       },
       py::arg("text"), py::arg("values") = py::none(), py::arg("path") = "model.toml",
-      "Reads a model from a text. `path`: what messages call it, what paths in it are relative to and what its results are named after; nothing is read from there. "
+      "Reads a model from a text. `path`: what messages call it, what paths in it are relative to and what its results are named after; "
+      "nothing is read from there. "
       "Raises ModelError.");
 }
 

@@ -20,8 +20,10 @@ py::array look_into(const std::shared_ptr<const Columns>& columns, py::ssize_t f
   const auto rows = static_cast<py::ssize_t>(columns->values.rows());
   const auto size = static_cast<py::ssize_t>(sizeof(double));
   const double* const data = columns->values.data() + first * rows; // columns lie one after the other
-  py::array array = is_flat ? py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{rows}, std::vector<py::ssize_t>{size}, data, keeper)
-                            : py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{rows, count}, std::vector<py::ssize_t>{size, size * rows}, data, keeper);
+  py::array array = is_flat
+                        ? py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{rows}, std::vector<py::ssize_t>{size}, data, keeper)
+                        : py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{rows, count},
+                                    std::vector<py::ssize_t>{size, size * rows}, data, keeper);
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
@@ -43,7 +45,8 @@ py::dict extremes(const PyRun& run, const std::string& name) {
   all["t_high"] = range->high.t;
   all["first"] = range->first;
   all["final"] = range->final;
-  const std::optional<double> low = run.report->error_of(*range, &ChannelError::low), high = run.report->error_of(*range, &ChannelError::high);
+  const std::optional<double> low = run.report->error_of(*range, &ChannelError::low),
+                              high = run.report->error_of(*range, &ChannelError::high);
   all["low_error"] = low;
   all["high_error"] = high;
   return all;
@@ -100,7 +103,8 @@ void add_criterion_and_event(py::module_& module) {
       .def_readonly("name", &CriterionResult::name)
       .def_readonly("text", &CriterionResult::text, "what is asked")
       .def_readonly("reason", &CriterionResult::reason, "why it is asked")
-      .def_property_readonly("outcome", [](const CriterionResult& c) { return name_of(c.outcome); }, "'hold', 'open', 'inspect' or 'reject'")
+      .def_property_readonly(
+          "outcome", [](const CriterionResult& c) { return name_of(c.outcome); }, "'hold', 'open', 'inspect' or 'reject'")
       .def_readonly("value", &CriterionResult::value, "nearest to its limit, or furthest beyond, SI; None: no value")
       .def_readonly("limit", &CriterionResult::limit, "SI")
       .def_readonly("unit", &CriterionResult::unit)
@@ -120,38 +124,59 @@ void add_criterion_and_event(py::module_& module) {
 void add_run(py::module_& module) {
   add_criterion_and_event(module);
   py::class_<PyRun>(module, "Run", "A run with all that is known about it. run['tank.x'] is a channel as an array.")
-      .def_property_readonly("verdict", [](const PyRun& r) { return name_of(r.report->judgement.verdict); }, "'hold', 'open', 'inspect' or 'reject'")
-      .def_property_readonly("distrust", [](const PyRun& r) { return r.report->judgement.distrust; }, "not empty: why the run is not to be trusted")
-      .def_property_readonly("caps", [](const PyRun& r) { return r.report->judgement.caps; }, "why the run cannot mean 'hold', whatever it meets")
+      .def_property_readonly(
+          "verdict", [](const PyRun& r) { return name_of(r.report->judgement.verdict); }, "'hold', 'open', 'inspect' or 'reject'")
+      .def_property_readonly(
+          "distrust", [](const PyRun& r) { return r.report->judgement.distrust; }, "not empty: why the run is not to be trusted")
+      .def_property_readonly(
+          "caps", [](const PyRun& r) { return r.report->judgement.caps; }, "why the run cannot mean 'hold', whatever it meets")
       .def_property_readonly("criteria", [](const PyRun& r) { return r.report->judgement.criteria; })
       .def_property_readonly("findings", [](const PyRun& r) { return r.report->findings; })
-      .def_property_readonly("energy_residual", [](const PyRun& r) { return r.report->relative_energy_residual; },
-                             "what the energy account does not close by, as a share of the energy exchanged")
-      .def_property_readonly("events", [](const PyRun& r) { return r.report->run.result.events; }, "ascending in time")
-      .def_property_readonly("failure", [](const PyRun& r) -> std::optional<std::string> {
+      .def_property_readonly(
+          "energy_residual", [](const PyRun& r) { return r.report->relative_energy_residual; },
+          "what the energy account does not close by, as a share of the energy exchanged")
+      .def_property_readonly(
+          "events", [](const PyRun& r) { return r.report->run.result.events; }, "ascending in time")
+      .def_property_readonly(
+          "failure",
+          [](const PyRun& r) -> std::optional<std::string> {
             if (!r.report->run.failure) return std::nullopt;
             return r.report->run.failure->text;
-          }, "why it ended before its end; None: it did not")
-      .def_property_readonly("names", [](const PyRun& r) { return r.columns->names; }, "'t', then the channels written")
-      .def_property_readonly("units", [](const PyRun& r) { return r.columns->units; }, "SI, of names")
-      .def_property_readonly("values", [](const PyRun& r) { return look_into(r.columns, 0, static_cast<py::ssize_t>(r.columns->values.cols()), false); },
-                             "all samples: shape (rows, names), SI, not copied, read only")
-      .def_property_readonly("t", [](const PyRun& r) { return look_into(r.columns, 0, 1, true); }, "s, shape (rows,)")
+          },
+          "why it ended before its end; None: it did not")
+      .def_property_readonly(
+          "names", [](const PyRun& r) { return r.columns->names; }, "'t', then the channels written")
+      .def_property_readonly(
+          "units", [](const PyRun& r) { return r.columns->units; }, "SI, of names")
+      .def_property_readonly(
+          "values", [](const PyRun& r) { return look_into(r.columns, 0, static_cast<py::ssize_t>(r.columns->values.cols()), false); },
+          "all samples: shape (rows, names), SI, not copied, read only")
+      .def_property_readonly(
+          "t", [](const PyRun& r) { return look_into(r.columns, 0, 1, true); }, "s, shape (rows,)")
       .def("__getitem__", series, py::arg("channel"), "A channel: shape (rows,), SI, not copied. Raises KeyError.")
       .def("__len__", [](const PyRun& r) { return r.columns->values.rows(); })
       .def("extremes", extremes, py::arg("channel"),
-           "Least and largest value of the whole run, whatever the output step, with times (s), first and final value and estimated errors (None: unknown).")
-      .def("json", [](const PyRun& r) { return r.report->json(); }, "the text of summary.json")
-      .def("write", [](const PyRun& r, const std::string& folder, bool overwrite) {
-             const py::gil_scoped_release unlocked;
-             r.report->write(folder, overwrite);
-           }, py::arg("folder"), py::arg("overwrite") = false, "All files of the run, as the program writes them, or none. Raises FileError.")
+           "Least and largest value of the whole run, whatever the output step, with times (s), first and final value and estimated errors "
+           "(None: unknown).")
+      .def(
+          "json", [](const PyRun& r) { return r.report->json(); }, "the text of summary.json")
+      .def(
+          "write",
+          [](const PyRun& r, const std::string& folder, bool overwrite) {
+            const py::gil_scoped_release unlocked;
+            r.report->write(folder, overwrite);
+          },
+          py::arg("folder"), py::arg("overwrite") = false, "All files of the run, as the program writes them, or none. Raises FileError.")
       .def("page", page_of, "The page of the run: one HTML text that needs no other file.")
-      .def("__repr__", [](const PyRun& r) { return "<steplap.Run of " + r.report->run.loaded->path + ": " + name_of(r.report->judgement.verdict) + ">"; });
-  module.attr("Model").attr("run") = py::cpp_function(
-      run_of, py::name("run"), py::is_method(module.attr("Model")), py::arg("method") = py::none(), py::arg("tolerance") = py::none(), py::arg("step") = py::none(),
-      py::arg("end") = py::none(), py::arg("output_step") = py::none(), py::arg("estimate") = "cheap", py::arg("second_opinion") = false,
-      "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. Other threads of Python go on meanwhile; Ctrl-C ends it.");
+      .def("__repr__", [](const PyRun& r) {
+        return "<steplap.Run of " + r.report->run.loaded->path + ": " + name_of(r.report->judgement.verdict) + ">";
+      });
+  module.attr("Model").attr("run") =
+      py::cpp_function(run_of, py::name("run"), py::is_method(module.attr("Model")), py::arg("method") = py::none(),
+                       py::arg("tolerance") = py::none(), py::arg("step") = py::none(), py::arg("end") = py::none(),
+                       py::arg("output_step") = py::none(), py::arg("estimate") = "cheap", py::arg("second_opinion") = false,
+                       "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. Other "
+                       "threads of Python go on meanwhile; Ctrl-C ends it.");
 }
 
 } // namespace steplap::python

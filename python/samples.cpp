@@ -27,7 +27,8 @@ Response response_of(const std::pair<std::string, std::string>& given, const Sys
   const auto& [channel, which] = given;
   std::vector<std::string> known;
   for (const Channel& c : system.channels) known.push_back(c.name);
-  if (std::find(known.begin(), known.end(), channel) == known.end()) throw py::value_error("there is no channel '" + channel + "'" + did_you_mean(channel, known));
+  if (std::find(known.begin(), known.end(), channel) == known.end())
+    throw py::value_error("there is no channel '" + channel + "'" + did_you_mean(channel, known));
   if (which == "low") return {channel, Response::Which::low};
   if (which == "high") return {channel, Response::Which::high};
   if (which == "first") return {channel, Response::Which::first};
@@ -123,9 +124,12 @@ py::tuple samples(const PyModel& model, const std::vector<std::string>& paths, c
 
 void add_samples(py::module_& module) {
   module.attr("Model").attr("samples") = py::cpp_function(
-      samples, py::name("samples"), py::is_method(module.attr("Model")), py::arg("paths"), py::arg("values"), py::arg("responses"), py::arg("threads") = 0,
-      "Runs the model with many values side by side. `paths`: what varies; `values`: shape (samples, paths), SI; `responses`: (channel, 'low' | 'high' | 'first' | "
-      "'final'). Returns the responses, shape (samples, responses), not-a-number where a run did not reach its end; the verdict of each run, without estimated errors; "
+      samples, py::name("samples"), py::is_method(module.attr("Model")), py::arg("paths"), py::arg("values"), py::arg("responses"),
+      py::arg("threads") = 0,
+      "Runs the model with many values side by side. `paths`: what varies; `values`: shape (samples, paths), SI; `responses`: (channel, "
+      "'low' | 'high' | 'first' | "
+      "'final'). Returns the responses, shape (samples, responses), not-a-number where a run did not reach its end; the verdict of each "
+      "run, without estimated errors; "
       "and what is wrong with it, '' if nothing is. The numbers do not hang on `threads` (0: all processors). Ctrl-C ends it.");
 }
 

@@ -22,8 +22,10 @@ void Conditioner::begin(const RecordLayout& layout) {
   rate_ = conditioning_.rate.value_or(layout.time.rate);
   if (conditioning_.frequency_class) {
     if (!ChannelFilter::is_possible(*conditioning_.frequency_class, rate_))
-      throw RecordError(layout.file, 0, 0, "CFC " + rounded_text(*conditioning_.frequency_class) + " needs a rate of ten times that at least, and the record has " + rounded_text(rate_) +
-                                               " Hz. Give a class of " + rounded_text(std::floor(rate_ / 10.0)) + " or less with --cfc.");
+      throw RecordError(layout.file, 0, 0,
+                        "CFC " + rounded_text(*conditioning_.frequency_class) +
+                            " needs a rate of ten times that at least, and the record has " + rounded_text(rate_) +
+                            " Hz. Give a class of " + rounded_text(std::floor(rate_ / 10.0)) + " or less with --cfc.");
     filter_.emplace(*conditioning_.frequency_class, rate_);
     margin_ = static_cast<std::size_t>(filter_->settling());
   }
@@ -33,12 +35,17 @@ void Conditioner::begin(const RecordLayout& layout) {
 
 void Conditioner::set_high_pass(const RecordLayout& layout) {
   // Gain 1/√2 where r⁴ = 1/(√2 − 1), and the low-pass is told by its class: f0 = 2.0775 CFC.
-  const double half = *conditioning_.high_pass / std::sqrt(std::sqrt(1.0 / (std::numbers::sqrt2 - 1.0))), frequency_class = half / ChannelFilter::k_ratio;
+  const double half = *conditioning_.high_pass / std::sqrt(std::sqrt(1.0 / (std::numbers::sqrt2 - 1.0))),
+               frequency_class = half / ChannelFilter::k_ratio;
   constexpr double k_slowest = 1e-5; // of the rate: what the filter keeps in memory grows as its inverse
   if (!(*conditioning_.high_pass >= k_slowest * rate_))
-    throw RecordError(layout.file, 0, 0, "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz is too low for a record of " + rounded_text(rate_) + " Hz. Give " + rounded_text(k_slowest * rate_) + " Hz or more.");
+    throw RecordError(layout.file, 0, 0,
+                      "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz is too low for a record of " + rounded_text(rate_) +
+                          " Hz. Give " + rounded_text(k_slowest * rate_) + " Hz or more.");
   if (!ChannelFilter::is_possible(frequency_class, rate_))
-    throw RecordError(layout.file, 0, 0, "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz would leave nothing of a record of " + rounded_text(rate_) + " Hz. Give less.");
+    throw RecordError(layout.file, 0, 0,
+                      "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz would leave nothing of a record of " +
+                          rounded_text(rate_) + " Hz. Give less.");
   low_.emplace(frequency_class, rate_);
   margin_ += static_cast<std::size_t>(low_->settling());
 }

@@ -31,17 +31,17 @@ public:
 };
 
 struct Conditioning {
-  std::array<double, 3> offset{};          ///< m/s², subtracted from the axes
-  std::optional<double> frequency_class;   ///< CFC in Hz; none: no filter
-  std::optional<double> rate;              ///< Hz of the result; none: that of the record
-  std::optional<double> high_pass;         ///< Hz, where its gain is 1/√2; none: none
+  std::array<double, 3> offset{};                     ///< m/s², subtracted from the axes
+  std::optional<double> frequency_class;              ///< CFC in Hz; none: no filter
+  std::optional<double> rate;                         ///< Hz of the result; none: that of the record
+  std::optional<double> high_pass;                    ///< Hz, where its gain is 1/√2; none: none
   std::vector<std::array<double, 3>> segment_offsets; ///< m/s², subtracted from one segment each; none: nothing is
 };
 
 /// What the conditioned acceleration, integrated by itself from rest, would have made of a segment.
 struct Drift {
-  double duration = 0.0;              ///< s, of the longest segment
-  std::array<double, 3> velocity{};   ///< m/s at its end
+  double duration = 0.0;                ///< s, of the longest segment
+  std::array<double, 3> velocity{};     ///< m/s at its end
   std::array<double, 3> displacement{}; ///< m
 };
 
@@ -81,10 +81,10 @@ private:
   std::optional<ChannelFilter> filter_, low_; ///< low_: what the high-pass takes away
   std::size_t axes_ = 0, margin_ = 0, lead_ = 0, interpolated_ = 0, segment_ = 0;
   double rate_ = 0.0;
-  std::vector<Row> rows_;          ///< of the record, few
-  std::size_t next_ = 0;           ///< of the grid
+  std::vector<Row> rows_; ///< of the record, few
+  std::size_t next_ = 0;  ///< of the grid
   double start_ = 0.0;
-  std::vector<double> times_;      ///< of the grid, waiting for the filter
+  std::vector<double> times_; ///< of the grid, waiting for the filter
   std::array<std::vector<double>, 3> plain_, filtered_;
   Drift drift_, now_;
   std::vector<std::array<double, 3>> means_;

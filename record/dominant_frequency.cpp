@@ -27,7 +27,8 @@ double dominant_frequency(std::span<const double> samples, double rate) {
     if (size_at(k) > size_at(best)) best = k;
   const double before = size_at(best - 1), here = size_at(best), after = size_at(best + 1), bend = before - 2.0 * here + after;
   const double shift = bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
-  const double scale = std::max(std::abs(*std::max_element(samples.begin(), samples.end())), std::abs(*std::min_element(samples.begin(), samples.end())));
+  const double scale =
+      std::max(std::abs(*std::max_element(samples.begin(), samples.end())), std::abs(*std::min_element(samples.begin(), samples.end())));
   if (here <= 1e-12 * scale * static_cast<double>(samples.size())) return 0.0;
   return (static_cast<double>(best) + shift) * rate / static_cast<double>(length);
 }

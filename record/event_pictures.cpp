@@ -38,11 +38,13 @@ void write(std::string& out, double x, double y, const char* anchor, const std::
 }
 
 void line(std::string& out, double x0, double y0, double x1, double y1, const char* colour) {
-  out += "<path d=\"M" + coordinate(x0) + " " + coordinate(y0) + "L" + coordinate(x1) + " " + coordinate(y1) + "\" fill=\"none\" stroke=\"" + colour + "\"/>\n";
+  out += "<path d=\"M" + coordinate(x0) + " " + coordinate(y0) + "L" + coordinate(x1) + " " + coordinate(y1) +
+         "\" fill=\"none\" stroke=\"" + colour + "\"/>\n";
 }
 
 template <class Point> void curve(std::string& out, std::size_t count, std::size_t axis, Point point) {
-  out += std::string("<path fill=\"none\" stroke=\"") + k_colours[axis] + "\" stroke-width=\"1.4\" stroke-dasharray=\"" + k_dashes[axis] + "\" d=\"";
+  out += std::string("<path fill=\"none\" stroke=\"") + k_colours[axis] + "\" stroke-width=\"1.4\" stroke-dasharray=\"" + k_dashes[axis] +
+         "\" d=\"";
   for (std::size_t k = 0; k < count; ++k) {
     const std::array<double, 2> at = point(k);
     out += (k == 0 ? "M" : "L") + coordinate(at[0]) + " " + coordinate(at[1]);
@@ -60,7 +62,8 @@ void ticks(std::string& out, const Frame& f) {
   line(out, f.left, f.top + f.height, f.left + f.width, f.top + f.height, "#444");
   line(out, f.left, f.top, f.left, f.top + f.height, "#444");
   const double across = tick_step(f.x1 - f.x0), up = tick_step(f.y1 - f.y0);
-  for (double v = std::ceil(f.x0 / across) * across; v <= f.x1 + 1e-9 * across; v += across) write(out, f.x(v), f.top + f.height + 14.0, "middle", rounded_text(std::abs(v) < 1e-9 * across ? 0.0 : v, 3));
+  for (double v = std::ceil(f.x0 / across) * across; v <= f.x1 + 1e-9 * across; v += across)
+    write(out, f.x(v), f.top + f.height + 14.0, "middle", rounded_text(std::abs(v) < 1e-9 * across ? 0.0 : v, 3));
   for (double v = std::ceil(f.y0 / up) * up; v <= f.y1 + 1e-9 * up; v += up) {
     line(out, f.left, f.y(v), f.left + f.width, f.y(v), "#ddd");
     write(out, f.left - 5.0, f.y(v) + 4.0, "end", rounded_text(std::abs(v) < 1e-9 * up ? 0.0 : v, 3));
@@ -90,7 +93,8 @@ void EventPictures::add(const ShockEvent& event, const Window& window, const std
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (2 * count + k_points - 1) / k_points);
   for (std::size_t from = 0; from < count; from += stride) // of each stretch the sample furthest from zero, so that peaks stay
     for (std::size_t i = 0; i < event.axes.size(); ++i) {
-      const auto begin = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(from), end = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(std::min(count, from + stride));
+      const auto begin = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(from),
+                 end = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(std::min(count, from + stride));
       drawn.values[i].push_back(*std::max_element(begin, end, [](double a, double b) { return std::abs(a) < std::abs(b); }));
       if (i == 0) drawn.times.push_back(window.times[from] - window.times.front());
     }
@@ -104,8 +108,10 @@ std::string EventPictures::svg(const RecordLayout& layout, double bandwidth) con
   for (const Drawn& each : drawn_) order.push_back(&each);
   std::sort(order.begin(), order.end(), [](const Drawn* a, const Drawn* b) { return a->event.number < b->event.number; });
   const double height = k_head + k_row * static_cast<double>(order.size()) + 6.0;
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + coordinate(k_width) + "\" height=\"" + coordinate(height) + "\" viewBox=\"0 0 " + coordinate(k_width) + " " + coordinate(height) +
-                    "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g fill=\"#222\" stroke=\"none\">\n";
+  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + coordinate(k_width) + "\" height=\"" + coordinate(height) +
+                    "\" viewBox=\"0 0 " + coordinate(k_width) + " " + coordinate(height) +
+                    "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"none\">\n<rect width=\"100%\" height=\"100%\" "
+                    "fill=\"white\"/>\n<g fill=\"#222\" stroke=\"none\">\n";
   write(out, 48.0, 20.0, "start", "acceleration in g, up to " + rounded_text(bandwidth, 3) + " Hz, over ms");
   write(out, 560.0, 20.0, "start", "shock response spectra in g over Hz, Q = 10");
   out += "</g>\n";
@@ -124,21 +130,29 @@ std::string EventPictures::svg(const RecordLayout& layout, double bandwidth) con
     const Frame wave{48.0, top, 440.0, 140.0, 0.0, 1e3 * end, low - room, high + room};
     const AxisEvent& worst = d.event.axes[d.event.worst];
     out += "<g fill=\"#222\" stroke=\"none\" font-weight=\"bold\">\n";
-    write(out, 48.0, top - 6.0, "start", "event " + std::to_string(d.event.number) + " at " + rounded_text(worst.peak_time, 7) + " s: " + layout.axes[d.event.worst].axis + " " + rounded_text(worst.peak / k_gravity, 3) + " g, " +
-                                             rounded_text(1e3 * worst.duration, 3) + " ms, " + rounded_text(worst.velocity_change, 3) + " m/s");
+    write(out, 48.0, top - 6.0, "start",
+          "event " + std::to_string(d.event.number) + " at " + rounded_text(worst.peak_time, 7) + " s: " + layout.axes[d.event.worst].axis +
+              " " + rounded_text(worst.peak / k_gravity, 3) + " g, " + rounded_text(1e3 * worst.duration, 3) + " ms, " +
+              rounded_text(worst.velocity_change, 3) + " m/s");
     out += "</g>\n<g fill=\"#222\" stroke-width=\"1\">\n";
     std::string scales;
     ticks(scales, wave);
-    for (std::size_t i = 0; i < d.event.axes.size(); ++i) curve(scales, d.times.size(), i, [&](std::size_t k) { return std::array<double, 2>{wave.x(1e3 * d.times[k]), wave.y(d.values[i][k] / k_gravity)}; });
+    for (std::size_t i = 0; i < d.event.axes.size(); ++i)
+      curve(scales, d.times.size(), i, [&](std::size_t k) {
+        return std::array<double, 2>{wave.x(1e3 * d.times[k]), wave.y(d.values[i][k] / k_gravity)};
+      });
     double slow = 1e9, fast = 1.0;
     for (const auto& spectrum : d.spectra)
-      for (const ShockPoint& p : spectrum) slow = std::min(slow, p.frequency), fast = std::max(fast, p.frequency), most = std::max(most, p.acceleration / k_gravity);
+      for (const ShockPoint& p : spectrum)
+        slow = std::min(slow, p.frequency), fast = std::max(fast, p.frequency), most = std::max(most, p.acceleration / k_gravity);
     const double ceiling = std::log10(most) + 0.1;
     const Frame spectra{560.0, top, 360.0, 140.0, std::log10(std::min(slow, 0.5 * fast)), std::log10(fast), ceiling - 2.5, ceiling};
     decades(scales, spectra);
     for (std::size_t i = 0; i < d.spectra.size(); ++i)
       curve(scales, d.spectra[i].size(), i, [&](std::size_t k) {
-        return std::array<double, 2>{spectra.x(std::log10(d.spectra[i][k].frequency)), spectra.y(std::max(spectra.y0, std::log10(std::max(1e-12, d.spectra[i][k].acceleration / k_gravity))))};
+        return std::array<double, 2>{
+            spectra.x(std::log10(d.spectra[i][k].frequency)),
+            spectra.y(std::max(spectra.y0, std::log10(std::max(1e-12, d.spectra[i][k].acceleration / k_gravity))))};
       });
     out += scales + "</g>\n";
   }

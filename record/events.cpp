@@ -24,9 +24,7 @@ double peak_in_class(const std::vector<double>& samples, double frequency_class,
 }
 
 // Of the stretch between two neighbours of which one is beyond the level: the share that is.
-double share_beyond(double inside, double outside, double level) {
-  return std::clamp((inside - level) / (inside - outside), 0.0, 1.0);
-}
+double share_beyond(double inside, double outside, double level) { return std::clamp((inside - level) / (inside - outside), 0.0, 1.0); }
 
 AxisEvent describe_axis(const Window& window, std::size_t axis) {
   const std::vector<double>& a = window.filtered[axis];
@@ -79,7 +77,9 @@ void ShockFinder::begin_segment(std::size_t line) {
 }
 
 void ShockFinder::forget_all_but(std::size_t kept) {
-  const auto drop = [&](std::vector<double>& samples) { samples.erase(samples.begin(), samples.end() - static_cast<std::ptrdiff_t>(std::min(kept, samples.size()))); };
+  const auto drop = [&](std::vector<double>& samples) {
+    samples.erase(samples.begin(), samples.end() - static_cast<std::ptrdiff_t>(std::min(kept, samples.size())));
+  };
   drop(window_.times);
   for (std::size_t i = 0; i < axes_; ++i) {
     drop(window_.plain[i]);

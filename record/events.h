@@ -20,17 +20,17 @@ struct EventRules {
 
 /// A stretch of signal, samples equally spaced.
 struct Window {
-  double rate = 0.0; ///< Hz
-  std::vector<double> times; ///< s
+  double rate = 0.0;                                  ///< Hz
+  std::vector<double> times;                          ///< s
   std::array<std::vector<double>, 3> plain, filtered; ///< m/s²
 };
 
 /// One axis of an event. All but the two peaks of given classes are of the filtered signal.
 struct AxisEvent {
-  double peak = 0.0, peak_time = 0.0; ///< m/s², with its sign; s
-  double duration = 0.0;              ///< s around the peak, beyond a tenth of it
-  double velocity_change = 0.0;       ///< m/s in that time
-  double frequency = 0.0;             ///< Hz, where most of the motion is
+  double peak = 0.0, peak_time = 0.0;                         ///< m/s², with its sign; s
+  double duration = 0.0;                                      ///< s around the peak, beyond a tenth of it
+  double velocity_change = 0.0;                               ///< m/s in that time
+  double frequency = 0.0;                                     ///< Hz, where most of the motion is
   double at_cfc60 = std::numeric_limits<double>::quiet_NaN(); ///< m/s², peak up to 100 Hz; NaN: the rate does not suffice
   double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< m/s², up to 17 Hz
 };

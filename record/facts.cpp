@@ -13,15 +13,18 @@ namespace {
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 4) + " g"; }
 
-std::string times_text(const Counted& counted_, const char* one, const char* several) { return counted(counted_.count, one, several) + " (first in line " + std::to_string(counted_.line) + ")"; }
+std::string times_text(const Counted& counted_, const char* one, const char* several) {
+  return counted(counted_.count, one, several) + " (first in line " + std::to_string(counted_.line) + ")";
+}
 
 void add_axes(const Recording& recording, std::vector<std::string>& lines) {
   const RecordLayout& layout = recording.layout;
   for (std::size_t i = 0; i < layout.axes.size(); ++i) {
     const AxisColumn& axis = layout.axes[i];
     const AxisFacts& facts = recording.facts.axes[i];
-    std::string text = std::string(1, axis.axis) + ": '" + axis.heading + "' in " + axis.unit + " (" + axis.unit_source + "), 1 " + (axis.unit == "counts" ? "count" : axis.unit) + " = " +
-                       rounded_text(axis.factor) + " m/s^2; " + in_g(facts.least) + " to " + in_g(facts.greatest);
+    std::string text = std::string(1, axis.axis) + ": '" + axis.heading + "' in " + axis.unit + " (" + axis.unit_source + "), 1 " +
+                       (axis.unit == "counts" ? "count" : axis.unit) + " = " + rounded_text(axis.factor) + " m/s^2; " + in_g(facts.least) +
+                       " to " + in_g(facts.greatest);
     lines.push_back(text);
   }
 }
@@ -38,9 +41,11 @@ std::string gravity_text(const Recording& recording) {
   const double size = std::sqrt(size2) / k_gravity;
   const std::string axis = std::string(axes[most].rest < 0.0 ? "-" : "") + recording.layout.axes[most].axis;
   if (size > 0.9 && size < 1.1)
-    return "gravity: in the record, as it seems (the first second reads " + rounded_text(size, 4) + " g, mostly along " + axis + "); --gravity " + axis + " subtracts it";
+    return "gravity: in the record, as it seems (the first second reads " + rounded_text(size, 4) + " g, mostly along " + axis +
+           "); --gravity " + axis + " subtracts it";
   if (size < 0.1) return "gravity: not in the record, as it seems (the first second reads " + rounded_text(size, 3) + " g)";
-  return "gravity: cannot be told (the first second reads " + rounded_text(size, 3) + " g); --gravity AXIS or --rest FROM,TO subtracts what is there at rest";
+  return "gravity: cannot be told (the first second reads " + rounded_text(size, 3) +
+         " g); --gravity AXIS or --rest FROM,TO subtracts what is there at rest";
 }
 
 void add_clipping(const Recording& recording, std::vector<std::string>& lines) {
@@ -48,10 +53,11 @@ void add_clipping(const Recording& recording, std::vector<std::string>& lines) {
     const AxisFacts& facts = recording.facts.axes[i];
     const std::string axis(1, recording.layout.axes[i].axis);
     if (facts.beyond_range.count > 0)
-      lines.push_back("Axis " + axis + " is at the end of the sensor's range in " + times_text(facts.beyond_range, "sample", "samples") + ": its peaks were higher.");
+      lines.push_back("Axis " + axis + " is at the end of the sensor's range in " + times_text(facts.beyond_range, "sample", "samples") +
+                      ": its peaks were higher.");
     else if (facts.flat_longest >= 3 && !recording.layout.holds)
-      lines.push_back("Axis " + axis + " stays at " + in_g(facts.flat_value) + " for " + std::to_string(facts.flat_longest) + " samples (first line " + std::to_string(facts.flat_line) +
-                      "): it seems clipped, and its peaks were higher.");
+      lines.push_back("Axis " + axis + " stays at " + in_g(facts.flat_value) + " for " + std::to_string(facts.flat_longest) +
+                      " samples (first line " + std::to_string(facts.flat_line) + "): it seems clipped, and its peaks were higher.");
   }
 }
 
@@ -72,10 +78,13 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
   if (facts.cut_line > 0) lines.push_back("The last line (" + std::to_string(facts.cut_line) + ") is cut: it was left out.");
   if (facts.unended_line > 0)
     lines.push_back("The last line (" + std::to_string(facts.unended_line) + ") does not end with a line break. " +
-                    (facts.is_unended_left_out ? "Its last number may lack digits: the line was left out." : "It has all fields, and its last number as many decimals as those before: it was kept."));
+                    (facts.is_unended_left_out ? "Its last number may lack digits: the line was left out."
+                                               : "It has all fields, and its last number as many decimals as those before: it was kept."));
 }
 
-std::string delimiter_text(char delimiter) { return delimiter == '\t' ? "tab" : delimiter == ' ' ? "blanks" : std::string("'") + delimiter + "'"; }
+std::string delimiter_text(char delimiter) {
+  return delimiter == '\t' ? "tab" : delimiter == ' ' ? "blanks" : std::string("'") + delimiter + "'";
+}
 
 } // namespace
 
@@ -83,12 +92,17 @@ std::vector<std::string> facts_text(const Recording& recording) {
   const RecordLayout& layout = recording.layout;
   const ReadFacts& facts = recording.facts;
   std::vector<std::string> lines;
-  lines.push_back("table: " + (layout.family.empty() ? std::string("no recorder named") : layout.family) + ", " + layout.encoding + ", columns parted by " + delimiter_text(layout.shape.delimiter) +
-                  ", decimal " + (layout.shape.decimal == ',' ? "comma" : "point") + ", " + (layout.shape.names_line > 0 ? "names in line " + std::to_string(layout.shape.names_line) : "no names"));
+  lines.push_back("table: " + (layout.family.empty() ? std::string("no recorder named") : layout.family) + ", " + layout.encoding +
+                  ", columns parted by " + delimiter_text(layout.shape.delimiter) + ", decimal " +
+                  (layout.shape.decimal == ',' ? "comma" : "point") + ", " +
+                  (layout.shape.names_line > 0 ? "names in line " + std::to_string(layout.shape.names_line) : "no names"));
   lines.push_back("time: " + layout.time.text + (layout.time.start.empty() ? "" : "; starts " + layout.time.start));
-  const std::string what = layout.is_peaks ? counted(facts.rows, "entry", "entries") : counted(facts.rows, "sample", "samples") + " in " + counted(facts.segments, "segment", "segments");
-  lines.push_back((layout.is_peaks ? std::string("entries: ") : "rate: " + rounded_text(layout.time.rate) + " Hz (" + layout.time.rate_text + "); ") + what + ", from " + number_text(facts.first) + " s to " +
-                  number_text(facts.last) + " s");
+  const std::string what = layout.is_peaks
+                               ? counted(facts.rows, "entry", "entries")
+                               : counted(facts.rows, "sample", "samples") + " in " + counted(facts.segments, "segment", "segments");
+  lines.push_back(
+      (layout.is_peaks ? std::string("entries: ") : "rate: " + rounded_text(layout.time.rate) + " Hz (" + layout.time.rate_text + "); ") +
+      what + ", from " + number_text(facts.first) + " s to " + number_text(facts.last) + " s");
   add_axes(recording, lines);
   if (layout.is_peaks) lines.push_back("peaks: in " + layout.peaks.unit + ", no waveform");
   else lines.push_back(gravity_text(recording));

@@ -85,7 +85,8 @@ bool is_missing(std::string_view field) {
   if (field.empty()) return true;
   if (field.size() > 9) return false;
   const std::string lower = lower_case(field);
-  for (const char* word : {"nan", "-nan", "+nan", "n/a", "na", "#n/a", "-", "--", "null", "none", "1.#qnan", "-1.#ind", "1,#qnan", "-1,#ind"})
+  for (const char* word :
+       {"nan", "-nan", "+nan", "n/a", "na", "#n/a", "-", "--", "null", "none", "1.#qnan", "-1.#ind", "1,#qnan", "-1,#ind"})
     if (lower == word) return true;
   return false;
 }
@@ -105,7 +106,8 @@ std::optional<AccelerationUnit> acceleration_unit(std::string_view text) {
   for (const char* word : {"mg", "milli-g", "millig", "mgn", "mgal*1000"})
     if (lower == word) return AccelerationUnit{"mg", k_gravity / 1000.0};
   // The two in the middle of the bytes of "²" in UTF-8 and in Latin-1.
-  for (const char* word : {"m/s^2", "m/s2", "m/s**2", "m/s\xC2\xB2", "m/s\xB2", "m/s/s", "m/(s^2)", "m s-2", "m s^-2", "m\xC2\xB7s-2", "ms-2", "ms^-2", "mps2", "m/sec^2", "m/sec2"})
+  for (const char* word : {"m/s^2", "m/s2", "m/s**2", "m/s\xC2\xB2", "m/s\xB2", "m/s/s", "m/(s^2)", "m s-2", "m s^-2", "m\xC2\xB7s-2",
+                           "ms-2", "ms^-2", "mps2", "m/sec^2", "m/sec2"})
     if (lower == word) return AccelerationUnit{"m/s^2", 1.0};
   for (const char* word : {"mm/s^2", "mm/s2", "mm/s\xC2\xB2"})
     if (lower == word) return AccelerationUnit{"mm/s^2", 0.001};
@@ -124,11 +126,12 @@ std::optional<double> time_unit(std::string_view text) {
     const char* name;
     double seconds;
   };
-  constexpr Named k_units[] = {{"s", 1.0},        {"sec", 1.0},      {"secs", 1.0},           {"second", 1.0},       {"seconds", 1.0},  {"ms", 1e-3},
-                               {"msec", 1e-3},    {"millis", 1e-3},  {"milliseconds", 1e-3},  {"millisecond", 1e-3}, {"us", 1e-6},      {"usec", 1e-6},
-                               {"micros", 1e-6},  {"\xC2\xB5s", 1e-6}, {"\xCE\xBCs", 1e-6},   {"\xB5s", 1e-6},       {"microseconds", 1e-6}, {"ns", 1e-9},
-                               {"nanos", 1e-9},   {"nanoseconds", 1e-9}, {"min", 60.0},       {"minutes", 60.0},     {"h", 3600.0},     {"hours", 3600.0},
-                               {"d", 86400.0},    {"day", 86400.0},  {"days", 86400.0}};
+  constexpr Named k_units[] = {{"s", 1.0},       {"sec", 1.0},           {"secs", 1.0},    {"second", 1.0},        {"seconds", 1.0},
+                               {"ms", 1e-3},     {"msec", 1e-3},         {"millis", 1e-3}, {"milliseconds", 1e-3}, {"millisecond", 1e-3},
+                               {"us", 1e-6},     {"usec", 1e-6},         {"micros", 1e-6}, {"\xC2\xB5s", 1e-6},    {"\xCE\xBCs", 1e-6},
+                               {"\xB5s", 1e-6},  {"microseconds", 1e-6}, {"ns", 1e-9},     {"nanos", 1e-9},        {"nanoseconds", 1e-9},
+                               {"min", 60.0},    {"minutes", 60.0},      {"h", 3600.0},    {"hours", 3600.0},      {"d", 86400.0},
+                               {"day", 86400.0}, {"days", 86400.0}};
   for (const Named& named : k_units)
     if (lower == named.name) return named.seconds;
   return std::nullopt;

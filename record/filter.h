@@ -22,7 +22,9 @@ public:
   [[nodiscard]] double bandwidth() const { return bandwidth_; }
   /// Samples after which what came before has died away to 1e-12.
   [[nodiscard]] int settling() const { return settling_; }
-  [[nodiscard]] static bool is_possible(double frequency_class, double rate) { return frequency_class > 0.0 && rate >= 10.0 * frequency_class; }
+  [[nodiscard]] static bool is_possible(double frequency_class, double rate) {
+    return frequency_class > 0.0 && rate >= 10.0 * frequency_class;
+  }
 
 private:
   template <class Iterator> void run(Iterator at, Iterator end) const;

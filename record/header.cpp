@@ -58,11 +58,13 @@ std::optional<double> with_unit(const std::vector<std::string>& values, std::str
 
 std::optional<SaidRate> rate_of(const Metadata& metadata) {
   std::string unit;
-  if (const auto* said = metadata.find({"samplerate", "samplingrate", "sampleratehz", "samplingratehz", "samplingfrequency", "samplefrequency", "samplespersecond", "rate", "fs", "frequency", "scanrate"})) {
+  if (const auto* said = metadata.find({"samplerate", "samplingrate", "sampleratehz", "samplingratehz", "samplingfrequency",
+                                        "samplefrequency", "samplespersecond", "rate", "fs", "frequency", "scanrate"})) {
     const auto value = with_unit(said->values, unit);
     const std::string lower = lower_case(unit);
     const double factor = lower == "khz" || lower == "ks/s" ? 1000.0 : 1.0;
-    const bool is_known = lower.empty() || lower == "hz" || lower == "khz" || lower == "s/s" || lower == "ks/s" || lower == "sps" || lower == "1/s" || lower == "samples/s";
+    const bool is_known = lower.empty() || lower == "hz" || lower == "khz" || lower == "s/s" || lower == "ks/s" || lower == "sps" ||
+                          lower == "1/s" || lower == "samples/s";
     if (value && *value > 0.0 && is_known) return SaidRate{*value * factor, said->line};
   }
   if (const auto* said = metadata.find({"samplinginterval", "sampleinterval", "sampleperiod", "deltat", "dt", "interval"})) {
@@ -78,9 +80,20 @@ std::string family_of(const std::vector<HeaderLine>& lines) {
     const char* word;
     const char* family;
   };
-  constexpr Mark k_marks[] = {{"gcdc", "Gulf Coast Data Concepts"}, {"gulf coast", "Gulf Coast Data Concepts"}, {"gcdataconcepts", "Gulf Coast Data Concepts"}, {";deadband", "Gulf Coast Data Concepts"},
-                              {"; deadband", "Gulf Coast Data Concepts"}, {"shocklog", "ShockLog"}, {"monilog", "MONILOG"}, {"lansmont", "Lansmont"},
-                              {"endaq", "enDAQ"}, {"slam stick", "enDAQ"}, {"solve", "SOLVE"}, {"palt", "PALT"}, {"*creator", "MSR"}, {"msr", "MSR"}};
+  constexpr Mark k_marks[] = {{"gcdc", "Gulf Coast Data Concepts"},
+                              {"gulf coast", "Gulf Coast Data Concepts"},
+                              {"gcdataconcepts", "Gulf Coast Data Concepts"},
+                              {";deadband", "Gulf Coast Data Concepts"},
+                              {"; deadband", "Gulf Coast Data Concepts"},
+                              {"shocklog", "ShockLog"},
+                              {"monilog", "MONILOG"},
+                              {"lansmont", "Lansmont"},
+                              {"endaq", "enDAQ"},
+                              {"slam stick", "enDAQ"},
+                              {"solve", "SOLVE"},
+                              {"palt", "PALT"},
+                              {"*creator", "MSR"},
+                              {"msr", "MSR"}};
   for (const Mark& mark : k_marks)
     for (const HeaderLine& line : lines)
       if (lower_case(line.text).find(mark.word) != std::string::npos) return mark.family;
@@ -109,11 +122,14 @@ bool holds(const std::vector<std::string>& words, std::initializer_list<const ch
 
 // 'x', 'y' or 'z' with its weight: 3 if the name says acceleration.
 std::pair<char, int> axis_of(const std::vector<std::string>& words) {
-  const bool is_acceleration = std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("acc") || w == "shock" || w == "a"; });
+  const bool is_acceleration =
+      std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("acc") || w == "shock" || w == "a"; });
   for (const std::string& word : words)
     for (const char axis : {'x', 'y', 'z'}) {
       const std::string a(1, axis);
-      if (word == "a" + a || word == "acc" + a || word == "accel" + a || word == "acceleration" + a || word == a + "acc" || word == a + "accel") return {axis, 3};
+      if (word == "a" + a || word == "acc" + a || word == "accel" + a || word == "acceleration" + a || word == a + "acc" ||
+          word == a + "accel")
+        return {axis, 3};
       if (word == a || word == a + "axis" || word == "axis" + a || word == a + "achse") return {axis, is_acceleration ? 3 : 2};
     }
   return {0, 0};
@@ -126,8 +142,9 @@ NamedRole role_of(std::string_view name) {
   if (words.empty()) return trimmed_blanks(name) == "#" ? NamedRole{Role::index, 1} : NamedRole{};
   // Sensors beside the accelerometer have axes, too.
   const bool is_other_sensor = std::any_of(words.begin(), words.end(), [](const std::string& w) {
-    return w.starts_with("gyr") || w.starts_with("rot") || w.starts_with("ang") || w.starts_with("mag") || w.starts_with("quat") || w.starts_with("orient") || w.starts_with("temp") ||
-           w.starts_with("press") || w.starts_with("hum") || w.starts_with("veloc") || w.starts_with("tilt") || w.starts_with("filter") || w == "rms" || w == "freq";
+    return w.starts_with("gyr") || w.starts_with("rot") || w.starts_with("ang") || w.starts_with("mag") || w.starts_with("quat") ||
+           w.starts_with("orient") || w.starts_with("temp") || w.starts_with("press") || w.starts_with("hum") || w.starts_with("veloc") ||
+           w.starts_with("tilt") || w.starts_with("filter") || w == "rms" || w == "freq";
   });
   const bool is_peak = holds(words, {"peak", "max", "maximum", "spitze", "peaks"});
   const auto [axis, weight] = axis_of(words);
@@ -148,7 +165,8 @@ NamedRole role_of(std::string_view name) {
   if (trimmed_blanks(name) == "T") return {}; // temperature as well as time: asked for if nothing else is a time
   if (words.size() == 1 && holds(words, {"t", "seconds", "sec", "s", "ms", "millis"})) return {Role::time, 1};
   if (holds(words, {"sample", "samples", "index", "idx", "nr", "no", "n", "scan"})) return {Role::index, 1};
-  if (std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("accel"); }) || holds(words, {"acc", "shock", "a"}))
+  if (std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("accel"); }) ||
+      holds(words, {"acc", "shock", "a"}))
     return {Role::acceleration, 1};
   return {};
 }

@@ -46,7 +46,25 @@ struct SaidRate {
 [[nodiscard]] std::vector<std::string> words_of(std::string_view name);
 
 /// What a column is by its name.
-enum class Role { other, time, date, clock, index, x, y, z, acceleration, magnitude, peak_x, peak_y, peak_z, peak, duration, velocity_change, slot };
+enum class Role {
+  other,
+  time,
+  date,
+  clock,
+  index,
+  x,
+  y,
+  z,
+  acceleration,
+  magnitude,
+  peak_x,
+  peak_y,
+  peak_z,
+  peak,
+  duration,
+  velocity_change,
+  slot
+};
 /// How sure: a name such as "Ax" says more than "X". 0: not of that role.
 struct NamedRole {
   Role role = Role::other;

@@ -31,7 +31,9 @@ std::vector<AxisColumn> chosen_axes(const RecordLayout& layout, const ReadOption
   for (const auto& [axis, option] : chosen) {
     if (!*option) continue;
     const bool is_turned = (*option)->starts_with('-');
-    AxisColumn column{axis, column_of(layout.shape, (*option)->substr(is_turned ? 1 : 0), std::string("--") + axis, layout.file), "", is_turned ? -1.0 : 1.0, "", ""};
+    AxisColumn column{axis, column_of(layout.shape, (*option)->substr(is_turned ? 1 : 0), std::string("--") + axis, layout.file),
+                      "",   is_turned ? -1.0 : 1.0,
+                      "",   ""};
     axes.push_back(column);
   }
   return axes;
@@ -49,8 +51,9 @@ void add_named_axis(const RecordLayout& layout, char axis, Role role, std::vecto
     found.push_back(i);
   }
   if (found.size() > 1)
-    throw RecordError(layout.file, layout.shape.names_line, 1, std::string("Several columns may be the axis ") + axis + ": '" + heading_text(layout.shape, found[0]) + "' and '" +
-                                                                   heading_text(layout.shape, found[1]) + "'. Choose one with --" + axis + " COLUMN.");
+    throw RecordError(layout.file, layout.shape.names_line, 1,
+                      std::string("Several columns may be the axis ") + axis + ": '" + heading_text(layout.shape, found[0]) + "' and '" +
+                          heading_text(layout.shape, found[1]) + "'. Choose one with --" + axis + " COLUMN.");
   if (!found.empty()) axes.push_back({axis, found.front(), "", 1.0, "", ""});
 }
 
@@ -61,10 +64,14 @@ std::vector<AxisColumn> named_axes(const RecordLayout& layout) {
   add_named_axis(layout, 'z', Role::z, axes);
   for (std::size_t i = 0; i < layout.shape.names.size() && axes.empty(); ++i)
     if (const std::string name = heading_of(layout.shape.names[i]).name; role_of(name).role == Role::acceleration)
-      throw RecordError(layout.file, layout.shape.names_line, 1, "The column '" + shown(name) + "' is an acceleration, but its name gives no axis. Give --x, --y or --z with its number, for example --x " + std::to_string(i + 1) + ".");
+      throw RecordError(layout.file, layout.shape.names_line, 1,
+                        "The column '" + shown(name) +
+                            "' is an acceleration, but its name gives no axis. Give --x, --y or --z with its number, for example --x " +
+                            std::to_string(i + 1) + ".");
   if (axes.empty())
-    throw RecordError(layout.file, layout.shape.names_line, 1, "No column is named as an axis of acceleration: there are " + quoted_list(layout.shape.names) +
-                                                                   ". Choose columns with --x, --y or --z, by name or number.");
+    throw RecordError(layout.file, layout.shape.names_line, 1,
+                      "No column is named as an axis of acceleration: there are " + quoted_list(layout.shape.names) +
+                          ". Choose columns with --x, --y or --z, by name or number.");
   return axes;
 }
 
@@ -79,7 +86,10 @@ std::vector<AxisColumn> unnamed_axes(const RecordLayout& layout, const std::vect
   else if (!options.time && begins_with_stamp) time = 0;
   const bool is_settled = time || options.time == "none";
   if (!is_settled || width != (time ? 4U : 3U))
-    throw RecordError(layout.file, line, 1, "No line names the " + counted(width, "column", "columns") + " of this table. Say which is which by number, for example --time 1 --x 2 --y 3 --z 4 (--time none if there is no column of times).");
+    throw RecordError(layout.file, line, 1,
+                      "No line names the " + counted(width, "column", "columns") +
+                          " of this table. Say which is which by number, for example --time 1 --x 2 --y 3 --z 4 (--time none if there is "
+                          "no column of times).");
   std::vector<AxisColumn> axes;
   for (std::size_t i = 0; i < width; ++i)
     if (i != time) axes.push_back({"xyz"[axes.size()], i, "", 1.0, "", ""});
@@ -119,13 +129,18 @@ void scale_counts(AxisColumn& axis, const RecordLayout& layout, std::size_t line
     axis.unit_source = "--counts-per-g " + number_text(*options.counts_per_g);
   } else if (const auto scale = scale_of(metadata)) {
     axis.factor *= scale->unit.factor / scale->counts_per_unit;
-    axis.unit_source = number_text(scale->counts_per_unit) + " counts are 1 " + scale->unit.name + " by line " + std::to_string(scale->line);
+    axis.unit_source =
+        number_text(scale->counts_per_unit) + " counts are 1 " + scale->unit.name + " by line " + std::to_string(scale->line);
   } else {
-    throw RecordError(layout.file, line, 1, "The column '" + axis.heading + "' holds counts, and no line says how many of them are 1 g. Look it up in the recorder's data sheet and give --counts-per-g NUMBER.");
+    throw RecordError(layout.file, line, 1,
+                      "The column '" + axis.heading +
+                          "' holds counts, and no line says how many of them are 1 g. Look it up in the recorder's data sheet and give "
+                          "--counts-per-g NUMBER.");
   }
 }
 
-void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options) {
+void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata,
+                const ReadOptions& options) {
   const std::size_t line = layout.shape.names_line > 0 ? layout.shape.names_line : head[layout.shape.first_data].number;
   std::string text = options.unit.value_or("");
   axis.heading = heading_text(layout.shape, axis.column);
@@ -138,12 +153,18 @@ void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<
   }
   if (text.empty() && (options.counts_per_g || scale_of(metadata))) return scale_counts(axis, layout, line, metadata, options);
   if (text.empty() && layout.family == "Gulf Coast Data Concepts")
-    throw RecordError(layout.file, line, 1, "The file gives no unit for '" + axis.heading + "'; recorders of this family write counts. Give --counts-per-g NUMBER from the data sheet, or --unit if these are no counts.");
+    throw RecordError(
+        layout.file, line, 1,
+        "The file gives no unit for '" + axis.heading +
+            "'; recorders of this family write counts. Give --counts-per-g NUMBER from the data sheet, or --unit if these are no counts.");
   if (text.empty())
-    throw RecordError(layout.file, line, 1, "The file gives no unit for '" + axis.heading + "'. Give --unit g, mg, m/s^2 or counts (with --counts-per-g).");
+    throw RecordError(layout.file, line, 1,
+                      "The file gives no unit for '" + axis.heading + "'. Give --unit g, mg, m/s^2 or counts (with --counts-per-g).");
   const auto unit = acceleration_unit(text);
   if (!unit)
-    throw RecordError(layout.file, line, 1, "'" + shown(text) + "' (" + axis.unit_source + ") is no unit of acceleration for '" + axis.heading + "'. Give --unit g, mg, m/s^2 or counts, or choose other columns with --x, --y, --z.");
+    throw RecordError(layout.file, line, 1,
+                      "'" + shown(text) + "' (" + axis.unit_source + ") is no unit of acceleration for '" + axis.heading +
+                          "'. Give --unit g, mg, m/s^2 or counts, or choose other columns with --x, --y, --z.");
   if (unit->is_counts) return scale_counts(axis, layout, line, metadata, options);
   axis.unit = unit->name;
   axis.factor *= unit->factor;
@@ -164,18 +185,28 @@ bool find_peaks(RecordLayout& layout) {
     if (role == Role::peak_z) peaks.axis[2] = column;
     if (role == Role::peak) peaks.magnitude = column;
     if (is_peak && !unit_text.empty() && unit != unit_text)
-      throw RecordError(layout.file, layout.shape.names_line, 1, "Peaks have different units: '" + shown(unit_text) + "' and '" + shown(unit) + "'. Give --unit if one of them is meant for all.");
+      throw RecordError(layout.file, layout.shape.names_line, 1,
+                        "Peaks have different units: '" + shown(unit_text) + "' and '" + shown(unit) +
+                            "'. Give --unit if one of them is meant for all.");
     if (is_peak) unit_text = unit;
     if (role == Role::duration) {
       peaks.duration = column;
       const auto factor = time_unit(unit);
-      if (!factor) throw RecordError(layout.file, layout.shape.names_line, 1, "The durations have no unit of time. Write one after the name of the column, such as 'Duration [ms]'.");
+      if (!factor)
+        throw RecordError(layout.file, layout.shape.names_line, 1,
+                          "The durations have no unit of time. Write one after the name of the column, such as 'Duration [ms]'.");
       peaks.duration_factor = *factor;
     }
     if (role == Role::velocity_change) {
       const std::string lower = lower_case(unit);
-      const double factor = lower == "m/s" ? 1.0 : lower == "mm/s" ? 0.001 : lower == "cm/s" ? 0.01 : lower == "gs" || lower == "g s" || lower == "g*s" ? k_gravity : 0.0;
-      if (factor == 0.0) layout.notes.push_back("The column '" + heading_text(layout.shape, i) + "' is left out: its unit is none of m/s, mm/s, cm/s and g s.");
+      const double factor = lower == "m/s"                                      ? 1.0
+                            : lower == "mm/s"                                   ? 0.001
+                            : lower == "cm/s"                                   ? 0.01
+                            : lower == "gs" || lower == "g s" || lower == "g*s" ? k_gravity
+                                                                                : 0.0;
+      if (factor == 0.0)
+        layout.notes.push_back("The column '" + heading_text(layout.shape, i) +
+                               "' is left out: its unit is none of m/s, mm/s, cm/s and g s.");
       else peaks.velocity_change = column, peaks.velocity_factor = factor;
     }
   }
@@ -189,7 +220,8 @@ void scale_peaks(RecordLayout& layout, const std::vector<HeaderLine>& head, cons
   scale_axis(axis, layout, head, metadata, options);
   layout.peaks.factor = axis.factor;
   layout.peaks.unit = axis.unit;
-  layout.notes.push_back("The file holds peaks only, no waveform: how long a shock lasted and what it did to velocity is known only where a column says so.");
+  layout.notes.push_back(
+      "The file holds peaks only, no waveform: how long a shock lasted and what it did to velocity is known only where a column says so.");
 }
 
 void find_range_and_holding(RecordLayout& layout, const Metadata& metadata, const ReadOptions& options) {
@@ -197,7 +229,8 @@ void find_range_and_holding(RecordLayout& layout, const Metadata& metadata, cons
   const auto* deadband = metadata.find({"deadband"});
   const auto band = deadband ? parse_number(deadband->values.front(), '.') : std::nullopt;
   if (options.holds) layout.holds = true, layout.hold_reason = "--hold";
-  else if (band && *band > 0.0) layout.holds = true, layout.hold_reason = "a deadband of " + deadband->values.front() + " by line " + std::to_string(deadband->line);
+  else if (band && *band > 0.0)
+    layout.holds = true, layout.hold_reason = "a deadband of " + deadband->values.front() + " by line " + std::to_string(deadband->line);
 }
 
 } // namespace
@@ -213,8 +246,10 @@ std::size_t column_of(const TableShape& shape, const std::string& name_or_number
   const char* end = name_or_number.data() + name_or_number.size();
   const auto [rest, status] = std::from_chars(name_or_number.data(), end, number);
   if (status == std::errc() && rest == end && number >= 1 && number <= shape.width) return number - 1;
-  throw RecordError(file, shape.names_line, shape.names_line > 0 ? 1 : 0, "There is no column '" + shown(name_or_number) + "' for " + option + did_you_mean(name_or_number, known) + ". The table has " +
-                              counted(shape.width, "column", "columns") + (known.empty() ? ", by numbers from 1." : ": " + quoted_list(shape.names) + "."));
+  throw RecordError(file, shape.names_line, shape.names_line > 0 ? 1 : 0,
+                    "There is no column '" + shown(name_or_number) + "' for " + option + did_you_mean(name_or_number, known) +
+                        ". The table has " + counted(shape.width, "column", "columns") +
+                        (known.empty() ? ", by numbers from 1." : ": " + quoted_list(shape.names) + "."));
 }
 
 RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options) {
@@ -230,11 +265,14 @@ RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::
   if (layout.is_peaks) {
     scale_peaks(layout, head, metadata, options);
   } else {
-    layout.axes = is_chosen ? chosen_axes(layout, options) : layout.shape.names.empty() ? unnamed_axes(layout, head, options) : named_axes(layout);
+    layout.axes = is_chosen                    ? chosen_axes(layout, options)
+                  : layout.shape.names.empty() ? unnamed_axes(layout, head, options)
+                                               : named_axes(layout);
     for (AxisColumn& axis : layout.axes) scale_axis(axis, layout, head, metadata, options);
   }
   layout.time = find_time(layout, head, metadata, options, layout.notes);
-  if (layout.time.index_column && layout.family == "PALT" && !layout.holds) layout.holds = true, layout.hold_reason = "recorders of this family leave repeated samples out";
+  if (layout.time.index_column && layout.family == "PALT" && !layout.holds)
+    layout.holds = true, layout.hold_reason = "recorders of this family leave repeated samples out";
   return layout;
 }
 

@@ -21,10 +21,10 @@ namespace steplap {
 struct TableShape {
   char delimiter = ',';
   char decimal = '.';
-  bool joins_pairs = false;     ///< a decimal comma beside a comma that parts fields: two fields make a number
-  bool has_decimals = true;     ///< false: the head holds whole numbers only
-  std::size_t first_data = 0;   ///< index into the head of the first row of numbers
-  std::size_t width = 0;        ///< fields of a full row
+  bool joins_pairs = false;                   ///< a decimal comma beside a comma that parts fields: two fields make a number
+  bool has_decimals = true;                   ///< false: the head holds whole numbers only
+  std::size_t first_data = 0;                 ///< index into the head of the first row of numbers
+  std::size_t width = 0;                      ///< fields of a full row
   std::size_t names_line = 0, units_line = 0; ///< 0: there is none
   std::vector<std::string> names, units;      ///< as many as columns, or none
 
@@ -73,9 +73,9 @@ struct RecordLayout {
   std::vector<AxisColumn> axes; ///< at most three, in the order x, y, z; none in a table of peaks
   bool is_peaks = false;
   PeakColumns peaks;
-  bool holds = false;           ///< left-out samples keep the value before them
+  bool holds = false; ///< left-out samples keep the value before them
   std::string hold_reason;
-  std::optional<double> range;  ///< m/s², where the sensor ends
+  std::optional<double> range;    ///< m/s², where the sensor ends
   std::vector<std::string> notes; ///< whole sentences
 };
 
@@ -83,8 +83,10 @@ struct RecordLayout {
 [[nodiscard]] RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
 
 /// Used by find_record_layout(): needs shape, axes and family.
-[[nodiscard]] TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes);
+[[nodiscard]] TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata,
+                                 const ReadOptions& options, std::vector<std::string>& notes);
 /// Column by name or number from 1.
-[[nodiscard]] std::size_t column_of(const TableShape& shape, const std::string& name_or_number, const std::string& option, const std::string& file);
+[[nodiscard]] std::size_t column_of(const TableShape& shape, const std::string& name_or_number, const std::string& option,
+                                    const std::string& file);
 
 } // namespace steplap

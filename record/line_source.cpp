@@ -38,7 +38,8 @@ void append_utf8(std::string& text, unsigned code) {
 
 RecordError::RecordError(const std::string& file, std::size_t line, std::size_t column, const std::string& what)
     : FileError(file,
-                file + (line > 0 ? ":" + std::to_string(line) : "") + (line > 0 && column > 0 ? ":" + std::to_string(column) : "") + ": " + what,
+                file + (line > 0 ? ":" + std::to_string(line) : "") + (line > 0 && column > 0 ? ":" + std::to_string(column) : "") + ": " +
+                    what,
                 line),
       column_(column) {}
 
@@ -51,7 +52,8 @@ LineSource::LineSource(const std::string& path) : name_(path) {
   errno = 0;
   struct ::stat status {};
   if (!is_standard_input(path)) {
-    if (::stat(path.c_str(), &status) != 0) throw RecordError(name_, 0, 0, std::string("The file cannot be read: ") + std::strerror(errno) + ".");
+    if (::stat(path.c_str(), &status) != 0)
+      throw RecordError(name_, 0, 0, std::string("The file cannot be read: ") + std::strerror(errno) + ".");
     if (S_ISDIR(status.st_mode)) throw RecordError(name_, 0, 0, "This is a folder. Name the recorder's file in it.");
     if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) throw RecordError(name_, 0, 0, "This is a device, not a file.");
   }
@@ -65,7 +67,8 @@ LineSource::LineSource(std::string content, const std::string& name) : name_(nam
 std::size_t LineSource::read_bytes(char* at, std::size_t room) {
   if (file_) {
     const std::size_t count = std::fread(at, 1, room, file_.get());
-    if (count < room && std::ferror(file_.get())) throw RecordError(name_, number_, 0, std::string("Reading failed: ") + std::strerror(errno) + ".");
+    if (count < room && std::ferror(file_.get()))
+      throw RecordError(name_, number_, 0, std::string("Reading failed: ") + std::strerror(errno) + ".");
     return count;
   }
   const std::size_t count = std::min(room, memory_.size() - memory_at_);
@@ -113,12 +116,14 @@ void LineSource::check_zero_bytes(std::size_t from) {
       ++line;
       start = i + 1;
     }
-  throw RecordError(name_, line, place - start + 1, "A zero byte stands here: this is no text. Export the record as CSV from the recorder's program.");
+  throw RecordError(name_, line, place - start + 1,
+                    "A zero byte stands here: this is no text. Export the record as CSV from the recorder's program.");
 }
 
 // Two bytes a unit; characters beyond the first 65 536 are two units. Appends what raw_ holds; an odd byte at the end is an error.
 void LineSource::append_utf16(std::size_t count) {
-  if (count % 2 != 0) throw RecordError(name_, 0, 0, "The file is UTF-16 with an odd number of bytes: it is cut. Copy it again from the recorder.");
+  if (count % 2 != 0)
+    throw RecordError(name_, 0, 0, "The file is UTF-16 with an odd number of bytes: it is cut. Copy it again from the recorder.");
   const std::size_t before = buffer_.size();
   for (std::size_t i = 0; i + 1 < count; i += 2) {
     const auto first = static_cast<unsigned char>(raw_[i]), second = static_cast<unsigned char>(raw_[i + 1]);

@@ -18,8 +18,7 @@ inline constexpr OptionWords<char, 4> k_delimiters{{{"comma", ','}, {"semicolon"
 inline constexpr OptionWords<char, 2> k_decimals{{{"point", '.'}, {"comma", ','}}};
 inline constexpr OptionWords<unsigned, 3> k_dates{
     {{"day-first", k_day_first}, {"month-first", k_month_first}, {"year-first", k_year_first}}};
-inline constexpr OptionWords<IfMissing, 3> k_missing{
-    {{"refuse", IfMissing::refuse}, {"skip", IfMissing::skip}, {"hold", IfMissing::hold}}};
+inline constexpr OptionWords<IfMissing, 3> k_missing{{{"refuse", IfMissing::refuse}, {"skip", IfMissing::skip}, {"hold", IfMissing::hold}}};
 inline constexpr OptionWords<IfRepeated, 3> k_repeated{
     {{"refuse", IfRepeated::refuse}, {"first", IfRepeated::first}, {"last", IfRepeated::last}}};
 inline constexpr OptionWords<IfBackward, 3> k_backward{
@@ -34,8 +33,7 @@ template <class Words> [[nodiscard]] auto meaning_of(const Words& words, const s
 }
 template <class Words> [[nodiscard]] std::vector<std::string> words_of(const Words& words) {
   std::vector<std::string> texts;
-  for (const auto& each : words)
-    texts.emplace_back(each.first);
+  for (const auto& each : words) texts.emplace_back(each.first);
   return texts;
 }
 

@@ -13,9 +13,11 @@
 
 namespace steplap {
 
-PartFile::PartFile(std::string path, bool is_overwriting) : path_(std::move(path)), temporary_(path_ + ".partial-" + std::to_string(::getpid())) {
+PartFile::PartFile(std::string path, bool is_overwriting)
+    : path_(std::move(path)), temporary_(path_ + ".partial-" + std::to_string(::getpid())) {
   struct ::stat status {};
-  if (!is_overwriting && ::stat(path_.c_str(), &status) == 0) throw FileError(path_, "'" + path_ + "' exists. Choose another folder with -o, or give --force to overwrite it.");
+  if (!is_overwriting && ::stat(path_.c_str(), &status) == 0)
+    throw FileError(path_, "'" + path_ + "' exists. Choose another folder with -o, or give --force to overwrite it.");
   file_ = std::fopen(temporary_.c_str(), "wbe");
   if (!file_) fail("cannot be written");
 }
@@ -97,7 +99,8 @@ std::vector<std::string> SignalWriter::commit() {
   first_.reset();
   std::string name = folder_ + "/signal.csv";
   if (segments_ > 1) {
-    if (std::rename(name.c_str(), path(1).c_str()) != 0) throw FileError(path(1), "'" + path(1) + "' cannot be written: " + std::strerror(errno));
+    if (std::rename(name.c_str(), path(1).c_str()) != 0)
+      throw FileError(path(1), "'" + path(1) + "' cannot be written: " + std::strerror(errno));
     name = path(1);
   }
   written_.insert(written_.begin(), name);
@@ -126,24 +129,43 @@ namespace {
 
 std::string number_or_nothing(double value) { return std::isnan(value) ? "" : number_text(value); }
 
-nlohmann::ordered_json json_number(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); }
+nlohmann::ordered_json json_number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
 
 nlohmann::ordered_json axis_json(const RecordResult& result, std::size_t i) {
   const AxisColumn& axis = result.recording.layout.axes[i];
   const AxisFacts& facts = result.recording.facts.axes[i];
-  return {{"axis", std::string(1, axis.axis)}, {"column", axis.column + 1}, {"heading", axis.heading}, {"unit", axis.unit}, {"unit_by", axis.unit_source}, {"factor", axis.factor},
-          {"least", json_number(facts.least)}, {"greatest", json_number(facts.greatest)}, {"first_second", facts.rest}, {"subtracted", result.conditioning.offset[i]},
-          {"flat_samples", facts.flat_longest}, {"samples_beyond_range", facts.beyond_range.count},
-          {"velocity_at_end", result.drift.velocity[i]}, {"displacement_at_end", result.drift.displacement[i]}};
+  return {{"axis", std::string(1, axis.axis)},
+          {"column", axis.column + 1},
+          {"heading", axis.heading},
+          {"unit", axis.unit},
+          {"unit_by", axis.unit_source},
+          {"factor", axis.factor},
+          {"least", json_number(facts.least)},
+          {"greatest", json_number(facts.greatest)},
+          {"first_second", facts.rest},
+          {"subtracted", result.conditioning.offset[i]},
+          {"flat_samples", facts.flat_longest},
+          {"samples_beyond_range", facts.beyond_range.count},
+          {"velocity_at_end", result.drift.velocity[i]},
+          {"displacement_at_end", result.drift.displacement[i]}};
 }
 
 nlohmann::ordered_json event_json(const EventResult& found, const RecordLayout& layout) {
   const ShockEvent& event = found.event;
-  nlohmann::ordered_json json{{"event", event.number}, {"segment", event.segment}, {"segment_line", event.line}, {"begin", event.begin}, {"end", event.end}, {"goes_on", event.goes_on}};
+  nlohmann::ordered_json json{{"event", event.number}, {"segment", event.segment}, {"segment_line", event.line},
+                              {"begin", event.begin},  {"end", event.end},         {"goes_on", event.goes_on}};
   for (std::size_t i = 0; i < event.axes.size(); ++i) {
     const AxisEvent& axis = event.axes[i];
-    nlohmann::ordered_json entry{{"axis", std::string(1, layout.axes[i].axis)}, {"peak", axis.peak}, {"peak_time", axis.peak_time}, {"duration", axis.duration}, {"velocity_change", axis.velocity_change},
-                                 {"frequency", axis.frequency}, {"peak_cfc60", json_number(axis.at_cfc60)}, {"peak_cfc10", json_number(axis.at_cfc10)}};
+    nlohmann::ordered_json entry{{"axis", std::string(1, layout.axes[i].axis)},
+                                 {"peak", axis.peak},
+                                 {"peak_time", axis.peak_time},
+                                 {"duration", axis.duration},
+                                 {"velocity_change", axis.velocity_change},
+                                 {"frequency", axis.frequency},
+                                 {"peak_cfc60", json_number(axis.at_cfc60)},
+                                 {"peak_cfc10", json_number(axis.at_cfc10)}};
     json["axes"].push_back(std::move(entry));
   }
   return json;
@@ -158,17 +180,21 @@ std::string record_events_csv(const RecordResult& result) {
     std::size_t number = 0;
     for (const PeakEntry& entry : result.recording.peaks) {
       text += std::to_string(++number) + "," + std::to_string(entry.line);
-      for (const double value : {entry.t, entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude, entry.duration, entry.velocity_change}) text += "," + number_or_nothing(value);
+      for (const double value :
+           {entry.t, entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude, entry.duration, entry.velocity_change})
+        text += "," + number_or_nothing(value);
       text += "\n";
     }
     return text;
   }
-  std::string text = "event,axis,segment,begin [s],end [s],peak time [s],peak [m/s^2],bandwidth [Hz],duration [s],velocity change [m/s],frequency [Hz],peak CFC 60 [m/s^2],peak CFC 10 [m/s^2]\n";
+  std::string text = "event,axis,segment,begin [s],end [s],peak time [s],peak [m/s^2],bandwidth [Hz],duration [s],velocity change "
+                     "[m/s],frequency [Hz],peak CFC 60 [m/s^2],peak CFC 10 [m/s^2]\n";
   for (const EventResult& found : result.events)
     for (std::size_t i = 0; i < found.event.axes.size(); ++i) {
       const AxisEvent& axis = found.event.axes[i];
       text += std::to_string(found.event.number) + "," + layout.axes[i].axis + "," + std::to_string(found.event.segment);
-      for (const double value : {found.event.begin, found.event.end, axis.peak_time, axis.peak, result.bandwidth, axis.duration, axis.velocity_change, axis.frequency, axis.at_cfc60, axis.at_cfc10})
+      for (const double value : {found.event.begin, found.event.end, axis.peak_time, axis.peak, result.bandwidth, axis.duration,
+                                 axis.velocity_change, axis.frequency, axis.at_cfc60, axis.at_cfc10})
         text += "," + number_or_nothing(value);
       text += "\n";
     }
@@ -191,8 +217,10 @@ std::string spectra_csv(const RecordResult& result) {
 std::string record_json(const RecordResult& result) {
   const RecordLayout& layout = result.recording.layout;
   const ReadFacts& facts = result.recording.facts;
-  nlohmann::ordered_json json{{"file", layout.file}, {"family", layout.family}, {"taken_for", facts_text(result.recording)}, {"is_peaks", layout.is_peaks}, {"start", layout.time.start},
-                              {"rows", facts.rows}, {"segments", facts.segments}, {"gaps", facts.gaps.count}, {"first", facts.first}, {"last", facts.last}};
+  nlohmann::ordered_json json{{"file", layout.file},         {"family", layout.family},    {"taken_for", facts_text(result.recording)},
+                              {"is_peaks", layout.is_peaks}, {"start", layout.time.start}, {"rows", facts.rows},
+                              {"segments", facts.segments},  {"gaps", facts.gaps.count},   {"first", facts.first},
+                              {"last", facts.last}};
   if (!layout.is_peaks) {
     json["rate"] = layout.time.rate;
     json["conditioned"] = {{"rate", result.rate}, {"bandwidth", result.bandwidth}, {"interpolated_samples", result.interpolated}};

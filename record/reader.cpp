@@ -38,7 +38,8 @@ public:
     facts.greatest = -high_.value;
     for (const End* end : {&low_, &high_}) { // of both the one further from where the axis rests: a long rest hides no peak
       const double value = end == &low_ ? end->value : -end->value;
-      if (end->longest >= 3 && end->jump >= 3.0 * step_ && (facts.flat_longest == 0 || std::abs(value - facts.rest) > std::abs(facts.flat_value - facts.rest)))
+      if (end->longest >= 3 && end->jump >= 3.0 * step_ &&
+          (facts.flat_longest == 0 || std::abs(value - facts.rest) > std::abs(facts.flat_value - facts.rest)))
         facts.flat_longest = end->longest, facts.flat_line = end->line, facts.flat_value = value;
     }
   }
@@ -130,7 +131,8 @@ private:
     if (may_name && fields_.size() == layout_->shape.width && is_terminated_ && is_text_line()) return take_text_line();
     if (!layout_->shape.split(text, fields_)) {
       if (!is_terminated_) return cut();
-      throw RecordError(layout_->file, line_, 1, "The fields of this line do not come out: a quote is not closed, or a decimal comma is missing. Correct the line.");
+      throw RecordError(layout_->file, line_, 1,
+                        "The fields of this line do not come out: a quote is not closed, or a decimal comma is missing. Correct the line.");
     }
     while (fields_.size() > layout_->shape.width && fields_.back().empty()) fields_.pop_back();
     if (is_text_line()) return is_terminated_ ? take_text_line() : cut();
@@ -142,7 +144,9 @@ private:
     }
     note_decimals();
     if (fields_.size() > layout_->shape.width)
-      fail(fields_[layout_->shape.width], "This row has " + counted(fields_.size(), "field", "fields") + ", " + std::to_string(layout_->shape.width) + " were expected. If two rows ran together, part them.");
+      fail(fields_[layout_->shape.width], "This row has " + counted(fields_.size(), "field", "fields") + ", " +
+                                              std::to_string(layout_->shape.width) +
+                                              " were expected. If two rows ran together, part them.");
     facts.last_comment.clear();
     if (layout_->is_peaks) return take_peaks();
     if (take_axes()) take_sample();
@@ -194,10 +198,12 @@ private:
     const TableShape& shape = layout_->shape;
     const bool is_of_full_width = fields_.size() == shape.width && !shape.names.empty();
     const auto is_as = [&](const std::vector<std::string>& texts) {
-      return std::equal(fields_.begin(), fields_.end(), texts.begin(), texts.end(), [](std::string_view a, const std::string& b) { return a == b; });
+      return std::equal(fields_.begin(), fields_.end(), texts.begin(), texts.end(),
+                        [](std::string_view a, const std::string& b) { return a == b; });
     };
     if (is_of_full_width && !is_as(shape.names) && !is_as(shape.units))
-      fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) + ". Split the file before it, and read the parts one by one.");
+      fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) +
+                                ". Split the file before it, and read the parts one by one.");
     recording_.facts.blocks.note(line_);
     recording_.facts.last_comment = shown(text_.substr(0, 80)); // of the file, if no row follows
     is_new_block_ = true;
@@ -210,14 +216,17 @@ private:
       return *value;
     }
     const auto comma = field.find(',');
-    if (!shape.has_decimals && shape.delimiter != ',' && comma != std::string_view::npos && parse_number(field, ',') && (field.size() - comma != 4 || field.front() == '0')) {
+    if (!shape.has_decimals && shape.delimiter != ',' && comma != std::string_view::npos && parse_number(field, ',') &&
+        (field.size() - comma != 4 || field.front() == '0')) {
       shape.decimal = ','; // the first number of the file that is not whole
       shape.has_decimals = true;
       return *parse_number(field, ',');
     }
     if (field.find(',') != std::string_view::npos && shape.delimiter != ',')
-      fail(field, "'" + shown(field) + "' is no number with a decimal " + (shape.decimal == ',' ? "comma" : "point") + ", as those before it. Correct it, or give --decimal.");
-    fail(field, "'" + shown(field.substr(0, 40)) + "' is not a finite number. Correct it, or leave the field empty and give --missing skip or hold.");
+      fail(field, "'" + shown(field) + "' is no number with a decimal " + (shape.decimal == ',' ? "comma" : "point") +
+                      ", as those before it. Correct it, or give --decimal.");
+    fail(field, "'" + shown(field.substr(0, 40)) +
+                    "' is not a finite number. Correct it, or leave the field empty and give --missing skip or hold.");
   }
 
   // False: the row has no sample.
@@ -242,7 +251,8 @@ private:
       return false;
     }
     if (options_.missing == IfMissing::refuse)
-      fail(first_missing, "There is no value for an axis here. Give --missing skip to leave such rows out, or --missing hold to keep the value before.");
+      fail(first_missing,
+           "There is no value for an axis here. Give --missing skip to leave such rows out, or --missing hold to keep the value before.");
     facts.missing.note(line_);
     if (options_.missing == IfMissing::skip || !has_previous_) return skip_row();
     for (std::size_t i = 0; i < count; ++i)
@@ -261,15 +271,19 @@ private:
   bool has_other_value() const {
     const TimeBase& time = layout_->time;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const bool is_time = (time.kind != TimeKind::none && (i == time.column || (time.kind == TimeKind::date_and_clock && i == time.clock_column))) || time.index_column == i;
-      const bool is_axis = std::any_of(layout_->axes.begin(), layout_->axes.end(), [&](const AxisColumn& axis) { return axis.column == i; });
+      const bool is_time =
+          (time.kind != TimeKind::none && (i == time.column || (time.kind == TimeKind::date_and_clock && i == time.clock_column))) ||
+          time.index_column == i;
+      const bool is_axis =
+          std::any_of(layout_->axes.begin(), layout_->axes.end(), [&](const AxisColumn& axis) { return axis.column == i; });
       if (!is_time && !is_axis && !is_missing(fields_[i])) return true;
     }
     return false;
   }
 
   std::string_view field_at(std::size_t column, const char* what) const {
-    if (column >= fields_.size()) fail(text_.substr(text_.size()), std::string("The row ends before its ") + what + ". Correct it or take it out.");
+    if (column >= fields_.size())
+      fail(text_.substr(text_.size()), std::string("The row ends before its ") + what + ". Correct it or take it out.");
     return fields_[column];
   }
 
@@ -277,15 +291,20 @@ private:
     const TimeBase& time = layout_->time;
     const std::string_view field = field_at(time.column, "time");
     const auto stamp = parse_stamp(field, time.date_order);
-    if (!stamp) fail(field, "'" + shown(field.substr(0, 40)) + "' is no date or time in the form of the rows before (" + time.text + "). Correct it.");
-    if (first_stamp_ && (stamp->has_date != first_stamp_->has_date || stamp->has_zone != first_stamp_->has_zone || stamp->has_clock != first_stamp_->has_clock))
-      fail(field, "'" + shown(field.substr(0, 40)) + "' has another form than the first time of the file: a date, a time of day or a zone more or less. Correct it.");
+    if (!stamp)
+      fail(field,
+           "'" + shown(field.substr(0, 40)) + "' is no date or time in the form of the rows before (" + time.text + "). Correct it.");
+    if (first_stamp_ && (stamp->has_date != first_stamp_->has_date || stamp->has_zone != first_stamp_->has_zone ||
+                         stamp->has_clock != first_stamp_->has_clock))
+      fail(field, "'" + shown(field.substr(0, 40)) +
+                      "' has another form than the first time of the file: a date, a time of day or a zone more or less. Correct it.");
     if (!first_stamp_) first_stamp_ = stamp;
     std::int64_t ns = stamp->ns;
     if (time.kind == TimeKind::date_and_clock) {
       const std::string_view clock_field = field_at(time.clock_column, "time of day");
       const auto clock = parse_stamp(clock_field, k_year_first);
-      if (!clock || clock->has_date || stamp->has_clock) fail(clock_field, "'" + shown(clock_field.substr(0, 40)) + "' is no time of day. Correct it.");
+      if (!clock || clock->has_date || stamp->has_clock)
+        fail(clock_field, "'" + shown(clock_field.substr(0, 40)) + "' is no time of day. Correct it.");
       ns += clock->ns;
     } else if (!stamp->has_date) {
       ns += midnights_ * k_day_ns;
@@ -320,7 +339,8 @@ private:
     if (!uses_index_) return;
     const std::string_view field = field_at(*layout_->time.index_column, "number of the sample");
     const double value = number_in(field);
-    if (value != std::floor(value)) fail(field, "'" + shown(field) + "' is not the number of a sample. Correct it, or choose a column of times with --time.");
+    if (value != std::floor(value))
+      fail(field, "'" + shown(field) + "' is not the number of a sample. Correct it, or choose a column of times with --time.");
     if (!has_first_index_) first_index_ = value, has_first_index_ = true;
     index_step_ = value - first_index_ - index_;
     index_ = value - first_index_;
@@ -382,7 +402,9 @@ private:
   // True: the row replaces nothing and goes on.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
-      fail(place, "The time '" + shown(place.substr(0, 40)) + "' is that of the row before. Give --repeated first or last to keep one row of each time; if the clock is too coarse for the rate, give --time none and --rate HZ.");
+      fail(place, "The time '" + shown(place.substr(0, 40)) +
+                      "' is that of the row before. Give --repeated first or last to keep one row of each time; if the clock is too coarse "
+                      "for the rate, give --time none and --rate HZ.");
     recording_.facts.repeated.note(line_);
     if (waiting_) waiting_->a = previous_ = values_, waiting_->line = line_;
     return false;
@@ -390,7 +412,9 @@ private:
 
   bool take_backward(std::string_view place) {
     if (options_.backward == IfBackward::refuse)
-      fail(place, "The time '" + shown(place.substr(0, 40)) + "' comes before that of the row before. Give --backward split if a new part begins here, or --backward drop to leave such rows out.");
+      fail(place, "The time '" + shown(place.substr(0, 40)) +
+                      "' comes before that of the row before. Give --backward split if a new part begins here, or --backward drop to leave "
+                      "such rows out.");
     recording_.facts.backward.note(line_);
     if (options_.backward == IfBackward::drop) return false;
     end_segment();
@@ -435,7 +459,8 @@ private:
     entry.velocity_change = value(columns.velocity_change, columns.velocity_factor);
     if (entry.duration < 0.0) fail(fields_[static_cast<std::size_t>(columns.duration)], "A shock cannot last a negative time. Correct it.");
     if (!recording_.peaks.empty() && entry.t < recording_.peaks.back().t && options_.backward == IfBackward::refuse)
-      fail(layout_->time.kind == TimeKind::none ? text_ : field_at(layout_->time.column, "time"), "This entry is earlier than the one before. Give --backward split if entries are not in order.");
+      fail(layout_->time.kind == TimeKind::none ? text_ : field_at(layout_->time.column, "time"),
+           "This entry is earlier than the one before. Give --backward split if entries are not in order.");
     if (recording_.facts.rows == 0) recording_.facts.first = entry.t;
     recording_.facts.last = entry.t;
     ++recording_.facts.rows;
@@ -448,7 +473,10 @@ private:
     ReadFacts& facts = recording_.facts;
     facts.lines = source_.number();
     if (facts.rows == 0)
-      throw RecordError(layout_->file, facts.lines, 1, facts.cut_line > 0 || facts.is_unended_left_out ? "The only row is cut: no row is left. Copy the file again from the recorder." : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
+      throw RecordError(layout_->file, facts.lines, 1,
+                        facts.cut_line > 0 || facts.is_unended_left_out
+                            ? "The only row is cut: no row is left. Copy the file again from the recorder."
+                            : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
       facts.axes[i].rest = summed_ > 0 ? sums_[i] / static_cast<double>(summed_) : 0.0;
       watches_[i].finish(facts.axes[i]);
@@ -467,7 +495,7 @@ private:
   std::size_t line_ = 0, needed_ = 0, rows_in_block_ = 0, summed_ = 0;
   std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the row before: fields, and digits behind the decimal sign of the last
   bool is_fixed_ = true;                          ///< the last numbers of all rows have as many decimals
-  double step_ = 0.0; ///< s
+  double step_ = 0.0;                             ///< s
   struct Row {
     double t = 0.0;
     std::array<double, 3> a{};
@@ -477,7 +505,8 @@ private:
   std::array<double, 3> values_{}, previous_{}, sums_{};
   std::array<bool, 3> is_missing_{};
   std::array<FlatWatch, 3> watches_;
-  bool has_previous_ = false, is_in_segment_ = false, is_new_block_ = false, has_origin_ = false, uses_index_ = false, has_first_index_ = false;
+  bool has_previous_ = false, is_in_segment_ = false, is_new_block_ = false, has_origin_ = false, uses_index_ = false,
+       has_first_index_ = false;
   double t_ = 0.0, origin_ = 0.0, index_ = 0.0, index_step_ = 0.0, first_index_ = 0.0;
   std::int64_t origin_ns_ = 0, last_ns_ = 0, midnights_ = 0;
   std::optional<Stamp> first_stamp_;
@@ -485,6 +514,8 @@ private:
 
 } // namespace
 
-Recording read_record(LineSource& source, const ReadOptions& options, SampleSink& sink) { return RecordReader(source, options, sink).read(); }
+Recording read_record(LineSource& source, const ReadOptions& options, SampleSink& sink) {
+  return RecordReader(source, options, sink).read();
+}
 
 } // namespace steplap

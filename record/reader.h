@@ -44,14 +44,14 @@ struct AxisFacts {
   std::size_t flat_longest = 0; ///< samples in a row at an end of the values, entered or left by a jump: clipped, as it seems
   std::size_t flat_line = 0;
   double flat_value = 0.0;
-  Counted beyond_range;         ///< at or beyond the sensor's range, where a line says it
+  Counted beyond_range; ///< at or beyond the sensor's range, where a line says it
 };
 
 /// An entry of a table of peaks; what the table does not give is NaN.
 struct PeakEntry {
   double t = 0.0; ///< s from the first entry
   std::size_t line = 0;
-  std::array<double, 3> axis{}; ///< m/s²
+  std::array<double, 3> axis{};                                  ///< m/s²
   double magnitude = 0.0, duration = 0.0, velocity_change = 0.0; ///< m/s², s, m/s
 };
 
@@ -60,10 +60,10 @@ struct ReadFacts {
   double first = 0.0, last = 0.0;                ///< s
   double longest_gap = 0.0;                      ///< s
   Counted gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
-  std::size_t cut_line = 0;                      ///< the last line, left out because it is cut; 0: it is not
-  std::size_t unended_line = 0;                  ///< the last line, if no line break ends it; 0: one does
-  bool is_unended_left_out = false;              ///< it was left out, as its last number may lack digits
-  std::string last_comment;                      ///< after the last row: a comment, or a line of text
+  std::size_t cut_line = 0;         ///< the last line, left out because it is cut; 0: it is not
+  std::size_t unended_line = 0;     ///< the last line, if no line break ends it; 0: one does
+  bool is_unended_left_out = false; ///< it was left out, as its last number may lack digits
+  std::string last_comment;         ///< after the last row: a comment, or a line of text
   std::array<AxisFacts, 3> axes;
 };
 

@@ -42,9 +42,7 @@ struct Recorder : SignalDefinition {
   double start = 0.0; // s
 };
 
-[[noreturn]] void fail(const Recorder& r, const std::string& what) {
-  throw ModelError(r.where, "recorder '" + r.name + "': " + what);
-}
+[[noreturn]] void fail(const Recorder& r, const std::string& what) { throw ModelError(r.where, "recorder '" + r.name + "': " + what); }
 
 ReadOptions read_options(const Recorder& r) {
   ReadOptions o;
@@ -98,28 +96,23 @@ struct Conditioned : SignalSink {
   }
   void put(double t, const double*, const double* filtered) override {
     segments.back().times.push_back(t);
-    for (std::size_t i = 0; i < axes; ++i)
-      segments.back().filtered[i].push_back(filtered[i]);
+    for (std::size_t i = 0; i < axes; ++i) segments.back().filtered[i].push_back(filtered[i]);
   }
   void end_segment() override {}
 };
 
 // "-z": the axis's place in the record and −1.
-std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& layout, const std::string& text,
-                                       const char* field) {
+std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& layout, const std::string& text, const char* field) {
   const char letter = text.back();
-  const auto found =
-      std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return each.axis == letter; });
+  const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return each.axis == letter; });
   if (found == layout.axes.end())
-    fail(r, std::string("'") + field + "' is " + text + ", but the record has no axis " + letter + ": name its column by '" +
-                letter + "'");
+    fail(r, std::string("'") + field + "' is " + text + ", but the record has no axis " + letter + ": name its column by '" + letter + "'");
   return {static_cast<std::size_t>(found - layout.axes.begin()), text.front() == '-' ? -1.0 : 1.0};
 }
 
 // How much of each axis of the record the signal takes.
 std::array<double, 3> direction_of(const Recorder& r, const RecordLayout& layout) {
-  if (r.axis.has_value() == !r.map.empty())
-    fail(r, "give 'axis', such as \"x\" or \"-z\", or 'map', the three shares of x, y and z");
+  if (r.axis.has_value() == !r.map.empty()) fail(r, "give 'axis', such as \"x\" or \"-z\", or 'map', the three shares of x, y and z");
   std::array<double, 3> direction{};
   if (r.axis) {
     const auto [k, sign] = axis_of(r, layout, *r.axis, "axis");
@@ -146,12 +139,10 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
       for (const Samples::Row& row : segment.rows) {
         if (row.t < r.rest[0] || row.t > r.rest[1]) continue;
         ++count;
-        for (std::size_t i = 0; i < 3; ++i)
-          offset[i] += row.a[i];
+        for (std::size_t i = 0; i < 3; ++i) offset[i] += row.a[i];
       }
     if (count < 2) fail(r, "the record has no two samples within 'rest'");
-    for (double& each : offset)
-      each /= static_cast<double>(count);
+    for (double& each : offset) each /= static_cast<double>(count);
   }
   if (r.gravity && *r.gravity != "none") {
     if (!r.rest.empty()) fail(r, "give 'gravity' or 'rest', not both: the mean at rest has gravity in it");
@@ -160,11 +151,10 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
   }
   constexpr double k_felt = 0.5 * k_gravity; // as the command refuses to list events
   double felt = 0.0;
-  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i)
-    felt += direction[i] * recording.facts.axes[i].rest;
+  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) felt += direction[i] * recording.facts.axes[i].rest;
   if (!r.gravity && r.rest.empty() && std::abs(felt) > k_felt)
-    fail(r, "it reads " + rounded_text(felt / k_gravity, 3) +
-                " g at rest: say which axis gravity is on by 'gravity', or \"none\" to keep it");
+    fail(r,
+         "it reads " + rounded_text(felt / k_gravity, 3) + " g at rest: say which axis gravity is on by 'gravity', or \"none\" to keep it");
   return offset;
 }
 
@@ -198,8 +188,7 @@ Window window_of(const Recorder& r, const Conditioned& signal, const std::vector
 Signal signal_of(const Recorder& r, const Window& window, const std::array<double, 3>& direction) {
   std::vector<double> values(window.times.size(), 0.0);
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < values.size() && direction[i] != 0.0; ++k)
-      values[k] += r.factor * direction[i] * window.filtered[i][k];
+    for (std::size_t k = 0; k < values.size() && direction[i] != 0.0; ++k) values[k] += r.factor * direction[i] * window.filtered[i][k];
   const double begin = window.times.front(), length = window.times.back() - begin;
   double mean = 0.0; // after which velocity ends as it began
   for (std::size_t k = 1; k < values.size() && r.drift == "line"; ++k)
@@ -224,9 +213,8 @@ Signal read_signal(const Recorder& r) {
   Samples samples;
   const Recording recording = read_record(source, read_options(r), samples);
   if (recording.layout.is_peaks)
-    fail(r,
-         "'" + r.file +
-             "' holds peaks without waveforms: use a half_sine with such a peak and duration, and say that its shape is assumed");
+    fail(r, "'" + r.file +
+                "' holds peaks without waveforms: use a half_sine with such a peak and duration, and say that its shape is assumed");
   const std::array<double, 3> direction = direction_of(r, recording.layout);
   Conditioned signal;
   std::vector<Window> events;
@@ -242,8 +230,7 @@ Signal read_signal(const Recorder& r) {
   conditioner.begin(recording.layout);
   for (const Samples::Segment& segment : samples.segments) {
     conditioner.begin_segment(segment.line);
-    for (const Samples::Row& row : segment.rows)
-      conditioner.put(row.t, row.a.data());
+    for (const Samples::Row& row : segment.rows) conditioner.put(row.t, row.a.data());
     conditioner.end_segment();
   }
   return signal_of(r, window_of(r, signal, events), direction);
@@ -280,9 +267,7 @@ void add_reading_fields(FieldTable& f) {
 void add_conditioning_fields(FieldTable& f) {
   std::vector<std::string> gravity = k_directions;
   gravity.insert(gravity.begin(), "none");
-  f.add("gravity", &Recorder::gravity)
-      .one_of(std::move(gravity))
-      .doc("axis that reads 1 g at rest, which is subtracted; none: it is kept");
+  f.add("gravity", &Recorder::gravity).one_of(std::move(gravity)).doc("axis that reads 1 g at rest, which is subtracted; none: it is kept");
   f.add("rest", &Recorder::rest).in("s").doc("two times of the record between which it is at rest: the mean is subtracted");
   f.add("cfc", &Recorder::cfc).in("Hz").positive().doc("channel frequency class of a low-pass without phase shift (ISO 6487)");
   f.add("resample", &Recorder::resample).in("Hz").positive().doc("rate of the signal; that of the record if not given");
@@ -290,9 +275,7 @@ void add_conditioning_fields(FieldTable& f) {
   f.add("threshold", &Recorder::threshold).in("m/s^2").positive().doc("beyond which there is an event");
   f.add("from", &Recorder::from).in("s").doc("time of the record where the window begins; its first if not given");
   f.add("to", &Recorder::to).in("s").doc("time of the record where it ends");
-  f.add("drift", &Recorder::drift)
-      .one_of({"none", "line"})
-      .doc("line: a constant is taken away, so that velocity ends as it began");
+  f.add("drift", &Recorder::drift).one_of({"none", "line"}).doc("line: a constant is taken away, so that velocity ends as it began");
   f.add("factor", &Recorder::factor).doc("on the values");
   f.add("start", &Recorder::start).in("s").doc("time of the run at which the window begins");
 }

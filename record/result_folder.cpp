@@ -11,7 +11,8 @@ namespace steplap {
 
 namespace fs = std::filesystem;
 
-RecordFolder::RecordFolder(const std::string& folder, bool is_overwriting) : folder_(fs::path(folder).lexically_normal()), is_overwriting_(is_overwriting) {
+RecordFolder::RecordFolder(const std::string& folder, bool is_overwriting)
+    : folder_(fs::path(folder).lexically_normal()), is_overwriting_(is_overwriting) {
   if (!folder_.has_filename()) folder_ = folder_.parent_path(); // "out/"
   if (folder_.empty()) folder_ = ".";
   refuse_existing({"record.json", "events.csv"});
@@ -33,7 +34,9 @@ RecordFolder::~RecordFolder() {
   fs::remove_all(staging_, ignored);
 }
 
-void RecordFolder::fail(const std::string& why) const { throw FileError(folder_.string(), "'" + folder_.string() + "' cannot be written: " + why); }
+void RecordFolder::fail(const std::string& why) const {
+  throw FileError(folder_.string(), "'" + folder_.string() + "' cannot be written: " + why);
+}
 
 void RecordFolder::refuse_existing(const std::vector<std::string>& names) const {
   std::error_code error;

@@ -12,7 +12,7 @@
 namespace steplap {
 
 struct ShockPoint {
-  double frequency = 0.0;   ///< Hz
+  double frequency = 0.0;    ///< Hz
   double acceleration = 0.0; ///< greatest size, in the unit of the samples
 };
 

@@ -54,14 +54,19 @@ template <class Row> void add_rows(std::string& text, double rate, Row row) {
 }
 
 std::string gcdc() {
-  std::string text = ";Title, http://www.gcdataconcepts.com, X16-1C, Analog Dev ADXL345\n;Version, 1113, Build date, Jan 1 2016\n;Start_time, 2016-01-04, 10:25:14.000\n"
-                     ";Temperature, -999.00, deg C, Vbat, 1415, mv\n;SampleRate, 400,Hz\n;Deadband, 0, counts\n;DeadbandTimeout, 0,sec\n;Headers, time,Ax,Ay,Az\n";
-  add_rows(text, 400.0, [](int, double t, const auto& a) { return printed("%.4f,%ld,%ld,%ld\n", t, counts(a[0], 2048), counts(a[1], 2048), counts(a[2], 2048)); });
+  std::string text = ";Title, http://www.gcdataconcepts.com, X16-1C, Analog Dev ADXL345\n;Version, 1113, Build date, Jan 1 "
+                     "2016\n;Start_time, 2016-01-04, 10:25:14.000\n"
+                     ";Temperature, -999.00, deg C, Vbat, 1415, mv\n;SampleRate, 400,Hz\n;Deadband, 0, counts\n;DeadbandTimeout, "
+                     "0,sec\n;Headers, time,Ax,Ay,Az\n";
+  add_rows(text, 400.0, [](int, double t, const auto& a) {
+    return printed("%.4f,%ld,%ld,%ld\n", t, counts(a[0], 2048), counts(a[1], 2048), counts(a[2], 2048));
+  });
   return text + ";stopped, by button\n";
 }
 
 std::string gcdc_epoch() {
-  std::string text = ";Title, http://www.gcdataconcepts.com, HAM-IMU, 2.0\n;Start_time, 2016-01-04, 10:25:14.000\n;Accel, 225, 1000, 16, g\n;Time, Ax, Ay, Az, T\n";
+  std::string text = ";Title, http://www.gcdataconcepts.com, HAM-IMU, 2.0\n;Start_time, 2016-01-04, 10:25:14.000\n;Accel, 225, 1000, 16, "
+                     "g\n;Time, Ax, Ay, Az, T\n";
   add_rows(text, 225.0, [](int i, double t, const auto& a) {
     std::string row = printed("%.6f,%ld,%ld,%ld", 1451903114.0 + t, counts(a[0], 1000), counts(a[1], 1000), counts(a[2], 1000));
     return row + (i % 225 == 0 ? printed(",%.1f\n", 21.5) : std::string("\n"));
@@ -96,12 +101,15 @@ std::string shocklog() {
 }
 
 std::string monilog() {
-  return "MONILOG events\nTimestamp;Max [g];Strength [m/s];Duration [ms]\n04.01.2016 10:25:17;3,12;0,970;50\n04.01.2016 10:25:20;1,61;1,198;120\n";
+  return "MONILOG events\nTimestamp;Max [g];Strength [m/s];Duration [ms]\n04.01.2016 10:25:17;3,12;0,970;50\n04.01.2016 "
+         "10:25:20;1,61;1,198;120\n";
 }
 
 std::string msr() {
   std::string text = "*CREATOR\nMSR145\n*STARTTIME\n2016-01-04;10:25:14\n*MODUL\n*NAME\n*DATA\nTIME;ACC x;ACC y;ACC z\n;g;g;g\n";
-  add_rows(text, 50.0, [](int i, double, const auto& a) { return stamp_text(k_start_ns + std::int64_t{i} * 20'000'000) + printed(";%.3f;%.3f;%.3f\n", a[0], a[1], a[2]); });
+  add_rows(text, 50.0, [](int i, double, const auto& a) {
+    return stamp_text(k_start_ns + std::int64_t{i} * 20'000'000) + printed(";%.3f;%.3f;%.3f\n", a[0], a[1], a[2]);
+  });
   return text;
 }
 
@@ -113,12 +121,15 @@ std::string lansmont() {
 
 std::string solve() {
   std::string text = "# SOLVE g-log vibra\n# rate = 200 Hz\nt[s] x[m/s^2] y[m/s^2] z[m/s^2]\n";
-  add_rows(text, 200.0, [](int, double t, const auto& a) { return printed("%.3f %.3f %.3f %.3f\n", t, a[0] * 9.80665, a[1] * 9.80665, a[2] * 9.80665); });
+  add_rows(text, 200.0, [](int, double t, const auto& a) {
+    return printed("%.3f %.3f %.3f %.3f\n", t, a[0] * 9.80665, a[1] * 9.80665, a[2] * 9.80665);
+  });
   return text;
 }
 
 std::string endaq() {
-  std::string text = "# enDAQ export\n# Recording: 2016-01-04\n\"Time (s)\",\"X Acceleration (g)\",\"Y Acceleration (g)\",\"Z Acceleration (g)\"\n";
+  std::string text =
+      "# enDAQ export\n# Recording: 2016-01-04\n\"Time (s)\",\"X Acceleration (g)\",\"Y Acceleration (g)\",\"Z Acceleration (g)\"\n";
   add_rows(text, 2000.0, [](int, double t, const auto& a) { return printed("%.6f,%.5f,%.5f,%.5f\n", t, a[0], a[1], a[2]); });
   return text;
 }

@@ -24,7 +24,8 @@ bool is_stamp(std::string_view field) {
 }
 
 bool has_all_values(const Fields& fields) {
-  return !fields.empty() && std::all_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_missing(f) || is_stamp(f); });
+  return !fields.empty() &&
+         std::all_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_missing(f) || is_stamp(f); });
 }
 
 // Lines that may be rows: not empty, no comment, begin like a number or a quote.
@@ -58,7 +59,7 @@ char choose_delimiter(const std::vector<HeaderLine>& head) {
 struct DecimalSigns {
   std::size_t points = 0, commas = 0;
   std::size_t comma_line = 0, comma_column = 0, point_line = 0, point_column = 0; ///< the first of each
-  bool may_be_thousands = true; ///< every comma parts groups of three digits
+  bool may_be_thousands = true;                                                   ///< every comma parts groups of three digits
 };
 
 bool is_in_thousands(std::string_view number) {
@@ -92,7 +93,9 @@ bool may_be_pairs(const std::vector<HeaderLine>& head, const TableShape& shape) 
   Fields fields;
   std::size_t rows = 0;
   for (std::size_t i = shape.first_data; i < head.size() && rows < 200; ++i) {
-    if (trimmed_blanks(head[i].text).empty() || is_comment(head[i].text, ',') || !split_fields(head[i].text, ',', fields) || !looks_like_row(fields)) continue;
+    if (trimmed_blanks(head[i].text).empty() || is_comment(head[i].text, ',') || !split_fields(head[i].text, ',', fields) ||
+        !looks_like_row(fields))
+      continue;
     ++rows;
     if (fields.size() % 2 != 0) return false;
     for (std::size_t k = 0; k < fields.size(); ++k) {
@@ -110,13 +113,17 @@ void settle_decimal(const std::vector<HeaderLine>& head, const std::string& file
     const bool may_join = may_be_pairs(head, shape);
     const bool is_as_named = !shape.names.empty() && shape.names.size() == shape.width;
     if (options.decimal == ',') {
-      if (!may_join) throw RecordError(file, line, 1, "The rows do not consist of numbers with a decimal comma, parted by commas. Give --decimal point, or export the file with ';' between the columns.");
+      if (!may_join)
+        throw RecordError(file, line, 1,
+                          "The rows do not consist of numbers with a decimal comma, parted by commas. Give --decimal point, or export the "
+                          "file with ';' between the columns.");
       shape.joins_pairs = true;
       shape.decimal = ',';
       shape.width /= 2;
     } else if (may_join && !is_as_named && options.decimal != '.') {
-      throw RecordError(file, line, 1, "A comma may part columns or be the decimal sign here: '" + shown(head[shape.first_data].text.substr(0, 40)) +
-                                           "'. Give --decimal comma or --decimal point.");
+      throw RecordError(file, line, 1,
+                        "A comma may part columns or be the decimal sign here: '" + shown(head[shape.first_data].text.substr(0, 40)) +
+                            "'. Give --decimal comma or --decimal point.");
     }
     return;
   }
@@ -127,10 +134,14 @@ void settle_decimal(const std::vector<HeaderLine>& head, const std::string& file
     return;
   }
   if (signs.points > 0 && signs.commas > 0)
-    throw RecordError(file, std::max(signs.comma_line, signs.point_line), signs.comma_line > signs.point_line ? signs.comma_column : signs.point_column,
-                      "Some numbers have a decimal point and some a comma. Give --decimal comma or --decimal point; numbers with the other sign are then refused where they stand.");
+    throw RecordError(file, std::max(signs.comma_line, signs.point_line),
+                      signs.comma_line > signs.point_line ? signs.comma_column : signs.point_column,
+                      "Some numbers have a decimal point and some a comma. Give --decimal comma or --decimal point; numbers with the other "
+                      "sign are then refused where they stand.");
   if (signs.commas > 0 && signs.may_be_thousands)
-    throw RecordError(file, signs.comma_line, signs.comma_column, "The comma may be the decimal sign or part thousands here. Give --decimal comma, or export the file without separators of thousands.");
+    throw RecordError(file, signs.comma_line, signs.comma_column,
+                      "The comma may be the decimal sign or part thousands here. Give --decimal comma, or export the file without "
+                      "separators of thousands.");
   shape.decimal = signs.commas > 0 ? ',' : '.';
 }
 
@@ -140,7 +151,8 @@ bool is_units_row(const Fields& fields) {
     if (field.empty() || field == "-") continue;
     std::string_view bare = field;
     if (bare.size() > 2 && (bare.front() == '[' || bare.front() == '(')) bare = bare.substr(1, bare.size() - 2);
-    if (!acceleration_unit(bare) && !time_unit(bare) && lower_case(bare).find_first_of("0123456789hyd%\xC2") == std::string::npos) return false;
+    if (!acceleration_unit(bare) && !time_unit(bare) && lower_case(bare).find_first_of("0123456789hyd%\xC2") == std::string::npos)
+      return false;
     units += acceleration_unit(bare) || time_unit(bare);
   }
   return units > 0;
@@ -149,16 +161,17 @@ bool is_units_row(const Fields& fields) {
 // Words, of which none is a number: names of columns. Where blanks part them a sentence looks alike, so that half of them must be known.
 bool is_names_row(const Fields& fields, char delimiter) {
   if (std::any_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_stamp(f); })) return false;
-  const auto known = static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), [](std::string_view f) { return role_of(heading_of(f).name).role != Role::other; }));
+  const auto known = static_cast<std::size_t>(
+      std::count_if(fields.begin(), fields.end(), [](std::string_view f) { return role_of(heading_of(f).name).role != Role::other; }));
   return known > 0 && (delimiter != ' ' || 2 * known >= fields.size());
 }
 
 // Fields such as "s" name a unit as well as a column: units all of them, if no other field names an axis or the like.
 bool are_only_units(const Fields& fields) {
   return is_units_row(fields) && std::all_of(fields.begin(), fields.end(), [](std::string_view f) {
-    const Role role = role_of(heading_of(f).name).role;
-    return role == Role::other || role == Role::time;
-  });
+           const Role role = role_of(heading_of(f).name).role;
+           return role == Role::other || role == Role::time;
+         });
 }
 
 // "; Headers, time, Ax" and "; Time, Ax": what follows the sign of a comment, and the word "Headers".
@@ -188,10 +201,12 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
       const std::string text = is_beside ? uncommented(line.text) : line.text;
       if (!split_fields(text, shape.delimiter, fields) || fields.empty()) continue;
       const std::size_t numbers = static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), is_number));
-      const bool is_key = !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos; // "Rate: 100 Hz"
+      const bool is_key =
+          !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos; // "Rate: 100 Hz"
       if (!in_comments && back == 1 && !is_key && numbers > 0 && 2 * (numbers + 1) >= fields.size() && fields.size() >= row_width)
-        throw RecordError(file, line.number, 1, "This line before the first row holds both words and numbers: '" + shown(line.text.substr(0, 40)) +
-                                                    "'. If it is a row, correct the word in it; if it names columns, take names that are not numbers.");
+        throw RecordError(file, line.number, 1,
+                          "This line before the first row holds both words and numbers: '" + shown(line.text.substr(0, 40)) +
+                              "'. If it is a row, correct the word in it; if it names columns, take names that are not numbers.");
       if (fields.size() > 1 && shape.units_line == 0 && are_only_units(fields)) {
         take_names(fields, shape.units);
         std::replace(shape.units.begin(), shape.units.end(), std::string("-"), std::string());
@@ -215,14 +230,21 @@ std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
 // A line such as the date of the start looks like a row, but the names of columns come after it.
 bool is_before_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row, const TableShape& shape) {
   Fields fields;
-  const auto has_names = [&](std::size_t i) { return !is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) && is_names_row(fields, shape.delimiter); };
+  const auto has_names = [&](std::size_t i) {
+    return !is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) &&
+           is_names_row(fields, shape.delimiter);
+  };
   for (std::size_t i = 0; i < row; ++i)
-    if (has_names(i) || (is_comment(head[i].text, shape.delimiter) && split_fields(uncommented(head[i].text), shape.delimiter, fields) && is_names_row(fields, shape.delimiter))) return false;
+    if (has_names(i) || (is_comment(head[i].text, shape.delimiter) && split_fields(uncommented(head[i].text), shape.delimiter, fields) &&
+                         is_names_row(fields, shape.delimiter)))
+      return false;
   for (std::size_t i = row + 1, seen = 0; i < head.size() && seen < 4; ++i) {
     seen += !trimmed_blanks(head[i].text).empty();
     if (!has_names(i)) continue;
     if (fields.size() > shape.width) return true;
-    throw RecordError(file, head[row].number, 1, "This row stands before line " + std::to_string(head[i].number) + ", which names the columns. Take it out, or put the line with the names before it.");
+    throw RecordError(file, head[row].number, 1,
+                      "This row stands before line " + std::to_string(head[i].number) +
+                          ", which names the columns. Take it out, or put the line with the names before it.");
   }
   return false;
 }
@@ -276,7 +298,8 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
   if (first >= head.size())
     throw RecordError(file, head.empty() ? 0 : head.back().number, head.empty() ? 0 : 1,
                       head.empty() ? "The file is empty. Copy it again from the recorder."
-                                   : "No row of numbers was found up to here. If the file is a recorder's own binary format, export it as CSV; if another sign parts the columns, give --delimiter.");
+                                   : "No row of numbers was found up to here. If the file is a recorder's own binary format, export it as "
+                                     "CSV; if another sign parts the columns, give --delimiter.");
   shape.first_data = first;
   static_cast<void>(split_fields(head[first].text, shape.delimiter, fields));
   while (shape.width > 1 && fields.back().empty()) fields.pop_back(), --shape.width; // a delimiter at the end of rows
@@ -285,8 +308,10 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
   if (!shape.names.empty()) {
     while (shape.names.size() > shape.width && shape.names.back().empty()) shape.names.pop_back();
     if (shape.names.size() < shape.width)
-      throw RecordError(file, head[first].number, 1, "This row has " + counted(shape.width, "field", "fields") + ", but line " + std::to_string(shape.names_line) + " names " +
-                                                         counted(shape.names.size(), "column", "columns") + ". If the comma is the decimal sign, give --decimal comma; else correct the header.");
+      throw RecordError(file, head[first].number, 1,
+                        "This row has " + counted(shape.width, "field", "fields") + ", but line " + std::to_string(shape.names_line) +
+                            " names " + counted(shape.names.size(), "column", "columns") +
+                            ". If the comma is the decimal sign, give --decimal comma; else correct the header.");
     shape.width = shape.names.size();
   }
   return shape;

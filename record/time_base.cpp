@@ -15,7 +15,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_year_2200 = 7.258e9;    // s since 1970; nanoseconds since then fit into 64 bits
+constexpr double k_year_2200 = 7.258e9;   // s since 1970; nanoseconds since then fit into 64 bits
 constexpr std::size_t k_most_rows = 4000; // of the head that are looked at
 
 /// Fields of one column in the first rows.
@@ -28,7 +28,9 @@ ColumnHead head_of_column(const std::vector<HeaderLine>& head, const TableShape&
   ColumnHead result;
   std::vector<std::string_view> fields;
   for (std::size_t i = shape.first_data; i < head.size() && result.texts.size() < k_most_rows; ++i) {
-    if (is_comment(head[i].text, shape.delimiter) || !shape.split(head[i].text, fields) || !looks_like_row(fields) || column >= fields.size()) continue;
+    if (is_comment(head[i].text, shape.delimiter) || !shape.split(head[i].text, fields) || !looks_like_row(fields) ||
+        column >= fields.size())
+      continue;
     result.texts.emplace_back(fields[column]);
     result.lines.push_back(head[i].number);
     result.columns.push_back(static_cast<std::size_t>(fields[column].data() - head[i].text.data()) + 1);
@@ -38,8 +40,10 @@ ColumnHead head_of_column(const std::vector<HeaderLine>& head, const TableShape&
 
 class TimeFinder {
 public:
-  TimeFinder(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes)
-      : layout_(layout), shape_(layout.shape), head_(head), options_(options), notes_(notes), said_rate_(rate_of(metadata)), metadata_(metadata) {}
+  TimeFinder(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options,
+             std::vector<std::string>& notes)
+      : layout_(layout), shape_(layout.shape), head_(head), options_(options), notes_(notes), said_rate_(rate_of(metadata)),
+        metadata_(metadata) {}
 
   TimeBase find() {
     choose_columns();
@@ -80,7 +84,8 @@ private:
       has_time_ = std::none_of(layout_.axes.begin(), layout_.axes.end(), [](const AxisColumn& axis) { return axis.column == 0; });
       const ColumnHead first = head_of_column(head_, shape_, 0);
       if (has_time_ && !first.texts.empty() && parse_number(first.texts.front(), shape_.decimal))
-        throw RecordError(layout_.file, first.lines.front(), first.columns.front(), "No line says what the first column is. Give --time 1 if it holds times, or --time none.");
+        throw RecordError(layout_.file, first.lines.front(), first.columns.front(),
+                          "No line says what the first column is. Give --time 1 if it holds times, or --time none.");
     } else {
       const auto time = named(Role::time), date = named(Role::date);
       has_time_ = time || date;
@@ -103,7 +108,8 @@ private:
     first_ = head_of_column(head_, shape_, base_.column);
     if (base_.kind == TimeKind::date_and_clock) clocks_ = head_of_column(head_, shape_, base_.clock_column);
     if (first_.texts.empty())
-      throw RecordError(layout_.file, head_[shape_.first_data].number, 1, "The first rows have no field in the column of times. Choose another with --time, or --time none.");
+      throw RecordError(layout_.file, head_[shape_.first_data].number, 1,
+                        "The first rows have no field in the column of times. Choose another with --time, or --time none.");
   }
 
   void settle_stamps() {
@@ -113,21 +119,29 @@ private:
     for (std::size_t i = 0; i < first_.texts.size(); ++i) {
       const unsigned orders = possible_date_orders(first_.texts[i]);
       if (orders == 0 && parse_stamp(first_.texts[i], k_year_first)) continue; // a time of day
-      if (orders == 0) fail(i, "'" + shown(first_.texts[i]) + "' is neither a number nor a date or time that is understood. Write times as 2016-01-31 12:00:00.000, or choose another column with --time.");
+      if (orders == 0)
+        fail(i, "'" + shown(first_.texts[i]) +
+                    "' is neither a number nor a date or time that is understood. Write times as 2016-01-31 12:00:00.000, or choose "
+                    "another column with --time.");
       has_dates = true;
       possible &= orders;
-      if (possible == 0) fail(i, "'" + shown(first_.texts[i]) + "' does not fit the order of day, month and year of the rows before. Correct it.");
+      if (possible == 0)
+        fail(i, "'" + shown(first_.texts[i]) + "' does not fit the order of day, month and year of the rows before. Correct it.");
     }
     if (options_.dates && has_dates) {
-      if (!(possible & *options_.dates)) fail(0, "'" + shown(first_.texts.front()) + "' is no date in the order given by --dates. Give another order.");
+      if (!(possible & *options_.dates))
+        fail(0, "'" + shown(first_.texts.front()) + "' is no date in the order given by --dates. Give another order.");
       possible = *options_.dates;
     }
     if (has_dates && std::popcount(possible) > 1)
-      fail(0, "'" + shown(first_.texts.front()) + "' can be read in several orders of day, month and year. Give --dates day-first, month-first or year-first.");
+      fail(0, "'" + shown(first_.texts.front()) +
+                  "' can be read in several orders of day, month and year. Give --dates day-first, month-first or year-first.");
     base_.date_order = possible;
     const char* order = possible == k_day_first ? ", day before month" : possible == k_month_first ? ", month before day" : "";
-    base_.text = std::string(base_.kind == TimeKind::date_and_clock ? "date and time of day" : has_dates ? "date and time" : "time of day without a date") + (has_dates ? order : "") +
-                 " in " + column_text();
+    base_.text = std::string(base_.kind == TimeKind::date_and_clock ? "date and time of day"
+                             : has_dates                            ? "date and time"
+                                                                    : "time of day without a date") +
+                 (has_dates ? order : "") + " in " + column_text();
     const auto stamp = parse_stamp(first_.texts.front(), base_.date_order);
     if (stamp && has_dates) base_.start = stamp_text(first_ns(0).value_or(stamp->ns)) + (stamp->has_zone ? " UTC" : "");
   }
@@ -142,7 +156,8 @@ private:
   }
 
   std::string column_text() const {
-    return base_.column < shape_.names.size() ? "'" + shown(heading_of(shape_.names[base_.column]).name) + "'" : "column " + std::to_string(base_.column + 1);
+    return base_.column < shape_.names.size() ? "'" + shown(heading_of(shape_.names[base_.column]).name) + "'"
+                                              : "column " + std::to_string(base_.column + 1);
   }
 
   void settle_numbers() {
@@ -150,8 +165,10 @@ private:
     for (const std::string& text : first_.texts)
       if (const auto value = parse_number(text, shape_.decimal)) numbers_.push_back(*value);
     std::string unit = options_.time_unit.value_or(""), source = "--time-unit";
-    if (unit.empty() && base_.column < shape_.names.size()) unit = heading_of(shape_.names[base_.column]).unit, source = "line " + std::to_string(shape_.names_line);
-    if (unit.empty() && base_.column < shape_.units.size()) unit = shape_.units[base_.column], source = "line " + std::to_string(shape_.units_line);
+    if (unit.empty() && base_.column < shape_.names.size())
+      unit = heading_of(shape_.names[base_.column]).unit, source = "line " + std::to_string(shape_.names_line);
+    if (unit.empty() && base_.column < shape_.units.size())
+      unit = shape_.units[base_.column], source = "line " + std::to_string(shape_.units_line);
     if (unit.empty()) unit = unit_by_family_or_rate(source);
     settle_unit(unit, source);
   }
@@ -159,9 +176,11 @@ private:
   // What numbers of this size often are, offered where the unit is asked for. "": nothing comes to mind.
   std::string likely_unit() const {
     const double value = numbers_.front();
-    const std::pair<double, const char*> epochs[] = {{1.0, "epoch"}, {1e-3, "\"epoch ms\""}, {1e-6, "\"epoch us\""}, {1e-9, "\"epoch ns\""}};
+    const std::pair<double, const char*> epochs[] = {
+        {1.0, "epoch"}, {1e-3, "\"epoch ms\""}, {1e-6, "\"epoch us\""}, {1e-9, "\"epoch ns\""}};
     for (const auto& [factor, unit] : epochs)
-      if (value * factor > 9.4e8 && value * factor < 2.6e9) return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + "."; // 1999 to 2052
+      if (value * factor > 9.4e8 && value * factor < 2.6e9)
+        return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + "."; // 1999 to 2052
     return is_size_of_days() ? " Numbers of this size are often the days of a spreadsheet: that is --time-unit days." : "";
   }
   bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; } // 1954 to 2119
@@ -184,13 +203,20 @@ private:
   void settle_unit(const std::string& unit, const std::string& source) {
     const bool is_epoch = unit.starts_with("epoch"), is_days = unit == "days" && numbers_.front() > 20000.0;
     const auto factor = is_epoch ? (unit == "epoch" ? std::optional(1.0) : time_unit(unit.substr(6))) : time_unit(unit);
-    if (!factor) fail(0, "'" + shown(unit) + "' (" + source + ") is no unit of time. Give --time-unit s, ms, us, epoch or days, or another column with --time.");
+    if (!factor)
+      fail(0, "'" + shown(unit) + "' (" + source +
+                  ") is no unit of time. Give --time-unit s, ms, us, epoch or days, or another column with --time.");
     base_.factor = *factor;
     base_.is_relative = is_epoch || is_days || numbers_.front() * *factor > 9.4e8;
     const double since_1970 = is_days ? (numbers_.front() - 25569.0) * 86400.0 : numbers_.front() * *factor;
     if (base_.is_relative && !(std::abs(since_1970) < k_year_2200))
-      fail(0, "'" + shown(first_.texts.front()) + "' as " + (is_days ? "days of a spreadsheet" : "time since 1970") + " is beyond the year 2200. Correct it, or give another --time-unit.");
-    const std::string what = is_epoch || (base_.is_relative && !is_days) ? "time since 1970 in " + std::string(unit == "epoch" ? "s" : is_epoch ? unit.substr(6) : unit) : is_days ? "days of a spreadsheet" : shown(unit);
+      fail(0, "'" + shown(first_.texts.front()) + "' as " + (is_days ? "days of a spreadsheet" : "time since 1970") +
+                  " is beyond the year 2200. Correct it, or give another --time-unit.");
+    const std::string what = is_epoch || (base_.is_relative && !is_days) ? "time since 1970 in " + std::string(unit == "epoch" ? "s"
+                                                                                                               : is_epoch ? unit.substr(6)
+                                                                                                                          : unit)
+                             : is_days                                   ? "days of a spreadsheet"
+                                                                         : shown(unit);
     base_.text = what + " in " + column_text() + ", by " + source;
     if (is_days) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(since_1970 * 1e3)) * 1'000'000);
     else if (base_.is_relative) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(since_1970 * 1e6)) * 1000) + " UTC";
@@ -237,13 +263,18 @@ private:
       base_.rate = by_times;
       base_.rate_text = "the first " + std::to_string(first_.texts.size()) + " times";
       if (said_rate_)
-        notes_.push_back("Line " + std::to_string(said_rate_->line) + " says " + rounded_text(said_rate_->hz) + " Hz, but the times say " + rounded_text(by_times) + " Hz: the times are believed. Give --rate if they are wrong.");
+        notes_.push_back("Line " + std::to_string(said_rate_->line) + " says " + rounded_text(said_rate_->hz) + " Hz, but the times say " +
+                         rounded_text(by_times) + " Hz: the times are believed. Give --rate if they are wrong.");
     } else {
-      throw RecordError(layout_.file, head_[shape_.first_data].number, 1, layout_.holds ? "Samples are left out of this record, and no line says how often was sampled. Give --rate HZ."
-                                                                                       : "Nothing says how often was sampled: there is no column of times, or its first times do not rise, and no line gives a rate. Give --rate HZ, or --time COLUMN.");
+      throw RecordError(layout_.file, head_[shape_.first_data].number, 1,
+                        layout_.holds ? "Samples are left out of this record, and no line says how often was sampled. Give --rate HZ."
+                                      : "Nothing says how often was sampled: there is no column of times, or its first times do not rise, "
+                                        "and no line gives a rate. Give --rate HZ, or --time COLUMN.");
     }
     if (!(base_.rate > 1e-6 && base_.rate < 1e8))
-      throw RecordError(layout_.file, head_[shape_.first_data].number, 1, "A rate of " + rounded_text(base_.rate) + " Hz (" + base_.rate_text + ") is none that a recorder has. Give --rate HZ or --time-unit.");
+      throw RecordError(layout_.file, head_[shape_.first_data].number, 1,
+                        "A rate of " + rounded_text(base_.rate) + " Hz (" + base_.rate_text +
+                            ") is none that a recorder has. Give --rate HZ or --time-unit.");
   }
 
   // Mean over the steps that are no gaps; samples that are counted are believed where some are left out.
@@ -287,7 +318,8 @@ private:
 
 } // namespace
 
-TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes) {
+TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options,
+                   std::vector<std::string>& notes) {
   return TimeFinder(layout, head, metadata, options, notes).find();
 }
 

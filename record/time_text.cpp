@@ -130,7 +130,8 @@ bool take_clock(std::string_view& text, std::int64_t& ns) {
     if (text.size() > 1 && (text.front() == '.' || text.front() == ',' || text.front() == ':') && is_digit(text[1])) {
       text.remove_prefix(1);
       std::int64_t place = k_second_ns / 10;
-      for (count = 0; !text.empty() && is_digit(text.front()); text.remove_prefix(1), place /= 10, ++count) fraction += place * (text.front() - '0');
+      for (count = 0; !text.empty() && is_digit(text.front()); text.remove_prefix(1), place /= 10, ++count)
+        fraction += place * (text.front() - '0');
       if (count > 18) return false;
     }
   }
@@ -214,12 +215,13 @@ std::string stamp_text(std::int64_t ns) {
   const std::int64_t z = days + 719468, era = z / 146097, of_era = z - era * 146097;
   const std::int64_t year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365;
   const std::int64_t of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100), shifted = (5 * of_year + 2) / 153;
-  const int day = static_cast<int>(of_year - (153 * shifted + 2) / 5 + 1), month = static_cast<int>(shifted < 10 ? shifted + 3 : shifted - 9);
+  const int day = static_cast<int>(of_year - (153 * shifted + 2) / 5 + 1),
+            month = static_cast<int>(shifted < 10 ? shifted + 3 : shifted - 9);
   const int year = static_cast<int>(year_of_era + era * 400 + (month <= 2 ? 1 : 0));
   const auto seconds = static_cast<int>(rest / k_second_ns);
   std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%04d-%02d-%02d %02d:%02d:%02d.%06d", year, month, day, seconds / 3600, seconds / 60 % 60, seconds % 60,
-                static_cast<int>(rest % k_second_ns / 1000));
+  std::snprintf(text.data(), text.size(), "%04d-%02d-%02d %02d:%02d:%02d.%06d", year, month, day, seconds / 3600, seconds / 60 % 60,
+                seconds % 60, static_cast<int>(rest % k_second_ns / 1000));
   std::string result = text.data();
   while (result.ends_with("000") && result.find('.') != std::string::npos && result.size() > 23) result.resize(result.size() - 3);
   return result;

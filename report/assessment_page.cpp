@@ -44,9 +44,7 @@ std::string text_in(const Json& object, const char* key) {
   return object.is_object() && found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-Json list_in(const Json& object, const char* key) {
-  return object.contains(key) && object[key].is_array() ? object[key] : Json::array();
-}
+Json list_in(const Json& object, const char* key) { return object.contains(key) && object[key].is_array() ? object[key] : Json::array(); }
 
 void check_probability(const fs::path& file, const Json& object, const char* key, const std::string& where) {
   if (!object.is_object() || !object.contains(key) || object[key].is_null()) return;
@@ -61,12 +59,16 @@ void check_probability(const fs::path& file, const Json& object, const char* key
 }
 
 // What a name stands for wherever it stands, if it is there and not null.
-const std::set<std::string_view> k_numbers{"acceleration", "allowed", "angle_deg", "at", "ax", "ay", "bandwidth", "error", "from", "height", "high", "left",
-                                           "low", "margin", "nominal", "overlap_left", "runs", "share", "slid_total", "value", "velocity_change"};
-const std::set<std::string_view> k_texts{"axis", "criterion", "file", "first", "law", "marker", "model", "name", "outcome", "plane", "preset", "reason",
-                                         "sha256", "source", "source_text", "trust", "unit", "verdict", "why"};
-const std::set<std::string_view> k_lists_of_objects{"cases", "clearances", "feet", "joints", "limits", "models", "peaks", "polar", "reactions", "reasons", "records", "static_proofs", "uncertain"};
-const std::set<std::string_view> k_lists_of_texts{"assumptions", "findings", "hangs_on", "knows_not", "remarks", "taken_for", "tests", "warnings"};
+const std::set<std::string_view> k_numbers{"acceleration", "allowed",      "angle_deg", "at",    "ax",         "ay",    "bandwidth",
+                                           "error",        "from",         "height",    "high",  "left",       "low",   "margin",
+                                           "nominal",      "overlap_left", "runs",      "share", "slid_total", "value", "velocity_change"};
+const std::set<std::string_view> k_texts{"axis",        "criterion", "file",  "first",   "law",    "marker", "model",
+                                         "name",        "outcome",   "plane", "preset",  "reason", "sha256", "source",
+                                         "source_text", "trust",     "unit",  "verdict", "why"};
+const std::set<std::string_view> k_lists_of_objects{"cases", "clearances", "feet",    "joints",  "limits",        "models",   "peaks",
+                                                    "polar", "reactions",  "reasons", "records", "static_proofs", "uncertain"};
+const std::set<std::string_view> k_lists_of_texts{"assumptions", "findings",  "hangs_on", "knows_not",
+                                                  "remarks",     "taken_for", "tests",    "warnings"};
 
 // The page shows what it is given: a text in the place of a number would be shown as one.
 void check_types(const fs::path& file, const Json& json, const std::string& where) {
@@ -90,8 +92,7 @@ void check_types(const fs::path& file, const Json& json, const std::string& wher
 
 void check_event(const fs::path& file, const Json& event, const std::string& where) {
   if (!event.is_object()) damaged(file, where + " is not an object");
-  for (const Json& model : list_in(event, "models"))
-    check_probability(file, model, "slip_probability", where);
+  for (const Json& model : list_in(event, "models")) check_probability(file, model, "slip_probability", where);
 }
 
 void check_assessment(const fs::path& file, const Json& assessment) {
@@ -103,10 +104,10 @@ void check_assessment(const fs::path& file, const Json& assessment) {
   check_types(file, assessment, "");
   for (const Json& reason : list_in(assessment, "reasons"))
     if (gravity_of(text_in(reason, "outcome")) > gravity_of(decision))
-      damaged(file, "the decision is '" + decision + "', but criterion '" + text_in(reason, "criterion") + "' asks for '" + text_in(reason, "outcome") + "'");
+      damaged(file, "the decision is '" + decision + "', but criterion '" + text_in(reason, "criterion") + "' asks for '" +
+                        text_in(reason, "outcome") + "'");
   std::size_t place = 0;
-  for (const Json& event : assessment["events"])
-    check_event(file, event, "event " + std::to_string(++place));
+  for (const Json& event : assessment["events"]) check_event(file, event, "event " + std::to_string(++place));
   if (assessment.contains("voyage")) check_probability(file, assessment["voyage"], "damage_probability", "the voyage");
 }
 
@@ -165,7 +166,8 @@ Json read_static(const fs::path& file) {
   if (list.empty()) damaged(file, "it holds no proof");
   for (const Json& proof : list) {
     const std::string verdict = text_in(proof, "verdict");
-    if (verdict != "hold" && verdict != "reject" && verdict != "open") damaged(file, "'verdict' is '" + verdict + "' instead of hold, reject or open");
+    if (verdict != "hold" && verdict != "reject" && verdict != "open")
+      damaged(file, "'verdict' is '" + verdict + "' instead of hold, reject or open");
     for (const Json& one : list_in(proof, "cases"))
       if (verdict == "hold" && text_in(one, "verdict") != "hold")
         damaged(file, "the verdict is 'hold', but that of case '" + text_in(one, "name") + "' is '" + text_in(one, "verdict") + "'");
@@ -177,7 +179,8 @@ Json read_static(const fs::path& file) {
 
 bool is_assessment(const std::string& folder) {
   std::error_code ignored;
-  return fs::is_regular_file(fs::path(folder) / "assessment.json", ignored) || fs::is_regular_file(fs::path(folder) / "static.json", ignored);
+  return fs::is_regular_file(fs::path(folder) / "assessment.json", ignored) ||
+         fs::is_regular_file(fs::path(folder) / "static.json", ignored);
 }
 
 std::string assessment_page(const std::string& folder) {

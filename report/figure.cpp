@@ -61,9 +61,8 @@ std::string panel_script(const Panel& panel, std::size_t number) {
     const Curve& curve = panel.curves[i];
     const std::string name = "$panel" + std::to_string(number) + "curve" + std::to_string(i);
     data += data_block(curve, name, prefix.factor);
-    plot += (i == 0 ? "plot " : ", \\\n  ") + name + " using 1:2 with lines lw 1.8 dt " + std::to_string(curve.dash + 1) +
-            " lc rgb " + quoted(k_colours[curve.colour % k_colours.size()]) +
-            (curve.label.empty() ? " notitle" : " title " + quoted(curve.label));
+    plot += (i == 0 ? "plot " : ", \\\n  ") + name + " using 1:2 with lines lw 1.8 dt " + std::to_string(curve.dash + 1) + " lc rgb " +
+            quoted(k_colours[curve.colour % k_colours.size()]) + (curve.label.empty() ? " notitle" : " title " + quoted(curve.label));
   }
   const std::string unit = panel.unit.empty() ? "–" : prefix.text + panel.unit;
   return data + "set title " + quoted(panel.title) + "\nset ylabel " + quoted("[" + unit + "]") + "\n" + plot + "\n";
@@ -82,11 +81,11 @@ std::string gnuplot_script(const Figure& figure, const std::string& ending, cons
   if (ending == "pdf")
     text = "set terminal pdfcairo size " + number_text(width / 96.0) + "in," + number_text(height / 96.0) +
            "in font 'DejaVu Sans,9' noenhanced\n";
-  text += "set output " + quoted(file) + "\nset encoding utf8\nset grid lc rgb '#dddddd'\nset xlabel 't [s]'\n"
+  text += "set output " + quoted(file) +
+          "\nset encoding utf8\nset grid lc rgb '#dddddd'\nset xlabel 't [s]'\n"
           "set key above right\nset border lc rgb '#555555'\n";
   text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(figure.columns) + "\n";
-  for (std::size_t i = 0; i < figure.panels.size(); ++i)
-    text += panel_script(figure.panels[i], i);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) text += panel_script(figure.panels[i], i);
   return text + "unset multiplot\nunset output\n";
 }
 

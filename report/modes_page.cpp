@@ -46,8 +46,7 @@ Json mode_json(const System& system, const VibrationMode& mode, const std::strin
 std::string modes_page(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found,
                        const std::vector<std::string>& moves_most, const std::vector<std::string>& remarks) {
   Json modes = Json::array();
-  for (std::size_t i = 0; i < found.modes.size(); ++i)
-    modes.push_back(mode_json(*loaded.system, found.modes[i], moves_most[i]));
+  for (std::size_t i = 0; i < found.modes.size(); ++i) modes.push_back(mode_json(*loaded.system, found.modes[i], moves_most[i]));
   // As a run without time histories, which the drawing is made for.
   Json run{{"name", loaded.name},
            {"summary", {{"extremes", Json::object()}}},

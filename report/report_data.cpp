@@ -23,11 +23,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_events = 2000;      ///< listed on the page
+constexpr std::size_t k_most_events = 2000;       ///< listed on the page
 constexpr std::size_t k_most_model_text = 400000; ///< bytes
-constexpr std::size_t k_most_bodies = 2000;      ///< drawn
-constexpr std::size_t k_most_channels = 10000;   ///< of all runs: each brings its name and extremes, whatever its samples
-constexpr std::size_t k_least_stretches = 60;    ///< a curve thinned more says little
+constexpr std::size_t k_most_bodies = 2000;       ///< drawn
+constexpr std::size_t k_most_channels = 10000;    ///< of all runs: each brings its name and extremes, whatever its samples
+constexpr std::size_t k_least_stretches = 60;     ///< a curve thinned more says little
 constexpr double k_base64 = 4.0 / 3.0;
 
 template <class T> std::string base64_of(const std::vector<T>& values) { return base64(std::as_bytes(std::span(values))); }
@@ -72,20 +72,19 @@ Plan plan_for(const std::vector<Results>& runs, const std::vector<Json>& drawing
   // A thinned channel has its own times: two floats a point, two points a stretch.
   constexpr double k_stretch = 4.0 * sizeof(float);
   const auto thinned_most = static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches));
-  const std::size_t most = kept_bytes(std::min(channels, k_most_channels)) <= bytes ? k_most_channels : std::min(k_most_channels, thinned_most);
+  const std::size_t most =
+      kept_bytes(std::min(channels, k_most_channels)) <= bytes ? k_most_channels : std::min(k_most_channels, thinned_most);
   if (channels > most)
     for (std::size_t r = 0; r < runs.size(); ++r) {
       auto& kept = plan.kept[r];
       std::vector<int> rank;
-      for (const ResultChannel& channel : runs[r].channels)
-        rank.push_back(rank_of(channel, drawings[r]));
+      for (const ResultChannel& channel : runs[r].channels) rank.push_back(rank_of(channel, drawings[r]));
       std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
       kept.resize(std::min(kept.size(), std::max<std::size_t>(1, most / runs.size())));
       std::sort(kept.begin(), kept.end());
     }
   channels = 0;
-  for (const auto& kept : plan.kept)
-    channels += kept.size();
+  for (const auto& kept : plan.kept) channels += kept.size();
   if (kept_bytes(channels) <= bytes) return plan;
   plan.stretches = std::max(k_least_stretches, static_cast<std::size_t>(bytes / (k_stretch * static_cast<double>(channels))));
   return plan;
@@ -102,8 +101,7 @@ Json channel_json(const ResultChannel& channel, const std::vector<double>& times
       own_times.push_back(static_cast<float>(times[i]));
     }
   } else {
-    for (const double value : channel.values)
-      values.push_back(static_cast<float>(value - zero));
+    for (const double value : channel.values) values.push_back(static_cast<float>(value - zero));
   }
   Json json{{"name", channel.name}, {"unit", channel.unit}, {"zero", zero}, {"values", base64_of(values)}};
   if (is_thinned) json["times"] = base64_of(own_times);
@@ -157,8 +155,8 @@ void add_texts(Json& summary) {
   if (summary.contains("joints"))
     for (Json& entry : summary["joints"]) {
       const std::pair<const char*, const char*> figures[] = {
-          {"first_slip", "s"}, {"smallest_margin", ""}, {"largest_required_pressure", "Pa"}, {"slid_x", "m"},
-          {"slid_y", "m"},     {"slid_angle", "rad"},   {"area_lost", "m^2"},  {"largest_edge_load", "N/m"}, {"largest_edge_share", ""}};
+          {"first_slip", "s"},   {"smallest_margin", ""}, {"largest_required_pressure", "Pa"}, {"slid_x", "m"},           {"slid_y", "m"},
+          {"slid_angle", "rad"}, {"area_lost", "m^2"},    {"largest_edge_load", "N/m"},        {"largest_edge_share", ""}};
       for (const auto& [key, unit] : figures) add_text(entry, key, std::string("error_") + key, unit);
     }
   if (summary.contains("judgement"))
@@ -194,8 +192,7 @@ Json run_json(const Results& run, Json summary, Json drawing, const std::vector<
     drawing["elements"] = Json::array();
   }
   Json channels = Json::array();
-  for (const std::size_t i : kept)
-    channels.push_back(channel_json(run.channels[i], run.times, stretches));
+  for (const std::size_t i : kept) channels.push_back(channel_json(run.channels[i], run.times, stretches));
   const bool is_thinned = stretches > 0 && run.times.size() > 2 * stretches + 2;
   // Thinned channels have their own times; of the common ones the page then needs the ends only.
   const std::vector<double> ends{run.times.front(), run.times.back()};
@@ -216,8 +213,7 @@ Json run_json(const Results& run, Json summary, Json drawing, const std::vector<
 
 std::string data_of(const std::vector<Results>& runs, std::vector<Json> summaries, std::size_t budget) {
   std::vector<Json> drawings;
-  for (const Results& run : runs)
-    drawings.push_back(parsed(run, run.drawing, "drawing.json"));
+  for (const Results& run : runs) drawings.push_back(parsed(run, run.drawing, "drawing.json"));
   const Plan plan = plan_for(runs, drawings, budget);
   Json json{{"program", std::string("steplap ") + k_version}, {"runs", Json::array()}};
   for (std::size_t r = 0; r < runs.size(); ++r)

@@ -23,8 +23,7 @@ namespace {
 
 std::string page_title(const std::vector<Results>& runs) {
   std::string names;
-  for (const Results& run : runs)
-    names += (names.empty() ? "" : ", ") + run.name;
+  for (const Results& run : runs) names += (names.empty() ? "" : ", ") + run.name;
   return "steplap: " + names;
 }
 
@@ -52,12 +51,12 @@ std::string filled_page(std::string_view page, const std::map<std::string, std::
 std::string report_page(const std::vector<Results>& runs) {
   namespace assets = report_assets;
   return filled_page(assets::k_page_html, {{"PAGE_TITLE", escaped_html(page_title(runs))},
-                                      {"DYGRAPHS_CSS", std::string(assets::k_dygraphs_css)},
-                                      {"PAGE_CSS", std::string(assets::k_page_css)},
-                                      {"DATA", report_data(runs)},
-                                      {"DYGRAPHS_JS", std::string(assets::k_dygraphs_js)},
-                                      {"PAGE_JS", std::string(assets::k_page_js)},
-                                      {"DYGRAPHS_LICENCE", escaped_html(std::string(assets::k_dygraphs_licence))}});
+                                           {"DYGRAPHS_CSS", std::string(assets::k_dygraphs_css)},
+                                           {"PAGE_CSS", std::string(assets::k_page_css)},
+                                           {"DATA", report_data(runs)},
+                                           {"DYGRAPHS_JS", std::string(assets::k_dygraphs_js)},
+                                           {"PAGE_JS", std::string(assets::k_page_js)},
+                                           {"DYGRAPHS_LICENCE", escaped_html(std::string(assets::k_dygraphs_licence))}});
 }
 
 } // namespace steplap

@@ -33,7 +33,8 @@ const char* const k_style =
     ".panel{fill:var(--paper);stroke:var(--rule)} .limb,.yoke,.other,.hole{stroke:var(--ink);stroke-width:.6} "
     ".limb{fill:var(--limb)} .other{fill:var(--pale)} .yoke{fill:var(--yoke)} .hole{fill:var(--paper)} .lap{fill:var(--lap)} "
     ".axis{stroke:var(--soft);stroke-dasharray:8 3 2 3;stroke-width:.8} .cut{stroke:var(--lap);stroke-width:1} "
-    ".name{paint-order:stroke;stroke:var(--limb);stroke-width:5px} .pale{stroke:var(--pale)} .round{fill:none;stroke:var(--soft);stroke-width:1;stroke-dasharray:5 3} "
+    ".name{paint-order:stroke;stroke:var(--limb);stroke-width:5px} .pale{stroke:var(--pale)} "
+    ".round{fill:none;stroke:var(--soft);stroke-width:1;stroke-dasharray:5 3} "
     ".dimension,.extension{stroke:var(--soft);stroke-width:.7} .arrow{fill:var(--soft)}</style>\n";
 
 std::string millimetres(double value) { return plain_millimetres(value) + " mm"; }
@@ -50,8 +51,8 @@ public:
   std::string svg() {
     const bool has_stack = !core_.is_counted();
     const double height = k_lower + (has_stack ? k_height + k_gap : -k_title);
-    out_ << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " << k_width << " " << height << "' width='" << k_width
-         << "' height='" << height << "'>\n<title>" << escaped_svg(core_.name) << "</title>\n"
+    out_ << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " << k_width << " " << height << "' width='" << k_width << "' height='"
+         << height << "'>\n<title>" << escaped_svg(core_.name) << "</title>\n"
          << k_style << "<rect width='100%' height='100%' class='back'/>\n";
     draw_elevation();
     if (has_stack) {
@@ -113,9 +114,8 @@ std::vector<std::size_t> packets_by_width(const Stack& stack) {
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < stack.packets.size(); ++p)
     if (likeness(stack, p) == p) order.push_back(p);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return stack.packets[a].width > stack.packets[b].width;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return stack.packets[a].width > stack.packets[b].width; });
   return order;
 }
 
@@ -172,11 +172,13 @@ void Drawing::draw_elevation() {
     panel.line({limb.middle.x(), limb.middle.y() - h}, {limb.middle.x(), limb.middle.y() + h}, "axis");
     const bool is_narrow = panel.length(width_of(*limb.core)) < 6.8 * static_cast<double>(limb.name.size()) + 6.0;
     const Vec2 place = panel.at(limb.middle);
-    out_ << "<text transform='translate(" << pixels(place.x() + (is_narrow ? 4.0 : 0.0)) << " " << pixels(place.y() + (is_narrow ? 0.0 : 4.0))
-         << ")" << (is_narrow ? " rotate(-90)" : "") << "' text-anchor='middle' class='" << (limb.core == &core_ ? "name" : "name pale") << "'>" << escaped_svg(limb.name) << "</text>\n";
+    out_ << "<text transform='translate(" << pixels(place.x() + (is_narrow ? 4.0 : 0.0)) << " "
+         << pixels(place.y() + (is_narrow ? 0.0 : 4.0)) << ")" << (is_narrow ? " rotate(-90)" : "") << "' text-anchor='middle' class='"
+         << (limb.core == &core_ ? "name" : "name pale") << "'>" << escaped_svg(limb.name) << "</text>\n";
   }
   dimension_elevation(panel, all);
-  panel.note("", drawn.size() > 1 ? "limbs of '" + core_.name + "' dark blue, all other limbs pale, yokes brown" : "limbs blue, yokes brown");
+  panel.note("",
+             drawn.size() > 1 ? "limbs of '" + core_.name + "' dark blue, all other limbs pale, yokes brown" : "limbs blue, yokes brown");
 }
 
 void Drawing::dimension_elevation(SheetPanel& panel, const std::vector<Limb>& all) const {
@@ -252,8 +254,9 @@ void Drawing::draw_packets(SheetPanel& panel) const {
   std::vector<SheetPanel::Label> labels;
   for (std::size_t i = 0; i < stack.packets.size(); ++i) {
     const Packet& p = stack.packets[i];
-    labels.push_back({{0.5 * p.width, 0.5 * (first[i] + last[i])},
-                      plain_millimetres(p.width) + " × " + plain_millimetres(p.depth) + ", " + std::to_string(sheets_in(stack, p)) + " sheets"});
+    labels.push_back(
+        {{0.5 * p.width, 0.5 * (first[i] + last[i])},
+         plain_millimetres(p.width) + " × " + plain_millimetres(p.depth) + ", " + std::to_string(sheets_in(stack, p)) + " sheets"});
   }
   panel.labels_at_right(std::move(labels), panel.frame().x + panel.frame().width - 148.0);
 }
@@ -265,8 +268,8 @@ void Drawing::draw_section() {
   const std::vector<Slab> slabs = slabs_of(stack);
   const Round round = round_about(slabs);
   const double half = 0.5 * round.diameter;
-  SheetPanel panel(out_, k_upper_right, "Section of a limb, front face below, mm", {-half, round.centre - half}, {half, round.centre + half},
-              {52.0, 172.0, 40.0, 84.0});
+  SheetPanel panel(out_, k_upper_right, "Section of a limb, front face below, mm", {-half, round.centre - half},
+                   {half, round.centre + half}, {52.0, 172.0, 40.0, 84.0});
   panel.circle({0.0, round.centre}, round.diameter, "round");
   draw_packets(panel);
   panel.line({0.0, round.centre - half}, {0.0, round.centre + half}, "axis");
@@ -290,7 +293,7 @@ void Drawing::draw_corner(const PanelFrame& frame) {
   const Mitre m = geometry_.mitre(p, is_middle);
   const double top = 0.5 * m.core_height, low = top - 1.35 * m.yoke_height, half = 0.5 * m.limb_width;
   SheetPanel panel(out_, frame, is_middle ? "Corner: T-joint of the largest packet" : "Corner: mitre of the largest packet",
-              {-1.35 * half, low}, {1.1 * half, top}, {34.0, 70.0, 34.0, 62.0});
+                   {-1.35 * half, low}, {1.1 * half, top}, {34.0, 70.0, 34.0, 62.0});
   panel.rectangle(-1.35 * half, is_middle ? 1.1 * half : half, top - m.yoke_height, top, "yoke");
   CornerFrame floor; // cuts the limb off at the lower edge
   floor.origin = {0.0, low};
@@ -302,11 +305,7 @@ void Drawing::draw_corner(const PanelFrame& frame) {
       if (!is_middle && side < 0.0) continue;
       const CornerFrame f = is_middle ? notch_frame(m, side, 1.0) : corner_frame(m, 1.0, 1.0);
       std::vector<Vec2> strip = {{-half, top - m.yoke_height}, {half, top - m.yoke_height}, {half, top}, {-half, top}};
-      if (is_middle)
-        strip = {{-side * half, top - m.yoke_height},
-                 {0.0, top - m.yoke_height},
-                 {0.0, top},
-                 {-side * half, top}};
+      if (is_middle) strip = {{-side * half, top - m.yoke_height}, {0.0, top - m.yoke_height}, {0.0, top}, {-side * half, top}};
       if (is_middle && side < 0.0) std::reverse(strip.begin(), strip.end());
       std::vector<Vec2> ends;
       for (std::size_t i = 0; i < strip.size(); ++i) {
@@ -319,26 +318,24 @@ void Drawing::draw_corner(const PanelFrame& frame) {
     }
   };
   const CornerFrame mitre = is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, 1.0, 1.0);
-  const std::string mitre_text =
-      "limb " + millimetres(m.limb_width) + ", yoke " + millimetres(m.yoke_height) + ", mitre " +
-      millimetres(mitre.length) + " at " +
-      number_text(std::round(geometry_.angle(p, is_middle) * 572.957795) / 10.0) + "°";
+  const std::string mitre_text = "limb " + millimetres(m.limb_width) + ", yoke " + millimetres(m.yoke_height) + ", mitre " +
+                                 millimetres(mitre.length) + " at " +
+                                 number_text(std::round(geometry_.angle(p, is_middle) * 572.957795) / 10.0) + "°";
   if (core_.is_counted()) {
     draw_line(-0.5 * *core_.overlap);
     draw_line(0.5 * *core_.overlap);
     panel.note("overlap " + millimetres(*core_.overlap) + " between the lines", mitre_text);
   } else {
     for (long k = 0; k < geometry_.stack().book.steps; ++k) draw_line(geometry_.line({p, k}, is_middle));
-    panel.note(std::to_string(geometry_.stack().book.steps) + " lines, " +
-                   millimetres(geometry_.pitch(p, is_middle)) + " apart across the mitre (red)",
+    panel.note(std::to_string(geometry_.stack().book.steps) + " lines, " + millimetres(geometry_.pitch(p, is_middle)) +
+                   " apart across the mitre (red)",
                mitre_text);
   }
   panel.dimension_upwards({1.1 * half, top - m.yoke_height}, {1.1 * half, top}, 20.0, plain_millimetres(m.yoke_height));
   panel.dimension_across({-half, low}, {half, low}, 22.0, plain_millimetres(m.limb_width));
   const Mitre outer = geometry_.mitre(geometry_.largest(), false);
   const Vec2 cross_of_axes(0.0, 0.5 * (outer.core_height - outer.yoke_height));
-  for (const Vec2& hole : core_.bolt_holes)
-    panel.circle(cross_of_axes + hole, *core_.bolt_hole_diameter, "hole");
+  for (const Vec2& hole : core_.bolt_holes) panel.circle(cross_of_axes + hole, *core_.bolt_hole_diameter, "hole");
   panel.line({0.0, low}, {0.0, top}, "axis");
   panel.line({-1.35 * half, cross_of_axes.y()}, {1.1 * half, cross_of_axes.y()}, "axis");
 }
@@ -352,10 +349,10 @@ void Drawing::draw_book() {
   const double s = geometry_.pitch(p, is_middle), n = static_cast<double>(stack.book.steps);
   const double edge = 0.5 * (n - 1.0) * s + 1.6 * s;
   SheetPanel panel(out_, k_lower_right, "Book across the mitre, thickness enlarged", {-edge, -0.9},
-              {edge, static_cast<double>(layers) + 0.3}, {34.0, 34.0, 34.0, 34.0}, false);
+                   {edge, static_cast<double>(layers) + 0.3}, {34.0, 34.0, 34.0, 34.0}, false);
   for (long i = 0; i < layers; ++i) {
-    const double q = geometry_.line({p, position_of(stack.book, i)}, is_middle),
-                 g = 0.5 * stack.book.clearance, low = static_cast<double>(i);
+    const double q = geometry_.line({p, position_of(stack.book, i)}, is_middle), g = 0.5 * stack.book.clearance,
+                 low = static_cast<double>(i);
     panel.rectangle(-edge, q - g, low + 0.14, low + 0.86, "yoke");
     panel.rectangle(q + g, edge, low + 0.14, low + 0.86, "limb");
     panel.text({-edge, low + 0.5}, std::to_string(position_of(stack.book, i) + 1), "end");
@@ -366,14 +363,12 @@ void Drawing::draw_book() {
   panel.text({0.7 * edge, -0.35}, "limb");
   Book book = stack.book;
   book.pitch = s;
-  panel.note("overlaps red: " + millimetres(mean_overlap(book)) +
-                 " in the mean; middle of the mitre dashed",
+  panel.note("overlaps red: " + millimetres(mean_overlap(book)) + " in the mean; middle of the mitre dashed",
              (book.kind == BookKind::saw_tooth ? "saw tooth"
               : book.kind == BookKind::zig_zag ? "zig-zag"
                                                : "zig-zag, ends doubled") +
-                 std::string(", a layer is ") + std::to_string(book.sheets_per_layer) +
-                 (book.sheets_per_layer > 1 ? " sheets" : " sheet") + ", clearance " +
-                 millimetres(book.clearance));
+                 std::string(", a layer is ") + std::to_string(book.sheets_per_layer) + (book.sheets_per_layer > 1 ? " sheets" : " sheet") +
+                 ", clearance " + millimetres(book.clearance));
 }
 
 void Drawing::draw_laps(SheetPanel& panel, long layers, double edge) {
@@ -383,11 +378,8 @@ void Drawing::draw_laps(SheetPanel& panel, long layers, double edge) {
   for (long i = 0; i + 1 < layers; ++i) {
     const double here = geometry_.line({p, position_of(stack.book, i)}, is_middle),
                  there = geometry_.line({p, position_of(stack.book, i + 1)}, is_middle);
-    const double low = std::min(here, there) + 0.5 * stack.book.clearance,
-                 high = std::max(here, there) - 0.5 * stack.book.clearance;
-    if (high > low && high < edge)
-      panel.rectangle(low, high, static_cast<double>(i) + 0.9, static_cast<double>(i) + 1.1,
-                      "lap");
+    const double low = std::min(here, there) + 0.5 * stack.book.clearance, high = std::max(here, there) - 0.5 * stack.book.clearance;
+    if (high > low && high < edge) panel.rectangle(low, high, static_cast<double>(i) + 0.9, static_cast<double>(i) + 1.1, "lap");
   }
 }
 

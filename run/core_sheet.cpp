@@ -9,9 +9,9 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_arrow = 7.0;      // of dimension lines, pixels
-constexpr double k_letter = 6.8;     // mean width of a letter of 12 pixels
-constexpr double k_row = 14.0;       // of labels
+constexpr double k_arrow = 7.0;  // of dimension lines, pixels
+constexpr double k_letter = 6.8; // mean width of a letter of 12 pixels
+constexpr double k_row = 14.0;   // of labels
 
 double width_of(const std::string& words) {
   // Bytes that continue a letter of UTF-8 take no room.
@@ -34,7 +34,7 @@ std::string pixels(double value) { return number_text(std::round(value * 100.0) 
 std::string plain_millimetres(double metres) { return number_text(std::round(metres * 1e4) / 10.0); }
 
 SheetPanel::SheetPanel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
-             const PanelEdges& edges, bool is_to_scale)
+                       const PanelEdges& edges, bool is_to_scale)
     : out_(out), frame_(frame), low_(low) {
   const Vec2 size = (high - low).cwiseMax(1e-9);
   const Vec2 room(frame.width - edges.left - edges.right, frame.height - edges.top - edges.bottom);
@@ -42,8 +42,8 @@ SheetPanel::SheetPanel(std::ostream& out, const PanelFrame& frame, const std::st
   if (is_to_scale) scale_ = Vec2::Constant(std::min(scale_.x(), scale_.y()));
   offset_ = Vec2(edges.left, edges.bottom) + 0.5 * (room - size.cwiseProduct(scale_));
   out_ << "<text x='" << pixels(frame.x) << "' y='" << pixels(frame.y - 9.0) << "' class='title'>" << escaped_svg(title)
-       << "</text>\n<rect x='" << pixels(frame.x) << "' y='" << pixels(frame.y) << "' width='" << pixels(frame.width)
-       << "' height='" << pixels(frame.height) << "' class='panel'/>\n";
+       << "</text>\n<rect x='" << pixels(frame.x) << "' y='" << pixels(frame.y) << "' width='" << pixels(frame.width) << "' height='"
+       << pixels(frame.height) << "' class='panel'/>\n";
 }
 
 Vec2 SheetPanel::at(const Vec2& p) const {
@@ -62,28 +62,27 @@ void SheetPanel::rectangle(double x0, double x1, double y0, double y1, const std
 }
 
 void SheetPanel::line_between(const Vec2& a, const Vec2& b, const std::string& kind) {
-  out_ << "<line x1='" << pixels(a.x()) << "' y1='" << pixels(a.y()) << "' x2='" << pixels(b.x()) << "' y2='"
-       << pixels(b.y()) << "' class='" << kind << "'/>\n";
+  out_ << "<line x1='" << pixels(a.x()) << "' y1='" << pixels(a.y()) << "' x2='" << pixels(b.x()) << "' y2='" << pixels(b.y())
+       << "' class='" << kind << "'/>\n";
 }
 
 void SheetPanel::line(const Vec2& a, const Vec2& b, const std::string& kind) { line_between(at(a), at(b), kind); }
 
 void SheetPanel::circle(const Vec2& centre, double diameter, const std::string& kind) {
-  out_ << "<circle cx='" << pixels(at(centre).x()) << "' cy='" << pixels(at(centre).y()) << "' r='"
-       << pixels(0.5 * length(diameter)) << "' class='" << kind << "'/>\n";
+  out_ << "<circle cx='" << pixels(at(centre).x()) << "' cy='" << pixels(at(centre).y()) << "' r='" << pixels(0.5 * length(diameter))
+       << "' class='" << kind << "'/>\n";
 }
 
 void SheetPanel::text(const Vec2& place, const std::string& words, const std::string& anchor, double down) {
-  out_ << "<text x='" << pixels(at(place).x()) << "' y='" << pixels(at(place).y() + down) << "' text-anchor='" << anchor
-       << "'>" << escaped_svg(words) << "</text>\n";
+  out_ << "<text x='" << pixels(at(place).x()) << "' y='" << pixels(at(place).y() + down) << "' text-anchor='" << anchor << "'>"
+       << escaped_svg(words) << "</text>\n";
 }
 
 void SheetPanel::note(const std::string& below, const std::string& above) {
-  out_ << "<text x='" << pixels(frame_.x + 8.0) << "' y='" << pixels(frame_.y + frame_.height - 9.0) << "'>"
-       << escaped_svg(below) << "</text>\n";
+  out_ << "<text x='" << pixels(frame_.x + 8.0) << "' y='" << pixels(frame_.y + frame_.height - 9.0) << "'>" << escaped_svg(below)
+       << "</text>\n";
   if (!above.empty())
-    out_ << "<text x='" << pixels(frame_.x + 8.0) << "' y='" << pixels(frame_.y + 18.0) << "'>" << escaped_svg(above)
-         << "</text>\n";
+    out_ << "<text x='" << pixels(frame_.x + 8.0) << "' y='" << pixels(frame_.y + 18.0) << "'>" << escaped_svg(above) << "</text>\n";
 }
 
 void SheetPanel::arrow(const Vec2& tip, const Vec2& direction) {
@@ -105,8 +104,8 @@ void SheetPanel::dimension_across(const Vec2& a, const Vec2& b, double off, cons
   arrow({p.x(), y}, {is_short ? 1.0 : -1.0, 0.0});
   arrow({q.x(), y}, {is_short ? -1.0 : 1.0, 0.0});
   const double x = is_short ? q.x() + out + 3.0 : 0.5 * (p.x() + q.x());
-  out_ << "<text x='" << pixels(x) << "' y='" << pixels(y + (is_short ? 4.0 : -4.0)) << "' text-anchor='"
-       << (is_short ? "start" : "middle") << "'>" << escaped_svg(words) << "</text>\n";
+  out_ << "<text x='" << pixels(x) << "' y='" << pixels(y + (is_short ? 4.0 : -4.0)) << "' text-anchor='" << (is_short ? "start" : "middle")
+       << "'>" << escaped_svg(words) << "</text>\n";
 }
 
 void SheetPanel::dimension_upwards(const Vec2& a, const Vec2& b, double off, const std::string& words) {
@@ -136,21 +135,17 @@ void SheetPanel::labels_at_right(std::vector<Label> labels, double x) {
   const auto room = std::max<std::size_t>(1, static_cast<std::size_t>((bottom - top) / k_row) + 1);
   if (labels.size() > room) {
     std::vector<Label> fewer;
-    for (std::size_t i = 0; i < room; ++i)
-      fewer.push_back(labels[i * (labels.size() - 1) / std::max<std::size_t>(1, room - 1)]);
+    for (std::size_t i = 0; i < room; ++i) fewer.push_back(labels[i * (labels.size() - 1) / std::max<std::size_t>(1, room - 1)]);
     labels = std::move(fewer);
   }
   // From above each as near to its place as the one before lets it, then back up from the lower edge.
   std::vector<double> rows;
-  for (const Label& label : labels)
-    rows.push_back(std::max(at(label.place).y(), rows.empty() ? top : rows.back() + k_row));
-  for (std::size_t i = rows.size(); i-- > 0;)
-    rows[i] = std::min(rows[i], i + 1 < rows.size() ? rows[i + 1] - k_row : bottom);
+  for (const Label& label : labels) rows.push_back(std::max(at(label.place).y(), rows.empty() ? top : rows.back() + k_row));
+  for (std::size_t i = rows.size(); i-- > 0;) rows[i] = std::min(rows[i], i + 1 < rows.size() ? rows[i + 1] - k_row : bottom);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     line_between(at(labels[i].place), {x - 12.0, rows[i]}, "extension");
     line_between({x - 12.0, rows[i]}, {x - 3.0, rows[i]}, "extension");
-    out_ << "<text x='" << pixels(x) << "' y='" << pixels(rows[i] + 4.0) << "'>" << escaped_svg(labels[i].words)
-         << "</text>\n";
+    out_ << "<text x='" << pixels(x) << "' y='" << pixels(rows[i] + 4.0) << "'>" << escaped_svg(labels[i].words) << "</text>\n";
   }
 }
 

@@ -34,7 +34,7 @@ class SheetPanel {
 public:
   /// Draws frame and title. Shows at least the rectangle from `low` to `high`, in the middle of what `edges` leave.
   SheetPanel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
-        const PanelEdges& edges, bool is_to_scale = true);
+             const PanelEdges& edges, bool is_to_scale = true);
 
   /// Where a place, m, is in the image, pixels.
   [[nodiscard]] Vec2 at(const Vec2& p) const;

@@ -23,8 +23,7 @@ Json point_json(const Vec2& p) { return Json::array({p.x(), p.y()}); }
 
 Json outline_json(const std::vector<Vec2>& outline) {
   Json json = Json::array();
-  for (const Vec2& p : outline)
-    json.push_back(point_json(p));
+  for (const Vec2& p : outline) json.push_back(point_json(p));
   return json;
 }
 
@@ -32,17 +31,14 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 // Convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points of a line.
 std::vector<Vec2> hull(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<Vec2> chain;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t begin = chain.size();
     for (const Vec2& p : points) {
-      while (chain.size() >= begin + 2 && cross(chain.back() - chain[chain.size() - 2], p - chain.back()) <= 0.0)
-        chain.pop_back();
+      while (chain.size() >= begin + 2 && cross(chain.back() - chain[chain.size() - 2], p - chain.back()) <= 0.0) chain.pop_back();
       chain.push_back(p);
     }
     chain.pop_back();
@@ -57,16 +53,13 @@ long long coarse(double value) { return std::llround(1e9 * value); }
 class Drawing {
 public:
   explicit Drawing(const Model& model) : model_(model) {
-    for (const Body& body : model.bodies)
-      bodies_[body.name] = &body;
-    for (const Marker& marker : model.markers)
-      markers_[marker.name] = &marker;
+    for (const Body& body : model.bodies) bodies_[body.name] = &body;
+    for (const Marker& marker : model.markers) markers_[marker.name] = &marker;
   }
 
   Json json() {
     Json elements = Json::array();
-    for (const ElementEntry& entry : model_.elements)
-      elements.push_back(element_json(entry));
+    for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
     return {{"bodies", bodies_json()}, // after the elements, which tell of their geometry
             {"elements", std::move(elements)},
             {"ground", ground_json()},
@@ -101,27 +94,25 @@ private:
   [[nodiscard]] MarkerPlace place_of(const std::string& name) const {
     const Marker& marker = *markers_.at(name);
     const bool is_in_ground = !marker.point;
-    return {marker.body, about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, body(marker.body)),
-            marker.angle};
+    return {marker.body, about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, body(marker.body)), marker.angle};
   }
 
   [[nodiscard]] static Json places_json(const std::vector<MarkerPlace>& places) {
     Json json = Json::array();
-    for (const MarkerPlace& place : places)
-      json.push_back({{"body", place.body}, {"point", point_json(place.point)}});
+    for (const MarkerPlace& place : places) json.push_back({{"body", place.body}, {"point", point_json(place.point)}});
     return json;
   }
 
   Json element_json(const ElementEntry& entry) {
-    Sketch sketch(entry, [this](const std::string& marker) { return place_of(marker); },
-                  [this](const std::string& body) -> BodyGeometry& { return geometry_[body]; });
+    Sketch sketch(
+        entry, [this](const std::string& marker) { return place_of(marker); },
+        [this](const std::string& body) -> BodyGeometry& { return geometry_[body]; });
     draw_element(sketch);
     Json json{{"name", entry.element->name},
               {"kind", entry.kind->name},
               {"symbol", sketch.shapes().empty() ? "hidden" : sketch.shapes().front().type}};
     Json shapes = Json::array();
-    for (const Shape& shape : sketch.shapes())
-      shapes.push_back(shape_json(shape));
+    for (const Shape& shape : sketch.shapes()) shapes.push_back(shape_json(shape));
     json["shapes"] = std::move(shapes);
     for (const Field& field : entry.kind->fields.fields()) {
       if (field.type == FieldType::body) json[field.name] = std::get<std::string>(field.get(entry.element.get()));
@@ -146,8 +137,7 @@ private:
   std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
     std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
     const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
-    for (const double end : ends)
-      key.push_back(coarse(along + end));
+    for (const double end : ends) key.push_back(coarse(along + end));
     const auto [found, is_new] = plane_numbers_.try_emplace({place.body, std::move(key)}, planes_.size());
     if (is_new) planes_.push_back({{"body", place.body}, {"point", point_json(place.point)}, {"normal", point_json(normal)}});
     if (is_new && !ends.empty()) planes_.back()["ends"] = ends;
@@ -157,8 +147,7 @@ private:
   // Of the places where elements act those that the body's own circles do not cover, and its centre of gravity.
   [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
     std::vector<Vec2> outline;
-    for (const Vec2& p : body.outline)
-      outline.push_back(p - body.cg);
+    for (const Vec2& p : body.outline) outline.push_back(p - body.cg);
     if (!outline.empty() || !geometry.polygons.empty()) return outline;
     const auto is_covered = [&](const Vec2& p) {
       return std::any_of(geometry.circles.begin(), geometry.circles.end(), [&](const std::array<double, 4>& circle) {
@@ -193,8 +182,7 @@ private:
                       {"outline", outline_json(outline_of(body, geometry))}});
       add_geometry(geometry, json.back());
       json.back()["holes"] = Json::array();
-      for (const std::vector<Vec2>& window : core_windows(body, model_))
-        json.back()["holes"].push_back(outline_json(window));
+      for (const std::vector<Vec2>& window : core_windows(body, model_)) json.back()["holes"].push_back(outline_json(window));
     }
     return json;
   }
@@ -205,11 +193,9 @@ private:
     return json;
   }
 
-  [[nodiscard]] std::vector<Vec2> sheet(const std::vector<Vec2>& corners, const std::string& frame,
-                                        const std::string& owner) const {
+  [[nodiscard]] std::vector<Vec2> sheet(const std::vector<Vec2>& corners, const std::string& frame, const std::string& owner) const {
     std::vector<Vec2> local;
-    for (const Vec2& p : corners)
-      local.push_back(about_centre(p, frame == "ground", body(owner)));
+    for (const Vec2& p : corners) local.push_back(about_centre(p, frame == "ground", body(owner)));
     return local;
   }
 
@@ -262,8 +248,6 @@ private:
 
 } // namespace
 
-std::string drawing_json(const Model& model) {
-  return Drawing(model).json().dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string drawing_json(const Model& model) { return Drawing(model).json().dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 } // namespace steplap

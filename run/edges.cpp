@@ -44,9 +44,9 @@ std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vec
     const auto range = range_of.find(element.name + ".gap");
     if (!most || range == range_of.end() || !(-range->second->low.value > *most)) continue;
     found.push_back({"contact_too_deep", FindingLevel::warning,
-                     "'" + element.name + "' was pressed " + quantity_text(-range->second->low.value, "m", 1e-3) + " deep at t = " +
-                    time_text(range->second->low.t) + " s; beyond " + quantity_text(*most, "m", 1e-3) +
-                    " one part is through the other, and what came after is not to be trusted. A larger 'stiffness' keeps them apart",
+                     "'" + element.name + "' was pressed " + quantity_text(-range->second->low.value, "m", 1e-3) +
+                         " deep at t = " + time_text(range->second->low.t) + " s; beyond " + quantity_text(*most, "m", 1e-3) +
+                         " one part is through the other, and what came after is not to be trusted. A larger 'stiffness' keeps them apart",
                      element.where});
   }
   return found;
@@ -72,7 +72,7 @@ std::vector<Finding> feet_beyond_edges(const LoadedModel& loaded, const State& s
     if (beyond <= k_beyond * (high - low)) continue;
     found.push_back({"foot_beyond_edge", FindingLevel::warning,
                      "'" + contact->name + "' presses " + quantity_text(beyond, "m", 1e-3) + " beyond the edge of '" + b.body->name +
-                    "': the line of a unilateral_contact has no ends, the part has; give it 'ends', or take a polygon_contact",
+                         "': the line of a unilateral_contact has no ends, the part has; give it 'ends', or take a polygon_contact",
                      contact->where});
   }
   return found;

@@ -27,12 +27,14 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   double most_evaluations = std::numeric_limits<double>::infinity();
   if (options.estimating == Estimating::cheap) {
     const double times = times_of_finer_runs(*loaded.system, as_run), parts = parts_evaluated(*loaded.system, statistics);
-    if (!(times * parts < k_little)) return {EstimateStatus::too_dear, "would take long; ask for it explicitly", times * statistics.cpu_seconds, {}};
+    if (!(times * parts < k_little))
+      return {EstimateStatus::too_dear, "would take long; ask for it explicitly", times * statistics.cpu_seconds, {}};
     most_evaluations = std::floor(k_most * k_little * static_cast<double>(statistics.evaluations) / std::max(parts, 1.0));
   }
   try {
     const State initial = options.start ? *options.start : initial_state_of(loaded);
-    return {EstimateStatus::known, "", {}, estimate_global_error(*loaded.system, initial, as_run, run.result, is_main_event, most_evaluations)};
+    return {
+        EstimateStatus::known, "", {}, estimate_global_error(*loaded.system, initial, as_run, run.result, is_main_event, most_evaluations)};
   } catch (const EstimateTooDear& stopped) {
     return none(EstimateStatus::too_dear, std::string(stopped.what()) + "; ask for it explicitly");
   } catch (const NumericalFailure& failure) {

@@ -33,9 +33,12 @@ std::vector<Finding> far_joints(const LoadedModel& loaded) {
     const Vec3 pose = pose_of(*loaded.system, given, a.body);
     const Vec2 at = Vec2(pose.x(), pose.y()) + rotated(a.point, pose.z());
     if (!(at.norm() > k_far * std::sqrt(a.body->inertia / a.body->mass))) continue;
-    found.push_back({"far_joint", FindingLevel::warning, "revolute '" + joint->name + "' pins '" + a.body->name + "' to the ground's origin, since its 'b' names no place; in the pose given 'a' is " +
-                    quantity_text(at.norm(), "m", 1e-3) + " from there. A pin where 'a' is has b = { body = \"ground\", at = [" + rounded(at.x()) + ", " +
-                    rounded(at.y()) + "] }", joint->where});
+    found.push_back({"far_joint", FindingLevel::warning,
+                     "revolute '" + joint->name + "' pins '" + a.body->name +
+                         "' to the ground's origin, since its 'b' names no place; in the pose given 'a' is " +
+                         quantity_text(at.norm(), "m", 1e-3) + " from there. A pin where 'a' is has b = { body = \"ground\", at = [" +
+                         rounded(at.x()) + ", " + rounded(at.y()) + "] }",
+                     joint->where});
   }
   return found;
 }

@@ -1,16 +1,16 @@
 #include "run/findings.h"
 
 #include "elements/shape.h"
-#include "mbd/model/action.h"
-#include "mbd/rest/assembly.h"
-#include "mbd/rest/freedom.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/events/event_handler.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/model/action.h"
 #include "mbd/model/body_builder.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/signal_network.h"
 #include "mbd/model/validate.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/freedom.h"
 #include "mbd/simulation/simulation.h"
 #include "run/edges.h"
 #include "run/far_joints.h"
@@ -96,9 +96,7 @@ std::string list_of(const System& system, const std::vector<SharedReaction>& rea
     }
     if (!reactions[i].quantities.empty()) text += ")";
   }
-  return shown < reactions.size()
-             ? text + " and " + std::to_string(reactions.size() - shown) + " more"
-             : text;
+  return shown < reactions.size() ? text + " and " + std::to_string(reactions.size() - shown) + " more" : text;
 }
 
 // Between two places of one body, or of two that do not move, nothing has an effect (joints and drives refuse it).
@@ -118,8 +116,8 @@ void warn_of_idle_elements(const Model& model, Findings& findings) {
     if (a.empty() || b.empty() || body_of.count(a) == 0 || body_of.count(b) == 0 || body_of[a] != body_of[b]) continue;
     if (over && !std::get<std::vector<std::string>>(over->get(entry.element.get())).empty()) continue;
     warn(findings, "idle_element",
-         entry.kind->name + " '" + entry.element->name + "' acts between two places " + (body_of[a].empty() ? "that do not move" : "of '" + body_of[a] + "'") +
-             ": it moves nothing",
+         entry.kind->name + " '" + entry.element->name + "' acts between two places " +
+             (body_of[a].empty() ? "that do not move" : "of '" + body_of[a] + "'") + ": it moves nothing",
          entry.element->where);
   }
 }
@@ -132,9 +130,14 @@ void warn_of_unused_parameters(const Model& model, Findings& findings) {
     for (const std::string& name : names_in_formulas(entry)) in_formulas.insert(name);
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
     const Parameter& parameter = parameters.entries[i];
-    const auto needs_it = [&](const ParameterFormula& formula) { return std::find(formula.of.begin(), formula.of.end(), i) != formula.of.end(); };
-    const bool is_used = in_formulas.count(parameter.name) > 0 || std::any_of(parameters.uses.begin(), parameters.uses.end(), [&](const ParameterUse& use) { return needs_it(use.formula); }) ||
-                         std::any_of(parameters.entries.begin(), parameters.entries.end(), [&](const Parameter& p) { return p.formula && needs_it(*p.formula); });
+    const auto needs_it = [&](const ParameterFormula& formula) {
+      return std::find(formula.of.begin(), formula.of.end(), i) != formula.of.end();
+    };
+    const bool is_used =
+        in_formulas.count(parameter.name) > 0 ||
+        std::any_of(parameters.uses.begin(), parameters.uses.end(), [&](const ParameterUse& use) { return needs_it(use.formula); }) ||
+        std::any_of(parameters.entries.begin(), parameters.entries.end(),
+                    [&](const Parameter& p) { return p.formula && needs_it(*p.formula); });
     if (!is_used) warn(findings, "unused_parameter", "nothing follows from parameter '" + parameter.name + "'", parameter.where);
   }
 }
@@ -144,14 +147,14 @@ void warn_of_shared_reactions(const System& system, Findings& findings) {
   const Freedom freedom = count_freedom(system);
   if (!freedom.shared.empty())
     warn(findings, "shared_reactions",
-        "the reactions of " + list_of(system, freedom.shared) +
-        " are not unique: their constraints depend on each other, and how they share a load is not "
-        "determined; the motion is. Reported is the sharing with the least forces");
+         "the reactions of " + list_of(system, freedom.shared) +
+             " are not unique: their constraints depend on each other, and how they share a load is not "
+             "determined; the motion is. Reported is the sharing with the least forces");
   if (freedom.shared_sticking.size() > freedom.shared.size())
-    warn(findings, "shared_friction", "while all friction sticks the reactions of " +
-                       list_of(system, freedom.shared_sticking) +
-                       " are not unique: they hold together as long as any way to share the load is "
-                       "admissible. Reported is one of those ways, in proportion to the capacities where that will do");
+    warn(findings, "shared_friction",
+         "while all friction sticks the reactions of " + list_of(system, freedom.shared_sticking) +
+             " are not unique: they hold together as long as any way to share the load is "
+             "admissible. Reported is one of those ways, in proportion to the capacities where that will do");
 }
 
 // Does a load or a drive that changes with time act at the start, or begin to?
@@ -226,7 +229,8 @@ std::string cause_of(const System& system, const Start& start, int body) {
   }
   const double gives = stiffness > 0.0 ? system.bodies[body].mass * start.acceleration[static_cast<std::size_t>(body)] / stiffness : 0.0;
   if (!(gives > k_settles * size)) return "";
-  return "the springs on it do not balance its loads. If that is not meant, check their preloads (one may lack its answer at the other end)";
+  return "the springs on it do not balance its loads. If that is not meant, check their preloads (one may lack its answer at the other "
+         "end)";
 }
 
 // At rest, and yet about to move by itself, where something near should hold it.
@@ -246,7 +250,9 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
   std::string cause;
   for (int i = 1; i < system.body_count(); ++i) {
     const double own = start.acceleration[static_cast<std::size_t>(i)];
-    if (!(own > k_felt * system.gravity.norm()) || !(own > 0.0) || (worst >= 0 && own <= start.acceleration[static_cast<std::size_t>(worst)])) continue;
+    if (!(own > k_felt * system.gravity.norm()) || !(own > 0.0) ||
+        (worst >= 0 && own <= start.acceleration[static_cast<std::size_t>(worst)]))
+      continue;
     if (std::string text = cause_of(system, start, i); !text.empty()) {
       worst = i;
       cause = std::move(text);
@@ -256,14 +262,15 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
   const std::string& name = system.bodies[worst].name;
   const Body* const body = loaded.model.find_body(name);
   findings.push_back({"restless_start", FindingLevel::note,
-                      "At t = 0 '" + name + "' accelerates at " + short_number(start.acceleration[static_cast<std::size_t>(worst)]) + " m/s²: " + cause +
-                          ", or use initial = \"equilibrium\"",
+                      "At t = 0 '" + name + "' accelerates at " + short_number(start.acceleration[static_cast<std::size_t>(worst)]) +
+                          " m/s²: " + cause + ", or use initial = \"equilibrium\"",
                       body ? body->where : Location{}});
 }
 
 // Ends of a beam that nothing holds are no oversight.
 bool is_made_by_table(const Model& model, const std::string& name) {
-  return std::any_of(model.tables.begin(), model.tables.end(), [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
+  return std::any_of(model.tables.begin(), model.tables.end(),
+                     [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
 }
 
 void warn_of_unused(const Model& model, Findings& findings) {
@@ -274,7 +281,8 @@ void warn_of_unused(const Model& model, Findings& findings) {
   Names body_names;
   for (const Body& body : model.bodies) body_names.insert(body.name);
   for (const Marker& marker : model.markers) // a marker named as its body is the reader's own
-    if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground" && !is_made_by_table(model, marker.name))
+    if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground" &&
+        !is_made_by_table(model, marker.name))
       warn(findings, "unused_marker", "marker '" + marker.name + "' is used by nothing", marker.where);
   for (const Body& body : model.bodies)
     if (used.bodies.count(body.name) == 0) warn(findings, "loose_body", "no element is attached to body '" + body.name + "'", body.where);
@@ -289,9 +297,10 @@ void append(Findings& findings, Findings more) {
 std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
   Findings findings;
   for (CoreRemark& remark : implausible_cores(loaded.model))
-    findings.push_back({remark.is_note ? "mitre_not_45_degrees" : "unusual_core", remark.is_note ? FindingLevel::note : FindingLevel::warning,
-                        std::move(remark.text), std::move(remark.where)});
-  for (ShapeRemark& remark : contradicted_shapes(loaded.model)) findings.push_back({"unlike_shape", FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
+    findings.push_back({remark.is_note ? "mitre_not_45_degrees" : "unusual_core",
+                        remark.is_note ? FindingLevel::note : FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
+  for (ShapeRemark& remark : contradicted_shapes(loaded.model))
+    findings.push_back({"unlike_shape", FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
   append(findings, implausible_loads(loaded));
   append(findings, implausible_sizes(loaded));
   return findings;
@@ -306,7 +315,8 @@ std::optional<Finding> note_of_moves(const LoadedModel& loaded) {
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
   if (moves.empty()) return std::nullopt;
-  return Finding{"assembly_moved", FindingLevel::note,
+  return Finding{"assembly_moved",
+                 FindingLevel::note,
                  "assembling the joints moved " + counted(moves.size(), "body", "bodies") + ", most of all '" +
                      system.bodies[moves.front().body].name + "' by " + quantity_text(moves.front().shift, "m", 1e-3) + " and " +
                      quantity_text(moves.front().turn, "rad", 1e-3) + "; steplap check lists them",
@@ -347,7 +357,9 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   const SimulationSettings& s = model.simulation;
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warn(findings, "unused_step",
-         "'step' of [simulation] is not used: '" + s.integrator + "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"", s.where);
+         "'step' of [simulation] is not used: '" + s.integrator +
+             "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"",
+         s.where);
   warn_of_unused_parameters(model, findings);
   warn_of_idle_elements(model, findings);
   append(findings, far_joints(loaded));

@@ -36,7 +36,8 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
   JointView view;
   view.joint = &joint;
   for (const ElementEntry& entry : loaded.model.elements)
-    if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name) view.interfaces.push_back(e);
+    if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name)
+      view.interfaces.push_back(e);
   view.beside = beside(joint, loaded.model);
   const State state = loaded.system->initial_state();
   std::vector<Motion<double>> motion(static_cast<std::size_t>(loaded.system->body_count()));
@@ -66,7 +67,8 @@ RequiredPressure JointView::required(const Vec3& wrench) const {
   if (interfaces.empty()) return {};
   RequiredPressure found = required_pressure(patch, wrench);
   if (!found.converged)
-    throw NumericalFailure("the required pressure of '" + joint->name + "' was not found to the last digit; the wrench may be out of all proportion");
+    throw NumericalFailure("the required pressure of '" + joint->name +
+                           "' was not found to the last digit; the wrench may be out of all proportion");
   return found;
 }
 

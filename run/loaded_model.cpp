@@ -1,13 +1,13 @@
 #include "run/loaded_model.h"
 
-#include "mbd/rest/assembly.h"
-#include "mbd/rest/start.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/text_reader.h"
 #include "mbd/model/completion.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/start.h"
 #include "mbd/simulation/trajectory.h"
 #include "run/failure.h"
 #include "run/loaded_text.h"
@@ -23,7 +23,8 @@ namespace {
 
 // "wagon" of "models/wagon.toml". A name of dots alone would be another folder: it keeps its ending.
 std::string name_of_model(const std::string& path) {
-  if (has_control_character(path)) throw FileError(path, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
+  if (has_control_character(path))
+    throw FileError(path, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
   if (is_standard_input(path)) return "stdin";
   const std::filesystem::path file(path);
   const std::string stem = file.stem().string();
@@ -35,9 +36,12 @@ void refuse_endless_output(const Model& model, const System& system) {
   const double numbers = trajectory_numbers(model, system);
   if (!(numbers > model.output.most_numbers)) return;
   char text[160];
-  std::snprintf(text, sizeof text, "the trajectory would have %.3g numbers (%.3g GB while it runs, some %.3g GB of text), more than the %.3g of 'most_numbers'",
-                numbers, 8e-9 * numbers, 20e-9 * numbers, model.output.most_numbers);
-  throw ModelError(model.output.where, std::string(text) + ": choose a larger 'step', fewer 'channels', or raise 'most_numbers' of [output]");
+  std::snprintf(
+      text, sizeof text,
+      "the trajectory would have %.3g numbers (%.3g GB while it runs, some %.3g GB of text), more than the %.3g of 'most_numbers'", numbers,
+      8e-9 * numbers, 20e-9 * numbers, model.output.most_numbers);
+  throw ModelError(model.output.where,
+                   std::string(text) + ": choose a larger 'step', fewer 'channels', or raise 'most_numbers' of [output]");
 }
 
 } // namespace
@@ -58,7 +62,8 @@ void put_together(LoadedModel& loaded) {
 
 } // namespace
 
-std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides, const Catalogue& catalogue) {
+std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides,
+                                              const Catalogue& catalogue) {
   auto loaded = std::make_shared<LoadedModel>();
   loaded->path = shown_input(path);
   loaded->name = name_of_model(path);
@@ -71,7 +76,8 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std
   return loaded;
 }
 
-std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, const std::string& path,
+                                                   const std::vector<std::string>& overrides) {
   auto loaded = std::make_shared<LoadedModel>();
   loaded->path = path;
   loaded->name = name_of_model(path);
@@ -101,8 +107,8 @@ std::shared_ptr<const LoadedModel> load_completed(Model completed, std::shared_p
   return loaded;
 }
 
-std::vector<std::shared_ptr<const LoadedModel>>
-load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides) {
+std::vector<std::shared_ptr<const LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                                            const std::vector<std::string>& overrides) {
   std::vector<std::shared_ptr<const LoadedModel>> models;
   std::vector<Diagnostic> problems;
   for (const std::string& path : paths) {

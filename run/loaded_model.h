@@ -1,9 +1,9 @@
 // A model read, compiled and put together, with what the files of its results need to know about it.
 #pragma once
 
-#include "mbd/rest/equilibrium.h"
 #include "mbd/io/input_files.h"
 #include "mbd/model/model.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/system/system.h"
 #include "run/catalogue.h"
 
@@ -38,10 +38,11 @@ struct LoadedModel {
 /// be written to files. Throws ModelError.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_given(const Model& given, const std::string& name);
 /// One that has been completed and compiled already; `path` is what messages call it.
-[[nodiscard]] std::shared_ptr<const LoadedModel> load_completed(Model completed, std::shared_ptr<const System> system, const std::string& path);
+[[nodiscard]] std::shared_ptr<const LoadedModel> load_completed(Model completed, std::shared_ptr<const System> system,
+                                                                const std::string& path);
 /// All of them, or a ModelError with what is wrong with any of them.
-[[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>>
-load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides = {});
+[[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                                                          const std::vector<std::string>& overrides = {});
 
 /// Where the model rests, found from its poses without its initial velocities, which are given back
 /// with the pose. Throws NumericalFailure if there is no equilibrium.

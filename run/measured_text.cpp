@@ -66,8 +66,6 @@ std::string measured_text(double value, std::optional<double> error, const std::
          error_text(last, unit);
 }
 
-std::string measured_time_text(double t, std::optional<double> error) {
-  return error ? measured_text(t, error, "s") : time_text(t) + " s";
-}
+std::string measured_time_text(double t, std::optional<double> error) { return error ? measured_text(t, error, "s") : time_text(t) + " s"; }
 
 } // namespace steplap

@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_large_error = 0.01; // of a channel's range: such a number is read with care
+constexpr double k_large_error = 0.01;       // of a channel's range: such a number is read with care
 constexpr std::size_t k_longest_quote = 160; // characters of a message that a sentence repeats
 
 // Its first sentence, and not all of a long one.
@@ -32,7 +32,8 @@ public:
   std::string text() const {
     const Judgement& j = report_.judgement;
     if (report_.run.failure) {
-      std::string text = "The run stopped at " + time(report_.run.result.final_state.t) + " before its end: " + first_sentence(report_.run.failure->text) + ".";
+      std::string text = "The run stopped at " + time(report_.run.result.final_state.t) +
+                         " before its end: " + first_sentence(report_.run.failure->text) + ".";
       if (j.so_far == Verdict::inspect || j.so_far == Verdict::reject) text += " Until then: " + unmet(j.so_far);
       return text;
     }
@@ -41,9 +42,11 @@ public:
     if (j.verdict == Verdict::open) return open();
     const std::size_t count = j.criteria.size();
     const std::string all = count == 1 ? "The one criterion is met" : "All " + std::to_string(count) + " criteria are met";
-    const auto nearest = std::find_if(overview_.utilisations.begin(), overview_.utilisations.end(), [&](const Utilisation& u) { return is_criterion(u); });
+    const auto nearest =
+        std::find_if(overview_.utilisations.begin(), overview_.utilisations.end(), [&](const Utilisation& u) { return is_criterion(u); });
     if (nearest == overview_.utilisations.end()) return all + ".";
-    return all + "; nearest to its limit is " + quoted(nearest->name) + ", with " + shown_share(nearest->share, nearest->error, digits_) + ".";
+    return all + "; nearest to its limit is " + quoted(nearest->name) + ", with " + shown_share(nearest->share, nearest->error, digits_) +
+           ".";
   }
 
 private:
@@ -52,7 +55,8 @@ private:
   }
 
   bool is_criterion(const Utilisation& u) const {
-    return std::any_of(report_.judgement.criteria.begin(), report_.judgement.criteria.end(), [&](const CriterionResult& c) { return c.channel == u.channel; });
+    return std::any_of(report_.judgement.criteria.begin(), report_.judgement.criteria.end(),
+                       [&](const CriterionResult& c) { return c.channel == u.channel; });
   }
 
   double share_of(const CriterionResult& c) const {
@@ -87,7 +91,8 @@ private:
   std::string sentence(const CriterionResult& c) const {
     if (const JointAssessment* joint = joint_that_slid(c)) {
       for (const StoryEntry& entry : overview_.story)
-        if (entry.what == "comes apart" && entry.who.front() == joint->joint) return "Joint " + quoted(joint->joint) + " comes apart at " + time(entry.from) + ".";
+        if (entry.what == "comes apart" && entry.who.front() == joint->joint)
+          return "Joint " + quoted(joint->joint) + " comes apart at " + time(entry.from) + ".";
       for (const StoryEntry& entry : overview_.story)
         if (entry.what == "slips" && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount)
           return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + " and slides " +
@@ -100,7 +105,8 @@ private:
     if (c.value && c.limit) {
       const bool is_below = std::abs(*c.value) < *c.limit || (*c.limit <= 0.0 && *c.value < *c.limit);
       const double column = std::max(std::abs(*c.value), std::abs(*c.limit));
-      const std::string value = shown_quantity(*c.value, c.unit, {.error = c.error, .limit = c.limit, .scale = *c.limit, .column = column}, digits_);
+      const std::string value =
+          shown_quantity(*c.value, c.unit, {.error = c.error, .limit = c.limit, .scale = *c.limit, .column = column}, digits_);
       const std::string what = c.name == c.where ? aspect_name(c) : quoted(c.name);
       return what + (is_below ? " falls to " : " reaches ") + value + at + (is_below ? ", below its limit of " : ", beyond its limit of ") +
              shown_quantity(*c.limit, c.unit, {.column = column}, digits_) + ".";
@@ -118,7 +124,9 @@ private:
   std::string open() const {
     const Judgement& j = report_.judgement;
     for (const CriterionResult& c : j.criteria)
-      if (c.outcome == Verdict::open) return quoted(c.name) + (c.doubt.empty() ? " could not be judged: " + first_sentence(c.text) + "." : " is " + first_sentence(c.doubt) + ".");
+      if (c.outcome == Verdict::open)
+        return quoted(c.name) +
+               (c.doubt.empty() ? " could not be judged: " + first_sentence(c.text) + "." : " is " + first_sentence(c.doubt) + ".");
     if (!j.caps.empty()) return "Every criterion is met, but the run cannot mean \"hold\": " + first_sentence(j.caps.front()) + ".";
     return "The model asks for nothing: it has no [[acceptance]] by which to judge the run.";
   }
@@ -136,7 +144,8 @@ double largest_error(const Report& report, const std::string& unit) {
   for (const ChannelRange& range : report.ranges()) {
     if (range.channel->unit != unit) continue;
     for (const auto which : {&ChannelError::low, &ChannelError::high})
-      if (const auto error = report.error_of(range, which); error && std::isfinite(*error)) largest = std::isnan(largest) ? *error : std::max(largest, *error);
+      if (const auto error = report.error_of(range, which); error && std::isfinite(*error))
+        largest = std::isnan(largest) ? *error : std::max(largest, *error);
   }
   return largest;
 }
@@ -168,7 +177,8 @@ void add_part(std::string& list, const std::string& what, double error, const st
 
 Trust trust_by_errors(const Report& report) {
   const GlobalErrorEstimate& estimate = *report.estimate.errors;
-  if (!estimate.unknown_because.empty()) return {TrustLevel::limited, "The errors are not known: " + first_sentence(estimate.unknown_because) + "."};
+  if (!estimate.unknown_because.empty())
+    return {TrustLevel::limited, "The errors are not known: " + first_sentence(estimate.unknown_because) + "."};
   double time_error = report.run.result.events.empty() ? std::nan("") : 0.0;
   std::size_t unknown = 0;
   for (const double error : estimate.event_times)
@@ -186,7 +196,8 @@ Trust trust_by_errors(const Report& report) {
   if (const std::vector<std::string> names = channels_without_error(report); !names.empty()) {
     trust.level = TrustLevel::limited;
     trust.text += names.size() == 1 ? " That of " + quoted(names.front()) + " is not known."
-                                    : " Those of " + counted(names.size(), "channel", "channels") + ", such as " + quoted(names.front()) + ", are not known.";
+                                    : " Those of " + counted(names.size(), "channel", "channels") + ", such as " + quoted(names.front()) +
+                                          ", are not known.";
   }
   const std::size_t lone = estimate.error.unmatched_events > 0 ? static_cast<std::size_t>(estimate.error.unmatched_events) : unknown;
   if (lone == 0) return trust;
@@ -197,17 +208,20 @@ Trust trust_by_errors(const Report& report) {
 
 Trust trust_of(const Report& report) {
   if (report.run.failure) return {TrustLevel::none, "The run did not reach its end: what there is holds up to there only."};
-  if (!report.judgement.distrust.empty()) return {TrustLevel::none, "Do not use these numbers: " + first_sentence(report.judgement.distrust) + "."};
+  if (!report.judgement.distrust.empty())
+    return {TrustLevel::none, "Do not use these numbers: " + first_sentence(report.judgement.distrust) + "."};
   if (report.estimate.errors) {
     Trust trust = trust_by_errors(report);
-    const auto doubtful = std::count_if(report.judgement.criteria.begin(), report.judgement.criteria.end(), [](const CriterionResult& c) { return !c.doubt.empty(); });
+    const auto doubtful = std::count_if(report.judgement.criteria.begin(), report.judgement.criteria.end(),
+                                        [](const CriterionResult& c) { return !c.doubt.empty(); });
     if (doubtful > 0) trust.level = TrustLevel::limited;
     const std::optional<SecondOpinion>& second = report.second_opinion;
     if (second && second->disagreement.empty() && second->none_because.empty())
       trust.text += " A second method, " + second->method.substr(0, second->method.find_first_of(" @")) + ", agrees.";
     return trust;
   }
-  if (report.estimate.status == EstimateStatus::too_dear) return {TrustLevel::limited, "Errors are not estimated, since that takes long, unless it is asked for."};
+  if (report.estimate.status == EstimateStatus::too_dear)
+    return {TrustLevel::limited, "Errors are not estimated, since that takes long, unless it is asked for."};
   return {TrustLevel::limited, "Errors are not estimated: " + first_sentence(report.estimate.reason) + "."};
 }
 
@@ -221,7 +235,8 @@ Overview overview_of(const Report& report, ShownDigits digits) {
   overview.verdict = report.judgement.verdict;
   overview.story = story_of(report, ranges, digits);
   overview.utilisations = utilisations_of(report, ranges, digits);
-  const auto judged = std::find_if(overview.utilisations.begin(), overview.utilisations.end(), [](const Utilisation& u) { return u.is_judged; });
+  const auto judged =
+      std::find_if(overview.utilisations.begin(), overview.utilisations.end(), [](const Utilisation& u) { return u.is_judged; });
   if (judged != overview.utilisations.end()) overview.worst_instant = judged->at;
   else if (!overview.utilisations.empty()) overview.worst_instant = overview.utilisations.front().at;
   overview.trust = trust_of(report);

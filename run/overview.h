@@ -30,13 +30,13 @@ struct Trust {
 
 /// The run on one screen.
 struct Overview {
-  Verdict verdict = Verdict::open;        ///< that of the judgement; open where nothing was asked
-  std::string reason;                     ///< why, in one sentence
-  Trust trust;                            ///< how far the numbers can be trusted
-  std::optional<double> worst_instant;    ///< s: when the worst of what is judged was reached, or of all, if nothing is
-  std::vector<StoryEntry> story;          ///< what happened, in order of time
-  std::vector<Utilisation> utilisations;  ///< the worst first
-  std::vector<std::string> moved;         ///< elements that slipped, opened or broke
+  Verdict verdict = Verdict::open;       ///< that of the judgement; open where nothing was asked
+  std::string reason;                    ///< why, in one sentence
+  Trust trust;                           ///< how far the numbers can be trusted
+  std::optional<double> worst_instant;   ///< s: when the worst of what is judged was reached, or of all, if nothing is
+  std::vector<StoryEntry> story;         ///< what happened, in order of time
+  std::vector<Utilisation> utilisations; ///< the worst first
+  std::vector<std::string> moved;        ///< elements that slipped, opened or broke
 };
 
 /// Of any run; its cost grows with the number of channels, events and samples, and no faster.

@@ -19,14 +19,12 @@ namespace steplap {
 namespace {
 
 // Beyond these nothing that is transported goes; positions of 1e6 m are known to 0.2 nm, which still is rounding.
-constexpr double k_far = 1e6;   // m
-constexpr double k_fast = 1e4;  // m/s
+constexpr double k_far = 1e6;  // m
+constexpr double k_fast = 1e4; // m/s
 // Numbers of sixteen digits that differ by more leave the smaller one less than four.
 constexpr double k_apart = 1e12;
 
-Finding warning(const char* code, std::string text, const Location& where) {
-  return {code, FindingLevel::warning, std::move(text), where};
-}
+Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
 
 // Are values and rates zero at every breakpoint, and between them?
 bool is_zero(const Signal& signal, double end) {
@@ -66,8 +64,9 @@ void find_growing(const Model& model, SignalNetwork& network, std::vector<Findin
     if ((entry.kind != &road_kind() && entry.kind != &sea_kind()) || (!is_used(model, name) && !is_part(model, name))) continue;
     const Signal* const signal = network.build(name);
     if (!signal || signal->breakpoints().size() < 2 || signal->breakpoints()[0] >= end || signal->breakpoints()[1] <= end) continue;
-    findings.push_back(warning("load_still_grows", "signal '" + name + "' has its full size from t = " + rounded_text(signal->breakpoints()[1]) +
-                                                       " s on, but the run ends at " + number_text(end) + " s: it is not judged under the whole load",
+    findings.push_back(warning("load_still_grows",
+                               "signal '" + name + "' has its full size from t = " + rounded_text(signal->breakpoints()[1]) +
+                                   " s on, but the run ends at " + number_text(end) + " s: it is not judged under the whole load",
                                entry.definition->where));
   }
 }
@@ -103,8 +102,9 @@ void find_gaps(const Model& model, SignalNetwork& network, std::vector<Finding>&
     if (entry.kind != &record_signal_kind() || (!is_used(model, name) && !is_part(model, name))) continue;
     const Signal* const signal = network.build(name);
     if (const auto gap = signal ? missing_rows(*signal) : std::nullopt)
-      findings.push_back(warning("rows_missing", "the rows of record '" + name + "' come evenly but for a gap between t = " + rounded_text(gap->first) + " s and " +
-                                                     rounded_text(gap->second) + " s: are rows missing?",
+      findings.push_back(warning("rows_missing",
+                                 "the rows of record '" + name + "' come evenly but for a gap between t = " + rounded_text(gap->first) +
+                                     " s and " + rounded_text(gap->second) + " s: are rows missing?",
                                  entry.definition->where));
   }
 }
@@ -143,16 +143,20 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
     const std::vector<double>& breaks = signal->breakpoints();
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
     if (next != breaks.end() && *next >= end)
-      findings.push_back(warning("load_behind_end", "signal '" + name + "' begins at t = " + number_text(*next) +
-                                                        " s, but the run ends at " + number_text(end) + " s: it does nothing",
+      findings.push_back(warning("load_behind_end",
+                                 "signal '" + name + "' begins at t = " + number_text(*next) + " s, but the run ends at " +
+                                     number_text(end) + " s: it does nothing",
                                  entry.definition->where));
     else // of no consequence if something else loads the machine, which joints tell themselves
       findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
                                  entry.definition->where));
   }
-  const bool is_at_rest = std::all_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) { return body.velocity.isZero(0.0) && body.angular_velocity == 0.0; });
+  const bool is_at_rest = std::all_of(model.bodies.begin(), model.bodies.end(),
+                                      [](const Body& body) { return body.velocity.isZero(0.0) && body.angular_velocity == 0.0; });
   if (silent && !has_load && is_at_rest)
-    findings.push_back(warning("no_load", "every signal that varies is zero throughout the run: nothing loads the machine but what is constant, and what it bears is not shown",
+    findings.push_back(warning("no_load",
+                               "every signal that varies is zero throughout the run: nothing loads the machine but what is constant, and "
+                               "what it bears is not shown",
                                silent->definition->where));
   return findings;
 }
@@ -163,15 +167,19 @@ std::vector<Finding> implausible_sizes(const LoadedModel& loaded) {
   for (const Body& body : model.bodies) {
     const double far = body.position.lpNorm<Eigen::Infinity>(), fast = body.velocity.lpNorm<Eigen::Infinity>();
     if (far > k_far)
-      findings.push_back(warning("far_away", "body '" + body.name + "' lies " + number_text(far) + " m from the origin: is the unit meant?", body.where));
+      findings.push_back(
+          warning("far_away", "body '" + body.name + "' lies " + number_text(far) + " m from the origin: is the unit meant?", body.where));
     if (fast > k_fast)
-      findings.push_back(warning("very_fast", "body '" + body.name + "' moves with " + number_text(fast) + " m/s: is the unit meant?", body.where));
+      findings.push_back(
+          warning("very_fast", "body '" + body.name + "' moves with " + number_text(fast) + " m/s: is the unit meant?", body.where));
   }
   const auto compare = [&](const char* code, const char* what, const char* unit, const auto& value) {
     const auto [least, most] = extremes_of(model, value);
     if (!least || value(*most) <= k_apart * value(*least)) return;
-    findings.push_back(warning(code, std::string(what) + " of body '" + least->name + "', " + number_text(value(*least)) + " " + unit + ", is less than 1e-12 of that of '" +
-                                         most->name + "', " + number_text(value(*most)) + " " + unit + ": their motions are not known beside each other",
+    findings.push_back(warning(code,
+                               std::string(what) + " of body '" + least->name + "', " + number_text(value(*least)) + " " + unit +
+                                   ", is less than 1e-12 of that of '" + most->name + "', " + number_text(value(*most)) + " " + unit +
+                                   ": their motions are not known beside each other",
                                least->where));
   };
   compare("masses_apart", "the mass", "kg", [](const Body& body) { return body.mass; });

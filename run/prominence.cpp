@@ -5,9 +5,7 @@ namespace steplap {
 namespace {
 
 // "front foot.force" -> "force"
-std::string last_part(const std::string& channel) {
-  return channel.substr(channel.rfind('.') + 1);
-}
+std::string last_part(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 
 } // namespace
 
@@ -25,8 +23,6 @@ bool is_slide(const std::string& name) {
 
 bool is_slide(const Channel& channel) { return is_slide(channel.name); }
 
-bool is_main_event(const Event& event) {
-  return is_main(event.kind);
-}
+bool is_main_event(const Event& event) { return is_main(event.kind); }
 
 } // namespace steplap

@@ -48,12 +48,8 @@ std::string quantity_text(double value, const std::string& unit, double scale) {
   return quantity_text(std::abs(value) < k_rounding * std::abs(scale) ? 0.0 : value, unit);
 }
 
-std::string time_text(double t) {
-  return formatted("%.6f", t);
-}
+std::string time_text(double t) { return formatted("%.6f", t); }
 
-std::string small_text(double value) {
-  return formatted("%.2g", value);
-}
+std::string small_text(double value) { return formatted("%.2g", value); }
 
 } // namespace steplap

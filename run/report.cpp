@@ -28,9 +28,7 @@ std::optional<double> Report::dissipated_error() const {
   return estimate.errors ? std::optional(estimate.errors->dissipated) : std::nullopt;
 }
 
-std::optional<double> Report::work_error() const {
-  return estimate.errors ? std::optional(estimate.errors->work) : std::nullopt;
-}
+std::optional<double> Report::work_error() const { return estimate.errors ? std::optional(estimate.errors->work) : std::nullopt; }
 
 Columns Report::columns() const {
   const Trajectory& trajectory = *run.result.trajectory;

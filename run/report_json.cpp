@@ -36,7 +36,8 @@ Json parameters_json(const Parameters& parameters) {
   Json json = Json::array();
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
     const Parameter& p = parameters.entries[i];
-    json.push_back({{"name", p.name}, {"given", p.text}, {"value", parameters.values[i]}, {"unit", unit_text(p.powers)}, {"meaning", p.meaning}});
+    json.push_back(
+        {{"name", p.name}, {"given", p.text}, {"value", parameters.values[i]}, {"unit", unit_text(p.powers)}, {"meaning", p.meaning}});
   }
   return json;
 }
@@ -50,7 +51,11 @@ Json files_json(const FileRecords& files) {
 Json findings_json(const std::vector<Finding>& findings) {
   Json json = Json::array();
   for (const Finding& f : findings)
-    json.push_back({{"code", f.code}, {"level", f.level == FindingLevel::warning ? "warning" : "note"}, {"text", f.text}, {"file", f.where.file}, {"line", f.where.line}});
+    json.push_back({{"code", f.code},
+                    {"level", f.level == FindingLevel::warning ? "warning" : "note"},
+                    {"text", f.text},
+                    {"file", f.where.file},
+                    {"line", f.where.line}});
   return json;
 }
 
@@ -78,10 +83,7 @@ const char* name_of(EstimateStatus status) {
 
 // Without the CPU time, which no two runs share.
 Json statistics_json(const RunStatistics& s) {
-  return {{"steps", s.steps},
-          {"rejections", s.rejections},
-          {"evaluations", s.evaluations},
-          {"events", s.events}};
+  return {{"steps", s.steps}, {"rejections", s.rejections}, {"evaluations", s.evaluations}, {"events", s.events}};
 }
 
 // Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
@@ -166,8 +168,7 @@ Json extremes_json(const Report& report, Meanings& meanings) {
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
   for (const ChannelRange& range : report.ranges()) {
     Json& entry = append(json, range.channel->name);
-    entry = {{"unit", range.channel->unit},
-             {"meaning", meanings.place_of(*range.channel)}};
+    entry = {{"unit", range.channel->unit}, {"meaning", meanings.place_of(*range.channel)}};
     add_number(entry, "min", range.low.value);
     entry["t_min"] = time(range.low);
     add_number(entry, "max", range.high.value);
@@ -232,33 +233,32 @@ Json joints_json(const Report& report) {
   for (const JointAssessment& a : report.joints) {
     Json& entry = append(json, a.joint);
     entry = {{"verdict", words_of(a.verdict)},
-                     {"outcome", name_of(outcome_of(a.verdict))},
-                     {"slipped", a.has_slipped},
-                     {"monitored", a.is_monitored},
-                     {"first_slip", a.first_slip ? Json(*a.first_slip) : Json()},
-                     {"largest_required_pressure", number_json(a.largest_required_pressure)},
-                     {"t_largest_required_pressure", a.time_of_largest},
-                     {"smallest_margin", number_json(a.smallest_margin)},
-                     {"least_margin_asked", a.least_margin},
-                     {"least_pressure", number_json(a.least_pressure.value)},
-                     {"smallest_corner_margin", number_json(a.corner_margin.value)},
-                     {"smallest_packet_margin", number_json(a.part_margin.value)},
-                     {"largest_demand", number_json(a.largest_demand)},
-                     {"limb_weight", number_json(a.weight)},
-                     {"was_loaded", a.is_loaded},
-                     {"slid_x", number_json(a.slid_x)},
-                     {"slid_y", number_json(a.slid_y)},
-                     {"slid_angle", number_json(a.slid_angle)},
-                     {"area_lost", number_json(a.area_lost)},
-                     {"largest_slide_share", number_json(a.slid_share.value)},
-                     {"most_slide_share", a.most_slide},
-                     {"least_overlap_left", number_json(a.overlap_left.value)},
-                     {"least_clearance_left", number_json(a.clearance_left.value)}};
+             {"outcome", name_of(outcome_of(a.verdict))},
+             {"slipped", a.has_slipped},
+             {"monitored", a.is_monitored},
+             {"first_slip", a.first_slip ? Json(*a.first_slip) : Json()},
+             {"largest_required_pressure", number_json(a.largest_required_pressure)},
+             {"t_largest_required_pressure", a.time_of_largest},
+             {"smallest_margin", number_json(a.smallest_margin)},
+             {"least_margin_asked", a.least_margin},
+             {"least_pressure", number_json(a.least_pressure.value)},
+             {"smallest_corner_margin", number_json(a.corner_margin.value)},
+             {"smallest_packet_margin", number_json(a.part_margin.value)},
+             {"largest_demand", number_json(a.largest_demand)},
+             {"limb_weight", number_json(a.weight)},
+             {"was_loaded", a.is_loaded},
+             {"slid_x", number_json(a.slid_x)},
+             {"slid_y", number_json(a.slid_y)},
+             {"slid_angle", number_json(a.slid_angle)},
+             {"area_lost", number_json(a.area_lost)},
+             {"largest_slide_share", number_json(a.slid_share.value)},
+             {"most_slide_share", a.most_slide},
+             {"least_overlap_left", number_json(a.overlap_left.value)},
+             {"least_clearance_left", number_json(a.clearance_left.value)}};
     note_infinity(entry, "largest_required_pressure", a.largest_required_pressure);
     add_edges(entry, a);
     add_shared(entry, a);
-    if (report.estimate.errors)
-      add_errors(entry, a, joint_errors(a, *run.loaded->system, run.result, *report.estimate.errors));
+    if (report.estimate.errors) add_errors(entry, a, joint_errors(a, *run.loaded->system, run.result, *report.estimate.errors));
   }
   return json;
 }
@@ -285,7 +285,11 @@ Json judgement_json(const Judgement& judgement) {
     if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // null without it: not estimated
     if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
   }
-  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"capped_by", judgement.caps}, {"criteria", std::move(criteria)}};
+  return {{"verdict", name_of(judgement.verdict)},
+          {"so_far", name_of(judgement.so_far)},
+          {"distrust", judgement.distrust},
+          {"capped_by", judgement.caps},
+          {"criteria", std::move(criteria)}};
 }
 
 Json second_opinion_json(const SecondOpinion& opinion) {
@@ -343,8 +347,7 @@ Json state_json(const System& system, const State& state, const Report& report) 
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
     const double* q = &state.q[3 * i];
     const double* v = &state.v[3 * i];
-    append(bodies, system.bodies[i].name) = {{"x", q[0]},  {"y", q[1]},  {"theta", q[2]},
-                                             {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
+    append(bodies, system.bodies[i].name) = {{"x", q[0]}, {"y", q[1]}, {"theta", q[2]}, {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
     if (!report.estimate.errors) continue;
     Json error = Json::object();
     for (const char* part : {"x", "y", "theta", "vx", "vy", "omega"})

@@ -1,7 +1,7 @@
 #include "run/rest_values.h"
 
-#include "mbd/rest/statics.h"
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/rest/statics.h"
 
 #include <algorithm>
 

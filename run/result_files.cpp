@@ -43,8 +43,7 @@ std::vector<std::string> all_names() {
 fs::path existing_part(fs::path path) {
   path = fs::absolute(path);
   std::error_code ignored;
-  while (!fs::exists(path, ignored) && path.has_parent_path() && path != path.parent_path())
-    path = path.parent_path();
+  while (!fs::exists(path, ignored) && path.has_parent_path() && path != path.parent_path()) path = path.parent_path();
   return path;
 }
 
@@ -78,8 +77,7 @@ private:
 };
 
 // Messages name the place where the user looks for the file.
-void write_all(const fs::path& staging, const fs::path& folder,
-               const std::vector<ResultFile>& files) {
+void write_all(const fs::path& staging, const fs::path& folder, const std::vector<ResultFile>& files) {
   for (const ResultFile& file : files) {
     const std::string path = (staging / file.name).string();
     try {
@@ -87,24 +85,21 @@ void write_all(const fs::path& staging, const fs::path& folder,
       else write_file(path, file.content);
     } catch (const FileError& error) {
       std::string message = error.what();
-      if (const auto at = message.find(path); at != std::string::npos)
-        message.replace(at, path.size(), (folder / file.name).string());
+      if (const auto at = message.find(path); at != std::string::npos) message.replace(at, path.size(), (folder / file.name).string());
       throw FileError((folder / file.name).string(), message);
     }
   }
 }
 
 // File by file into a folder that exists; what an earlier run left there goes, the summary comes last.
-void move_into(const fs::path& staging, const fs::path& folder,
-               const std::vector<ResultFile>& files) {
+void move_into(const fs::path& staging, const fs::path& folder, const std::vector<ResultFile>& files) {
   std::error_code error;
   std::vector<std::string> outdated = all_names();
   outdated.emplace_back(k_report);
   for (const std::string& name : outdated)
     if (fs::remove(folder / name, error); error) fail(folder.string(), error.message());
   for (const ResultFile& file : files)
-    if (fs::rename(staging / file.name, folder / file.name, error); error)
-      fail(folder.string(), error.message());
+    if (fs::rename(staging / file.name, folder / file.name, error); error) fail(folder.string(), error.message());
 }
 
 } // namespace
@@ -193,7 +188,9 @@ std::string model_file_text(const LoadedModel& loaded) {
 std::vector<ResultFile> result_files(const Report& report) {
   const Run& run = report.run;
   if (run.loaded->text.empty())
-    throw FileError(run.loaded->path, "results of '" + run.loaded->name + "' cannot be written: it was made in code, and model.toml has to hold a model that can be run again");
+    throw FileError(run.loaded->path,
+                    "results of '" + run.loaded->name +
+                        "' cannot be written: it was made in code, and model.toml has to hold a model that can be run again");
   const std::string prefix = run.failure ? k_partial : "";
   const auto rows = [&run, errors = column_errors(report)](const FileSink& put) {
     write_trajectory_csv(*run.result.trajectory, errors, put);
@@ -210,15 +207,13 @@ std::vector<ResultFile> result_files(const Report& report) {
 void check_result_folder(const std::string& folder, bool is_overwriting) {
   std::error_code ignored;
   for (const std::string& name : all_names())
-    if (!is_overwriting && fs::exists(fs::path(folder) / name, ignored))
-      throw ResultsInTheWay(folder);
+    if (!is_overwriting && fs::exists(fs::path(folder) / name, ignored)) throw ResultsInTheWay(folder);
   const fs::path existing = existing_part(folder);
   if (!fs::is_directory(existing)) fail(folder, "'" + existing.string() + "' is not a folder");
   if (::access(existing.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
 }
 
-void write_results(const std::string& folder, const std::vector<ResultFile>& files,
-                   bool is_overwriting) {
+void write_results(const std::string& folder, const std::vector<ResultFile>& files, bool is_overwriting) {
   check_result_folder(folder, is_overwriting);
   const Staging staging(folder);
   write_all(staging.path(), folder, files);

@@ -63,7 +63,6 @@ public:
 void check_result_folder(const std::string& folder, bool is_overwriting);
 /// Writes all files, or none; earlier results in `folder` are replaced if `is_overwriting`, files of
 /// other names stay. Throws as check_result_folder() does.
-void write_results(const std::string& folder, const std::vector<ResultFile>& files,
-                   bool is_overwriting);
+void write_results(const std::string& folder, const std::vector<ResultFile>& files, bool is_overwriting);
 
 } // namespace steplap

@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void damaged(const fs::path& file, std::size_t line, const std::string& what) {
-  throw FileError(file.string(), "'" + file.string() + "', line " + std::to_string(line) + ": " + what + "; it is not as steplap wrote it: run the model again",
-                  line);
+  throw FileError(
+      file.string(),
+      "'" + file.string() + "', line " + std::to_string(line) + ": " + what + "; it is not as steplap wrote it: run the model again", line);
 }
 
 // Cells of a row of CSV, quotes undone.
@@ -71,8 +72,7 @@ void read_trajectory(const fs::path& file, Results& results) {
   if (!std::getline(lines, line)) damaged(file, 1, "empty");
   const std::vector<std::string> heads = cells_of(line);
   if (heads.front() != "t [s]") damaged(file, 1, "the first column is not 't [s]'");
-  for (std::size_t i = 1; i < heads.size(); ++i)
-    results.channels.push_back(channel_of(heads[i]));
+  for (std::size_t i = 1; i < heads.size(); ++i) results.channels.push_back(channel_of(heads[i]));
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
     if (line.starts_with('#')) continue;
     const char *at = line.data(), *end = at + line.size();
@@ -130,7 +130,8 @@ std::string something_else(const fs::path& path) {
   if (fs::exists(path / "record.json", ignored))
     return name + " is the folder of a record, not of a run: what the record holds stands in record.json and events.csv there";
   for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
-    if (fs::exists(entry.path() / "summary.json", ignored)) return name + " holds folders of runs: name one of them, as '" + entry.path().string() + "'";
+    if (fs::exists(entry.path() / "summary.json", ignored))
+      return name + " holds folders of runs: name one of them, as '" + entry.path().string() + "'";
   return "";
 }
 

@@ -62,9 +62,10 @@ std::vector<Finding> doubled_corners(const LoadedModel& loaded) {
         order.push_back(pair);
         found[pair] = {"doubled_corner", FindingLevel::warning,
                        "segment_contacts '" + before.contact->name + "' and '" + contact->name + "' end at the same point of '" +
-                      contact->b + "': over that corner both press on the circle, with twice the stiffness, damping and friction of one. " +
-                      "One presses at a time where the other ends short of the corner by sqrt(2 r d), r the radius and d the depth: " +
-                      text_of(1e3 * std::sqrt(2e-3 * std::max(contact->radius, 0.0))) + " mm for a depth of 1 mm",
+                           contact->b +
+                           "': over that corner both press on the circle, with twice the stiffness, damping and friction of one. " +
+                           "One presses at a time where the other ends short of the corner by sqrt(2 r d), r the radius and d the depth: " +
+                           text_of(1e3 * std::sqrt(2e-3 * std::max(contact->radius, 0.0))) + " mm for a depth of 1 mm",
                        contact->where};
       }
       here.push_back(end);

@@ -1,11 +1,11 @@
 #include "run/second_opinion.h"
 
 #include "mbd/acceptance/judge.h"
+#include "mbd/base/number_text.h"
+#include "mbd/model/method.h"
 #include "mbd/trust/audit.h"
 #include "mbd/trust/cross_check.h"
 #include "mbd/trust/global_error.h"
-#include "mbd/base/number_text.h"
-#include "mbd/model/method.h"
 #include "run/prominence.h"
 
 #include <algorithm>
@@ -96,7 +96,8 @@ SecondOpinion second_opinion(const Run& asked, const RunOptions& run_options) {
   options.methods = {method_used(*system, as_run), other_method(as_run)};
   options.cpu_limit = std::numeric_limits<double>::infinity();
   const double parts = parts_evaluated(*system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));
-  options.evaluation_limit = std::max(k_most_times * run.statistics.evaluations, static_cast<long>(k_always_granted / std::max(parts, 1.0)));
+  options.evaluation_limit =
+      std::max(k_most_times * run.statistics.evaluations, static_cast<long>(k_always_granted / std::max(parts, 1.0)));
   options.is_event_counted = is_main_event;
   options.free_groups = free_groups(loaded.model, *system);
   SimulationOptions base = sampled_for_comparison(loaded.model);

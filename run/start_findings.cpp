@@ -28,7 +28,7 @@ constexpr double k_typed = 1e-6;      // of the bodies' size: digits of poses th
 constexpr double k_through = 0.5;     // of the depth at which a law loses its meaning
 constexpr double k_off = 1e-3;        // of the bodies' size: from there on places differ, and not by digits
 constexpr double k_light = 0.01;      // of a homogeneous plate's moment of inertia: a tenth of its radius of gyration
-constexpr double k_changes = 1e-3; // of a state's scale, within the run
+constexpr double k_changes = 1e-3;    // of a state's scale, within the run
 // Of the largest moment that the mass could have within its outline, all of it at the farthest corner; outlines are drawn roughly.
 constexpr double k_heavy = 2.0;
 
@@ -83,12 +83,14 @@ private:
     dynamics.rates(start_.t, y.data(), dy.data());
     for (const OwnStateGroup::Entry& entry : group->entries) {
       const OwnState& state = *states[static_cast<std::size_t>(entry.place.inner - group->first_inner)];
-      const double rate = dy[static_cast<std::size_t>(2 * dynamics.coordinate_count() + entry.place.inner)] * entry.place.unit / state.factor();
+      const double rate =
+          dy[static_cast<std::size_t>(2 * dynamics.coordinate_count() + entry.place.inner)] * entry.place.unit / state.factor();
       const double scale = state.scale.value_or(state.start != 0.0 ? std::abs(state.start) : 1.0);
       if (!(std::abs(rate) * loaded_.model.simulation.end > k_changes * scale)) continue;
       const std::string unit = state.unit.empty() ? "" : " " + state.unit;
       add("state_leaves_equilibrium", state.where,
-          "state '" + state.name + "' starts at " + rounded(state.start) + unit + " and changes by " + rounded(rate) + unit + " per second from there: the machine is at rest with it for a moment only. " +
+          "state '" + state.name + "' starts at " + rounded(state.start) + unit + " and changes by " + rounded(rate) + unit +
+              " per second from there: the machine is at rest with it for a moment only. " +
               "If it is to stay at rest, give it the start at which its rate is zero");
     }
   }
@@ -105,17 +107,23 @@ private:
     Vec2 along = normal;
     if (foot->axis) along = rotated(*foot->axis, a.angle + at.z()).normalized();
     const double now = normal.dot(p_a - p_b) / normal.dot(along);
-    const double depth = foot->preload ? portable::pow(*foot->preload / (foot->stiffness * static_cast<double>(foot->count)), 1.0 / foot->exponent)
-                                       : foot->interference.value_or(0.0);
-    const double off = foot->gap ? now - *foot->gap : std::min({now, now + depth}, [](double x, double y) { return std::abs(x) < std::abs(y); });
+    const double depth = foot->preload
+                             ? portable::pow(*foot->preload / (foot->stiffness * static_cast<double>(foot->count)), 1.0 / foot->exponent)
+                             : foot->interference.value_or(0.0);
+    const double off =
+        foot->gap ? now - *foot->gap : std::min({now, now + depth}, [](double x, double y) { return std::abs(x) < std::abs(y); });
     if (!(std::abs(off) > k_off * size_of_pair(system_, contact.a, contact.b))) return;
     const std::string field = foot->gap ? "gap" : foot->interference ? "interference" : "preload";
     const double given_value = foot->gap ? *foot->gap : foot->interference ? *foot->interference : *foot->preload;
     const Vec2 line = p_a - (foot->gap ? *foot->gap : -depth) * along;
     const std::string side = now < 0.0 ? " behind" : " before";
     std::string text = "'" + foot->name + "': " + field + " = " + (foot->preload ? force_text(given_value) : length_text(given_value)) +
-                       " contradicts the poses, by which its marker a is " + length_text(std::abs(now)) + side + " the line through marker b: the line is taken to be " + length_text(std::abs(off)) + " from there. If the poses are right, leave '" + field + "' out";
-    if (!b.body) text += "; if the " + field + " is, b = { body = \"ground\", at = [" + rounded(line.x()) + ", " + rounded(line.y()) + "] } says the same without contradiction";
+                       " contradicts the poses, by which its marker a is " + length_text(std::abs(now)) + side +
+                       " the line through marker b: the line is taken to be " + length_text(std::abs(off)) +
+                       " from there. If the poses are right, leave '" + field + "' out";
+    if (!b.body)
+      text += "; if the " + field + " is, b = { body = \"ground\", at = [" + rounded(line.x()) + ", " + rounded(line.y()) +
+              "] } says the same without contradiction";
     add("gap_contradicts_poses", foot->where, text);
   }
 
@@ -156,8 +164,8 @@ private:
     if (const auto* const foot = dynamic_cast<const UnilateralContact*>(&element); foot && (foot->preload || foot->interference))
       text += ". A preload or an interference needs its answer: the other side of the same clamp, or a load";
     else
-      text += ". Moved by " + length_text(depth) + " along [" + rounded(out.x()) + ", " + rounded(out.y()) + "] '" + system_.bodies[body].name +
-              "' would just touch; initial = \"equilibrium\" begins where it rests";
+      text += ". Moved by " + length_text(depth) + " along [" + rounded(out.x()) + ", " + rounded(out.y()) + "] '" +
+              system_.bodies[body].name + "' would just touch; initial = \"equilibrium\" begins where it rests";
     add("starts_deep", element.where, text);
   }
 
@@ -186,8 +194,8 @@ private:
     const std::string beyond = is_angle ? degrees_text(depth) : length_text(depth);
     add("starts_beyond_stop", limit.where,
         "'" + limit.name + "' begins " + beyond + " beyond its " + (below > 0.0 ? "lower" : "upper") + " stop, which presses back with " +
-            force_text(force, is_angle ? "N m" : "N") +
-            ". " + (is_angle || is_axis ? "Stops count from the pose given, not from zero" : "Stops of a distance are that distance itself") +
+            force_text(force, is_angle ? "N m" : "N") + ". " +
+            (is_angle || is_axis ? "Stops count from the pose given, not from zero" : "Stops of a distance are that distance itself") +
             ": '" + (below > 0.0 ? "lower" : "upper") + "' was probably meant as " +
             (is_angle ? degrees_text(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + " or " + (below > 0.0 ? "less" : "more")
                       : length_text(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
@@ -208,8 +216,9 @@ private:
     const double plate = body.mass * moment / area, most = body.mass * farthest;
     const bool is_light = body.inertia < k_light * plate;
     if (!is_light && !(body.inertia > k_heavy * most)) return;
-    std::string text = "body '" + body.name + "': inertia = " + rounded(body.inertia) + " kg m² does not fit its outline and mass: a plate of that shape and of " +
-                       rounded(body.mass) + " kg has " + rounded(plate) + " kg m²" +
+    std::string text = "body '" + body.name + "': inertia = " + rounded(body.inertia) +
+                       " kg m² does not fit its outline and mass: a plate of that shape and of " + rounded(body.mass) + " kg has " +
+                       rounded(plate) + " kg m²" +
                        (is_light ? "" : ", and with all of its mass at the farthest corner " + rounded(most) + " kg m²");
     const double per_mass = body.inertia * body.mass / plate;
     if (per_mass > 0.2 && per_mass < 5.0) text += ". It is about that of 1 kg: was it meant for each kilogram?";

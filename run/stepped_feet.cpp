@@ -12,9 +12,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_step_share =
-    0.01;                       // of the way from foot to foot: by so much of N times that way may the couple be wrong
-constexpr double k_same = 1e-9; // m: as points are typed
+constexpr double k_step_share = 0.01; // of the way from foot to foot: by so much of N times that way may the couple be wrong
+constexpr double k_same = 1e-9;       // m: as points are typed
 
 struct Spread {
   double low = 0.0, high = 0.0;
@@ -28,15 +27,13 @@ struct Spread {
 };
 
 // In b's frame: where the line is that it touches, along the normal, and where it is on that.
-void add_foot(const LoadedModel& loaded, const State& given, const UnilateralContact& contact, Spread& height,
-              Spread& way) {
+void add_foot(const LoadedModel& loaded, const State& given, const UnilateralContact& contact, Spread& height, Spread& way) {
   const Place a = place_of(loaded.model, contact.a), b = place_of(loaded.model, contact.b);
   const Vec3 at = pose_of(*loaded.system, given, a.body), on = pose_of(*loaded.system, given, b.body);
   const Vec2 foot = rotated(Vec2(at.x() - on.x(), at.y() - on.y()) + rotated(a.point, at.z()), -on.z());
   const Vec2 normal = rotated(contact.normal.normalized(), b.angle);
   const bool is_by_pose = contact.gap || contact.interference || contact.preload;
-  height.add(is_by_pose ? normal.dot(foot) - contact.gap.value_or(0.0) + contact.interference.value_or(0.0)
-                        : normal.dot(b.point));
+  height.add(is_by_pose ? normal.dot(foot) - contact.gap.value_or(0.0) + contact.interference.value_or(0.0) : normal.dot(b.point));
   way.add(normal.y() * foot.x() - normal.x() * foot.y());
 }
 
@@ -46,20 +43,19 @@ std::vector<Finding> stepped_feet(const LoadedModel& loaded) {
   const State given = loaded.system->initial_state();
   std::unordered_map<std::string, const UnilateralContact*> contacts;
   for (const ElementEntry& entry : loaded.model.elements)
-    if (const auto* contact = dynamic_cast<const UnilateralContact*>(entry.element.get()))
-      contacts[contact->name] = contact;
+    if (const auto* contact = dynamic_cast<const UnilateralContact*>(entry.element.get())) contacts[contact->name] = contact;
   std::vector<Finding> found;
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get());
     if (!stick) continue;
     Spread height, way;
     for (const std::string& name : stick->contacts)
-      if (const auto contact = contacts.find(name); contact != contacts.end())
-        add_foot(loaded, given, *contact->second, height, way);
+      if (const auto contact = contacts.find(name); contact != contacts.end()) add_foot(loaded, given, *contact->second, height, way);
     if (!(height.size() > k_step_share * way.size() + k_same)) continue;
-    found.push_back({"stepped_feet", FindingLevel::warning, "the contacts of coulomb_stick '" + stick->name + "' touch on lines " +
-                    quantity_text(height.size(), "m", 1e-3) +
-                    " apart, but their friction acts on one of them: give those of each line their own coulomb_stick", stick->where});
+    found.push_back({"stepped_feet", FindingLevel::warning,
+                     "the contacts of coulomb_stick '" + stick->name + "' touch on lines " + quantity_text(height.size(), "m", 1e-3) +
+                         " apart, but their friction acts on one of them: give those of each line their own coulomb_stick",
+                     stick->where});
   }
   return found;
 }

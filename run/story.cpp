@@ -22,7 +22,25 @@ namespace {
 
 // What entries tell of. Of what goes to and fro the first event says which way is told: a foot that stood lifts, a ball that flew
 // touches.
-enum class What { slips, would_slip, lifts, opens, touches, slack, taut, leaves_gap, closes_gap, strikes, leaves_stop, tips, breaks, apart, interface, storm, happens };
+enum class What {
+  slips,
+  would_slip,
+  lifts,
+  opens,
+  touches,
+  slack,
+  taut,
+  leaves_gap,
+  closes_gap,
+  strikes,
+  leaves_stop,
+  tips,
+  breaks,
+  apart,
+  interface,
+  storm,
+  happens
+};
 
 struct Words {
   const char* key;     // StoryEntry::what
@@ -31,23 +49,24 @@ struct Words {
 };
 
 const Words& words_of(What what) {
-  static constexpr std::array<Words, 17> k_words{{{"slips", "slips", "slip"},
-                                                  {"would slip", "would slip", "would slip"},
-                                                  {"lifts", "lifts", "lift"},
-                                                  {"opens", "opens", "open"},
-                                                  {"closes", "touches", "touch"},
-                                                  {"goes slack", "goes slack", "go slack"},
-                                                  {"becomes taut", "becomes taut", "become taut"},
-                                                  {"opens", "opens its gap", "open their gaps"},
-                                                  {"closes", "closes its gap", "close their gaps"},
-                                                  {"strikes", "strikes its stop", "strike their stops"},
-                                                  {"leaves its stop", "leaves its stop", "leave their stops"},
-                                                  {"tips", "tips", "tip"},
-                                                  {"breaks", "breaks", "break"},
-                                                  {"comes apart", "comes apart", "come apart"},
-                                                  {"loses an interface", "loses an interface", "lose interfaces"},
-                                                  {"changes too often", "changes too often to be followed event by event", "change too often to be followed event by event"},
-                                                  {"happens", "happens", "happen"}}};
+  static constexpr std::array<Words, 17> k_words{
+      {{"slips", "slips", "slip"},
+       {"would slip", "would slip", "would slip"},
+       {"lifts", "lifts", "lift"},
+       {"opens", "opens", "open"},
+       {"closes", "touches", "touch"},
+       {"goes slack", "goes slack", "go slack"},
+       {"becomes taut", "becomes taut", "become taut"},
+       {"opens", "opens its gap", "open their gaps"},
+       {"closes", "closes its gap", "close their gaps"},
+       {"strikes", "strikes its stop", "strike their stops"},
+       {"leaves its stop", "leaves its stop", "leave their stops"},
+       {"tips", "tips", "tip"},
+       {"breaks", "breaks", "break"},
+       {"comes apart", "comes apart", "come apart"},
+       {"loses an interface", "loses an interface", "lose interfaces"},
+       {"changes too often", "changes too often to be followed event by event", "change too often to be followed event by event"},
+       {"happens", "happens", "happen"}}};
   return k_words[static_cast<std::size_t>(what)];
 }
 
@@ -65,7 +84,8 @@ struct Happening {
 };
 
 bool is_instant(What what) {
-  return what == What::breaks || what == What::apart || what == What::interface || what == What::tips || what == What::would_slip || what == What::happens;
+  return what == What::breaks || what == What::apart || what == What::interface || what == What::tips || what == What::would_slip ||
+         what == What::happens;
 }
 
 // --- from events to happenings
@@ -202,9 +222,7 @@ private:
     case EventKind::closes_gap:
     case EventKind::leaves_stop: return toggle(false, event, error);
     case EventKind::breaks: return begin(What::breaks, event, error);
-    case EventKind::comes_apart:
-      end(What::slips, event, error);
-      return begin(What::apart, event, error);
+    case EventKind::comes_apart: end(What::slips, event, error); return begin(What::apart, event, error);
     case EventKind::loses_interface: return begin(What::interface, event, error);
     case EventKind::happens:
       begin(What::happens, event, error);
@@ -356,7 +374,10 @@ public:
 
   std::string sentence(const Happening& h) const {
     const std::string who = sentence_name(h.who);
-    if (h.what == What::tips) return who + (h.amount && h.amount->value > k_over ? " tips over: it has turned by " + amount(*h.amount) + " at " + time(h.from, {}) + "." : " tips" + reach(h.what, h.amount) + " (at " + time(h.from, {}) + ").");
+    if (h.what == What::tips)
+      return who + (h.amount && h.amount->value > k_over
+                        ? " tips over: it has turned by " + amount(*h.amount) + " at " + time(h.from, {}) + "."
+                        : " tips" + reach(h.what, h.amount) + " (at " + time(h.from, {}) + ").");
     if (h.what == What::would_slip) return who + ", which is only monitored, would slip at " + time(h.from, {}) + ".";
     if (h.what == What::happens) return "Action '" + h.who + "' happens" + when(h) + ": " + h.detail + ".";
     std::string how = reach(h.what, h.amount);
@@ -385,10 +406,12 @@ public:
     if (lasts || is_instant(what)) entry.to.reset();
     const std::size_t more = group.size() - 2;
     entry.text = sentence_name(entry.who[0]) + ", " + entry.who[1] + " and " + std::to_string(more) + " more " + words_of(what).several +
-                 (entry.count > group.size() ? ", " + times(entry.count) + " in all," : "") + " between " + time(entry.from, {}, end_) + " and " + to;
+                 (entry.count > group.size() ? ", " + times(entry.count) + " in all," : "") + " between " + time(entry.from, {}, end_) +
+                 " and " + to;
     if (most) {
       entry.amount = most->amount;
-      if (const std::string how = reach(what, most->amount); !how.empty()) entry.text += ", most '" + most->who + "': " + amount(*most->amount);
+      if (const std::string how = reach(what, most->amount); !how.empty())
+        entry.text += ", most '" + most->who + "': " + amount(*most->amount);
     }
     entry.text += ".";
     return entry;

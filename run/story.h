@@ -17,9 +17,9 @@ namespace steplap {
 
 /// How far, or how hard: SI.
 struct StoryAmount {
-  double value = 0.0;                ///< in `unit`
-  std::string unit;                  ///< "m", "N", "rad"
-  std::optional<double> error = {};  ///< in `unit`, if it was estimated
+  double value = 0.0;               ///< in `unit`
+  std::string unit;                 ///< "m", "N", "rad"
+  std::optional<double> error = {}; ///< in `unit`, if it was estimated
 };
 
 /// One thing that happened, once or several times.

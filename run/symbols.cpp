@@ -31,11 +31,9 @@ void tie(Sketch& s) { s.draw({"spring", "tie", "force", s.places(), s.direction(
 void rope(Sketch& s) {
   Shape shape{"rope", "", "tension", {}, {}, {}};
   if (const auto a = s.place("a")) shape.at.push_back(*a);
-  for (const std::string& marker : s.texts("over"))
-    shape.at.push_back(s.place_of(marker));
+  for (const std::string& marker : s.texts("over")) shape.at.push_back(s.place_of(marker));
   if (const auto b = s.place("b")) shape.at.push_back(*b);
-  for (const MarkerPlace& place : shape.at)
-    s.note_place(place);
+  for (const MarkerPlace& place : shape.at) s.note_place(place);
   s.draw(std::move(shape));
 }
 
@@ -89,8 +87,7 @@ void polygon_contact(Sketch& s) {
   s.polygon(*b, s.points("outline_b"));
   Shape shape{"faces", "", "force", {}, s.direction("normal"), {}};
   if (!shape.direction && b->body == "ground" && s.points("outline_b").empty()) shape.direction = b->turned(Vec2(0.0, 1.0));
-  for (const Vec2& corner : s.points("outline_a"))
-    shape.at.push_back({a->body, a->in_body(corner), a->angle});
+  for (const Vec2& corner : s.points("outline_a")) shape.at.push_back({a->body, a->in_body(corner), a->angle});
   if (shape.at.empty()) shape.at.push_back(*a);
   shape.at.push_back(*b);
   s.draw(std::move(shape));
@@ -113,8 +110,7 @@ void segment_contact(Sketch& s) {
   if (s.number("radius") > 0.0) s.circle(*a, s.number("radius"));
   s.segment(*b, *from, *to, s.number("thickness"));
   const Vec2 first = b->in_body(*from), last = b->in_body(*to);
-  s.draw({"edge_touch", "", "force", {*a, *b}, {},
-          {s.number("radius"), first.x(), first.y(), last.x(), last.y(), s.number("thickness")}});
+  s.draw({"edge_touch", "", "force", {*a, *b}, {}, {s.number("radius"), first.x(), first.y(), last.x(), last.y(), s.number("thickness")}});
 }
 
 // A flat road has no ends: it reaches beyond any picture, and is no part of the body's geometry.
@@ -192,8 +188,12 @@ void coordinate(Sketch& s, const std::string& style, const std::string& along, c
   if (which == "angle") s.draw({"arc", style, about, s.places(), {}, {}});
   else if (which == "distance") s.draw({"spring", style == "limit" ? "tie" : "cylinder", along, s.places(), {}, {}});
   else if (const auto b = s.place("b"))
-    s.draw({style == "limit" || style == "brake" ? "rail" : "arrow", style, along, s.places(),
-            b->turned(which == "y" ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0)), {}});
+    s.draw({style == "limit" || style == "brake" ? "rail" : "arrow",
+            style,
+            along,
+            s.places(),
+            b->turned(which == "y" ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0)),
+            {}});
 }
 
 void motor(Sketch& s) { coordinate(s, "motor", "force", "couple"); }
@@ -206,7 +206,8 @@ void limit(Sketch& s) {
 void formula_force(Sketch& s) {
   const std::string which = s.text("coordinate");
   const auto a = s.place("a");
-  if (which.starts_with("own_") && a) s.draw({"arrow", "motor", "force", s.places(), a->turned(which == "own_y" ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0)), {}});
+  if (which.starts_with("own_") && a)
+    s.draw({"arrow", "motor", "force", s.places(), a->turned(which == "own_y" ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0)), {}});
   else coordinate(s, "motor", "force", "couple");
 }
 void brake(Sketch& s) { coordinate(s, "brake", "friction", "friction"); }
@@ -220,17 +221,43 @@ void neutral(Sketch& s) { s.draw({"neutral", "", "", s.places(), {}, {}}); }
 using Symbol = void (*)(Sketch&);
 
 Symbol symbol_of(const std::string& kind) {
-  static const std::map<std::string, Symbol> symbols{
-      {"spring_damper", spring_damper}, {"rotational_spring_damper", rotational_spring_damper},
-      {"bushing", bushing}, {"buffer", buffer}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"band", band}, {"belt", belt}, {"load", load},
-      {"beam_part", nothing},
-      {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
-      {"segment_contact", segment_contact}, {"tyre", tyre}, {"coulomb_stick", friction}, {"rolling_resistance", friction},
-      {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},
-      {"revolute", pin}, {"prismatic", rail}, {"weld", weld}, {"distance", rod}, {"point_on_line", rail},
-      {"skate", skate}, {"gear", gear}, {"rack", rack}, {"cam", cam}, {"freewheel", freewheel}, {"lossy_gear", lossy_gear},
-      {"prescribed_motion", drive}, {"motor", motor}, {"limit", limit}, {"joint_friction", brake},
-      {"force", formula_force}, {"state", nothing}};
+  static const std::map<std::string, Symbol> symbols{{"spring_damper", spring_damper},
+                                                     {"rotational_spring_damper", rotational_spring_damper},
+                                                     {"bushing", bushing},
+                                                     {"buffer", buffer},
+                                                     {"tie", tie},
+                                                     {"rope", rope},
+                                                     {"wound_rope", wound_rope},
+                                                     {"band", band},
+                                                     {"belt", belt},
+                                                     {"load", load},
+                                                     {"beam_part", nothing},
+                                                     {"unilateral_contact", unilateral_contact},
+                                                     {"polygon_contact", polygon_contact},
+                                                     {"circle_contact", circle_contact},
+                                                     {"segment_contact", segment_contact},
+                                                     {"tyre", tyre},
+                                                     {"coulomb_stick", friction},
+                                                     {"rolling_resistance", friction},
+                                                     {"step_lap_joint", step_lap_joint},
+                                                     {"step_lap_interface", nothing},
+                                                     {"revolute", pin},
+                                                     {"prismatic", rail},
+                                                     {"weld", weld},
+                                                     {"distance", rod},
+                                                     {"point_on_line", rail},
+                                                     {"skate", skate},
+                                                     {"gear", gear},
+                                                     {"rack", rack},
+                                                     {"cam", cam},
+                                                     {"freewheel", freewheel},
+                                                     {"lossy_gear", lossy_gear},
+                                                     {"prescribed_motion", drive},
+                                                     {"motor", motor},
+                                                     {"limit", limit},
+                                                     {"joint_friction", brake},
+                                                     {"force", formula_force},
+                                                     {"state", nothing}};
   const auto found = symbols.find(kind);
   return found == symbols.end() ? neutral : found->second;
 }
@@ -313,8 +340,7 @@ void Sketch::polygon(const MarkerPlace& frame, const std::vector<Vec2>& corners)
 }
 
 void draw_element(Sketch& sketch) {
-  for (const MarkerPlace& place : sketch.places())
-    sketch.note_place(place);
+  for (const MarkerPlace& place : sketch.places()) sketch.note_place(place);
   symbol_of(sketch.entry().kind->name)(sketch);
   const std::string& asked = sketch.entry().element->draw;
   if (asked != "auto") sketch.replace(asked == "hidden" ? std::vector<Shape>() : std::vector<Shape>{asked_for(sketch, asked)});

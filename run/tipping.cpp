@@ -72,9 +72,7 @@ private:
     const Vec2 v = -rate * quarter_turn(point);
     return {v.x(), v.y(), rate};
   }
-  [[nodiscard]] static Vec3 gap_row(const Vec2& at, const Vec2& normal) {
-    return {normal.x(), normal.y(), normal.dot(quarter_turn(at))};
-  }
+  [[nodiscard]] static Vec3 gap_row(const Vec2& at, const Vec2& normal) { return {normal.x(), normal.y(), normal.dot(quarter_turn(at))}; }
 
   // Of joints and drives between the part and the rest: what they say of its rigid motion.
   [[nodiscard]] MatX outer_rows(const TippingPart& part) const {
@@ -183,8 +181,7 @@ private:
     Tipping tipping;
     tipping.margin = now > 0.0 ? -std::abs(nearest) : std::abs(nearest);
     tipping.is_clockwise = (nearest > 0.0) == (now <= 0.0); // gravity turned one way is the ground tilted the other way
-    if (std::abs(of_turned) > k_rank * size)
-      tipping.acceleration = std::abs(now / of_turned) * scene_.system().gravity.norm();
+    if (std::abs(of_turned) > k_rank * size) tipping.acceleration = std::abs(now / of_turned) * scene_.system().gravity.norm();
     if (const auto slope = scene_.slope_below(part)) {
       tipping.slope = slope;
       tipping.slope_at_most = *slope - nearest;

@@ -22,8 +22,7 @@ public:
   std::vector<Tipping> run(const std::vector<Tipping>& found) const {
     std::vector<Tipping> together;
     for (const std::vector<int>& group : leaning_groups())
-      if (const auto tipping = nearest_of_group(group); tipping && is_before(found, group, *tipping))
-        together.push_back(*tipping);
+      if (const auto tipping = nearest_of_group(group); tipping && is_before(found, group, *tipping)) together.push_back(*tipping);
     return together;
   }
 
@@ -39,8 +38,7 @@ private:
       }
     std::vector<std::vector<int>> found;
     for (const int c : scene_.components()) {
-      if (scene_.part_on(c) ||
-          std::any_of(found.begin(), found.end(), [&](const auto& g) { return group[g.front()] == group[c]; }))
+      if (scene_.part_on(c) || std::any_of(found.begin(), found.end(), [&](const auto& g) { return group[g.front()] == group[c]; }))
         continue;
       std::vector<int> members;
       for (const int other : scene_.components())
@@ -53,7 +51,7 @@ private:
   struct BlockRows {
     std::vector<int> place; ///< of each body, -1: it stands still
     int count = 0;
-    double length = 0.0;    ///< by which angles count
+    double length = 0.0; ///< by which angles count
     void add(VecX& row, int body, const Vec3& part, double sign) const {
       if (place[body] < 0) return;
       row.segment<3>(3 * place[body]) += sign * Vec3(part.x(), part.y(), part.z() / length);
@@ -62,8 +60,7 @@ private:
   [[nodiscard]] VecX block_row(const BlockRows& blocks, int a, int b, const Vec2& at, const Vec2& along) const {
     VecX row = VecX::Zero(3 * blocks.count);
     for (const auto& [body, sign] : {std::pair{a, 1.0}, {b, -1.0}})
-      if (blocks.place[body] >= 0)
-        blocks.add(row, body, {along.x(), along.y(), along.dot(quarter_turn(at - scene_.centre(body)))}, sign);
+      if (blocks.place[body] >= 0) blocks.add(row, body, {along.x(), along.y(), along.dot(quarter_turn(at - scene_.centre(body)))}, sign);
     return row;
   }
   [[nodiscard]] VecX block_row(const BlockRows& blocks, const RowSpec& spec) const {
@@ -126,8 +123,7 @@ private:
   }
 
   // Rows of friction come first, one for each foot.
-  [[nodiscard]] Blocks blocks_of(const TippingPart& part, const BlockRows& rows,
-                                 const std::vector<const Foot*>& feet) const {
+  [[nodiscard]] Blocks blocks_of(const TippingPart& part, const BlockRows& rows, const std::vector<const Foot*>& feet) const {
     const int n = 3 * rows.count;
     std::vector<VecX> joints, gaps;
     for (const Foot* foot : feet) {
@@ -135,8 +131,7 @@ private:
       gaps.push_back(block_row(rows, foot->a, foot->b, foot->point, foot->normal));
     }
     for (const RowSpec& row : scene_.system().rows)
-      if ((part[row.a] || part[row.b]) && !scene_.is_hung(row.a) && !scene_.is_hung(row.b))
-        joints.push_back(block_row(rows, row));
+      if ((part[row.a] || part[row.b]) && !scene_.is_hung(row.a) && !scene_.is_hung(row.b)) joints.push_back(block_row(rows, row));
     for (const OneSidedRow* stay : scene_.stays()) {
       VecX row = VecX::Zero(n);
       stay->for_parts([&](const RowSpec& spec) { row -= block_row(rows, spec); });
@@ -177,8 +172,8 @@ private:
     });
   }
 
-  [[nodiscard]] Tipping told(const TippingPart& part, const BlockRows& rows, const std::vector<const Foot*>& feet,
-                             const Blocks& blocks, const Collapse& collapse) const {
+  [[nodiscard]] Tipping told(const TippingPart& part, const BlockRows& rows, const std::vector<const Foot*>& feet, const Blocks& blocks,
+                             const Collapse& collapse) const {
     Tipping tipping;
     const VecX& motion = collapse.motion;
     tipping.margin = collapse.stands ? std::abs(collapse.turned) : -std::abs(collapse.turned);
@@ -204,8 +199,7 @@ private:
   }
 
   // Of what each of its bodies would do by itself it comes first.
-  [[nodiscard]] bool is_before(const std::vector<Tipping>& found, const std::vector<int>& group,
-                               const Tipping& tipping) const {
+  [[nodiscard]] bool is_before(const std::vector<Tipping>& found, const std::vector<int>& group, const Tipping& tipping) const {
     return std::none_of(found.begin(), found.end(), [&](const Tipping& t) {
       const bool is_ours = std::find(group.begin(), group.end(), scene_.component(t.body)) != group.end();
       return is_ours && t.margin <= tipping.margin + k_same;

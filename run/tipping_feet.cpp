@@ -69,8 +69,7 @@ private:
   void add_foot(const UnilateralContact& contact) {
     const Seen a = seen(contact.a), b = seen(contact.b);
     if (touches(contact.name, a.body, b.body))
-      feet_.push_back(
-          {contact.name, contact.name, a.body, b.body, a.point, rotated(contact.normal, b.angle).normalized()});
+      feet_.push_back({contact.name, contact.name, a.body, b.body, a.point, rotated(contact.normal, b.angle).normalized()});
   }
 
   void add_wheel(const SegmentContact& contact) {
@@ -137,8 +136,8 @@ private:
     const Vec2 along(best.normal.y(), -best.normal.x());
     const Vec2 on_face = best.normal * best.normal.dot(best.origin);
     const auto add = [&](double at, const char* which) {
-      feet_.push_back({contact.name, contact.name + which, a.body, b.body, on_face + at * along,
-                       best.is_of_a ? Vec2(-best.normal) : best.normal});
+      feet_.push_back(
+          {contact.name, contact.name + which, a.body, b.body, on_face + at * along, best.is_of_a ? Vec2(-best.normal) : best.normal});
     };
     if (best.high - best.low <= 0.0) return add(best.low, "");
     const bool is_forward = along.x() >= 0.0;
@@ -158,7 +157,8 @@ private:
     try_face(n, face.from, other, is_of_a, std::min(one, two), std::max(one, two), best);
   }
   // The face that the other body enters least is the one that it stands on.
-  static void try_face(const Vec2& n, const Vec2& origin, const std::vector<Vec2>& other, bool is_of_a, double from, double to, Best& best) {
+  static void try_face(const Vec2& n, const Vec2& origin, const std::vector<Vec2>& other, bool is_of_a, double from, double to,
+                       Best& best) {
     const Vec2 along(n.y(), -n.x());
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < other.size(); ++i)

@@ -40,8 +40,7 @@ public:
     found_.is_hung.assign(system_.bodies.size(), 0);
     found_.correction.assign(system_.bodies.size(), BodyForce{});
     for (const ElementEntry& entry : loaded.model.elements) {
-      const bool is_open = is_contact(*entry.element) &&
-                           std::find(touching.begin(), touching.end(), entry.element->name) == touching.end();
+      const bool is_open = is_contact(*entry.element) && std::find(touching.begin(), touching.end(), entry.element->name) == touching.end();
       ties_.push_back(is_open ? Tie{} : tie_of(entry));
     }
   }
@@ -51,8 +50,7 @@ public:
     for (std::size_t i = 0; i < ties_.size(); ++i)
       if (auto candidate = hung_by(i)) candidates.push_back(std::move(*candidate));
     for (const Candidate& candidate : candidates) // those within others come along with them
-      if (std::none_of(candidates.begin(), candidates.end(),
-                       [&](const Candidate& c) { return c.is_below[candidate.load.carrier]; }))
+      if (std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.is_below[candidate.load.carrier]; }))
         take(candidate);
     return std::move(found_);
   }
@@ -60,7 +58,7 @@ public:
 private:
   struct Candidate {
     std::size_t tie = 0;
-    std::vector<char> is_below; ///< per body
+    std::vector<char> is_below;      ///< per body
     std::size_t first = 0, last = 0; ///< of the tie's points, those that are not below
     std::size_t at = 0;              ///< of these the one that it hangs from
     HungLoad load;
@@ -89,8 +87,7 @@ private:
     }
     if (tie.bodies.size() == 1) tie.bodies.push_back(k_ground); // a load: it does not hang freely
     const auto* const spring = dynamic_cast<const SpringDamper*>(&element);
-    const bool only_pulls =
-        entry.kind == &revolute_kind() || entry.kind == &distance_kind() || (spring && !spring->axis);
+    const bool only_pulls = entry.kind == &revolute_kind() || entry.kind == &distance_kind() || (spring && !spring->axis);
     if (!only_pulls) tie.points.clear();
     return tie;
   }
@@ -125,8 +122,7 @@ private:
       if (first == tie.bodies.end() || !std::all_of(first, last, is_above)) continue;
       c.first = static_cast<std::size_t>(first - tie.bodies.begin());
       c.last = static_cast<std::size_t>(last - tie.bodies.begin()) - 1;
-      if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last)
-        continue; // by two falls from different points
+      if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last) continue; // by two falls from different points
       c.at = c.first > 0 ? c.first : c.last;
       c.load.carrier = tie.bodies[c.at];
       c.load.point = tie.points[c.at];
@@ -154,14 +150,11 @@ private:
       const Vec2 along = tie.points[p + 1] - tie.points[p];
       if (tie.bodies[p] == tie.bodies[p + 1] || along == Vec2::Zero()) continue;
       add_force(found_.correction[tie.bodies[p]], centre(tie.bodies[p]), tie.points[p], change * along.normalized());
-      add_force(found_.correction[tie.bodies[p + 1]], centre(tie.bodies[p + 1]), tie.points[p + 1],
-                -change * along.normalized());
+      add_force(found_.correction[tie.bodies[p + 1]], centre(tie.bodies[p + 1]), tie.points[p + 1], -change * along.normalized());
     }
   }
 
-  [[nodiscard]] Vec2 centre(int body) const {
-    return body == k_ground ? Vec2::Zero() : Vec2(state_.q[3 * body], state_.q[3 * body + 1]);
-  }
+  [[nodiscard]] Vec2 centre(int body) const { return body == k_ground ? Vec2::Zero() : Vec2(state_.q[3 * body], state_.q[3 * body + 1]); }
 
   const LoadedModel& loaded_;
   const System& system_;

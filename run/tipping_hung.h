@@ -21,15 +21,14 @@ struct HungLoad {
 
 /// What hangs in a pose, and what is left for whatever carries it.
 struct Hanging {
-  std::vector<HungLoad> loads; ///< one for each load that hangs
-  std::vector<char> is_hung;   ///< per body
-  std::vector<BodyForce>
-      correction;              ///< per body, of those that carry: what forces of elements are more, with loads at rest
-  std::vector<std::string> by; ///< names of the elements that they hang by
+  std::vector<HungLoad> loads;       ///< one for each load that hangs
+  std::vector<char> is_hung;         ///< per body
+  std::vector<BodyForce> correction; ///< per body, of those that carry: what forces of elements are more, with loads at rest
+  std::vector<std::string> by;       ///< names of the elements that they hang by
 };
 
 /// `force`: on each body, of elements that are neither contacts nor joints, in `state`.
-[[nodiscard]] Hanging hanging_loads(const LoadedModel& loaded, const State& state,
-                                    const std::vector<std::string>& touching, const std::vector<BodyForce>& force);
+[[nodiscard]] Hanging hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
+                                    const std::vector<BodyForce>& force);
 
 } // namespace steplap

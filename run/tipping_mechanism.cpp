@@ -12,10 +12,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rank = 1e-8;      // of rows
-constexpr double k_balanced = 1e-10; // of the loads: what is left of them is rounding
+constexpr double k_rank = 1e-8;       // of rows
+constexpr double k_balanced = 1e-10;  // of the loads: what is left of them is rounding
 constexpr double k_same_tilt = 1e-12; // rad
-constexpr int k_most_looks = 200;    // for a tilt
+constexpr int k_most_looks = 200;     // for a tilt
 constexpr double k_right_angle = 0.5 * std::numbers::pi;
 
 MatX columns_of(const MatX& a, const std::vector<int>& which) {
@@ -38,8 +38,7 @@ VecX nonnegative_solution(const MatX& a, const VecX& b, double rounding) {
       const VecX wanted = least_squares(columns_of(a, held), b);
       double share = 1.0;
       for (std::size_t i = 0; i < held.size(); ++i)
-        if (const double w = wanted[static_cast<Eigen::Index>(i)]; w < 0.0)
-          share = std::min(share, x[held[i]] / (x[held[i]] - w));
+        if (const double w = wanted[static_cast<Eigen::Index>(i)]; w < 0.0) share = std::min(share, x[held[i]] / (x[held[i]] - w));
       std::vector<int> left;
       for (std::size_t i = 0; i < held.size(); ++i) {
         const double w = wanted[static_cast<Eigen::Index>(i)];
@@ -101,8 +100,7 @@ public:
     balance(tilt);
     found.gap_forces = forces_;
     const VecX unmet = -(load(tilt) + blocks_.gaps.transpose() * forces_);
-    found.joint_forces =
-        blocks_.joints.rows() > 0 ? shortest_solution(blocks_.joints.transpose(), unmet, k_rank) : VecX();
+    found.joint_forces = blocks_.joints.rows() > 0 ? shortest_solution(blocks_.joints.transpose(), unmet, k_rank) : VecX();
     return found;
   }
 

@@ -36,8 +36,7 @@ void TippingScene::find_loads() {
   for (const auto& group : system_.groups) {
     parts.clear();
     group->add_jacobian(e, parts);
-    const bool is_contact =
-        std::any_of(parts.begin(), parts.end(), [](const PairJacobian& j) { return j.contact >= 0; });
+    const bool is_contact = std::any_of(parts.begin(), parts.end(), [](const PairJacobian& j) { return j.contact >= 0; });
     if (!is_contact) {
       group->add_forces(e);
       springs_.insert(springs_.end(), parts.begin(), parts.end());
@@ -74,9 +73,7 @@ void TippingScene::find_components() {
   component_.resize(system_.bodies.size());
   for (int i = 0; i < system_.body_count(); ++i) component_[i] = i;
   for (const RowSpec& row : system_.rows) {
-    if (row.a == k_ground || row.b == k_ground || is_hung(row.a) || is_hung(row.b) ||
-        component_[row.a] == component_[row.b])
-      continue;
+    if (row.a == k_ground || row.b == k_ground || is_hung(row.a) || is_hung(row.b) || component_[row.a] == component_[row.b]) continue;
     const int from = component_[row.a], to = component_[row.b];
     std::replace(component_.begin(), component_.end(), from, to);
   }
@@ -127,7 +124,8 @@ std::optional<TippingPart> TippingScene::part_on(int component, std::string* why
     return std::nullopt;
   };
   TippingPart part(system_.bodies.size(), 0);
-  if (!is_rigid(component)) return none("its joints let parts of it move against each other, and what forces or servos hold is not taken as rigid");
+  if (!is_rigid(component))
+    return none("its joints let parts of it move against each other, and what forces or servos hold is not taken as rigid");
   add_component(component, part);
   for (bool is_changed = true; is_changed;) {
     is_changed = false;

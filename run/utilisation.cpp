@@ -21,7 +21,7 @@ std::string element_part(const std::string& channel) { return channel.substr(0, 
 struct Aspect {
   const char* channel;
   const char* name;
-  bool is_lower; // the value has to stay above its limit
+  bool is_lower;  // the value has to stay above its limit
   const char* of; // what the share is one of
 };
 
@@ -131,7 +131,9 @@ private:
     const auto share = aspect->is_lower ? share_of_lower(*c.value, *c.limit, range) : share_of_upper(*c.value, *c.limit, range);
     std::string detail;
     if (c.unit.empty() && aspect->is_lower && *c.limit > 0.0)
-      detail = (c.reserve || aspect_of(c.channel)->name != std::string("friction") ? "margin " + shown_value(c) + ", at least " + shown_limit(c) : "it slipped");
+      detail =
+          (c.reserve || aspect_of(c.channel)->name != std::string("friction") ? "margin " + shown_value(c) + ", at least " + shown_limit(c)
+                                                                              : "it slipped");
     else if (!c.unit.empty()) detail = shown_value(c) + " left";
     const bool has_reserve = *c.limit > 1.0 && aspect->is_lower && c.unit.empty();
     add(c, c.where + ": " + aspect->name, share, detail, has_reserve ? "what the asked margin leaves" : aspect->of);
@@ -174,7 +176,7 @@ private:
   struct Friction {
     std::string element;
     const ChannelRange* force = nullptr;
-    double capacity = 0.0;                       // the largest, or the bound
+    double capacity = 0.0;                             // the largest, or the bound
     std::size_t force_column = 0, capacity_column = 0; // 0: not sampled
     double share = 0.0, at = 0.0, value = 0.0, limit = 0.0;
     bool is_exact = false;
@@ -214,7 +216,8 @@ private:
       const ChannelRange* force = ranges_.find(joint.name + ".friction");
       if (!force || !std::isfinite(force->largest().value)) continue;
       const Extreme& largest = force->largest();
-      frictions.push_back({joint.name, force, joint.holds, 0, 0, std::abs(largest.value) / joint.holds, largest.t, largest.value, joint.holds, true});
+      frictions.push_back(
+          {joint.name, force, joint.holds, 0, 0, std::abs(largest.value) / joint.holds, largest.t, largest.value, joint.holds, true});
     }
     return frictions;
   }
@@ -264,7 +267,9 @@ private:
       u.limit = f.limit;
     }
     if (slipped) u.detail = "it slips";
-    else u.detail = shown_quantity(std::abs(f.value), u.unit, {.column = f.limit}, digits_) + " of " + shown_quantity(f.limit, u.unit, {.column = f.limit}, digits_);
+    else
+      u.detail = shown_quantity(std::abs(f.value), u.unit, {.column = f.limit}, digits_) + " of " +
+                 shown_quantity(f.limit, u.unit, {.column = f.limit}, digits_);
     u.text = shown_share(u.share, {}, digits_) + " of what friction holds: " + u.detail + (f.is_exact ? "" : ", at the instants written");
     found_.push_back(std::move(u));
   }

@@ -18,17 +18,17 @@ namespace steplap {
 
 /// What one thing used of what it may.
 struct Utilisation {
-  std::string name;               ///< "front joint: friction", or that of the criterion
-  std::string channel;            ///< whose extreme it is
-  double share = 0.0;             ///< 1: the limit; more: beyond it; at most k_most_share
+  std::string name;                   ///< "front joint: friction", or that of the criterion
+  std::string channel;                ///< whose extreme it is
+  double share = 0.0;                 ///< 1: the limit; more: beyond it; at most k_most_share
   std::optional<double> value, limit; ///< SI; none of friction that slips: both are the same then, and change
-  std::string unit;               ///< of both
-  std::optional<double> at;       ///< s
-  bool is_judged = false;         ///< a criterion of the verdict
-  bool beyond = false;            ///< the limit is passed: the criterion is not met, or it slipped or broke
-  std::optional<double> error;    ///< of the share; not-a-number: unknown
-  std::string detail;             ///< "274 kN of 300 kN", "1.32, at least 1.2"
-  std::string text;               ///< "91 % of the limit: 274 kN of 300 kN"
+  std::string unit;                   ///< of both
+  std::optional<double> at;           ///< s
+  bool is_judged = false;             ///< a criterion of the verdict
+  bool beyond = false;                ///< the limit is passed: the criterion is not met, or it slipped or broke
+  std::optional<double> error;        ///< of the share; not-a-number: unknown
+  std::string detail;                 ///< "274 kN of 300 kN", "1.32, at least 1.2"
+  std::string text;                   ///< "91 % of the limit: 274 kN of 300 kN"
 
   static constexpr double k_most_share = 1000.0; ///< of what has nothing left to hold by
 };

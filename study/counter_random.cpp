@@ -4,8 +4,6 @@
 
 namespace steplap::study {
 
-double CounterRandom::normal(std::uint64_t sample, std::uint32_t index) const {
-  return normal_quantile(uniform(sample, index));
-}
+double CounterRandom::normal(std::uint64_t sample, std::uint32_t index) const { return normal_quantile(uniform(sample, index)); }
 
 } // namespace steplap::study

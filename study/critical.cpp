@@ -14,10 +14,7 @@ FieldTable critical_fields() {
   FieldTable t;
   t.add("variable", &S::variable).required().doc("whose critical values are looked for, within its range");
   t.add("expression", &S::expression).required().doc("of responses and variables: critical where it is zero");
-  t.add("points", &S::points)
-      .at_least(3)
-      .at_most(1e6)
-      .doc("of the first look along the range: closer pairs of crossings are not seen");
+  t.add("points", &S::points).at_least(3).at_most(1e6).doc("of the first look along the range: closer pairs of crossings are not seen");
   t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of the critical value, of the range");
   return t;
 }
@@ -83,8 +80,7 @@ std::vector<std::size_t> turns_of(const Look& look) {
     const bool is_one_side = before * after > 0.0 && here * before >= 0.0;
     if (is_one_side && std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after)) turns.push_back(i);
   }
-  std::stable_sort(turns.begin(), turns.end(),
-                   [&](std::size_t l, std::size_t r) { return std::abs(look.g[l]) < std::abs(look.g[r]); });
+  std::stable_sort(turns.begin(), turns.end(), [&](std::size_t l, std::size_t r) { return std::abs(look.g[l]) < std::abs(look.g[r]); });
   if (turns.size() > k_most) turns.resize(k_most);
   return turns;
 }
@@ -95,8 +91,7 @@ void look_closer(Line& line, Look& look) {
     std::vector<double> more;
     for (const std::size_t i : turns_of(look))
       for (int k = 1; k < k_parts; ++k)
-        for (const std::size_t from : {i - 1, i})
-          more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
+        for (const std::size_t from : {i - 1, i}) more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
     if (more.empty()) return;
     look_at(line, std::move(more), look);
   }
@@ -151,8 +146,7 @@ std::vector<Crossing> crossings_of(const Look& look, const std::string& variable
   const auto is_zero = [&](std::size_t i) { return i < look.g.size() && look.g[i] == 0.0; };
   for (std::size_t i = 0; i < look.x.size(); ++i) {
     const double here = look.g[i];
-    if (here == 0.0 && !is_zero(i + 1) && !(i > 0 && is_zero(i - 1)))
-      crossings.push_back({look.x[i], look.x[i], here, here});
+    if (here == 0.0 && !is_zero(i + 1) && !(i > 0 && is_zero(i - 1))) crossings.push_back({look.x[i], look.x[i], here, here});
     if (i + 1 == look.x.size()) break;
     const double next = look.g[i + 1];
     if (here == 0.0 && next == 0.0) add_flat(look.x[i], look.x[i + 1], variable, samples, answer);
@@ -179,9 +173,7 @@ void add_critical_expression(LoadedStudy& loaded) {
 void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const auto& s = settings_of<CriticalSettings>(loaded.study);
   const int v = loaded.study.index_of_variable(s.variable);
-  if (v < 0)
-    problems.push_back(
-        {s.where, "there is no variable '" + s.variable + "'" + did_you_mean(s.variable, names_of(loaded.study))});
+  if (v < 0) problems.push_back({s.where, "there is no variable '" + s.variable + "'" + did_you_mean(s.variable, names_of(loaded.study))});
   else if (loaded.study.variables[static_cast<std::size_t>(v)].range.size() != 2)
     problems.push_back({loaded.study.variables[static_cast<std::size_t>(v)].where,
                         "variable '" + s.variable + "' needs a 'range' to look for critical values in"});
@@ -194,8 +186,7 @@ Answer run_critical(StudyRun& run) {
   Line line(run);
   Look look;
   for (long k = 0; k < s.points; ++k)
-    look.x.push_back(k + 1 == s.points ? v.range[1]
-                                       : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
+    look.x.push_back(k + 1 == s.points ? v.range[1] : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
   look.g = line.at(look.x);
   look_into_flats(line, look);
   look_closer(line, look);
@@ -218,9 +209,8 @@ Answer run_critical(StudyRun& run) {
     f.samples = run.evaluator.asked();
     const auto known = std::find_if(look.g.begin(), look.g.end(), [](double g) { return !std::isnan(g); });
     f.status = known == look.g.end() ? "no run gave a value"
-                                     : std::string("none in the range: the expression is ") +
-                                           (*known < 0.0 ? "negative" : "positive") + " wherever it was looked at" +
-                                           where_nearest(look);
+                                     : std::string("none in the range: the expression is ") + (*known < 0.0 ? "negative" : "positive") +
+                                           " wherever it was looked at" + where_nearest(look);
     answer.findings.push_back(f);
     answer.degrade(Standing::not_met);
   }
@@ -232,9 +222,8 @@ Answer run_critical(StudyRun& run) {
                 width / static_cast<double>(s.points - 1));
   answer.notes.emplace_back(text);
   if (line.bad() > 0) {
-    answer.notes.push_back(
-        std::to_string(line.bad()) +
-        " runs did not reach their end or are not to be trusted: crossings beside them are not seen");
+    answer.notes.push_back(std::to_string(line.bad()) +
+                           " runs did not reach their end or are not to be trusted: crossings beside them are not seen");
     answer.degrade(Standing::not_met);
   }
   return answer;

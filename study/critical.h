@@ -7,8 +7,8 @@ namespace steplap::study {
 
 struct CriticalSettings : KindSettings {
   std::string variable;
-  std::string expression; ///< whose zeros are looked for
-  long points = 21;       ///< of the first look
+  std::string expression;  ///< whose zeros are looked for
+  long points = 21;        ///< of the first look
   double tolerance = 1e-9; ///< of the variable's range
 };
 

@@ -38,8 +38,7 @@ void take(Crossing& c, Closing& closing, double x, double g) {
 
 void close_crossings(std::vector<Crossing>& crossings, double tolerance, const BatchFunction& function) {
   std::vector<Closing> closing;
-  for (const Crossing& c : crossings)
-    closing.push_back({c.g_low, c.g_high, std::max(std::abs(c.g_low), std::abs(c.g_high))});
+  for (const Crossing& c : crossings) closing.push_back({c.g_low, c.g_high, std::max(std::abs(c.g_low), std::abs(c.g_high))});
   for (int round = 0; round < 200; ++round) {
     std::vector<std::size_t> which;
     std::vector<double> at;

@@ -17,8 +17,7 @@ struct Crossing {
 };
 
 /// Values at several places; not-a-number where there is none. `which`: the crossing each is asked for.
-using BatchFunction =
-    std::function<std::vector<double>(const std::vector<std::size_t>& which, const std::vector<double>& at)>;
+using BatchFunction = std::function<std::vector<double>(const std::vector<std::size_t>& which, const std::vector<double>& at)>;
 
 /// Closes all crossings in, to `tolerance` (Illinois' rule, with a bisection every fourth time).
 void close_crossings(std::vector<Crossing>& crossings, double tolerance, const BatchFunction& function);

@@ -97,8 +97,7 @@ public:
       for (std::size_t j = 0; j <= i; ++j)
         for (const double si : {1.0, -1.0})
           for (const double sj : {1.0, -1.0})
-            if (i != j || si == sj)
-              add(i, 0.5 * si * h_ * (i == j ? 1.0 : 2.0), j, 0.5 * sj * h_ * (i == j ? 1.0 : 2.0));
+            if (i != j || si == sj) add(i, 0.5 * si * h_ * (i == j ? 1.0 : 2.0), j, 0.5 * sj * h_ * (i == j ? 1.0 : 2.0));
     const std::vector<LimitValue>& g = limit_->at(points);
     for (const LimitValue& value : g)
       if (value.is_bad) throw BadSample("a run without result lay on the way");
@@ -119,10 +118,9 @@ private:
 
 OT::RandomVector event_of(LimitFunction& limit, double h) {
   // Second differences take a larger step: their noise goes with its square.
-  const OT::Function function{
-      OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
-      OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
-      OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
+  const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
+                              OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
+                              OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
   const OT::RandomVector input{OT::Distribution(OT::Normal(limit.dimension()))};
   return OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0);
 }
@@ -169,8 +167,7 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
     } catch (const OT::Exception&) { // where curvatures are too large for them
     }
   } catch (const OT::Exception&) {
-  } catch (const BadSample&) {
-  }
+  } catch (const BadSample&) {}
 }
 
 // What OpenTURNS asks for beside a design point that is there already.
@@ -237,8 +234,7 @@ std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, l
   std::vector<double> nearest(pool.size(), -1.0); // cosine
   for (std::size_t next = 0; static_cast<long>(directions.size()) < count;) {
     directions.push_back(pool[next]);
-    for (std::size_t i = 0; i < pool.size(); ++i)
-      nearest[i] = std::max(nearest[i], cosine_between(pool[i], directions.back()));
+    for (std::size_t i = 0; i < pool.size(); ++i) nearest[i] = std::max(nearest[i], cosine_between(pool[i], directions.back()));
     next = static_cast<std::size_t>(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
   }
   return directions;
@@ -260,16 +256,14 @@ std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, con
   for (std::size_t i = 0; i < looks.size(); ++i)
     if (!values[i].is_bad) order.push_back(i);
   const double sign = found.is_origin_failing ? -1.0 : 1.0;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return sign * values[a].g < sign * values[b].g; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sign * values[a].g < sign * values[b].g; });
   std::vector<std::vector<double>> starts, taken;
   for (const DesignPoint& p : found.points)
     if (p.is_found) taken.push_back(p.u);
   for (const std::size_t i : order) {
     if (static_cast<long>(starts.size()) == count) break;
-    const bool is_apart = std::none_of(taken.begin(), taken.end(), [&](const std::vector<double>& other) {
-      return cosine_between(other, looks[i]) > k_apart;
-    });
+    const bool is_apart = std::none_of(taken.begin(), taken.end(),
+                                       [&](const std::vector<double>& other) { return cosine_between(other, looks[i]) > k_apart; });
     if (!is_apart) continue;
     taken.push_back(looks[i]);
     starts.push_back(looks[i]);

@@ -35,8 +35,7 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
 
 bool is_near_any(const std::vector<std::vector<double>>& known, const std::vector<double>& u) {
   const double near = k_known * std::max(1.0, length_of(u.data(), u.size()));
-  return std::any_of(known.begin(), known.end(),
-                     [&](const std::vector<double>& k) { return distance_between(k, u) < near; });
+  return std::any_of(known.begin(), known.end(), [&](const std::vector<double>& k) { return distance_between(k, u) < near; });
 }
 
 class Search {
@@ -94,20 +93,16 @@ private:
     return !value.is_bad && std::abs(value.g) < 0.01 * std::abs(at_.g);
   }
 
-  [[nodiscard]] double merit(const std::vector<double>& u, double g, double c) const {
-    return 0.5 * product(u, u) + c * std::abs(g);
-  }
+  [[nodiscard]] double merit(const std::vector<double>& u, double g, double c) const { return 0.5 * product(u, u) + c * std::abs(g); }
 
   // Towards the aim, as far as the merit falls by a good part of what its slope promises (Armijo's rule: to fall at all
   // is not enough where the surface is curved as the sphere is, on which full steps go to and fro). False if it falls
   // nowhere.
   bool go(const std::vector<double>& aim) {
-    const double steepness = length_of(at_.gradient.data(), at_.gradient.size()),
-                 distance = length_of(at_.u.data(), at_.u.size());
+    const double steepness = length_of(at_.gradient.data(), at_.gradient.size()), distance = length_of(at_.u.data(), at_.u.size());
     const double c = 2.0 * std::max(distance, length_of(aim.data(), aim.size())) / steepness;
     constexpr double k_part = 0.3;
-    const double before = merit(at_.u, at_.g, c),
-                 slope = product(at_.u, aim) - product(at_.u, at_.u) - c * std::abs(at_.g);
+    const double before = merit(at_.u, at_.g, c), slope = product(at_.u, aim) - product(at_.u, at_.u) - c * std::abs(at_.g);
     double share = 1.0;
     for (int k = 0; k <= k_most_halvings; ++k, share *= 0.5) {
       const std::vector<double> u = between(at_.u, aim, share);
@@ -154,8 +149,7 @@ std::optional<std::vector<double>> gradient_at(LimitFunction& limit, const std::
   return gradient;
 }
 
-SearchEnd search_design_point(LimitFunction& limit, std::vector<double> start,
-                              const std::vector<std::vector<double>>& known, long last) {
+SearchEnd search_design_point(LimitFunction& limit, std::vector<double> start, const std::vector<std::vector<double>>& known, long last) {
   return Search(limit, last).from(std::move(start), known);
 }
 

@@ -21,12 +21,11 @@ struct SearchEnd {
 };
 
 /// From `start`; ends early where it heads for one of `known`, or when samples from `limit` reach `last`.
-[[nodiscard]] SearchEnd search_design_point(LimitFunction& limit, std::vector<double> start,
-                                            const std::vector<std::vector<double>>& known, long last);
+[[nodiscard]] SearchEnd search_design_point(LimitFunction& limit, std::vector<double> start, const std::vector<std::vector<double>>& known,
+                                            long last);
 
 /// Central differences with the step `h`; nothing where a run has no result.
-[[nodiscard]] std::optional<std::vector<double>> gradient_at(LimitFunction& limit, const std::vector<double>& u,
-                                                             double h);
+[[nodiscard]] std::optional<std::vector<double>> gradient_at(LimitFunction& limit, const std::vector<double>& u, double h);
 
 [[nodiscard]] double distance_between(const std::vector<double>& a, const std::vector<double>& b);
 

@@ -35,7 +35,7 @@ struct Stratum {
   double tail_low, tail_high; // probabilities of being further out
   bool is_last = false;
   Seen own{};
-  Seen beside[4]{};           // outside of the stratum, and of the whole it was cut from: two before, two after
+  Seen beside[4]{}; // outside of the stratum, and of the whole it was cut from: two before, two after
 
   [[nodiscard]] double probability() const { return tail_low - tail_high; }
 
@@ -101,9 +101,7 @@ private:
   }
 
   void measure(Stratum& s) const {
-    const auto beyond = [this](double r) {
-      return OT::DistFunc::pGamma(0.5 * static_cast<double>(n_), 0.5 * r * r, true);
-    };
+    const auto beyond = [this](double r) { return OT::DistFunc::pGamma(0.5 * static_cast<double>(n_), 0.5 * r * r, true); };
     s.tail_low = s.low > 0.0 ? beyond(s.low) : 1.0;
     s.tail_high = s.is_last ? 0.0 : beyond(s.high);
   }
@@ -162,8 +160,8 @@ private:
 
   // Of three parts: one another, and what was beside the whole.
   static void set_beside(Stratum* part) {
-    const Seen *const outside = part[0].beside, seen[] = {outside[0], outside[1], part[0].own, part[1].own,
-                                                          part[2].own, outside[2], outside[3]};
+    const Seen *const outside = part[0].beside,
+                      seen[] = {outside[0], outside[1], part[0].own, part[1].own, part[2].own, outside[2], outside[3]};
     for (int k = 0; k < k_parts; ++k) {
       part[k].beside[0] = seen[k];
       part[k].beside[1] = seen[k + 1];
@@ -213,8 +211,7 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
     safe = unsafe = {};
     e.bad = 0;
     draw_until(second);
-    while (!course.is_over() && !(e.cov <= target.cov))
-      draw_until(std::max(course.planned(safe.count(), e.cov), safe.count() + k_first));
+    while (!course.is_over() && !(e.cov <= target.cov)) draw_until(std::max(course.planned(safe.count(), e.cov), safe.count() + k_first));
   }
   course.say_why_it_ended(e);
   if (safe.hits() == 0) e.status = "no ray met failure";

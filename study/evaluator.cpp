@@ -18,8 +18,8 @@ void pack(const Outcome& o, std::vector<char>& bytes) {
     const char* first = static_cast<const char*>(data);
     bytes.insert(bytes.end(), first, first + size);
   };
-  const long head[] = {static_cast<long>(o.status), static_cast<long>(o.reason.size()),
-                       static_cast<long>(o.numbers.size()), static_cast<long>(o.curve.size())};
+  const long head[] = {static_cast<long>(o.status), static_cast<long>(o.reason.size()), static_cast<long>(o.numbers.size()),
+                       static_cast<long>(o.curve.size())};
   const double costs[] = {o.error, o.evaluations, o.cpu_seconds};
   add(head, sizeof head);
   add(costs, sizeof costs);
@@ -58,8 +58,7 @@ bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan
 // A scene for each thread.
 class Workers {
 public:
-  Workers(const LoadedStudy& loaded, int threads)
-      : width_(loaded.study.variables.size()), has_models_(!loaded.models.empty()) {
+  Workers(const LoadedStudy& loaded, int threads) : width_(loaded.study.variables.size()), has_models_(!loaded.models.empty()) {
     const int count = threads > 0 ? threads : omp_get_max_threads();
     for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<Scene>(loaded));
   }
@@ -69,8 +68,7 @@ public:
            const std::function<Outcome&(std::size_t)>& outcome) {
     const long mine = first < count ? static_cast<long>((count - first + stride - 1) / stride) : 0;
     const int block = has_models_ ? 1 : 256;
-    const bool is_worth_it =
-        has_models_ ? mine > 1 : mine > 2000; // formulas take a microsecond, waking threads several
+    const bool is_worth_it = has_models_ ? mine > 1 : mine > 2000; // formulas take a microsecond, waking threads several
 #pragma omp parallel for schedule(dynamic, block) num_threads(static_cast<int>(scenes_.size())) if (is_worth_it)
     for (long i = 0; i < mine; ++i) {
       const std::size_t k = first + static_cast<std::size_t>(i) * stride;
@@ -87,10 +85,8 @@ private:
   bool has_models_;
 };
 
-Evaluator::Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads,
-                     std::function<void(const Pace&)> progress)
-    : loaded_(loaded), store_(store), ranks_(ranks), workers_(std::make_unique<Workers>(loaded, threads)),
-      progress_(std::move(progress)),
+Evaluator::Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, std::function<void(const Pace&)> progress)
+    : loaded_(loaded), store_(store), ranks_(ranks), workers_(std::make_unique<Workers>(loaded, threads)), progress_(std::move(progress)),
       chunk_(loaded.models.empty() ? 10000 : 16 * static_cast<std::size_t>(ranks.count())), begin_(now()) {}
 
 Evaluator::~Evaluator() = default;
@@ -105,32 +101,32 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
       if (!is_same(fetched_[i].values[j],
                    points[(from + i) * width + j])) { // a study that has changed goes another way from here
         if (!may_go_another_way())
-          throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
-                           " has other values than the study asks for: let it make the store anew", {StoreMode::restart});
+          throw StoreError(store_.path(),
+                           "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
+                               " has other values than the study asks for: let it make the store anew",
+                           {StoreMode::restart});
         store_.forget_from(fetched_[i].number);
         return;
       }
     if (!workers_->is_derived(fetched_[i]))
-      throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
-                       " has numbers that do not follow from its values and responses: let the study make the store anew", {StoreMode::restart});
+      throw StoreError(store_.path(),
+                       "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
+                           " has numbers that do not follow from its values and responses: let the study make the store anew",
+                       {StoreMode::restart});
     rows_[from + i] = std::move(fetched_[i]);
     ++pace_.stored;
   }
 }
 
 // What ends by the clock asks for more or less each time.
-bool Evaluator::may_go_another_way() {
-  return store_.may_hold_others() || loaded_.study.settings->ends_by_clock();
-}
+bool Evaluator::may_go_another_way() { return store_.may_hold_others() || loaded_.study.settings->ends_by_clock(); }
 
 void Evaluator::run(std::size_t from, std::size_t count, const std::vector<double>& points) {
   const std::size_t width = loaded_.study.variables.size();
-  std::vector<double> part(points.begin() + static_cast<long>(from * width),
-                           points.begin() + static_cast<long>((from + count) * width));
+  std::vector<double> part(points.begin() + static_cast<long>(from * width), points.begin() + static_cast<long>((from + count) * width));
   for (std::size_t i = 0; i < count; ++i) {
     rows_[from + i].number = next_ + static_cast<long>(from + i);
-    rows_[from + i].values.assign(part.begin() + static_cast<long>(i * width),
-                                  part.begin() + static_cast<long>((i + 1) * width));
+    rows_[from + i].values.assign(part.begin() + static_cast<long>(i * width), part.begin() + static_cast<long>((i + 1) * width));
   }
   ranks_.spread(part);
   const auto stride = static_cast<std::size_t>(ranks_.count());
@@ -149,8 +145,8 @@ void Evaluator::run(std::size_t from, std::size_t count, const std::vector<doubl
 
 void Evaluator::check(const StoredSample& sample) const {
   if (loaded_.study.failed != "stop" || sample.outcome.status == SampleStatus::ok) return;
-  throw StudyStopped("sample " + std::to_string(sample.number) + " " + name_of(sample.outcome.status) + ": " +
-                     sample.outcome.reason + " (the study says failed = \"stop\")");
+  throw StudyStopped("sample " + std::to_string(sample.number) + " " + name_of(sample.outcome.status) + ": " + sample.outcome.reason +
+                     " (the study says failed = \"stop\")");
 }
 
 // Batches of about half a second, so that no more is lost than that. What is stored does not depend on their size.
@@ -172,8 +168,7 @@ const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& 
       const double took = std::max(now() - begin, 1e-6);
       pace_.rate = static_cast<double>(part) / took;
       const auto least = static_cast<std::size_t>(ranks_.count());
-      chunk_ = std::clamp(static_cast<std::size_t>(k_batch * pace_.rate), least,
-                          std::min<std::size_t>(200000, 4 * chunk_ + least));
+      chunk_ = std::clamp(static_cast<std::size_t>(k_batch * pace_.rate), least, std::min<std::size_t>(200000, 4 * chunk_ + least));
     }
     for (std::size_t i = 0; i < part; ++i) check(rows_[from + i]);
     from += part;
@@ -188,8 +183,7 @@ const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& 
 void Evaluator::note(const Finding& finding) {
   store_.note(++notes_, finding);
   char text[120];
-  std::snprintf(text, sizeof text, "%s %.4g [%.4g, %.4g]", finding.quantity.c_str(), finding.value, finding.low,
-                finding.high);
+  std::snprintf(text, sizeof text, "%s %.4g [%.4g, %.4g]", finding.quantity.c_str(), finding.value, finding.low, finding.high);
   pace_.estimate = finding.method + ": " + text;
 }
 
@@ -207,7 +201,7 @@ void Evaluator::serve(const LoadedStudy& loaded, const Ranks& ranks, int threads
     const std::size_t count = points.size() / width, stride = static_cast<std::size_t>(ranks.count());
     outcomes.resize(count);
     workers.run(points.data(), count, static_cast<std::size_t>(ranks.rank()), stride,
-             [&](std::size_t i) -> Outcome& { return outcomes[i]; });
+                [&](std::size_t i) -> Outcome& { return outcomes[i]; });
     std::vector<char> bytes;
     for (std::size_t i = static_cast<std::size_t>(ranks.rank()); i < count; i += stride) pack(outcomes[i], bytes);
     (void)ranks.gather(bytes);

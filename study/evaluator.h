@@ -21,20 +21,19 @@ public:
 
 /// How far a study is.
 struct Pace {
-  long samples = 0, stored = 0;  ///< asked for so far; of these, found in the store
+  long samples = 0, stored = 0; ///< asked for so far; of these, found in the store
   double seconds = 0.0;
-  double rate = 0.0;             ///< samples run a second, lately
-  std::string estimate;          ///< the last that was noted
-  long expected = 0;             ///< samples when what runs now will have ended; 0: not known
-  bool is_guess = false;         ///< that hangs on how an estimate goes on
+  double rate = 0.0;     ///< samples run a second, lately
+  std::string estimate;  ///< the last that was noted
+  long expected = 0;     ///< samples when what runs now will have ended; 0: not known
+  bool is_guess = false; ///< that hangs on how an estimate goes on
 };
 
 class Workers;
 
 class Evaluator {
 public:
-  Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads,
-            std::function<void(const Pace&)> progress);
+  Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, std::function<void(const Pace&)> progress);
   ~Evaluator();
 
   /// The outcomes of `points` (of all variables, one after the other), in their order; good until the next call.

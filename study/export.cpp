@@ -17,8 +17,7 @@ void export_samples(Store& store, std::ostream& out) {
   for (long first = 1; first <= store.size(); first += k_block) {
     store.read(first, std::min(k_block, store.size() - first + 1), rows);
     for (const StoredSample& row : rows) {
-      text +=
-          std::to_string(row.number) + "," + name_of(row.outcome.status) + "," + csv_field(row.outcome.reason) + ",";
+      text += std::to_string(row.number) + "," + name_of(row.outcome.status) + "," + csv_field(row.outcome.reason) + ",";
       append_number(text, row.outcome.error);
       text += ",";
       append_number(text, row.outcome.evaluations);

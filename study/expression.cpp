@@ -42,8 +42,7 @@ Expression::Expression(const std::string& text, const std::vector<std::string>& 
     : parser_(std::make_unique<Parser>()) {
   mu::Parser& parser = parser_->parser;
   if (has_assignment(text))
-    throw ModelError(where, "the expression '" + text +
-                                "' assigns with '=': variables and responses are what they are; equality is '=='");
+    throw ModelError(where, "the expression '" + text + "' assigns with '=': variables and responses are what they are; equality is '=='");
   try {
     parser.DefineConst("pi", std::numbers::pi);
     std::vector<double> all(names.size(), 1.0);
@@ -88,8 +87,7 @@ std::string name_problem(const std::string& name) {
   if (name.empty() || !is_letter(name.front()) || !std::all_of(name.begin(), name.end(), is_fit))
     return "must begin with a letter and hold letters, digits and _ only: expressions use it";
   static const std::vector<std::string> functions = function_names();
-  if (name == "pi" || std::find(functions.begin(), functions.end(), name) != functions.end())
-    return "is taken by expressions";
+  if (name == "pi" || std::find(functions.begin(), functions.end(), name) != functions.end()) return "is taken by expressions";
   return "";
 }
 

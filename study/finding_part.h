@@ -15,7 +15,7 @@ struct FindingPart {
   std::string role;     ///< what the page does with it
   std::string quantity; ///< as it begins, followed by the name of a variable if this ends with a blank; as it ends, if this begins with one
   UnitOf unit = UnitOf::none;
-  int digits = 6;       ///< shown, where there is no interval
+  int digits = 6; ///< shown, where there is no interval
 };
 
 /// A finding whose quantity is a variable, and its value a coordinate of a point: the subject is the role and the point's number.

@@ -15,10 +15,7 @@ namespace {
 
 FieldTable fit_fields() {
   FieldTable t;
-  t.add("starts", &FitSettings::starts)
-      .at_least(1)
-      .at_most(10000)
-      .doc("places looked at first; searches begin at the best of them");
+  t.add("starts", &FitSettings::starts).at_least(1).at_most(10000).doc("places looked at first; searches begin at the best of them");
   t.add("iterations", &FitSettings::iterations).at_least(1).at_most(10000).doc("of one search, at most");
   t.add("confidence", &FitSettings::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
   return t;
@@ -70,8 +67,7 @@ public:
 
   [[nodiscard]] VectorXd nominal() const {
     VectorXd z(size());
-    for (Eigen::Index i = 0; i < size(); ++i)
-      z[i] = std::clamp((run_.law.nominal()[index(i)] - variable(i).range[0]) / width(i), 0.0, 1.0);
+    for (Eigen::Index i = 0; i < size(); ++i) z[i] = std::clamp((run_.law.nominal()[index(i)] - variable(i).range[0]) / width(i), 0.0, 1.0);
     return z;
   }
 
@@ -121,17 +117,15 @@ std::vector<Start> starts_of(StudyRun& run, const FitProblem& fit) {
   std::vector<VectorXd> points{fit.nominal()};
   for (long k = 1; k < settings_of<FitSettings>(run.study()).starts; ++k) {
     VectorXd z(fit.size());
-    for (Eigen::Index i = 0; i < z.size(); ++i)
-      z[i] = random.uniform(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
+    for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = random.uniform(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
     points.push_back(z);
   }
   std::vector<VectorXd> rows = fit.problem().residuals(points);
   std::vector<Start> starts;
   for (std::size_t k = 0; k < points.size(); ++k)
     if (rows[k].size() > 0) starts.push_back({points[k], std::move(rows[k])});
-  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) {
-    return a.residuals.squaredNorm() < b.residuals.squaredNorm();
-  });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.residuals.squaredNorm() < b.residuals.squaredNorm(); });
   return starts;
 }
 
@@ -146,8 +140,7 @@ std::vector<LeastSquaresMinimum> search(StudyRun& run, const FitProblem& fit) {
     f.samples = run.evaluator.asked();
     run.evaluator.note(f);
   }
-  std::stable_sort(minima.begin(), minima.end(),
-                   [](const LeastSquaresMinimum& a, const LeastSquaresMinimum& b) { return a.sum < b.sum; });
+  std::stable_sort(minima.begin(), minima.end(), [](const LeastSquaresMinimum& a, const LeastSquaresMinimum& b) { return a.sum < b.sum; });
   return minima;
 }
 
@@ -195,8 +188,7 @@ public:
                   "Intervals of %g %%: of first order, by %s, for residuals that are independent and normal; %ld "
                   "measured values, %ld parameters.",
                   100.0 * settings_of<FitSettings>(run_.study()).confidence,
-                  fit_.has_noise() ? "the normal distribution with the stated noise"
-                                   : "Student's distribution with the noise found",
+                  fit_.has_noise() ? "the normal distribution with the stated noise" : "Student's distribution with the noise found",
                   static_cast<long>(best_.residuals.size()), static_cast<long>(fit_.size()));
     answer_.notes.emplace_back(text);
     return std::move(answer_);
@@ -241,11 +233,10 @@ private:
       for (Eigen::Index i = 0; i < fit_.size(); ++i)
         if (std::abs(told_.directions(i, static_cast<Eigen::Index>(j / 2))) > 0.1)
           off_[static_cast<std::size_t>(i)] =
-              std::isnan(rise)
-                  ? "at an end of its interval the run has no result"
-                  : in_words("the interval is of first order, which is off: at its end the sum of squares rises %.2g "
-                             "times as much as it should",
-                             rise);
+              std::isnan(rise) ? "at an end of its interval the run has no result"
+                               : in_words("the interval is of first order, which is off: at its end the sum of squares rises %.2g "
+                                          "times as much as it should",
+                                          rise);
     }
   }
 
@@ -280,8 +271,7 @@ private:
         if (is_untold(i) || is_untold(j)) continue;
         Finding f = finding(fit_.variable(i).name + ", " + fit_.variable(j).name, "correlation",
                             told_.covariance(i, j) / (deviation(i) * deviation(j)));
-        if (std::abs(f.value) > k_high)
-          f.status = "hardly told apart: a change of one is nearly made up for by the other";
+        if (std::abs(f.value) > k_high) f.status = "hardly told apart: a change of one is nearly made up for by the other";
         answer_.findings.push_back(f);
       }
   }
@@ -301,13 +291,12 @@ private:
         if (std::abs(way[i]) < 0.05 * 0.01) continue;
         const Variable& v = fit_.variable(i);
         names += (names.empty() ? "" : ", ") + v.name;
-        changes += (changes.empty() ? "" : " and ") + v.name + " changes by " +
-                   in_words("%+.4g", way[i] * fit_.width(i)) + (v.unit.empty() || v.unit == "*" ? "" : " " + v.unit);
+        changes += (changes.empty() ? "" : " and ") + v.name + " changes by " + in_words("%+.4g", way[i] * fit_.width(i)) +
+                   (v.unit.empty() || v.unit == "*" ? "" : " " + v.unit);
       }
       Finding f = finding(names, "not told", seen);
-      f.status = names.find(',') == std::string::npos
-                     ? "the record does not hang on it"
-                     : "cannot be told apart: the record stays as it is where " + changes;
+      f.status = names.find(',') == std::string::npos ? "the record does not hang on it"
+                                                      : "cannot be told apart: the record stays as it is where " + changes;
       answer_.findings.push_back(f);
       answer_.degrade(Standing::not_met);
     }
@@ -334,9 +323,8 @@ private:
                             together);
       // χ² of n is nearly normal with deviation √(2n).
       else if (h.noise && sum > n + k_sure * std::sqrt(2.0 * n))
-        f.status = in_words(
-            "residuals are %.3g times the stated noise: the model does not describe the record, or the noise is larger",
-            std::sqrt(sum / n));
+        f.status = in_words("residuals are %.3g times the stated noise: the model does not describe the record, or the noise is larger",
+                            std::sqrt(sum / n));
       if (!f.status.empty()) answer_.degrade(Standing::not_trusted);
       answer_.findings.push_back(f);
       check_interpolation(h, place - count);
@@ -346,8 +334,8 @@ private:
   // Between samples of a run a straight line is off by an eighth of the second difference, which falls with the square
   // of the step.
   void check_interpolation(const History& h, Eigen::Index place) {
-    const auto model = std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(),
-                                    [&](const auto& m) { return m->name == h.model; });
+    const auto model =
+        std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(), [&](const auto& m) { return m->name == h.model; });
     const Sampling sampling = sampling_of(run_.study(), **model);
     if (sampling.is_exact) return;
     double largest = 0.0;
@@ -362,11 +350,9 @@ private:
     const double noise = std::sqrt(variance_) * FitProblem::noise_of(h);
     answer_.notes.push_back("History '" + h.name +
                             "': its times are no multiples of one step; runs are interpolated between samples every " +
-                            in_words("%.3g s, which is off by %.1g at most", sampling.step, largest) + " " +
-                            h.channel_unit + ".");
+                            in_words("%.3g s, which is off by %.1g at most", sampling.step, largest) + " " + h.channel_unit + ".");
     if (largest > 0.1 * noise)
-      distrust("interpolating runs for '" + h.name +
-               "' is off by more than a tenth of its noise; resample the record evenly");
+      distrust("interpolating runs for '" + h.name + "' is off by more than a tenth of its noise; resample the record evenly");
   }
 
   // Another place that the record cannot tell from the best one.
@@ -393,8 +379,7 @@ private:
     Eigen::Index place = 0;
     for (const History& h : run_.study().histories)
       for (std::size_t i = 0; i < h.t.size(); ++i)
-        points.push_back(
-            {h.name, h.t[i], h.measured[i], h.measured[i] + best_.residuals[place++] * FitProblem::noise_of(h)});
+        points.push_back({h.name, h.t[i], h.measured[i], h.measured[i] + best_.residuals[place++] * FitProblem::noise_of(h)});
     run_.store.set_histories(points);
   }
 
@@ -416,23 +401,19 @@ void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
     fitted += !v.range.empty();
     if (!v.values.empty() || v.has_distribution())
       problems.push_back(
-          {v.where,
-           "variable '" + v.name + "': a fit takes 'range', where the parameter may lie, or 'value', which it keeps"});
+          {v.where, "variable '" + v.name + "': a fit takes 'range', where the parameter may lie, or 'value', which it keeps"});
   }
   if (fitted == 0 && !study.histories.empty())
     problems.push_back({study.where, "a study of the kind 'fit' needs a [[variable]] with a range"});
-  const auto noisy = std::count_if(study.histories.begin(), study.histories.end(),
-                                   [](const History& h) { return h.noise.has_value(); });
+  const auto noisy = std::count_if(study.histories.begin(), study.histories.end(), [](const History& h) { return h.noise.has_value(); });
   if (study.histories.size() > 1 && noisy != static_cast<long>(study.histories.size()))
     problems.push_back({study.histories.back().where, "several histories need 'noise' each: it says what they weigh"});
   if (!study.histories.empty() && static_cast<long>(loaded.curve_size()) <= fitted)
-    problems.push_back({study.histories.front().where, std::to_string(loaded.curve_size()) +
-                                                           " measured values are too few for " +
+    problems.push_back({study.histories.front().where, std::to_string(loaded.curve_size()) + " measured values are too few for " +
                                                            std::to_string(fitted) + " parameters"});
   for (const Response& r : study.responses)
     if (r.what == "mean" || r.what == "path")
-      problems.push_back({r.where, "response '" + r.name +
-                                       "': a fit samples runs at the measured times, not every output.step, which '" +
+      problems.push_back({r.where, "response '" + r.name + "': a fit samples runs at the measured times, not every output.step, which '" +
                                        r.what + "' is of"});
 }
 

@@ -22,13 +22,11 @@ Conversion conversion(const Node& entry, const char* key, const std::string& uni
                       std::vector<Diagnostic>& problems) {
   if (unit.empty() || unit == wanted) return {};
   const Quantity zero = parse_quantity("0 " + unit, wanted), one = parse_quantity("1 " + unit, wanted);
-  if (!one.problem.empty())
-    problems.push_back({entry.find(key)->where(), "'" + std::string(key) + "': " + one.problem});
+  if (!one.problem.empty()) problems.push_back({entry.find(key)->where(), "'" + std::string(key) + "': " + one.problem});
   return {one.value - zero.value, zero.value};
 }
 
-std::optional<double> noise_of(const Node& entry, const History& h, const std::string& unit,
-                               std::vector<Diagnostic>& problems) {
+std::optional<double> noise_of(const Node& entry, const History& h, const std::string& unit, std::vector<Diagnostic>& problems) {
   if (h.noise_text.empty()) return {};
   double value = 0.0;
   const char* const end = h.noise_text.data() + h.noise_text.size();
@@ -39,8 +37,7 @@ std::optional<double> noise_of(const Node& entry, const History& h, const std::s
     value = quantity.value;
   }
   if (!(value > 0.0) || !std::isfinite(value))
-    problems.push_back(
-        {entry.find("noise")->where(), "'noise', the standard deviation of the measured values, must be above zero"});
+    problems.push_back({entry.find("noise")->where(), "'noise', the standard deviation of the measured values, must be above zero"});
   return value;
 }
 
@@ -49,13 +46,12 @@ std::optional<double> noise_of(const Node& entry, const History& h, const std::s
 void load_history(const Node& entry, const StudyModel& model, History& h, std::vector<Diagnostic>& problems) {
   const std::size_t before = problems.size();
   const auto& channels = model.system->channels;
-  const auto channel =
-      std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == h.channel; });
+  const auto channel = std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == h.channel; });
   if (channel == channels.end()) {
     std::vector<std::string> names;
     for (const Channel& c : channels) names.push_back(c.name);
-    problems.push_back({entry.find("channel")->where(), "no channel of model '" + model.name + "' is called '" +
-                                                            h.channel + "'" + did_you_mean(h.channel, names)});
+    problems.push_back({entry.find("channel")->where(),
+                        "no channel of model '" + model.name + "' is called '" + h.channel + "'" + did_you_mean(h.channel, names)});
     return;
   }
   const Conversion time = conversion(entry, "time_unit", h.time_unit, "s", problems);
@@ -66,7 +62,7 @@ void load_history(const Node& entry, const StudyModel& model, History& h, std::v
   const Location where = entry.find("file")->where();
   try {
     const CsvTable table = read_csv(h.file, where);
-    const Node* const time_node = entry.find("time"), * const column_node = entry.find("column");
+    const Node *const time_node = entry.find("time"), *const column_node = entry.find("column");
     const std::size_t t = table.column(h.time, time_node ? time_node->where() : where);
     const std::size_t y = table.column(h.column, column_node ? column_node->where() : where);
     for (std::size_t i = 0; i < table.columns[t].size(); ++i) {
@@ -77,9 +73,8 @@ void load_history(const Node& entry, const StudyModel& model, History& h, std::v
         return problems.push_back({line, "the times of history '" + h.name + "' must rise from row to row"});
       const double end = model.given.simulation.end;
       if (at < 0.0 || at > end * (1.0 + 1e-12))
-        return problems.push_back({line, "t = " + number_text(at) + " s of history '" + h.name +
-                                             "' lies outside the run of model '" + model.name +
-                                             "', which goes from 0 to " + number_text(end) +
+        return problems.push_back({line, "t = " + number_text(at) + " s of history '" + h.name + "' lies outside the run of model '" +
+                                             model.name + "', which goes from 0 to " + number_text(end) +
                                              " s: choose rows by 'from' and 'to', or let it end later"});
       h.t.push_back(at);
       h.measured.push_back(value.factor * table.columns[y][i] + value.shift);
@@ -104,13 +99,12 @@ Sampling sampling_of(const Study& study, const StudyModel& model) {
     last = t;
   }
   if (!std::isfinite(gap)) return {model.given.simulation.end, true}; // at the start only
-  constexpr double k_most = 1e6; // samples of a run
+  constexpr double k_most = 1e6;                                      // samples of a run
   for (int parts = 1; parts <= 20 && times.back() * parts < k_most * gap; ++parts) {
     const double step = gap / parts;
     // A step counted over the whole record is known better than one gap of it.
     const double fine = times.back() / std::round(times.back() / step);
-    if (std::all_of(times.begin(), times.end(),
-                    [&](double t) { return std::abs(t / fine - std::round(t / fine)) < k_off; }))
+    if (std::all_of(times.begin(), times.end(), [&](double t) { return std::abs(t / fine - std::round(t / fine)) < k_off; }))
       return {fine, true};
   }
   constexpr double k_parts = 8.0;

@@ -13,9 +13,8 @@ void load_history(const Node& entry, const StudyModel& model, History& history, 
 
 /// How runs of a model are sampled for its histories.
 struct Sampling {
-  double step = 0.0;      ///< s; 0: the model has no history
-  bool is_exact =
-      true; ///< every measured time is a multiple of it; else runs are interpolated linearly between samples
+  double step = 0.0;    ///< s; 0: the model has no history
+  bool is_exact = true; ///< every measured time is a multiple of it; else runs are interpolated linearly between samples
 };
 [[nodiscard]] Sampling sampling_of(const Study& study, const StudyModel& model);
 

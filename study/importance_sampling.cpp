@@ -24,10 +24,9 @@ public:
   void draw(const CounterRandom& random, std::uint64_t sample, std::vector<double>& points) const {
     const double share = random.uniform(sample, 0);
     const bool is_wide = share < k_wide;
-    const std::size_t k =
-        is_wide ? 0
-                : std::min(centres_.size() - 1, static_cast<std::size_t>((share - k_wide) / (1.0 - k_wide) *
-                                                                         static_cast<double>(centres_.size())));
+    const std::size_t k = is_wide ? 0
+                                  : std::min(centres_.size() - 1, static_cast<std::size_t>((share - k_wide) / (1.0 - k_wide) *
+                                                                                           static_cast<double>(centres_.size())));
     for (std::size_t d = 0; d < dimension_; ++d) {
       const double z = random.normal(sample, static_cast<std::uint32_t>(d + 2));
       points.push_back(is_wide ? wide_ * z : centres_[k][d] + z);
@@ -66,8 +65,7 @@ private:
   // Densities over that of the standard normal.
   [[nodiscard]] double wide_part(const double* u) const {
     const double distance = length_of(u, dimension_);
-    return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) *
-           std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
+    return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
   }
 
   static constexpr double k_wide = 0.2;
@@ -138,9 +136,8 @@ private:
     constexpr std::size_t k_most = 1000; // between two looks at the clock
     const std::size_t n = limit_.dimension();
     while (sums_.fails.count() < count && !course_.is_over()) {
-      const std::size_t block =
-          std::min({std::min(course_.block(), k_most), static_cast<std::size_t>(count - sums_.fails.count()),
-                    static_cast<std::size_t>(course_.left())});
+      const std::size_t block = std::min({std::min(course_.block(), k_most), static_cast<std::size_t>(count - sums_.fails.count()),
+                                          static_cast<std::size_t>(course_.left())});
       points_.clear();
       for (std::size_t i = 0; i < block; ++i) proposal_.draw(random_, next_++, points_);
       const std::vector<LimitValue>& values = limit_.at(points_);
@@ -191,8 +188,7 @@ private:
   // enough for their scatter to be known.
   [[nodiscard]] bool holds_better() const {
     constexpr long k_enough = 20;
-    return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough &&
-           sums_.holds.deviation() < sums_.fails.deviation();
+    return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();
   }
 
   void set() {

@@ -5,8 +5,8 @@
 
 #include <openturns/Beta.hxx>
 #include <openturns/BetaMuSigma.hxx>
-#include <openturns/Distribution.hxx>
 #include <openturns/DistFunc.hxx>
+#include <openturns/Distribution.hxx>
 #include <openturns/Exponential.hxx>
 #include <openturns/GaussLegendre.hxx>
 #include <openturns/Gumbel.hxx>
@@ -32,8 +32,7 @@ struct JointLaw::Marginal {
     if (form == Form::normal) return a + b * z;
     if (form == Form::lognormal) return location + std::exp(a + b * z);
     // Both tails to full precision.
-    return z < 0.0 ? distribution.computeQuantile(normal_cdf(z), false)[0]
-                   : distribution.computeQuantile(normal_cdf(-z), true)[0];
+    return z < 0.0 ? distribution.computeQuantile(normal_cdf(z), false)[0] : distribution.computeQuantile(normal_cdf(-z), true)[0];
   }
 };
 
@@ -69,23 +68,22 @@ void check_fields(const Variable& v) {
     bool is_given;
     const char* of; ///< distributions that take it
   };
-  const Given all[] = {
-      {"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
-      {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
-      {"cov", v.cov.has_value(), "normal lognormal uniform weibull gumbel beta"},
-      {"low", v.low.has_value(), "uniform triangular beta"},
-      {"high", v.high.has_value(), "uniform triangular beta"},
-      {"mode", v.mode.has_value(), "triangular"},
-      {"shape", v.shape.has_value(), "weibull beta"},
-      {"shape2", v.shape2.has_value(), "beta"},
-      {"scale", v.scale.has_value(), "weibull gumbel exponential"},
-      {"location", v.location.has_value(), "lognormal weibull gumbel exponential"}};
+  const Given all[] = {{"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
+                       {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
+                       {"cov", v.cov.has_value(), "normal lognormal uniform weibull gumbel beta"},
+                       {"low", v.low.has_value(), "uniform triangular beta"},
+                       {"high", v.high.has_value(), "uniform triangular beta"},
+                       {"mode", v.mode.has_value(), "triangular"},
+                       {"shape", v.shape.has_value(), "weibull beta"},
+                       {"shape2", v.shape2.has_value(), "beta"},
+                       {"scale", v.scale.has_value(), "weibull gumbel exponential"},
+                       {"location", v.location.has_value(), "lognormal weibull gumbel exponential"}};
   for (const Given& given : all)
     if (given.is_given && (" " + std::string(given.of) + " ").find(" " + v.distribution + " ") == std::string::npos)
       complain(v, "a " + v.distribution + " distribution has no '" + given.name + "'");
   const bool has_moments = v.mean || v.standard_deviation || v.cov;
-  if (has_moments && (v.shape || v.scale || (v.distribution == "gumbel" && v.location) ||
-                      (v.distribution == "uniform" && (v.low || v.high))))
+  if (has_moments &&
+      (v.shape || v.scale || (v.distribution == "gumbel" && v.location) || (v.distribution == "uniform" && (v.low || v.high))))
     complain(v, "give either its moments or its parameters, not both");
 }
 
@@ -113,10 +111,8 @@ OT::Distribution by_parameters(const Variable& v) {
     return OT::Uniform(*v.low, *v.high);
   }
   if (v.low && v.high && *v.low >= *v.high) complain(v, "'low' must be below 'high'");
-  if (v.mode && v.low && v.high && (*v.mode < *v.low || *v.mode > *v.high))
-    complain(v, "'mode' must lie between 'low' and 'high'");
-  if (kind == "triangular")
-    return OT::Triangular(needed(v, v.low, "low"), needed(v, v.mode, "mode"), needed(v, v.high, "high"));
+  if (v.mode && v.low && v.high && (*v.mode < *v.low || *v.mode > *v.high)) complain(v, "'mode' must lie between 'low' and 'high'");
+  if (kind == "triangular") return OT::Triangular(needed(v, v.low, "low"), needed(v, v.mode, "mode"), needed(v, v.high, "high"));
   if (kind == "weibull") {
     if (!v.mean) return OT::WeibullMin(needed(v, v.scale, "scale"), needed(v, v.shape, "shape"), location);
     const Moments m = moments_of(v);
@@ -151,12 +147,14 @@ struct Described {
 
 // Of parameters that each are in their ranges, and make no distribution together.
 std::string why_there_is_none(const Variable& v) {
-  if (!v.measured.empty()) return "no " + v.distribution + " distribution fits the values of '" + v.measured + "': " +
-                                  "they are too few, all alike, or none that such a distribution can take";
-  const std::pair<const char*, const std::optional<double>&> all[] = {
-      {"mean", v.mean},     {"standard_deviation", v.standard_deviation}, {"cov", v.cov},       {"low", v.low},
-      {"mode", v.mode},     {"high", v.high},                             {"shape", v.shape},   {"shape2", v.shape2},
-      {"scale", v.scale},   {"location", v.location}};
+  if (!v.measured.empty())
+    return "no " + v.distribution + " distribution fits the values of '" + v.measured +
+           "': " + "they are too few, all alike, or none that such a distribution can take";
+  const std::pair<const char*, const std::optional<double>&> all[] = {{"mean", v.mean},   {"standard_deviation", v.standard_deviation},
+                                                                      {"cov", v.cov},     {"low", v.low},
+                                                                      {"mode", v.mode},   {"high", v.high},
+                                                                      {"shape", v.shape}, {"shape2", v.shape2},
+                                                                      {"scale", v.scale}, {"location", v.location}};
   std::string given;
   for (const auto& [name, value] : all)
     if (value) given += (given.empty() ? "" : ", ") + std::string(name) + " = " + number_text(*value);
@@ -164,8 +162,7 @@ std::string why_there_is_none(const Variable& v) {
     try {
       (void)by_parameters(v); // then it is its bounds
       return "'lower' and 'upper' leave nothing of a " + v.distribution + " distribution with " + given;
-    } catch (const std::exception&) {
-    }
+    } catch (const std::exception&) {}
   }
   return "there is no " + v.distribution + " distribution with " + given;
 }
@@ -190,8 +187,8 @@ std::string words_of(const Variable& v, const OT::Distribution& d, const std::st
     return std::string(text);
   };
   const std::string unit = v.unit.empty() || v.unit == "*" ? "" : " " + v.unit;
-  return (v.has_distribution() ? v.distribution : "uniform") + ", mean " + digits(d.getMean()[0]) + unit +
-         ", standard deviation " + digits(d.getStandardDeviation()[0]) + unit + fit;
+  return (v.has_distribution() ? v.distribution : "uniform") + ", mean " + digits(d.getMean()[0]) + unit + ", standard deviation " +
+         digits(d.getStandardDeviation()[0]) + unit + fit;
 }
 
 } // namespace
@@ -219,8 +216,7 @@ double mean_of(const Variable& variable) {
   }
 }
 
-JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems)
-    : nominal_(std::move(nominal)) {
+JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems) : nominal_(std::move(nominal)) {
   for (std::size_t i = 0; i < study.variables.size(); ++i) {
     const Variable& v = study.variables[i];
     if (!v.has_distribution() && v.range.size() != 2) continue;
@@ -278,8 +274,7 @@ public:
     const OT::Point weights = rule.getWeights();
     for (int i = 0; i < k_points; ++i) {
       z_.push_back(k_reach * (2.0 * nodes(i, 0) - 1.0));
-      w_.push_back(2.0 * k_reach * weights[i] * std::exp(-0.5 * z_.back() * z_.back()) /
-                   std::sqrt(2.0 * std::numbers::pi));
+      w_.push_back(2.0 * k_reach * weights[i] * std::exp(-0.5 * z_.back() * z_.back()) / std::sqrt(2.0 * std::numbers::pi));
     }
     standardise(a, a_);
     // Of the second at every z that may be met: a fine table is not exact, so it is evaluated where needed.
@@ -298,8 +293,7 @@ public:
     double sum = 0.0;
     for (int i = 0; i < k_points; ++i)
       for (int j = 0; j < k_points; ++j)
-        if (w_[i] * w_[j] > 1e-18)
-          sum += w_[i] * w_[j] * a_[i] * (b_(rho0 * z_[i] + rest * z_[j]) - mean_b_) / deviation_b_;
+        if (w_[i] * w_[j] > 1e-18) sum += w_[i] * w_[j] * a_[i] * (b_(rho0 * z_[i] + rest * z_[j]) - mean_b_) / deviation_b_;
     return sum;
   }
 
@@ -346,14 +340,14 @@ void JointLaw::correlate(const Study& study, std::vector<Diagnostic>& problems) 
   for (const Correlation& c : study.correlations) {
     std::size_t place[2]{};
     for (int k = 0; k < 2; ++k)
-      place[k] = static_cast<std::size_t>(
-          std::find(random_.begin(), random_.end(), study.index_of_variable(c.between[k])) - random_.begin());
+      place[k] =
+          static_cast<std::size_t>(std::find(random_.begin(), random_.end(), study.index_of_variable(c.between[k])) - random_.begin());
     double rho = c.rho;
     if (c.of == "ranks") rho = 2.0 * std::sin(std::numbers::pi * c.rho / 6.0);
     if (c.of == "values") rho = normal_correlation(NatafIntegral(marginals_[place[0]], marginals_[place[1]]), c.rho);
     if (std::isnan(rho))
-      problems.push_back({c.where, "'" + c.between[0] + "' and '" + c.between[1] + "' cannot have a correlation of " +
-                                       number_text(c.rho) + ": their distributions differ too much"});
+      problems.push_back({c.where, "'" + c.between[0] + "' and '" + c.between[1] + "' cannot have a correlation of " + number_text(c.rho) +
+                                       ": their distributions differ too much"});
     matrix[place[0] * n + place[1]] = matrix[place[1] * n + place[0]] = rho;
   }
   root_.assign(n * (n + 1) / 2, 0.0);
@@ -366,8 +360,8 @@ void JointLaw::correlate(const Study& study, std::vector<Diagnostic>& problems) 
         continue;
       }
       if (!(sum > 1e-12)) {
-        problems.push_back({study.correlations.front().where,
-                            "the correlations contradict each other: their matrix is not positive definite"});
+        problems.push_back(
+            {study.correlations.front().where, "the correlations contradict each other: their matrix is not positive definite"});
         return;
       }
       root_[i * (i + 1) / 2 + i] = std::sqrt(sum);

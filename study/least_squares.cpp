@@ -33,8 +33,7 @@ MatrixXd differences(const LeastSquaresProblem& problem, const VectorXd& at, con
     const auto below = static_cast<std::size_t>(2 * i), above = below + 1;
     const bool has_below = rows[below].size() > 0, has_above = rows[above].size() > 0;
     const double left = has_below ? points[below][i] : at[i], right = has_above ? points[above][i] : at[i];
-    if (right > left)
-      jacobian.col(i) = ((has_above ? rows[above] : here) - (has_below ? rows[below] : here)) / (right - left);
+    if (right > left) jacobian.col(i) = ((has_above ? rows[above] : here) - (has_below ? rows[below] : here)) / (right - left);
     else jacobian.col(i).setConstant(k_nan);
   }
   return jacobian;
@@ -45,9 +44,7 @@ struct Linear {
   MatrixXd r;
   VectorXd rhs;
 
-  Linear(const MatrixXd& jacobian, const VectorXd& residuals) {
-    std::tie(r, rhs) = triangle_of(jacobian, residuals);
-  }
+  Linear(const MatrixXd& jacobian, const VectorXd& residuals) { std::tie(r, rhs) = triangle_of(jacobian, residuals); }
   // Marquardt's: each parameter damped by what it does. Those that are `held` stay.
   [[nodiscard]] VectorXd step(double damping, const std::vector<bool>& held) const {
     const Eigen::Index n = r.cols();
@@ -72,8 +69,7 @@ struct Linear {
 // At an end of its range, and it would go beyond.
 std::vector<bool> held_by(const VectorXd& at, const VectorXd& gradient) {
   std::vector<bool> held;
-  for (Eigen::Index i = 0; i < at.size(); ++i)
-    held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));
+  for (Eigen::Index i = 0; i < at.size(); ++i) held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));
   return held;
 }
 
@@ -82,8 +78,7 @@ bool try_steps(const LeastSquaresProblem& problem, const Linear& linear, double&
   constexpr double k_parts[] = {1e-4, 1e-2, 0.1, 1.0, 10.0, 1e3};
   const std::vector<bool> held = held_by(m.at, linear.gradient());
   std::vector<VectorXd> points;
-  for (const double part : k_parts)
-    points.push_back((m.at + linear.step(damping * part, held)).cwiseMax(0.0).cwiseMin(1.0));
+  for (const double part : k_parts) points.push_back((m.at + linear.step(damping * part, held)).cwiseMax(0.0).cwiseMin(1.0));
   const std::vector<VectorXd> rows = problem.residuals(points);
   std::size_t best = points.size();
   double sum = m.sum;
@@ -103,9 +98,9 @@ bool try_steps(const LeastSquaresProblem& problem, const Linear& linear, double&
 } // namespace
 
 LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd& start, const VectorXd& residuals) {
-  constexpr double k_close = 1e-8;   // of the variance: a ten-thousandth of a standard deviation is left to go
-  constexpr double k_stuck = 1e-3;   // of the variance: differences do not tell better
-  constexpr double k_widest = 1e12;  // damping
+  constexpr double k_close = 1e-8;  // of the variance: a ten-thousandth of a standard deviation is left to go
+  constexpr double k_stuck = 1e-3;  // of the variance: differences do not tell better
+  constexpr double k_widest = 1e12; // damping
   LeastSquaresMinimum m;
   m.at = start;
   m.residuals = residuals;
@@ -132,8 +127,7 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
     while (!try_steps(problem, linear, damping, m)) {
       damping *= 1e5;
       if (damping < k_widest) continue;
-      if (left > k_stuck * m.sum / freedom)
-        m.problem = "the search got stuck: the sum of squares has a kink or a jump there";
+      if (left > k_stuck * m.sum / freedom) m.problem = "the search got stuck: the sum of squares has a kink or a jump there";
       return finish(), m;
     }
     if (before - m.sum <= 1e-12 * before && left <= k_stuck * m.sum / freedom) { // what is left is rounding
@@ -154,13 +148,11 @@ Identified identify(const LeastSquaresMinimum& minimum, double variance) {
   told.directions = std::move(singular.v);
   const Eigen::Index n = told.singular.size();
   const double deviation = std::sqrt(variance);
-  while (told.rank < n && told.singular[told.rank] > 3.0 * minimum.jacobian_error &&
-         deviation < k_widest * told.singular[told.rank])
+  while (told.rank < n && told.singular[told.rank] > 3.0 * minimum.jacobian_error && deviation < k_widest * told.singular[told.rank])
     ++told.rank;
   told.covariance = MatrixXd::Zero(n, n);
   for (int k = 0; k < told.rank; ++k)
-    told.covariance +=
-        variance / (told.singular[k] * told.singular[k]) * told.directions.col(k) * told.directions.col(k).transpose();
+    told.covariance += variance / (told.singular[k] * told.singular[k]) * told.directions.col(k) * told.directions.col(k).transpose();
   return told;
 }
 

@@ -18,19 +18,19 @@ using ResidualBatch = std::function<std::vector<Eigen::VectorXd>(const std::vect
 
 struct LeastSquaresProblem {
   ResidualBatch residuals;
-  Eigen::VectorXd step;       ///< of difference, as shares of the ranges
-  double floor = 0.0;         ///< sum of squares that the error of the runs makes by itself
+  Eigen::VectorXd step; ///< of difference, as shares of the ranges
+  double floor = 0.0;   ///< sum of squares that the error of the runs makes by itself
   long iterations = 100;
 };
 
 struct LeastSquaresMinimum {
   Eigen::VectorXd at;
   Eigen::VectorXd residuals;
-  Eigen::MatrixXd jacobian;   ///< by the shares; columns of differences that have no value are not-a-number
+  Eigen::MatrixXd jacobian;    ///< by the shares; columns of differences that have no value are not-a-number
   double jacobian_error = 0.0; ///< Frobenius' norm: jacobian less that of twice the step, by Richardson's rule
-  double sum = 0.0;           ///< of squares
+  double sum = 0.0;            ///< of squares
   std::vector<bool> is_at_end; ///< of its range
-  std::string problem;        ///< empty: the minimum was found
+  std::string problem;         ///< empty: the minimum was found
 };
 
 /// From `start`, where there are residuals.
@@ -39,10 +39,10 @@ struct LeastSquaresMinimum {
 
 /// What a minimum says about its parameters.
 struct Identified {
-  Eigen::MatrixXd covariance;             ///< of the shares, over the directions that are told
-  Eigen::MatrixXd directions;             ///< orthonormal, one a column, by falling singular value
-  Eigen::VectorXd singular;               ///< values of the Jacobian
-  int rank = 0;                           ///< directions that are told
+  Eigen::MatrixXd covariance; ///< of the shares, over the directions that are told
+  Eigen::MatrixXd directions; ///< orthonormal, one a column, by falling singular value
+  Eigen::VectorXd singular;   ///< values of the Jacobian
+  int rank = 0;               ///< directions that are told
 };
 
 /// `variance`: of a residual. A direction is told if the Jacobian's singular value is beyond what derivatives are known

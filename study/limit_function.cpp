@@ -12,7 +12,8 @@ double length_of(const double* u, std::size_t n) {
   return std::sqrt(sum);
 }
 
-LimitFunction::LimitFunction(StudyRun& run) : run_(run), settings_(settings_of<ReliabilitySettings>(run.study())), is_any_(settings_.combination == "any") {
+LimitFunction::LimitFunction(StudyRun& run)
+    : run_(run), settings_(settings_of<ReliabilitySettings>(run.study())), is_any_(settings_.combination == "any") {
   std::vector<std::string> names = settings_.limit_states;
   if (names.empty())
     for (const LimitState& l : run.study().limit_states) names.push_back(l.name);

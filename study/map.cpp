@@ -29,9 +29,7 @@ FieldTable map_fields() {
 
 using Point = std::array<double, 2>; ///< both variables, their ranges as [0, 1]
 
-Point along(const Point& p, const Point& direction, double s) {
-  return {p[0] + s * direction[0], p[1] + s * direction[1]};
-}
+Point along(const Point& p, const Point& direction, double s) { return {p[0] + s * direction[0], p[1] + s * direction[1]}; }
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 bool is_inside(const Point& p) { return p[0] >= 0.0 && p[0] <= 1.0 && p[1] >= 0.0 && p[1] <= 1.0; }
 
@@ -44,17 +42,16 @@ struct Border {
 class Plane {
 public:
   explicit Plane(StudyRun& run)
-      : run_(run), settings_(settings_of<MapSettings>(run.study())), place_(static_cast<std::size_t>(run.loaded.index_of_number("border"))) {
+      : run_(run), settings_(settings_of<MapSettings>(run.study())),
+        place_(static_cast<std::size_t>(run.loaded.index_of_number("border"))) {
     for (int i = 0; i < 2; ++i)
-      variable_[i] =
-          static_cast<std::size_t>(run.study().index_of_variable(settings_.variables[static_cast<std::size_t>(i)]));
+      variable_[i] = static_cast<std::size_t>(run.study().index_of_variable(settings_.variables[static_cast<std::size_t>(i)]));
   }
 
   [[nodiscard]] double value_of(int axis, double share) const {
     const std::vector<double>& range = run_.study().variables[variable_[axis]].range;
     if (share == 0.0 || share == 1.0) return range[share == 1.0];
-    return settings_.is_logarithmic ? range[0] * std::pow(range[1] / range[0], share)
-                                    : range[0] + share * (range[1] - range[0]);
+    return settings_.is_logarithmic ? range[0] * std::pow(range[1] / range[0], share) : range[0] + share * (range[1] - range[0]);
   }
 
   std::vector<double> at(const std::vector<Point>& places) {
@@ -78,9 +75,8 @@ public:
     const std::vector<double> g = at({along(p, direction, low), along(p, direction, high)});
     if (std::isnan(g[0]) || std::isnan(g[1]) || (g[0] < 0.0) == (g[1] < 0.0)) return {};
     std::vector<Crossing> one{{low, high, g[0], g[1]}};
-    close_crossings(one, settings_.tolerance, [&](const std::vector<std::size_t>&, const std::vector<double>& s) {
-      return at({along(p, direction, s[0])});
-    });
+    close_crossings(one, settings_.tolerance,
+                    [&](const std::vector<std::size_t>&, const std::vector<double>& s) { return at({along(p, direction, s[0])}); });
     if (one[0].is_bad) return {};
     has_jump_ = has_jump_ || one[0].is_jump;
     return one[0].root();
@@ -136,8 +132,7 @@ std::vector<Point> seeds_on_grid(Plane& plane, const Grid& grid_points, double t
   close_crossings(crossings, tolerance * static_cast<double>(n - 1),
                   [&](const std::vector<std::size_t>& which, const std::vector<double>& s) {
                     std::vector<Point> places;
-                    for (std::size_t k = 0; k < which.size(); ++k)
-                      places.push_back(along(from[which[k]], direction[which[k]], s[k]));
+                    for (std::size_t k = 0; k < which.size(); ++k) places.push_back(along(from[which[k]], direction[which[k]], s[k]));
                     return plane.at(places);
                   });
   std::vector<Point> seeds;
@@ -170,8 +165,7 @@ std::vector<std::size_t> hollows_of(const Grid& grid) {
         }
       if (is_hollow && is_steep) hollows.push_back(here);
     }
-  std::stable_sort(hollows.begin(), hollows.end(),
-                   [&](std::size_t a, std::size_t b) { return std::abs(grid.g[a]) < std::abs(grid.g[b]); });
+  std::stable_sort(hollows.begin(), hollows.end(), [&](std::size_t a, std::size_t b) { return std::abs(grid.g[a]) < std::abs(grid.g[b]); });
   if (hollows.size() > k_most) hollows.resize(k_most);
   return hollows;
 }
@@ -332,9 +326,7 @@ bool is_on(const Border& border, const Point& p, double near) {
     const Point &a = border.points[i - 1], &b = border.points[i];
     const double length = distance(a, b);
     const double share =
-        length > 0.0
-            ? std::clamp(((p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])) / (length * length), 0.0, 1.0)
-            : 0.0;
+        length > 0.0 ? std::clamp(((p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])) / (length * length), 0.0, 1.0) : 0.0;
     if (distance(p, along(a, {b[0] - a[0], b[1] - a[1]}, share)) < near) return true;
   }
   return false;
@@ -345,16 +337,15 @@ void report(const Border& border, std::size_t number, Plane& plane, StudyRun& ru
   for (std::size_t k = 0; k < border.points.size(); ++k)
     for (int i = 0; i < 2; ++i) {
       const double share = border.points[k][i];
-      Finding f{"map", "border " + std::to_string(number) + " point " + std::to_string(k + 1),
-                s.variables[static_cast<std::size_t>(i)], plane.value_of(i, share)};
+      Finding f{"map", "border " + std::to_string(number) + " point " + std::to_string(k + 1), s.variables[static_cast<std::size_t>(i)],
+                plane.value_of(i, share)};
       f.low = plane.value_of(i, std::max(0.0, share - s.tolerance));
       f.high = plane.value_of(i, std::min(1.0, share + s.tolerance));
       f.samples = run.evaluator.asked();
       if (k + 1 == border.points.size()) f.status = border.end;
       answer.findings.push_back(f);
     }
-  answer.notes.push_back("border " + std::to_string(number) + ": " + std::to_string(border.points.size()) +
-                         " points, " +
+  answer.notes.push_back("border " + std::to_string(number) + ": " + std::to_string(border.points.size()) + " points, " +
                          (border.is_closed     ? "closed"
                           : border.end.empty() ? "from end to end of the ranges"
                                                : border.end));
@@ -398,8 +389,7 @@ void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
       continue;
     }
     const Variable& variable = loaded.study.variables[static_cast<std::size_t>(v)];
-    if (variable.range.size() != 2)
-      problems.push_back({variable.where, "variable '" + name + "' needs a 'range' for a map"});
+    if (variable.range.size() != 2) problems.push_back({variable.where, "variable '" + name + "' needs a 'range' for a map"});
     else if (s.is_logarithmic && !(variable.range[0] > 0.0))
       problems.push_back({variable.where, "a logarithmic map needs ranges above zero"});
   }
@@ -414,22 +404,19 @@ Answer run_map(StudyRun& run) {
     if (const auto seed = island_at(plane, grid.points[k], grid.g[k], 0.5 * grid.width())) seeds.push_back(*seed);
   std::vector<Border> borders;
   for (const Point& seed : seeds) {
-    const bool is_known =
-        std::any_of(borders.begin(), borders.end(), [&](const Border& b) { return is_on(b, seed, 0.5 * s.step); });
+    const bool is_known = std::any_of(borders.begin(), borders.end(), [&](const Border& b) { return is_on(b, seed, 0.5 * s.step); });
     if (!is_known) borders.push_back(Follower(plane, s.step).follow(seed));
   }
   Answer answer;
   for (std::size_t i = 0; i < borders.size(); ++i) report(borders[i], i + 1, plane, run, answer);
   if (borders.empty()) {
-    answer.findings.push_back({"map", "border", "points", 0.0, std::nan(""), std::nan(""), run.evaluator.asked(),
-                               plane.bad() == run.evaluator.asked()
-                                   ? "no run gave a value"
-                                   : "the expression has one sign wherever it was looked at"});
+    answer.findings.push_back(
+        {"map", "border", "points", 0.0, std::nan(""), std::nan(""), run.evaluator.asked(),
+         plane.bad() == run.evaluator.asked() ? "no run gave a value" : "the expression has one sign wherever it was looked at"});
     answer.degrade(Standing::not_met);
   }
   report_unseen(grid, plane, run, answer);
-  if (plane.has_jump())
-    answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");
+  if (plane.has_jump()) answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");
   if (plane.bad() > 0)
     answer.notes.push_back(std::to_string(plane.bad()) +
                            " runs did not reach their end or are not to be trusted: borders beside them are not seen");

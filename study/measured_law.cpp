@@ -82,8 +82,7 @@ template <class Function> Pair least_of(const Function& function, const Pair& st
       s[2] = nearer;
       continue;
     }
-    for (std::size_t k = 1; k < s.size(); ++k)
-      s[k] = look({0.5 * (s[0].at[0] + s[k].at[0]), 0.5 * (s[0].at[1] + s[k].at[1])});
+    for (std::size_t k = 1; k < s.size(); ++k) s[k] = look({0.5 * (s[0].at[0] + s[k].at[0]), 0.5 * (s[0].at[1] + s[k].at[1])});
   }
   return s[0].at;
 }
@@ -120,12 +119,10 @@ double share_within(const Variable& v, const OT::Distribution& whole) {
 // Of what is left between the bounds, all that was measured: the most likely whole.
 OT::Distribution fitted_within(const Variable& v, const std::vector<double>& values, const OT::Sample& sample) {
   if (v.distribution == "uniform" || v.distribution == "triangular" || v.distribution == "beta")
-    complain(v, "a " + v.distribution +
-                    " distribution fitted to 'measured' has ends of its own: leave out 'lower' and 'upper'");
+    complain(v, "a " + v.distribution + " distribution fitted to 'measured' has ends of its own: leave out 'lower' and 'upper'");
   const bool is_positive = v.distribution != "normal" && v.distribution != "gumbel";
   if (is_positive && *std::min_element(values.begin(), values.end()) <= 0.0)
-    complain(v, "a truncated " + v.distribution + " distribution is fitted to values above zero only, and '" +
-                    v.measured + "' has others");
+    complain(v, "a truncated " + v.distribution + " distribution is fitted to values above zero only, and '" + v.measured + "' has others");
   if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values.front(); }))
     complain(v, "all values of '" + v.measured + "' are the same: they have no distribution");
   constexpr double k_least = 1e-6; // of the whole: tails fall off alike from there on, and its numbers say nothing
@@ -160,15 +157,14 @@ OT::Distribution truncated(const Variable& v, const OT::Distribution& distributi
 }
 
 MeasuredLaw measured_law(const Variable& v) {
-  const bool has_more = v.mean || v.standard_deviation || v.cov || v.low || v.high || v.mode || v.shape || v.shape2 ||
-                        v.scale || v.location;
+  const bool has_more =
+      v.mean || v.standard_deviation || v.cov || v.low || v.high || v.mode || v.shape || v.shape2 || v.scale || v.location;
   if (has_more) complain(v, "a distribution fitted to 'measured' takes no parameters");
   const std::vector<double> values = values_of(v);
   OT::Sample sample(values.size(), 1);
   for (std::size_t i = 0; i < values.size(); ++i) sample(i, 0) = values[i];
   const auto outside = std::count_if(values.begin(), values.end(), [&](double x) {
-    return x < v.lower.value_or(-std::numeric_limits<double>::infinity()) ||
-           x > v.upper.value_or(std::numeric_limits<double>::infinity());
+    return x < v.lower.value_or(-std::numeric_limits<double>::infinity()) || x > v.upper.value_or(std::numeric_limits<double>::infinity());
   });
   const bool is_within = (v.lower || v.upper) && outside == 0;
   const OT::Distribution whole = is_within ? fitted_within(v, values, sample) : fitted(v.distribution, sample);
@@ -176,8 +172,8 @@ MeasuredLaw measured_law(const Variable& v) {
   law.distribution = truncated(v, whole);
   const double p = OT::FittingTest::Kolmogorov(sample, is_within ? law.distribution : whole, 0.05).getPValue();
   law.is_misfit = p < 0.01;
-  law.text = ", fitted to " + std::to_string(values.size()) + " values (Kolmogorov's p " +
-             number_text(std::round(p * 1000.0) / 1000.0) + (p < 0.05 ? ": it does not fit" : "") + ")";
+  law.text = ", fitted to " + std::to_string(values.size()) + " values (Kolmogorov's p " + number_text(std::round(p * 1000.0) / 1000.0) +
+             (p < 0.05 ? ": it does not fit" : "") + ")";
   if (outside > 0) law.text += ", then cut off: " + std::to_string(outside) + " of the values lie outside the bounds";
   return law;
 }

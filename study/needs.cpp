@@ -12,18 +12,14 @@ namespace {
 
 FieldTable needs_fields() {
   FieldTable t;
-  t.add("accuracy", &NeedsSettings::accuracy)
-      .positive()
-      .at_most(1)
-      .doc("changes of responses up to this share of them do not matter");
+  t.add("accuracy", &NeedsSettings::accuracy).positive().at_most(1).doc("changes of responses up to this share of them do not matter");
   return t;
 }
 
 // What a model says about looking at its runs names channels that a variant may not have; it changes no motion.
 // Channels that it asks for stay, for responses may be of them; those of the element that is gone go.
 void drop_presentation(Model& model, const std::string& gone = "") {
-  std::erase_if(model.tables,
-                [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
+  std::erase_if(model.tables, [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
   model.plots.clear();
   model.criteria.clear();
   if (gone.empty()) return;
@@ -83,7 +79,8 @@ std::vector<ModelVariant> variants_of(const Model& model) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const ElementEntry& entry = model.elements[e];
     const std::string name = entry.element->name, a = marker_in(entry, "a"), b = marker_in(entry, "b");
-    variants.push_back({"without '" + name + "'", [e, name](Model& m) {
+    variants.push_back({"without '" + name + "'",
+                        [e, name](Model& m) {
                           m.elements.erase(m.elements.begin() + static_cast<long>(e));
                           drop_presentation(m, name);
                         },
@@ -122,8 +119,7 @@ void check_needs(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   if (loaded.models.size() != 1) problems.push_back({study.where, "a study of the kind 'needs' takes one model"});
   if (study.responses.empty()) problems.push_back({study.where, "a study of the kind 'needs' needs a [[response]]"});
   for (const Response& r : study.responses)
-    if (r.what == "verdict")
-      problems.push_back({r.where, "a verdict is no response here: variants drop the model's criteria"});
+    if (r.what == "verdict") problems.push_back({r.where, "a verdict is no response here: variants drop the model's criteria"});
 }
 
 Answer run_needs(StudyRun& run) {
@@ -154,13 +150,11 @@ Answer run_needs(StudyRun& run) {
       row.refused = std::string("cannot be: ") + name_of(outcome.status) + ": " + outcome.reason;
       row.change = std::numeric_limits<double>::infinity();
     }
-    if (comes_back(run.loaded.models.front()->given, variants[k]))
-      row.refused = "cannot be: a table of the model puts it in again";
+    if (comes_back(run.loaded.models.front()->given, variants[k])) row.refused = "cannot be: a table of the model puts it in again";
     for (std::size_t r = 0; r < responses && row.refused.empty(); ++r) {
       const double change = change_of(base.numbers[r], outcome.numbers[r]);
       if (std::isnan(change)) row.refused = "'" + run.study().responses[r].name + "' has no value then";
-      if (change > row.change || row.response.empty())
-        row.change = change, row.response = run.study().responses[r].name;
+      if (change > row.change || row.response.empty()) row.change = change, row.response = run.study().responses[r].name;
     }
     rows.push_back(row);
   }
@@ -178,10 +172,9 @@ Answer run_needs(StudyRun& run) {
     answer.findings.push_back(f);
   }
   char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "%ld of %zu simplifications change no response by more than %g of its value, each by itself; together they may.",
-      dispensable, rows.size(), settings_of<NeedsSettings>(run.study()).accuracy);
+  std::snprintf(text, sizeof text,
+                "%ld of %zu simplifications change no response by more than %g of its value, each by itself; together they may.",
+                dispensable, rows.size(), settings_of<NeedsSettings>(run.study()).accuracy);
   answer.notes.emplace_back(text);
   return answer;
 }

@@ -21,8 +21,7 @@ void Ranks::spread(std::vector<double>& data) const {
   unsigned long size = data.size();
   MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, MPI_COMM_WORLD);
   data.resize(size);
-  if (size > static_cast<unsigned long>(std::numeric_limits<int>::max()))
-    throw std::length_error("too many samples at once");
+  if (size > static_cast<unsigned long>(std::numeric_limits<int>::max())) throw std::length_error("too many samples at once");
   MPI_Bcast(data.data(), static_cast<int>(size), MPI_DOUBLE, 0, MPI_COMM_WORLD);
 }
 
@@ -37,8 +36,7 @@ std::vector<std::vector<char>> Ranks::gather(const std::vector<char>& mine) cons
   std::vector<char> all(static_cast<std::size_t>(total));
   MPI_Gatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), places.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
   std::vector<std::vector<char>> parts;
-  for (std::size_t i = 0; i < sizes.size(); ++i)
-    parts.emplace_back(all.begin() + places[i], all.begin() + places[i] + sizes[i]);
+  for (std::size_t i = 0; i < sizes.size(); ++i) parts.emplace_back(all.begin() + places[i], all.begin() + places[i] + sizes[i]);
   return parts;
 }
 
@@ -56,8 +54,7 @@ int Ranks::threads() const {
   std::vector<cpu_set_t> all(static_cast<std::size_t>(here));
   MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, machine);
   MPI_Comm_free(&machine);
-  const auto same =
-      std::count_if(all.begin(), all.end(), [&](const cpu_set_t& other) { return CPU_EQUAL(&mine, &other) != 0; });
+  const auto same = std::count_if(all.begin(), all.end(), [&](const cpu_set_t& other) { return CPU_EQUAL(&mine, &other) != 0; });
   return std::max(1, processors / static_cast<int>(same));
 }
 

@@ -14,12 +14,9 @@ FieldTable reliability_fields() {
   using S = ReliabilitySettings;
   FieldTable t;
   t.add("methods", &S::methods)
-      .doc(
-          "monte_carlo, form, sorm, importance_sampling, directional, subset; the first that samples gives the answer");
+      .doc("monte_carlo, form, sorm, importance_sampling, directional, subset; the first that samples gives the answer");
   t.add("limit_states", &S::limit_states).doc("those that make the system; all if none is named");
-  t.add("combination", &S::combination)
-      .one_of({"any", "all"})
-      .doc("the system fails where any of them does, or where all do");
+  t.add("combination", &S::combination).one_of({"any", "all"}).doc("the system fails where any of them does, or where all do");
   t.add("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
   t.add("samples", &S::samples).at_least(1).at_most(1e10).doc("and at this number of samples, for each method");
   t.add("seconds", &S::seconds).in("s").positive().doc("and after this time, for each method");
@@ -33,10 +30,7 @@ FieldTable reliability_fields() {
       .at_most(1e7)
       .doc("for all searches for design points together; 300 and 50 more for each variable if not given");
   t.add("subset_samples", &S::subset_samples).at_least(100).at_most(1e7).doc("samples a level of subset simulation");
-  t.add("repetitions", &S::repetitions)
-      .at_least(2)
-      .at_most(1000)
-      .doc("of subset simulation; their scatter gives its interval");
+  t.add("repetitions", &S::repetitions).at_least(2).at_most(1000).doc("of subset simulation; their scatter gives its interval");
   t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of all intervals");
   return t;
 }
@@ -62,7 +56,8 @@ std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0
 
 class Reliability {
 public:
-  explicit Reliability(StudyRun& run) : run_(run), limit_(run), settings_(settings_of<ReliabilitySettings>(run.study())), target_(target_of(settings_)) {}
+  explicit Reliability(StudyRun& run)
+      : run_(run), limit_(run), settings_(settings_of<ReliabilitySettings>(run.study())), target_(target_of(settings_)) {}
 
   Answer answer() {
     const bool has_form = asks("form") || asks("sorm");
@@ -85,8 +80,7 @@ public:
     for (const Estimate& e : estimates_) add_findings(e, limit_, run_.study().failed, answer_);
     compare_estimates();
     if (limit_.bad() > 0)
-      answer_.notes.push_back(std::to_string(limit_.bad()) +
-                              " runs did not reach their end or are not to be trusted: they count as \"" +
+      answer_.notes.push_back(std::to_string(limit_.bad()) + " runs did not reach their end or are not to be trusted: they count as \"" +
                               run_.study().failed + "\"");
     return std::move(answer_);
   }
@@ -113,14 +107,12 @@ private:
   // What speaks against a design point, "" if nothing does.
   std::string doubt(const DesignPoint& p) const {
     if (p.off_surface >= 1e-4 * std::max(1.0, std::abs(p.beta)))
-      return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g),
-                     p.off_surface);
-    if (!p.is_found)
-      return text_of("not the nearest point around it: off the gradient's line by 1 - cos = %.3g", p.misalignment);
+      return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g), p.off_surface);
+    if (!p.is_found) return text_of("not the nearest point around it: off the gradient's line by 1 - cos = %.3g", p.misalignment);
     const double slack = 1e-3 * std::max(1.0, p.beta);
     if (p.beta > 0.0 && limit_.nearest_failure() < p.beta - slack)
-      return text_of("another design point beats it: a sample failed at a distance of %.5g, nearer than %.5g",
-                     limit_.nearest_failure(), p.beta);
+      return text_of("another design point beats it: a sample failed at a distance of %.5g, nearer than %.5g", limit_.nearest_failure(),
+                     p.beta);
     return "";
   }
 
@@ -128,10 +120,8 @@ private:
   // comes by chance from all of them together (Bonferroni).
   [[nodiscard]] long comparisons() const {
     const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 3 : 0);
-    const auto samplings = std::max<long>(
-        1, std::count_if(settings_.methods.begin(), settings_.methods.end(), [](const std::string& method) {
-          return method != "form" && method != "sorm";
-        }));
+    const auto samplings = std::max<long>(1, std::count_if(settings_.methods.begin(), settings_.methods.end(),
+                                                           [](const std::string& method) { return method != "form" && method != "sorm"; }));
     return std::max(1L, samplings * theories + samplings * (samplings - 1)); // of both bounds, among samplings
   }
 
@@ -140,8 +130,8 @@ private:
     for (const Estimate& e : estimates_) {
       const Interval test = e.test(run_.study().failed);
       if (!e.is_trusted || (p >= test.low && p <= test.high)) continue;
-      return std::string(whose) + " is off: " + e.method + text_of(" gives %.4g to %.4g", test.low, test.high) +
-             ", which it is " + factor_text(p, test) + " times";
+      return std::string(whose) + " is off: " + e.method + text_of(" gives %.4g to %.4g", test.low, test.high) + ", which it is " +
+             factor_text(p, test) + " times";
     }
     return "";
   }
@@ -156,8 +146,8 @@ private:
       const Interval test = e.test(run_.study().failed);
       const double sampled = run_.study().failed == "unsafe" ? e.unsafe : e.safe;
       const auto over = [p](double q) { return q > 0.0 ? p / q : std::nan(""); };
-      answer_.findings.push_back({method, limit_.subject(), name + " to " + e.method, over(sampled),
-                                  over(test.high), over(test.low), e.samples});
+      answer_.findings.push_back(
+          {method, limit_.subject(), name + " to " + e.method, over(sampled), over(test.high), over(test.low), e.samples});
     }
   }
 
@@ -198,8 +188,7 @@ private:
       std::string status = doubt(first);
       const bool is_known = p > 0.0 && p < 1.0;
       if (status.empty())
-        status = is_known ? sampling_doubt(p, "second order")
-                          : "the curvatures at the design point are too large for it, or unknown";
+        status = is_known ? sampling_doubt(p, "second order") : "the curvatures at the design point are too large for it, or unknown";
       add("sorm", quantity, is_known ? p : std::nan(""), status);
       if (is_known) report_factors("sorm", "factor" + std::string(quantity).substr(std::string("probability").size()), p);
       if (is_known)
@@ -222,25 +211,20 @@ private:
       answer_.findings.push_back({"form", name, "beta", p.beta, std::nan(""), std::nan(""), points_.samples, doubt(p)});
       for (std::size_t i = 0; i < random.size(); ++i) {
         const std::string& variable = run_.study().variables[random[i]].name;
+        answer_.findings.push_back({"form", name, variable, values[random[i]], std::nan(""), std::nan(""), points_.samples});
         answer_.findings.push_back(
-            {"form", name, variable, values[random[i]], std::nan(""), std::nan(""), points_.samples});
-        answer_.findings.push_back({"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""),
-                                    std::nan(""), points_.samples});
+            {"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""), std::nan(""), points_.samples});
       }
     }
-    if (k > 1)
-      answer_.notes.push_back(std::to_string(k) +
-                              " design points: the first order probability is of the nearest alone");
+    if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
   }
 
   void add(const char* method, const char* quantity, double value, const std::string& status) {
-    answer_.findings.push_back(
-        {method, limit_.subject(), quantity, value, std::nan(""), std::nan(""), points_.samples, status});
+    answer_.findings.push_back({method, limit_.subject(), quantity, value, std::nan(""), std::nan(""), points_.samples, status});
   }
 
   [[nodiscard]] bool has_trusted_estimate() const {
-    return std::any_of(estimates_.begin(), estimates_.end(),
-                       [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
+    return std::any_of(estimates_.begin(), estimates_.end(), [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
   }
 
   // Two samplings whose intervals lie apart: one of them has missed something. Both bounds one by one: what runs
@@ -252,8 +236,7 @@ private:
         const bool is_of_safe = run_.study().failed != "unsafe" && lie_apart(a.safe_test, b.safe_test),
                    is_of_unsafe = run_.study().failed != "safe" && lie_apart(a.unsafe_test, b.unsafe_test);
         if (!is_of_safe && !is_of_unsafe) continue;
-        answer_.notes.push_back(a.method + " and " + b.method +
-                                " contradict each other: one of them has missed a part of the failures");
+        answer_.notes.push_back(a.method + " and " + b.method + " contradict each other: one of them has missed a part of the failures");
         answer_.degrade(Standing::not_trusted);
       }
   }
@@ -282,8 +265,8 @@ void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& probl
   if (s.methods.empty()) problems.push_back({s.where, "'methods' is empty; there are " + list_text(k_methods)});
   for (const std::string& method : s.methods)
     if (std::find(k_methods.begin(), k_methods.end(), method) == k_methods.end())
-      problems.push_back({s.where, "there is no method '" + method + "'" + did_you_mean(method, k_methods) +
-                                       "; there are " + list_text(k_methods)});
+      problems.push_back(
+          {s.where, "there is no method '" + method + "'" + did_you_mean(method, k_methods) + "; there are " + list_text(k_methods)});
   std::vector<std::string> names;
   for (const LimitState& l : loaded.study.limit_states) names.push_back(l.name);
   for (const std::string& name : s.limit_states)

@@ -40,11 +40,7 @@ Json quantiles_of(const JointLaw& law, std::size_t place) {
 
 Json variable_json(const LoadedStudy& loaded, const JointLaw& law, std::size_t i) {
   const Variable& v = loaded.study.variables[i];
-  Json json{{"name", v.name},
-            {"unit", unit_or_none(v.unit)},
-            {"paths", v.paths},
-            {"factor", v.is_factor},
-            {"model", v.model}};
+  Json json{{"name", v.name}, {"unit", unit_or_none(v.unit)}, {"paths", v.paths}, {"factor", v.is_factor}, {"model", v.model}};
   json["varies"] = range_text(v);
   const auto place = std::find(law.random().begin(), law.random().end(), i);
   if (v.has_distribution() && place != law.random().end()) {
@@ -71,13 +67,9 @@ Json numbers_json(const LoadedStudy& loaded) {
   const std::vector<std::string> units = loaded.number_units();
   Json json = Json::array();
   for (const Response& r : study.responses)
-    json.push_back(
-        {{"name", r.name}, {"unit", unit_or_none(units[json.size()])}, {"role", "response"}, {"is", response_text(r)}});
+    json.push_back({{"name", r.name}, {"unit", unit_or_none(units[json.size()])}, {"role", "response"}, {"is", response_text(r)}});
   for (const LimitState& l : study.limit_states)
-    json.push_back({{"name", l.name},
-                    {"unit", ""},
-                    {"role", l.is_border ? "border" : "limit state"},
-                    {"is", l.expression}});
+    json.push_back({{"name", l.name}, {"unit", ""}, {"role", l.is_border ? "border" : "limit state"}, {"is", l.expression}});
   return json;
 }
 
@@ -103,8 +95,7 @@ Json value_json(const FieldValue& value) {
 Json settings_json(const Study& study) {
   const StudyKind& kind = kind_of(study);
   Json json = Json::object();
-  for (const std::string& name : kind.shown)
-    json[name] = value_json(kind.fields.find(name)->get(fields_of(*study.settings)));
+  for (const std::string& name : kind.shown) json[name] = value_json(kind.fields.find(name)->get(fields_of(*study.settings)));
   return json;
 }
 

@@ -19,11 +19,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_text = 400000;   ///< bytes of the study, of the models
-constexpr std::size_t k_most_reasons = 200;   ///< listed
-constexpr std::size_t k_most_growth = 1500;   ///< estimates drawn of each method
-constexpr std::size_t k_most_columns = 60;    ///< whose distribution is shown
-constexpr std::size_t k_most_times = 3000;    ///< of a measured record
+constexpr std::size_t k_most_text = 400000; ///< bytes of the study, of the models
+constexpr std::size_t k_most_reasons = 200; ///< listed
+constexpr std::size_t k_most_growth = 1500; ///< estimates drawn of each method
+constexpr std::size_t k_most_columns = 60;  ///< whose distribution is shown
+constexpr std::size_t k_most_times = 3000;  ///< of a measured record
 
 template <class T> std::string base64(const std::vector<T>& values) {
   static const char* const k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -32,8 +32,7 @@ template <class T> std::string base64(const std::vector<T>& values) {
   std::string text;
   text.reserve((size + 2) / 3 * 4);
   for (std::size_t i = 0; i < size; i += 3) {
-    const unsigned three =
-        bytes[i] << 16U | (i + 1 < size ? bytes[i + 1] << 8U : 0U) | (i + 2 < size ? bytes[i + 2] : 0U);
+    const unsigned three = bytes[i] << 16U | (i + 1 < size ? bytes[i + 1] << 8U : 0U) | (i + 2 < size ? bytes[i + 2] : 0U);
     text += k_digits[three >> 18U];
     text += k_digits[three >> 12U & 63U];
     text += i + 1 < size ? k_digits[three >> 6U & 63U] : '=';
@@ -45,10 +44,10 @@ template <class T> std::string base64(const std::vector<T>& values) {
 // All samples, column by column.
 struct Samples {
   std::vector<ReportColumn> columns;
-  std::vector<std::string> is;              ///< per column: what it is, in words
-  std::vector<std::vector<double>> values;  ///< per column
+  std::vector<std::string> is;             ///< per column: what it is, in words
+  std::vector<std::vector<double>> values; ///< per column
   std::vector<std::uint8_t> status;
-  std::vector<std::uint32_t> reason;        ///< place among `reasons`
+  std::vector<std::uint32_t> reason; ///< place among `reasons`
   std::vector<std::string> reasons{""};
   [[nodiscard]] std::size_t size() const { return status.size(); }
 };
@@ -70,15 +69,12 @@ void add_column(Samples& samples, const std::string& name, const Json* about, co
 Samples read_samples(Store& store, const Json& about) {
   Samples samples;
   const StoreIdentity& identity = store.identity();
-  for (const std::string& name : identity.variables)
-    add_column(samples, name, entry_of(about["variables"], name), "variable", "varies");
-  for (const std::string& name : identity.numbers)
-    add_column(samples, name, entry_of(about["numbers"], name), "response", "is");
+  for (const std::string& name : identity.variables) add_column(samples, name, entry_of(about["variables"], name), "variable", "varies");
+  for (const std::string& name : identity.numbers) add_column(samples, name, entry_of(about["numbers"], name), "response", "is");
   const bool has_runs = about["models"].is_array() && !about["models"].empty();
   if (has_runs) {
     samples.columns.insert(samples.columns.end(), {{"energy error", "", "cost"}, {"evaluations", "", "cost"}});
-    samples.is.insert(samples.is.end(),
-                      {"energy that does not balance, of what was turned over", "of the equations of motion"});
+    samples.is.insert(samples.is.end(), {"energy that does not balance, of what was turned over", "of the equations of motion"});
   }
   samples.values.resize(samples.columns.size());
   std::map<std::string, std::uint32_t> places{{"", 0}};
@@ -95,8 +91,7 @@ Samples read_samples(Store& store, const Json& about) {
         samples.values[c++].push_back(row.outcome.evaluations);
       }
       samples.status.push_back(static_cast<std::uint8_t>(row.outcome.status));
-      const auto [place, is_new] =
-          places.try_emplace(row.outcome.reason, static_cast<std::uint32_t>(samples.reasons.size()));
+      const auto [place, is_new] = places.try_emplace(row.outcome.reason, static_cast<std::uint32_t>(samples.reasons.size()));
       if (is_new) samples.reasons.push_back(row.outcome.reason);
       samples.reason.push_back(place->second);
     }
@@ -117,8 +112,7 @@ std::vector<char> classes_of(const Samples& samples) {
   const std::vector<std::size_t> limits = columns_of(samples, "limit state");
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.status[i] != 0) classes[i] = 2;
-    else
-      classes[i] = std::any_of(limits.begin(), limits.end(), [&](std::size_t c) { return samples.values[c][i] < 0.0; });
+    else classes[i] = std::any_of(limits.begin(), limits.end(), [&](std::size_t c) { return samples.values[c][i] < 0.0; });
   }
   return classes;
 }
@@ -132,8 +126,7 @@ template <class T> std::vector<T> taken(const std::vector<T>& all, const std::ve
 
 Json samples_json(const Samples& samples, const std::vector<char>& classes, std::size_t budget) {
   const double row = (8.0 * static_cast<double>(samples.columns.size()) + 9.0) * 4.0 / 3.0;
-  const std::vector<std::size_t> chosen =
-      chosen_samples(classes, static_cast<std::size_t>(static_cast<double>(budget) / row));
+  const std::vector<std::size_t> chosen = chosen_samples(classes, static_cast<std::size_t>(static_cast<double>(budget) / row));
   Json json{{"total", samples.size()}};
   Json counts = Json::array();
   for (int kind = 0; kind < 3; ++kind) {
@@ -176,18 +169,15 @@ Json samples_json(const Samples& samples, const std::vector<char>& classes, std:
 Json curve_json(const Curve& c) { return {{"x", c.x}, {"p", c.p}, {"low", c.low}, {"high", c.high}}; }
 
 Json tally_json(const std::string& name, const Tally& t) {
-  return {{"name", name},
-          {"total", t.total},
-          {"missing", t.missing},
-          {"above", t.above},
-          {"below", t.below},
-          {"mean", t.mean},
-          {"cumulative", curve_json(t.cumulative)},
-          {"histogram",
-           {{"edges", t.histogram.edges},
-            {"counts", t.histogram.counts},
-            {"low", t.histogram.low},
-            {"high", t.histogram.high}}}};
+  return {
+      {"name", name},
+      {"total", t.total},
+      {"missing", t.missing},
+      {"above", t.above},
+      {"below", t.below},
+      {"mean", t.mean},
+      {"cumulative", curve_json(t.cumulative)},
+      {"histogram", {{"edges", t.histogram.edges}, {"counts", t.histogram.counts}, {"low", t.histogram.low}, {"high", t.histogram.high}}}};
 }
 
 // The texts of the settings that the store tells.
@@ -210,8 +200,7 @@ Json distributions_json(const Samples& samples, Drawn drawn) {
   for (std::size_t c = 0; c < samples.columns.size() && drawn != Drawn::otherwise; ++c) {
     const std::vector<double>& values = samples.values[c];
     if (samples.columns[c].role == "cost") continue;
-    if (samples.columns[c].role == "variable" &&
-        std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end())
+    if (samples.columns[c].role == "variable" && std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end())
       continue; // kept
     if (json["of"].size() < k_most_columns)
       json["of"].push_back(tally_json(samples.columns[c].name, tally_of(values, drawn == Drawn::independently)));
@@ -239,8 +228,7 @@ Json running_estimates(const Samples& samples, const std::string& failed) {
     json.push_back(running_json(samples.columns[c].name, "share of failures", "", running_share(sure, possible)));
   }
   for (const std::size_t c : columns_of(samples, "response"))
-    json.push_back(
-        running_json(samples.columns[c].name, "mean", samples.columns[c].unit, running_mean(samples.values[c])));
+    json.push_back(running_json(samples.columns[c].name, "mean", samples.columns[c].unit, running_mean(samples.values[c])));
   return json;
 }
 
@@ -285,10 +273,7 @@ Json growth_json(const std::vector<Finding>& growth) {
   Json json = Json::array();
   for (const std::string& name : methods) {
     const std::vector<const Finding*>& all = of[name];
-    Json one{{"method", all.front()->method},
-             {"subject", all.front()->subject},
-             {"quantity", all.front()->quantity},
-             {"all", all.size()}};
+    Json one{{"method", all.front()->method}, {"subject", all.front()->subject}, {"quantity", all.front()->quantity}, {"all", all.size()}};
     const std::size_t shown = std::min(all.size(), k_most_growth);
     for (const char* key : {"samples", "value", "low", "high"}) one[key] = Json::array();
     for (std::size_t k = 0; k < shown; ++k) {
@@ -330,11 +315,8 @@ Json reasons_json(Store& store) {
   for (const Group& g : groups) {
     if (list.size() >= k_most_reasons) more += g.samples;
     else
-      list.push_back({{"status", g.first.status},
-                      {"reason", g.first.reason},
-                      {"alike", g.kinds - 1},
-                      {"count", g.samples},
-                      {"first", g.first.first}});
+      list.push_back(
+          {{"status", g.first.status}, {"reason", g.first.reason}, {"alike", g.kinds - 1}, {"count", g.samples}, {"first", g.first.first}});
   }
   return {{"failed", failed},
           {"list", std::move(list)},
@@ -355,11 +337,7 @@ template <class AnyStore> Json histories_json(AnyStore& store) {
     }
     for (const std::string& name : names) {
       const std::vector<std::size_t>& all = of[name];
-      Json one{{"name", name},
-               {"all", all.size()},
-               {"t", Json::array()},
-               {"measured", Json::array()},
-               {"fitted", Json::array()}};
+      Json one{{"name", name}, {"all", all.size()}, {"t", Json::array()}, {"measured", Json::array()}, {"fitted", Json::array()}};
       for (std::size_t k = 0, shown = std::min(all.size(), k_most_times); k < shown; ++k) {
         const auto& p = points[all[k * all.size() / shown]];
         one["t"].push_back(p.t);
@@ -397,8 +375,7 @@ Json about_in(Store& store) {
 
 Json status_names() {
   Json names = Json::array();
-  for (int i = 0; i <= static_cast<int>(SampleStatus::not_a_number); ++i)
-    names.push_back(name_of(static_cast<SampleStatus>(i)));
+  for (int i = 0; i <= static_cast<int>(SampleStatus::not_a_number); ++i) names.push_back(name_of(static_cast<SampleStatus>(i)));
   return names;
 }
 

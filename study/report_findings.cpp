@@ -24,8 +24,7 @@ std::string unit_of(const std::vector<ReportColumn>& columns, const std::string&
 // "design point 2", "border 1 point 17": the number behind the first word or words.
 long place_in(const std::string& subject, const std::string& noun) {
   long place = 0;
-  if (subject.starts_with(noun + " "))
-    std::from_chars(subject.data() + noun.size() + 1, subject.data() + subject.size(), place);
+  if (subject.starts_with(noun + " ")) std::from_chars(subject.data() + noun.size() + 1, subject.data() + subject.size(), place);
   return place;
 }
 
@@ -59,8 +58,7 @@ void find_part(const Finding& f, const std::vector<ReportColumn>& columns, Findi
       digits = part.digits;
       if (part.quantity.back() == ' ') view.variable = f.quantity.substr(part.quantity.size());
       if (part.unit == UnitOf::subject) view.unit = unit_of(columns, f.subject);
-      if (part.unit == UnitOf::quotient)
-        view.unit = quotient(unit_of(columns, f.subject), unit_of(columns, view.variable));
+      if (part.unit == UnitOf::quotient) view.unit = quotient(unit_of(columns, f.subject), unit_of(columns, view.variable));
       return;
     }
   view.role = "estimate";
@@ -116,10 +114,7 @@ std::string rounded(double value, int last) {
 // Of an interval, or of what is known of one, the place of its width's second digit.
 bool last_place(double value, double low, double high, int& last) {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
-  const double width = has_low && has_high ? high - low
-                       : has_low           ? std::abs(value - low)
-                       : has_high          ? std::abs(high - value)
-                                           : 0.0;
+  const double width = has_low && has_high ? high - low : has_low ? std::abs(value - low) : has_high ? std::abs(high - value) : 0.0;
   if (!(width > 0.0)) return false;
   last = static_cast<int>(std::floor(std::log10(width))) - 1;
   return true;
@@ -153,9 +148,7 @@ FindingView view_of(const Finding& f, const std::vector<ReportColumn>& columns) 
   int last = 0;
   if (std::isnan(f.low) && std::isnan(f.high)) return view;
   const bool is_known = last_place(factor * f.value, low, high, last);
-  const auto end = [&](double x) {
-    return std::isnan(x) ? std::string("?") : is_known ? rounded(x, last) : tidied(plain(x, 6));
-  };
+  const auto end = [&](double x) { return std::isnan(x) ? std::string("?") : is_known ? rounded(x, last) : tidied(plain(x, 6)); };
   view.interval = end(low) + " … " + end(high);
   return view;
 }

@@ -14,11 +14,11 @@ struct ReportColumn {
 };
 
 struct FindingView {
-  std::string role;     ///< probability, beta, first order, swing, …; "estimate": nothing is known of the quantity
-  std::string variable; ///< that the quantity is about, "" if about none
-  long place = 0;       ///< of a border or a design point, from 1
+  std::string role;            ///< probability, beta, first order, swing, …; "estimate": nothing is known of the quantity
+  std::string variable;        ///< that the quantity is about, "" if about none
+  long place = 0;              ///< of a border or a design point, from 1
   std::string value, interval; ///< as text, with the unit's prefix; "" for none
-  std::string unit;     ///< with its prefix; "SI" where nothing is known of the quantity
+  std::string unit;            ///< with its prefix; "SI" where nothing is known of the quantity
 };
 
 /// The quantity of a finding is what says which part it plays.

@@ -51,16 +51,14 @@ Histogram histogram_of(const std::vector<double>& sorted, bool is_independent) {
   const double wanted = bin > 0.0 ? std::ceil(width / bin) : k_fewest;
   const auto bins = width > 0.0 ? static_cast<std::size_t>(std::clamp(wanted, k_fewest, k_most)) : std::size_t{1};
   for (std::size_t i = 0; i <= bins; ++i)
-    histogram.edges.push_back(i == bins ? sorted.back()
-                                        : low + width * static_cast<double>(i) / static_cast<double>(bins));
+    histogram.edges.push_back(i == bins ? sorted.back() : low + width * static_cast<double>(i) / static_cast<double>(bins));
   histogram.counts.assign(bins, 0);
   for (const double x : sorted) {
     const auto above = std::upper_bound(histogram.edges.begin(), histogram.edges.end(), x) - histogram.edges.begin();
     ++histogram.counts[std::min(bins - 1, static_cast<std::size_t>(std::max<std::ptrdiff_t>(above, 1) - 1))];
   }
   for (std::size_t i = 0; i < bins && is_independent; ++i) {
-    const Interval share =
-        proportion_interval(static_cast<double>(histogram.counts[i]), static_cast<double>(n), k_confidence);
+    const Interval share = proportion_interval(static_cast<double>(histogram.counts[i]), static_cast<double>(n), k_confidence);
     histogram.low.push_back(share.low);
     histogram.high.push_back(share.high);
   }
@@ -100,8 +98,7 @@ Running running_mean(const std::vector<double>& values) {
     }
     if (count < 2 || !is_instant(i + 1, values.size(), next)) continue;
     const double free = static_cast<double>(count) - 1.0;
-    const double half =
-        student_quantile(free, 0.5 * (1.0 + k_confidence)) * std::sqrt(squares / free / static_cast<double>(count));
+    const double half = student_quantile(free, 0.5 * (1.0 + k_confidence)) * std::sqrt(squares / free / static_cast<double>(count));
     running.samples.push_back(static_cast<double>(i + 1));
     running.value.push_back(mean);
     running.low.push_back(mean - half);

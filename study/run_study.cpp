@@ -22,8 +22,8 @@ void add_fits(const JointLaw& law, Answer& answer) {
 void add_correlations(const Study& study, Answer& answer) {
   if (kind_of(study).draws_jointly) return;
   for (const Correlation& c : study.correlations)
-    answer.notes.push_back("Variables are set one by one here, whatever the others are: the stated correlation of '" +
-                           c.between[0] + "' and '" + c.between[1] + "' plays no part in it.");
+    answer.notes.push_back("Variables are set one by one here, whatever the others are: the stated correlation of '" + c.between[0] +
+                           "' and '" + c.between[1] + "' plays no part in it.");
 }
 
 Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, const StudyOptions& options) {

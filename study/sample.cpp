@@ -16,9 +16,7 @@ namespace {
 
 FieldTable sample_fields() {
   FieldTable t;
-  t.add("design", &SampleSettings::design)
-      .one_of({"monte_carlo", "latin_hypercube", "sobol", "halton"})
-      .doc("how samples are drawn");
+  t.add("design", &SampleSettings::design).one_of({"monte_carlo", "latin_hypercube", "sobol", "halton"}).doc("how samples are drawn");
   t.add("samples", &SampleSettings::samples).at_least(1).at_most(1e9).doc("their number");
   return t;
 }
@@ -37,8 +35,7 @@ public:
   MonteCarlo(std::uint64_t seed, std::size_t dimension) : random_(seed, 1), dimension_(dimension) {}
   void next(std::size_t count, std::vector<double>& uniform) override {
     for (std::size_t i = 0; i < count; ++i, ++sample_)
-      for (std::size_t d = 0; d < dimension_; ++d)
-        uniform.push_back(random_.uniform(sample_, static_cast<std::uint32_t>(d)));
+      for (std::size_t d = 0; d < dimension_; ++d) uniform.push_back(random_.uniform(sample_, static_cast<std::uint32_t>(d)));
   }
 
 private:
@@ -50,8 +47,7 @@ private:
 /// One point in each of as many strata as there are samples, of every variable; strata are paired at random.
 class LatinHypercube : public Design {
 public:
-  LatinHypercube(std::uint64_t seed, std::size_t dimension, std::size_t count)
-      : random_(seed, 2), count_(count), strata_(dimension) {
+  LatinHypercube(std::uint64_t seed, std::size_t dimension, std::size_t count) : random_(seed, 2), count_(count), strata_(dimension) {
     for (std::size_t d = 0; d < dimension; ++d) {
       strata_[d].resize(count);
       std::iota(strata_[d].begin(), strata_[d].end(), 0U);
@@ -92,8 +88,7 @@ std::unique_ptr<Design> design_of(const Study& study, std::size_t dimension) {
   const auto& s = settings_of<SampleSettings>(study);
   const std::string& name = s.design;
   const auto seed = static_cast<std::uint64_t>(study.seed);
-  if (name == "latin_hypercube")
-    return std::make_unique<LatinHypercube>(seed, dimension, static_cast<std::size_t>(s.samples));
+  if (name == "latin_hypercube") return std::make_unique<LatinHypercube>(seed, dimension, static_cast<std::size_t>(s.samples));
   if (name == "sobol") return std::make_unique<LowDiscrepancy<OT::SobolSequence>>(dimension);
   if (name == "halton") return std::make_unique<LowDiscrepancy<OT::HaltonSequence>>(dimension);
   return std::make_unique<MonteCarlo>(seed, dimension);
@@ -113,9 +108,7 @@ struct Moments {
     mean += difference / static_cast<double>(++count);
     squares += difference * (x - mean);
   }
-  [[nodiscard]] double deviation() const {
-    return count > 1 ? std::sqrt(squares / static_cast<double>(count - 1)) : std::nan("");
-  }
+  [[nodiscard]] double deviation() const { return count > 1 ? std::sqrt(squares / static_cast<double>(count - 1)) : std::nan(""); }
 };
 
 class Summary {
@@ -138,15 +131,14 @@ public:
     const std::vector<std::string> names = loaded_.number_names();
     for (std::size_t i = 0; i < names.size(); ++i) {
       const Moments& m = moments_[i];
-      const std::string status = m.missing ? std::to_string(m.missing) + " of " + std::to_string(total_) +
-                                                 " runs gave no finite value and are left out"
-                                           : "";
+      const std::string status =
+          m.missing ? std::to_string(m.missing) + " of " + std::to_string(total_) + " runs gave no finite value and are left out" : "";
       Finding mean{method, names[i], "mean", m.count ? m.mean : std::nan("")};
       mean.samples = m.count;
       mean.status = status;
       if (is_random && m.count > 1) {
-        const double half = student_quantile(static_cast<double>(m.count - 1), 0.975) * m.deviation() /
-                            std::sqrt(static_cast<double>(m.count));
+        const double half =
+            student_quantile(static_cast<double>(m.count - 1), 0.975) * m.deviation() / std::sqrt(static_cast<double>(m.count));
         mean.low = m.mean - half;
         mean.high = m.mean + half;
       }
@@ -171,12 +163,9 @@ private:
     Finding f{settings_of<SampleSettings>(run.study()).design, loaded_.number_names()[i], text};
     const long n = run.store.count_of(i);
     f.samples = n;
-    if (n < total_)
-      f.status = std::to_string(total_ - n) + " of " + std::to_string(total_) + " runs gave no value and are left out";
+    if (n < total_) f.status = std::to_string(total_ - n) + " of " + std::to_string(total_) + " runs gave no value and are left out";
     if (n == 0) return f;
-    const auto place = [n](double share) {
-      return std::clamp(static_cast<long>(std::floor(share * static_cast<double>(n))), 0L, n - 1);
-    };
+    const auto place = [n](double share) { return std::clamp(static_cast<long>(std::floor(share * static_cast<double>(n))), 0L, n - 1); };
     f.value = run.store.order_statistic(i, place(p));
     if (!is_random) return f;
     const double half = 1.96 * std::sqrt(p * (1.0 - p) / static_cast<double>(n));
@@ -193,8 +182,7 @@ private:
                   static_cast<double>(failures) / static_cast<double>(total_)};
         f.samples = total_;
         if (is_random) {
-          const Interval interval =
-              proportion_interval(static_cast<double>(failures), static_cast<double>(total_), 0.95);
+          const Interval interval = proportion_interval(static_cast<double>(failures), static_cast<double>(total_), 0.95);
           f.low = interval.low;
           f.high = interval.high;
         } else {
@@ -224,12 +212,9 @@ void check_sample(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) 
   constexpr std::size_t k_most = 40; // of a low-discrepancy sequence that still fills space
   if (loaded.study.variables.size() > k_most && s.design == "halton")
     problems.push_back(
-        {s.where,
-         "Halton's sequence does not fill spaces of more than 40 variables: take \"sobol\" or \"latin_hypercube\""});
+        {s.where, "Halton's sequence does not fill spaces of more than 40 variables: take \"sobol\" or \"latin_hypercube\""});
   if (s.design == "latin_hypercube" && s.samples > 100000000)
-    problems.push_back(
-        {s.where,
-         "a Latin hypercube of so many samples does not fit into memory: take \"sobol\" or \"monte_carlo\""});
+    problems.push_back({s.where, "a Latin hypercube of so many samples does not fit into memory: take \"sobol\" or \"monte_carlo\""});
 }
 
 Answer run_sample(StudyRun& run) {

@@ -50,15 +50,11 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
 void add_findings(const Estimate& e, const LimitFunction& limit, const std::string& failed, Answer& answer) {
   const bool is_both = e.bad > 0 && failed == "bounds";
   const auto add = [&](const char* quantity, double p, const Interval& interval) {
-    answer.findings.push_back(
-        {e.method, limit.subject(), quantity, p, interval.low, interval.high, e.samples, e.status});
+    answer.findings.push_back({e.method, limit.subject(), quantity, p, interval.low, interval.high, e.samples, e.status});
     const auto beta = [](double q) { return q > 0.0 && q < 1.0 ? -normal_quantile(q) : std::nan(""); };
-    answer.findings.push_back(
-        {e.method, limit.subject(), "beta", beta(p), beta(interval.high), beta(interval.low), e.samples, e.status});
+    answer.findings.push_back({e.method, limit.subject(), "beta", beta(p), beta(interval.high), beta(interval.low), e.samples, e.status});
   };
-  if (!is_both)
-    add("probability", failed == "unsafe" ? e.unsafe : e.safe,
-        failed == "unsafe" ? e.unsafe_interval : e.safe_interval);
+  if (!is_both) add("probability", failed == "unsafe" ? e.unsafe : e.safe, failed == "unsafe" ? e.unsafe_interval : e.safe_interval);
   if (is_both) add("probability, runs without result as safe", e.safe, e.safe_interval);
   if (is_both) add("probability, runs without result as unsafe", e.unsafe, e.unsafe_interval);
   if (!e.is_trusted) answer.degrade(Standing::not_trusted);

@@ -11,7 +11,7 @@ struct Estimate {
   std::string method;
   double safe = 0.0, unsafe = 0.0;
   Interval safe_interval, unsafe_interval;
-  Interval safe_test, unsafe_test; ///< wider ones, for comparing it with others
+  Interval safe_test, unsafe_test;                      ///< wider ones, for comparing it with others
   double cov = std::numeric_limits<double>::infinity(); ///< of the less probable one of failing and holding
   long samples = 0, bad = 0;
   std::string status;
@@ -20,8 +20,7 @@ struct Estimate {
 
   /// Both, as far as the study counts them.
   [[nodiscard]] Interval interval(const std::string& failed) const {
-    return {failed == "unsafe" ? unsafe_interval.low : safe_interval.low,
-            failed == "safe" ? safe_interval.high : unsafe_interval.high};
+    return {failed == "unsafe" ? unsafe_interval.low : safe_interval.low, failed == "safe" ? safe_interval.high : unsafe_interval.high};
   }
   [[nodiscard]] Interval test(const std::string& failed) const {
     return {failed == "unsafe" ? unsafe_test.low : safe_test.low, failed == "safe" ? safe_test.high : unsafe_test.high};

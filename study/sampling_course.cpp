@@ -6,8 +6,7 @@
 namespace steplap::study {
 
 Share share_of(const WeightedMean& mean, bool is_complement, const SamplingTarget& target) {
-  Share share{std::min(1.0, mean.mean()), mean.deviation(), mean.interval(target.confidence),
-              mean.interval(target.test_confidence)};
+  Share share{std::min(1.0, mean.mean()), mean.deviation(), mean.interval(target.confidence), mean.interval(target.test_confidence)};
   if (!is_complement) return share;
   const auto rest = [](const Interval& i) { return Interval{1.0 - i.high, 1.0 - i.low}; };
   return {1.0 - share.p, share.deviation, rest(share.interval), rest(share.test)};
@@ -37,18 +36,16 @@ void SamplingCourse::set(Estimate& e, const Share& safe, const Share& unsafe) co
 void SamplingCourse::note(Estimate& e) {
   limit_.run().evaluator.note(
       {e.method, limit_.subject(), "probability", e.unsafe, e.safe_interval.low, e.unsafe_interval.high, e.samples});
-  const double wanted = static_cast<double>(e.samples) * std::pow(e.cov / target_.cov, 2),
-               most = static_cast<double>(target_.samples);
-  limit_.run().evaluator.expect(static_cast<long>(std::isfinite(wanted) ? std::min(wanted, most) : most) - e.samples,
-                                true);
+  const double wanted = static_cast<double>(e.samples) * std::pow(e.cov / target_.cov, 2), most = static_cast<double>(target_.samples);
+  limit_.run().evaluator.expect(static_cast<long>(std::isfinite(wanted) ? std::min(wanted, most) : most) - e.samples, true);
 }
 
 void SamplingCourse::say_why_it_ended(Estimate& e) const {
   e.is_target_met = e.cov <= target_.cov;
   if (e.is_target_met) return;
   char text[160];
-  std::snprintf(text, sizeof text, "%s: coefficient of variation %.3g, %.3g was asked for",
-                is_late_ ? "time was up" : "all samples used", e.cov, target_.cov);
+  std::snprintf(text, sizeof text, "%s: coefficient of variation %.3g, %.3g was asked for", is_late_ ? "time was up" : "all samples used",
+                e.cov, target_.cov);
   e.status = text;
 }
 
@@ -56,8 +53,7 @@ long SamplingCourse::planned(long drawn, double cov) const {
   // A tenth more than it takes, so that the scatter of the scatter seldom asks for another stage. While little is
   // known, at most eight times what there is.
   constexpr double k_margin = 1.1, k_most = 8.0;
-  const double n = static_cast<double>(drawn), times = std::isfinite(cov) ? k_margin * std::pow(cov / target_.cov, 2)
-                                                                          : k_most;
+  const double n = static_cast<double>(drawn), times = std::isfinite(cov) ? k_margin * std::pow(cov / target_.cov, 2) : k_most;
   return static_cast<long>(std::ceil(n * std::min(times, k_most)));
 }
 

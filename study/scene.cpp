@@ -1,11 +1,11 @@
 #include "study/scene.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/start.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
+#include "mbd/rest/start.h"
 #include "mbd/system/instance.h"
 #include "run/report.h"
 #include "study/history.h"
@@ -61,15 +61,13 @@ const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>&
 // Over the samples written: of curves between them nothing is known here.
 double along(const Response& r, const Trajectory& trajectory) {
   const auto& channels = trajectory.channels();
-  const auto found = std::find_if(channels.begin(), channels.end(),
-                                  [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
+  const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
   if (found == channels.end() || trajectory.size() < 2) return k_nan;
   const auto column = static_cast<std::size_t>(found - channels.begin());
   double sum = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const double before = trajectory.value(i - 1, column), after = trajectory.value(i, column);
-    sum += r.what == "path" ? std::abs(after - before)
-                            : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
+    sum += r.what == "path" ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
   }
   return r.what == "path" ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
 }
@@ -109,7 +107,8 @@ using Races = std::vector<std::shared_ptr<Race>>; // channels of a run refer to 
 // beyond even if they go on as they went since they were asked for last.
 class AskedBounds {
 public:
-  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const Races& races) : bounds_(std::move(bounds)), ends_(ends) {
+  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const Races& races)
+      : bounds_(std::move(bounds)), ends_(ends) {
     for (const std::size_t race : ends.low_races) low_races_.push_back(races[race]);
     for (const std::size_t race : ends.high_races) high_races_.push_back(races[race]);
   }
@@ -131,7 +130,9 @@ public:
 
 private:
   // By how much a bound changes from one end of a stretch to the next, at least half of what it did: where it turns, ends are alike.
-  static double widened(double reach, double change) { return std::isfinite(change) ? std::max(std::abs(change), 0.5 * reach) : 0.5 * reach; }
+  static double widened(double reach, double change) {
+    return std::isfinite(change) ? std::max(std::abs(change), 0.5 * reach) : 0.5 * reach;
+  }
 
   std::function<ValueBounds(const Snapshot&)> bounds_;
   AskedEnds ends_;
@@ -176,11 +177,9 @@ Model model_with(const LoadedStudy& loaded, const StudyModel& model, const doubl
   for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
     const Variable& v = loaded.study.variables[i];
     if (!is_set_in(v, model)) continue;
-    for (const std::string& path : v.paths)
-      set_value(changed, path, v.is_factor ? values[i] * number_of(model.given, path) : values[i]);
+    for (const std::string& path : v.paths) set_value(changed, path, v.is_factor ? values[i] * number_of(model.given, path) : values[i]);
   }
-  const std::size_t variant =
-      loaded.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded.study.variables.size() - 1]);
+  const std::size_t variant = loaded.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded.study.variables.size() - 1]);
   if (variant > 0) loaded.variants[variant - 1].apply(changed);
   return changed;
 }
@@ -194,18 +193,17 @@ struct Scene::Runner {
     double factor;
   };
   const StudyModel& model;
-  bool is_judged = false;             ///< a response is the verdict, for which criteria may look at any channel
-  std::vector<std::string> channels;  ///< names
+  bool is_judged = false;                    ///< a response is the verdict, for which criteria may look at any channel
+  std::vector<std::string> channels;         ///< names
   std::map<std::string, AskedEnds> extremes; ///< of these, those whose extremes are asked for
   std::size_t races = 0;
-  std::vector<std::string> sampled;   ///< patterns
-  Sampling sampling;                  ///< for histories
+  std::vector<std::string> sampled; ///< patterns
+  Sampling sampling;                ///< for histories
   std::vector<Setting> settings;
-  std::vector<double> numbers;        ///< for the settings
+  std::vector<double> numbers; ///< for the settings
   std::unique_ptr<Variants> variants;
 
-  Runner(const LoadedStudy& loaded, const StudyModel& which)
-      : model(which), sampling(sampling_of(loaded.study, which)) {
+  Runner(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
     for (const Response& r : loaded.study.responses)
       if (r.model == model.name && r.expression.empty()) ask(r);
     for (const History& h : loaded.study.histories)
@@ -316,7 +314,8 @@ void Scene::run_system(const Runner& runner, const Model& whole, System& system,
 
 // A verdict is that of the command line, with all that weighs on it there: findings, and errors by finer runs where these are cheap.
 void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
-  if (!whole.output.channels.empty()) whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
+  if (!whole.output.channels.empty())
+    whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
   if (runner.sampling.step > 0.0) whole.output.step = runner.sampling.step;
   const Report report = judged_run(load_completed(std::move(whole), std::move(system), runner.model.path));
   const RunResult& result = report.run.result;
@@ -328,8 +327,7 @@ void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System
 
 void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   try {
-    const std::size_t variant =
-        loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
+    const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
     std::unique_ptr<System> system;
     std::optional<Model> changed; // the variants' own model does where nothing of it is changed
     if (variant == 0) {
@@ -346,8 +344,7 @@ void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   } catch (const NumericalFailure& error) {
     worsen(outcome, SampleStatus::gave_up, error.what());
   } catch (const ModelError& error) {
-    worsen(outcome, SampleStatus::impossible,
-           error.diagnostics().empty() ? error.what() : error.diagnostics().front().message);
+    worsen(outcome, SampleStatus::impossible, error.diagnostics().empty() ? error.what() : error.diagnostics().front().message);
   } catch (const std::exception& error) {
     worsen(outcome, SampleStatus::gave_up, std::string("internal error: ") + error.what());
   }
@@ -361,9 +358,8 @@ bool Scene::is_derived(const std::vector<double>& values, const Outcome& outcome
   for (std::size_t i = loaded_.study.responses.size(); i < outcome.numbers.size(); ++i)
     is_whole = is_whole && !std::isnan(outcome.numbers[i]);
   return outcome.curve.size() == loaded_.curve_size() && (outcome.status != SampleStatus::ok || is_whole) &&
-         std::all_of(expressions_.begin(), expressions_.end(), [&](const auto& of) {
-           return is_same(of.second(values_.data()), outcome.numbers[of.first]);
-         });
+         std::all_of(expressions_.begin(), expressions_.end(),
+                     [&](const auto& of) { return is_same(of.second(values_.data()), outcome.numbers[of.first]); });
 }
 
 void Scene::run(const double* values, Outcome& outcome) {
@@ -378,8 +374,7 @@ void Scene::run(const double* values, Outcome& outcome) {
   for (const auto& runner : runners_) run_model(*runner, values, outcome);
   std::copy(values, values + variables, values_.begin());
   std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(variables));
-  for (const auto& [place, expression] : expressions_)
-    values_[variables + place] = outcome.numbers[place] = expression(values_.data());
+  for (const auto& [place, expression] : expressions_) values_[variables + place] = outcome.numbers[place] = expression(values_.data());
   for (std::size_t i = loaded_.study.responses.size(); i < numbers; ++i)
     if (std::isnan(outcome.numbers[i]))
       worsen(outcome, SampleStatus::not_a_number, "limit state '" + loaded_.number_names()[i] + "' has no value");

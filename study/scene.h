@@ -14,10 +14,10 @@ namespace steplap::study {
 
 enum class SampleStatus : int {
   ok = 0,
-  stopped = 1,    ///< an element ended the run: a joint came apart
-  untrusted = 2,  ///< the run reached its end, but is not to be trusted
-  gave_up = 3,    ///< the computation could not be finished, or not be begun
-  impossible = 4, ///< the model does not take the values
+  stopped = 1,     ///< an element ended the run: a joint came apart
+  untrusted = 2,   ///< the run reached its end, but is not to be trusted
+  gave_up = 3,     ///< the computation could not be finished, or not be begun
+  impossible = 4,  ///< the model does not take the values
   not_a_number = 5 ///< a limit state has no value
 };
 [[nodiscard]] const char* name_of(SampleStatus status);

@@ -22,10 +22,7 @@ FieldTable sensitivity_fields() {
   FieldTable t;
   t.add("method", &S::method).one_of({"elasticity", "morris", "sobol", "tornado"}).doc("how sensitivities are found");
   t.add("difference", &S::difference).positive().at_most(0.3).doc("relative step of elasticities; halved to check it");
-  t.add("samples", &S::samples)
-      .at_least(16)
-      .at_most(1e7)
-      .doc("base size of Sobol indices: the study takes (variables + 2) times as many");
+  t.add("samples", &S::samples).at_least(16).at_most(1e7).doc("base size of Sobol indices: the study takes (variables + 2) times as many");
   t.add("trajectories", &S::trajectories).at_least(4).at_most(1e5).doc("of Morris' screening");
   t.add("levels", &S::levels).at_least(4).at_most(100).doc("of the grid of Morris' screening, an even number");
   t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
@@ -66,8 +63,7 @@ Derivative derivative_of(const Quotients& q, double noise) {
   const double size = std::max({std::abs(q.left[2]), std::abs(q.right[2]), 1e-300});
   if (!std::isfinite(d.value)) d.status = "a run beside the point has no result";
   else if (closer > 0.5 * gap && closer > 1e-3 * size && closer > 10.0 * noise)
-    d.status =
-        in_words("kink, or jump: to the left %.6g, to the right %.6g; this is no derivative", q.left[2], q.right[2]);
+    d.status = in_words("kink, or jump: to the left %.6g, to the right %.6g; this is no derivative", q.left[2], q.right[2]);
   else if (d.error > 0.05 * size) d.status = "the steps of difference disagree: its error is of its own size";
   return d;
 }
@@ -93,16 +89,13 @@ Answer elasticities(StudyRun& run) {
   const std::vector<std::string> names = run.loaded.number_names();
   for (std::size_t r = 0; r < count; ++r) {
     const double here = numbers_of(rows[0], count)[r];
-    answer.findings.push_back(
-        {"elasticity", names[r], "value", here, std::nan(""), std::nan(""), run.evaluator.asked()});
+    answer.findings.push_back({"elasticity", names[r], "value", here, std::nan(""), std::nan(""), run.evaluator.asked()});
     for (std::size_t i = 0; i < n; ++i) {
       Quotients q{};
       for (std::size_t level = 0; level < 3; ++level) {
-        const double below = numbers_of(rows[1 + 6 * i + 2 * level], count)[r],
-                     above = numbers_of(rows[2 + 6 * i + 2 * level], count)[r];
+        const double below = numbers_of(rows[1 + 6 * i + 2 * level], count)[r], above = numbers_of(rows[2 + 6 * i + 2 * level], count)[r];
         // The step as the numbers hold it, not as it was meant.
-        const double left = nominal[i] - rows[1 + 6 * i + 2 * level].values[i],
-                     right = rows[2 + 6 * i + 2 * level].values[i] - nominal[i];
+        const double left = nominal[i] - rows[1 + 6 * i + 2 * level].values[i], right = rows[2 + 6 * i + 2 * level].values[i] - nominal[i];
         q.central[level] = (above - below) / (left + right);
         q.left[level] = (here - below) / left;
         q.right[level] = (above - here) / right;
@@ -110,8 +103,8 @@ Answer elasticities(StudyRun& run) {
       const Derivative d = derivative_of(q, run_error * std::abs(here) / (steps[i] / 4.0));
       const bool is_relative = here != 0.0 && nominal[i] != 0.0;
       const double scale = is_relative ? nominal[i] / here : 1.0;
-      Finding f{"elasticity", names[r],
-                (is_relative ? "elasticity to " : "derivative by ") + run.study().variables[i].name, scale * d.value};
+      Finding f{"elasticity", names[r], (is_relative ? "elasticity to " : "derivative by ") + run.study().variables[i].name,
+                scale * d.value};
       f.low = f.value - std::abs(scale) * d.error;
       f.high = f.value + std::abs(scale) * d.error;
       f.samples = run.evaluator.asked();
@@ -129,8 +122,7 @@ Answer elasticities(StudyRun& run) {
 void values_at_cube(const StudyRun& run, const std::vector<double>& cube, std::vector<double>& points) {
   const std::size_t n = run.law.dimension();
   std::vector<double> u(n), values(run.law.nominal().size());
-  for (std::size_t d = 0; d < n; ++d)
-    u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // ends of distributions without ends
+  for (std::size_t d = 0; d < n; ++d) u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // ends of distributions without ends
   run.law.values_at(u.data(), values.data());
   for (std::size_t d = 0; d < n; ++d) { // ranges have ends
     const std::size_t i = run.law.random()[d];
@@ -172,9 +164,7 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
   const double p = static_cast<double>(s.levels), jump = p / (2.0 * (p - 1.0));
   Trajectories drawn{jump, {}, {}};
   for (long t = 0; t < s.trajectories; ++t) {
-    const auto draw = [&](std::size_t k) {
-      return random.uniform(static_cast<std::uint64_t>(t), static_cast<std::uint32_t>(k));
-    };
+    const auto draw = [&](std::size_t k) { return random.uniform(static_cast<std::uint64_t>(t), static_cast<std::uint32_t>(k)); };
     std::vector<double> cube(n);
     std::vector<Trajectories::Move> moves(n);
     for (std::size_t d = 0; d < n; ++d) {
@@ -182,8 +172,7 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
       moves[d] = {d, draw(n + d) < 0.5 ? -1.0 : 1.0};
       if (moves[d].sign < 0.0) cube[d] += jump;
     }
-    for (std::size_t d = n; d-- > 1;)
-      std::swap(moves[d], moves[static_cast<std::size_t>(draw(2 * n + d) * static_cast<double>(d + 1))]);
+    for (std::size_t d = n; d-- > 1;) std::swap(moves[d], moves[static_cast<std::size_t>(draw(2 * n + d) * static_cast<double>(d + 1))]);
     values_at_cube(run, cube, drawn.points);
     for (const Trajectories::Move& move : moves) {
       cube[move.variable] += move.sign * jump;
@@ -226,19 +215,16 @@ Answer morris(StudyRun& run) {
       const Effects& e = effects[r][d];
       const std::string& variable = run.study().variables[run.law.random()[d]].name;
       const double size = static_cast<double>(e.all.size());
-      const double half = e.all.size() < 2 ? std::nan("")
-                                           : student_quantile(size - 1.0, 0.5 * (1.0 + s.confidence)) *
-                                                 e.deviation(true) / std::sqrt(size);
+      const double half =
+          e.all.size() < 2 ? std::nan("") : student_quantile(size - 1.0, 0.5 * (1.0 + s.confidence)) * e.deviation(true) / std::sqrt(size);
       const std::string status = missing ? "effects next to runs without result are left out" : "";
-      answer.findings.push_back({"morris", names[r], "mu* of " + variable, e.mean(true),
-                                 std::max(0.0, e.mean(true) - half), e.mean(true) + half, run.evaluator.asked(),
-                                 status});
-      answer.findings.push_back({"morris", names[r], "sigma of " + variable, e.deviation(false), std::nan(""),
-                                 std::nan(""), run.evaluator.asked(), status});
+      answer.findings.push_back({"morris", names[r], "mu* of " + variable, e.mean(true), std::max(0.0, e.mean(true) - half),
+                                 e.mean(true) + half, run.evaluator.asked(), status});
+      answer.findings.push_back(
+          {"morris", names[r], "sigma of " + variable, e.deviation(false), std::nan(""), std::nan(""), run.evaluator.asked(), status});
     }
   if (missing) answer.degrade(Standing::not_met);
-  if (missing)
-    answer.notes.push_back(std::to_string(missing) + " effects are not known: runs beside them have no result");
+  if (missing) answer.notes.push_back(std::to_string(missing) + " effects are not known: runs beside them have no result");
   return answer;
 }
 
@@ -250,8 +236,7 @@ Answer sobol(StudyRun& run) {
   const std::size_t n = run.law.dimension(), count = run.loaded.number_count();
   OT::RandomGenerator::SetSeed(static_cast<OT::UnsignedInteger>(run.study().seed));
   const OT::ComposedDistribution cube(OT::ComposedDistribution::DistributionCollection(n, OT::Uniform(0.0, 1.0)));
-  const OT::Sample design =
-      OT::SobolIndicesExperiment(cube, static_cast<OT::UnsignedInteger>(s.samples), false).generate();
+  const OT::Sample design = OT::SobolIndicesExperiment(cube, static_cast<OT::UnsignedInteger>(s.samples), false).generate();
   OT::Sample output(design.getSize(), count);
   run.evaluator.expect(static_cast<long>(design.getSize()));
   constexpr std::size_t k_block = 10000;
@@ -276,25 +261,19 @@ Answer sobol(StudyRun& run) {
   for (std::size_t r = 0; r < count; ++r) {
     bool is_whole = bad == 0;
     for (std::size_t i = 0; i < output.getSize() && is_whole; ++i) is_whole = std::isfinite(output(i, r));
-    const auto add = [&](const char* order, std::size_t d, double value, double low, double high,
-                         const std::string& status) {
-      answer.findings.push_back({"sobol", names[r],
-                                 std::string(order) + " of " + run.study().variables[run.law.random()[d]].name, value,
+    const auto add = [&](const char* order, std::size_t d, double value, double low, double high, const std::string& status) {
+      answer.findings.push_back({"sobol", names[r], std::string(order) + " of " + run.study().variables[run.law.random()[d]].name, value,
                                  low, high, run.evaluator.asked(), status});
     };
     try {
       if (!is_whole) throw OT::NotDefinedException(HERE);
-      OT::MartinezSensitivityAlgorithm indices(design, output.getMarginal(r),
-                                               static_cast<OT::UnsignedInteger>(s.samples));
+      OT::MartinezSensitivityAlgorithm indices(design, output.getMarginal(r), static_cast<OT::UnsignedInteger>(s.samples));
       indices.setUseAsymptoticDistribution(true);
       indices.setConfidenceLevel(s.confidence);
       const OT::Point first = indices.getFirstOrderIndices(), total = indices.getTotalOrderIndices();
-      const OT::Interval of_first = indices.getFirstOrderIndicesInterval(),
-                         of_total = indices.getTotalOrderIndicesInterval();
-      for (std::size_t d = 0; d < n; ++d)
-        add("first order", d, first[d], of_first.getLowerBound()[d], of_first.getUpperBound()[d], "");
-      for (std::size_t d = 0; d < n; ++d)
-        add("total", d, total[d], of_total.getLowerBound()[d], of_total.getUpperBound()[d], "");
+      const OT::Interval of_first = indices.getFirstOrderIndicesInterval(), of_total = indices.getTotalOrderIndicesInterval();
+      for (std::size_t d = 0; d < n; ++d) add("first order", d, first[d], of_first.getLowerBound()[d], of_first.getUpperBound()[d], "");
+      for (std::size_t d = 0; d < n; ++d) add("total", d, total[d], of_total.getLowerBound()[d], of_total.getUpperBound()[d], "");
     } catch (const OT::Exception&) {
       const std::string why = is_whole ? "it does not vary" : "some runs have no result, and indices need all of them";
       for (std::size_t d = 0; d < n; ++d) add("first order", d, std::nan(""), std::nan(""), std::nan(""), why);
@@ -322,8 +301,8 @@ Answer tornado(StudyRun& run) {
   Answer answer;
   const std::vector<std::string> names = run.loaded.number_names();
   for (std::size_t r = 0; r < count; ++r) {
-    answer.findings.push_back({"tornado", names[r], "value", numbers_of(rows[0], count)[r], std::nan(""), std::nan(""),
-                               run.evaluator.asked()});
+    answer.findings.push_back(
+        {"tornado", names[r], "value", numbers_of(rows[0], count)[r], std::nan(""), std::nan(""), run.evaluator.asked()});
     std::vector<Finding> bars;
     for (std::size_t d = 0; d < n; ++d) {
       const double low = numbers_of(rows[1 + 2 * d], count)[r], high = numbers_of(rows[2 + 2 * d], count)[r];
@@ -362,18 +341,16 @@ namespace {
 
 void check_sensitivity(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const auto& s = settings_of<SensitivitySettings>(loaded.study);
-  if (loaded.number_count() == 0)
-    problems.push_back({loaded.study.where, "a study of the kind 'sensitivity' needs a [[response]]"});
+  if (loaded.number_count() == 0) problems.push_back({loaded.study.where, "a study of the kind 'sensitivity' needs a [[response]]"});
   if (s.method == "elasticity") {
-    if (loaded.study.variables.empty())
-      problems.push_back({loaded.study.where, "a study of the kind 'sensitivity' needs a [[variable]]"});
+    if (loaded.study.variables.empty()) problems.push_back({loaded.study.where, "a study of the kind 'sensitivity' needs a [[variable]]"});
     return;
   }
   check_random(loaded, true, problems);
   if (s.method == "morris" && s.levels % 2) problems.push_back({s.where, "'levels' of Morris' screening must be even"});
   if (!loaded.study.correlations.empty())
-    problems.push_back({loaded.study.correlations.front().where,
-                        "'" + s.method + "' takes variables one by one: they must be independent"});
+    problems.push_back(
+        {loaded.study.correlations.front().where, "'" + s.method + "' takes variables one by one: they must be independent"});
 }
 
 Answer run_sensitivity(StudyRun& run) {

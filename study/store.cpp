@@ -32,9 +32,7 @@ Store::Statement::Statement(Store& store, const std::string& sql) : store_(store
 }
 Store::Statement::~Statement() { sqlite3_finalize(statement); }
 
-void Store::Statement::bind(int i, double x) {
-  std::isnan(x) ? sqlite3_bind_null(statement, i) : sqlite3_bind_double(statement, i, x);
-}
+void Store::Statement::bind(int i, double x) { std::isnan(x) ? sqlite3_bind_null(statement, i) : sqlite3_bind_double(statement, i, x); }
 void Store::Statement::bind(int i, long n) { sqlite3_bind_int64(statement, i, n); }
 void Store::Statement::bind(int i, const std::string& text) {
   sqlite3_bind_text(statement, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
@@ -69,8 +67,7 @@ std::string Store::Statement::text(int i) const {
   const int type = sqlite3_column_type(statement, i);
   if (type != SQLITE_TEXT && type != SQLITE_NULL) store_.damaged("a text is none");
   const unsigned char* bytes = sqlite3_column_text(statement, i);
-  return bytes ? std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement, i)))
-               : "";
+  return bytes ? std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement, i))) : "";
 }
 
 void Store::fail(const std::string& doing) {
@@ -80,7 +77,8 @@ void Store::fail(const std::string& doing) {
     why = "the disk is full, or a quota used up; what was finished before is kept: make room and run the study again";
   if (code == SQLITE_READONLY_ROLLBACK)
     why = "its last batch was cut off, and where it lies it cannot be written to take that back: copy it, with the file "
-          "'" + path_ + "-journal', to where it can";
+          "'" +
+          path_ + "-journal', to where it can";
   else if (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN || kind == SQLITE_PERM)
     why = "it, or its folder, cannot be written (" + why + ")";
   if (kind == SQLITE_NOTADB) why = "it is no store of a study";
@@ -116,8 +114,7 @@ void Store::commit_if_due() {
 // A lock of its own: SQLite's would keep readers out, too. The file stays open for as long as the database is.
 void Store::lock() {
   lock_file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_file_ < 0)
-    throw StoreError(path_, "the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
+  if (lock_file_ < 0) throw StoreError(path_, "the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
   if (flock(lock_file_, LOCK_EX | LOCK_NB) != 0)
     throw StoreError(path_, "another process is writing to the store '" + path_ + "': wait for it, or choose another store");
 }
@@ -181,20 +178,25 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   read_identity();
   check();
   if (identity_.version != identity.version)
-    throw StoreError(path, "the store '" + path + "' was made by version " + identity_.version + ", this is " +
-                     identity.version + ": begin it anew, or choose another store", {StoreMode::restart});
-  if (identity_.scene != identity.scene || identity_.variables != identity.variables ||
-      identity_.numbers != identity.numbers)
-    throw StoreError(path, "the store '" + path +
-                     "' is of another study: its models, variables, responses or limit states are not those of the "
-                     "study file any more" +
-                     changed_files(identity) + ". Begin it anew, which drops its " +
-                     std::to_string(size_) + " samples, or choose another store", {StoreMode::restart});
+    throw StoreError(path,
+                     "the store '" + path + "' was made by version " + identity_.version + ", this is " + identity.version +
+                         ": begin it anew, or choose another store",
+                     {StoreMode::restart});
+  if (identity_.scene != identity.scene || identity_.variables != identity.variables || identity_.numbers != identity.numbers)
+    throw StoreError(path,
+                     "the store '" + path +
+                         "' is of another study: its models, variables, responses or limit states are not those of the "
+                         "study file any more" +
+                         changed_files(identity) + ". Begin it anew, which drops its " + std::to_string(size_) +
+                         " samples, or choose another store",
+                     {StoreMode::restart});
   if (identity_.study != identity.study || identity_.kind != identity.kind) {
     if (mode == StoreMode::run)
-      throw StoreError(path, "the study has changed since the store '" + path + "' was made" + changed_files(identity) +
-                       ": go on with those of its " + std::to_string(size_) +
-                       " samples that are the same, begin it anew, or choose another store", {StoreMode::changed, StoreMode::restart});
+      throw StoreError(path,
+                       "the study has changed since the store '" + path + "' was made" + changed_files(identity) +
+                           ": go on with those of its " + std::to_string(size_) +
+                           " samples that are the same, begin it anew, or choose another store",
+                       {StoreMode::changed, StoreMode::restart});
     set("study", identity.study);
     set("kind", identity.kind);
     // What was found is of what was asked before: until it is found anew there is no answer.
@@ -299,8 +301,8 @@ void Store::hold() {
 void Store::check_kind() {
   if (pragma("application_id") != k_application) throw StoreError(path_, "'" + path_ + "' is no store of a study");
   if (const long layout = pragma("user_version"); layout != k_layout)
-    throw StoreError(path_, "the store '" + path_ + "' has the layout " + std::to_string(layout) +
-                     "; this program reads layout " + std::to_string(k_layout));
+    throw StoreError(path_, "the store '" + path_ + "' has the layout " + std::to_string(layout) + "; this program reads layout " +
+                                std::to_string(k_layout));
 }
 
 void Store::read_identity() {
@@ -455,8 +457,7 @@ std::vector<Store::CurvePoint> Store::histories() {
   return points;
 }
 
-void Store::set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes,
-                         const std::string& standing) {
+void Store::set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing) {
   begin();
   execute("DELETE FROM finding");
   execute("DELETE FROM note");
@@ -475,12 +476,11 @@ void Store::set_findings(const std::vector<Finding>& findings, const std::vector
 }
 
 std::vector<Finding> Store::all_of(const std::string& table) {
-  Statement s(*this, "SELECT method, subject, quantity, value, low, high, samples, status, place, fingerprint FROM " +
-                         quoted(table) + " ORDER BY place");
+  Statement s(*this, "SELECT method, subject, quantity, value, low, high, samples, status, place, fingerprint FROM " + quoted(table) +
+                         " ORDER BY place");
   std::vector<Finding> findings;
   while (s.step()) {
-    findings.push_back(
-        {s.text(0), s.text(1), s.text(2), s.number(3), s.number(4), s.number(5), s.integer(6), s.text(7)});
+    findings.push_back({s.text(0), s.text(1), s.text(2), s.number(3), s.number(4), s.number(5), s.integer(6), s.text(7)});
     const long place = static_cast<long>(findings.size());
     if (s.integer(8) != place || s.integer(9) != fingerprint_of(table, place, findings.back()))
       damaged("what was found is not what was written");
@@ -511,8 +511,7 @@ long Store::count_of(std::size_t i) {
 
 double Store::order_statistic(std::size_t i, long place) {
   const std::string column = quoted("r_" + identity_.numbers[i]);
-  Statement s(*this, "SELECT " + column + " FROM sample WHERE " + column + " IS NOT NULL ORDER BY " + column +
-                         " LIMIT 1 OFFSET ?");
+  Statement s(*this, "SELECT " + column + " FROM sample WHERE " + column + " IS NOT NULL ORDER BY " + column + " LIMIT 1 OFFSET ?");
   s.bind(1, place);
   return s.step() ? s.number(0) : std::nan("");
 }
@@ -521,8 +520,7 @@ std::vector<Store::Reason> Store::reasons() {
   Statement s(*this, "SELECT status, coalesce(reason, ''), count(*) AS n, min(number) FROM sample GROUP BY status, "
                      "reason ORDER BY status, n DESC, min(number)");
   std::vector<Reason> reasons;
-  while (s.step())
-    reasons.push_back({name_of(status_of(s.integer(0))), s.text(1), s.integer(2), s.integer(3)});
+  while (s.step()) reasons.push_back({name_of(status_of(s.integer(0))), s.text(1), s.integer(2), s.integer(3)});
   return reasons;
 }
 

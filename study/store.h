@@ -35,13 +35,13 @@ private:
 
 /// What a store holds besides samples.
 struct StoreIdentity {
-  std::string version;  ///< of the program
-  std::string study;    ///< text of the study file, with what it extends
+  std::string version; ///< of the program
+  std::string study;   ///< text of the study file, with what it extends
   std::string kind;
-  std::string scene;    ///< all that a sample's numbers depend on: models, variables, responses, limit states
+  std::string scene;                           ///< all that a sample's numbers depend on: models, variables, responses, limit states
   std::vector<std::string> variables, numbers; ///< names of columns
-  bool has_curves = false; ///< every sample has the values of its run at measured times
-  std::vector<InputFile> files{}; ///< all that the study and its models were read from
+  bool has_curves = false;                     ///< every sample has the values of its run at measured times
+  std::vector<InputFile> files{};              ///< all that the study and its models were read from
 };
 [[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
 
@@ -82,8 +82,7 @@ public:
   };
   void set_histories(const std::vector<CurvePoint>& points);
   [[nodiscard]] std::vector<CurvePoint> histories(); ///< empty if there are none
-  void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes,
-                    const std::string& standing);
+  void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing);
   [[nodiscard]] std::vector<Finding> findings();
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
@@ -144,8 +143,8 @@ private:
   int lock_file_ = -1;
   StoreIdentity identity_;
   long size_ = 0;
-  bool is_open_ = false;      ///< a transaction is
-  double committed_ = 0.0;    ///< when the last one ended, s
+  bool is_open_ = false;   ///< a transaction is
+  double committed_ = 0.0; ///< when the last one ended, s
 };
 
 } // namespace steplap::study

@@ -43,8 +43,7 @@ long Store::fingerprint_of(const std::string& key, const std::string& value) {
 long Store::fingerprint_of(const std::string& table, long place, const Finding& f) {
   Fingerprint fingerprint;
   fingerprint.add(place);
-  for (const std::string* text : {&table, &f.method, &f.subject, &f.quantity, &f.status})
-    fingerprint.add(std::string_view(*text));
+  for (const std::string* text : {&table, &f.method, &f.subject, &f.quantity, &f.status}) fingerprint.add(std::string_view(*text));
   for (const double x : {f.value, f.low, f.high}) fingerprint.add(x);
   fingerprint.add(f.samples);
   return number_of(fingerprint);
@@ -59,8 +58,9 @@ long Store::fingerprint_of(long place, const CurvePoint& p) {
 }
 
 void Store::damaged(const std::string& why) const {
-  throw StoreError(path_, "the store '" + path_ + "' is damaged, or was edited: " + why +
-                   ". Take a copy of it, or let the study make it anew", {StoreMode::restart});
+  throw StoreError(path_,
+                   "the store '" + path_ + "' is damaged, or was edited: " + why + ". Take a copy of it, or let the study make it anew",
+                   {StoreMode::restart});
 }
 
 SampleStatus Store::status_of(long status) const {
@@ -103,8 +103,7 @@ void Store::check() {
     const std::size_t found = findings().size(), noted = notes().size();
     (void)growth();
     (void)histories();
-    if (!setting("standing").empty() && setting("answer") != counts_text(found, noted))
-      damaged("some of what was found is missing");
+    if (!setting("standing").empty() && setting("answer") != counts_text(found, noted)) damaged("some of what was found is missing");
   } catch (...) {
     if (is_alone) end_reading();
     throw;

@@ -13,8 +13,7 @@ namespace {
 std::string records_text(const std::vector<InputFile>& files) {
   std::string text;
   for (const InputFile& file : files)
-    if (file.is_record)
-      text += "# record " + std::filesystem::path(file.path).filename().string() + " " + file.sha256 + "\n";
+    if (file.is_record) text += "# record " + std::filesystem::path(file.path).filename().string() + " " + file.sha256 + "\n";
   return text;
 }
 
@@ -37,16 +36,15 @@ StoreIdentity identity_of(const LoadedStudy& loaded) {
   }
   for (const ModelVariant& v : loaded.variants) scene += "# variant " + v.name + "\n";
   for (const Response& r : study.responses) {
-    scene += "# response " + r.name + " | " + r.model + " | " + r.channel + " | " + r.what + " | " + r.event + " | " +
-             r.element + " | " + r.expression;
+    scene += "# response " + r.name + " | " + r.model + " | " + r.channel + " | " + r.what + " | " + r.event + " | " + r.element + " | " +
+             r.expression;
     if (r.otherwise) scene += " | " + number_text(*r.otherwise);
     scene += "\n";
   }
   for (const LimitState& l : study.limit_states) scene += "# limit state " + l.name + " | " + l.expression + "\n";
   identity.has_curves = !study.histories.empty();
   for (const History& h : study.histories) {
-    scene += "# history " + h.name + " | " + h.model + " | " + h.channel +
-             (h.noise ? " | " + number_text(*h.noise) : "") + "\n";
+    scene += "# history " + h.name + " | " + h.model + " | " + h.channel + (h.noise ? " | " + number_text(*h.noise) : "") + "\n";
     for (std::size_t i = 0; i < h.t.size(); ++i) scene += number_text(h.t[i]) + " " + number_text(h.measured[i]) + "\n";
   }
   identity.files = loaded.files;

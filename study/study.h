@@ -24,12 +24,12 @@ struct Variable {
   std::vector<double> range; ///< [low, high]
   std::string distribution;
   std::optional<double> mean, standard_deviation, cov;
-  std::optional<double> low, high, mode;  ///< of a uniform, triangular or beta distribution
+  std::optional<double> low, high, mode; ///< of a uniform, triangular or beta distribution
   std::optional<double> shape, shape2, scale, location;
-  std::optional<double> lower, upper;     ///< the distribution is truncated there
-  std::string measured, column;           ///< a CSV file the distribution is fitted to
-  std::optional<double> value;            ///< where studies around a point stand; the model's own if not given
-  std::string unit;                       ///< of the paths; else as the file says
+  std::optional<double> lower, upper; ///< the distribution is truncated there
+  std::string measured, column;       ///< a CSV file the distribution is fitted to
+  std::optional<double> value;        ///< where studies around a point stand; the model's own if not given
+  std::string unit;                   ///< of the paths; else as the file says
   Location where;
 
   [[nodiscard]] bool has_distribution() const { return !distribution.empty(); }
@@ -46,12 +46,12 @@ struct Correlation {
 /// [[response]]: a number made of a run.
 struct Response {
   std::string name;
-  std::string model;   ///< name of the model it is taken from; needed where there are several
-  std::string channel; ///< pattern with * and ?
-  std::string what;    ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
-  std::string event, element; ///< patterns: events counted or timed
+  std::string model;               ///< name of the model it is taken from; needed where there are several
+  std::string channel;             ///< pattern with * and ?
+  std::string what;                ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
+  std::string event, element;      ///< patterns: events counted or timed
   std::optional<double> otherwise; ///< the time of an event that never happens; infinity if not given
-  std::string expression;     ///< of variables and of the responses before it
+  std::string expression;          ///< of variables and of the responses before it
   std::string unit;
   Location where;
 };
@@ -59,16 +59,16 @@ struct Response {
 /// [[history]]: a measured record that a fit compares a channel with.
 struct History {
   std::string name;
-  std::string model;   ///< needed where there are several
-  std::string channel; ///< its name
-  std::string file;    ///< CSV
+  std::string model;                    ///< needed where there are several
+  std::string channel;                  ///< its name
+  std::string file;                     ///< CSV
   std::string time = "1", column = "2"; ///< columns, by name or number
   std::string unit, time_unit;          ///< of the columns; "": the channel's, seconds
   std::string noise_text;               ///< as given
   std::optional<double> from, to;       ///< s: other rows are left out
   std::optional<double> noise;          ///< standard deviation of a measured value, in the channel's unit
   std::string channel_unit;
-  std::vector<double> t, measured;      ///< as read: s, and the channel's unit
+  std::vector<double> t, measured; ///< as read: s, and the channel's unit
   Location where;
 };
 
@@ -99,7 +99,7 @@ struct Study {
   std::string kind;
   std::vector<std::string> models; ///< paths of files
   long seed = 1;
-  std::string failed = "bounds";   ///< what runs that do not reach their end count as
+  std::string failed = "bounds"; ///< what runs that do not reach their end count as
   std::vector<Variable> variables;
   std::vector<Correlation> correlations;
   std::vector<Response> responses;
@@ -113,9 +113,7 @@ struct Study {
 };
 
 /// The settings of a study whose kind has T. Throws std::bad_cast if its kind has others.
-template <class T> [[nodiscard]] const T& settings_of(const Study& study) {
-  return dynamic_cast<const T&>(*study.settings);
-}
+template <class T> [[nodiscard]] const T& settings_of(const Study& study) { return dynamic_cast<const T&>(*study.settings); }
 
 /// What a table of a study file may hold.
 struct StudyTable {

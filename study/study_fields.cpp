@@ -13,8 +13,7 @@ FieldTable header_fields() {
   FieldTable t;
   t.add("title", &Study::title).doc("one line that names the study");
   t.add("kind", &Study::kind).required().doc("what is asked: the kind of study");
-  t.add("model", &Study::models)
-      .doc("model files, relative to the study; none: limit states are expressions of variables");
+  t.add("model", &Study::models).doc("model files, relative to the study; none: limit states are expressions of variables");
   t.add("seed", &Study::seed).at_least(0).doc("of all random numbers");
   t.add("failed", &Study::failed)
       .one_of({"bounds", "unsafe", "safe", "stop"})
@@ -44,14 +43,10 @@ FieldTable variable_fields(const std::string& unit) {
   t.add("shape", &Variable::shape).positive().doc("k of a Weibull distribution, alpha of a beta distribution");
   t.add("shape2", &Variable::shape2).positive().doc("beta of a beta distribution");
   t.add("scale", &Variable::scale).in(unit).positive().doc("of a Weibull, Gumbel or exponential distribution");
-  t.add("location", &Variable::location)
-      .in(unit)
-      .doc("shift of a lognormal, Weibull or exponential distribution, mode of a Gumbel's");
+  t.add("location", &Variable::location).in(unit).doc("shift of a lognormal, Weibull or exponential distribution, mode of a Gumbel's");
   t.add("lower", &Variable::lower).in(unit).doc("the distribution is truncated below");
   t.add("upper", &Variable::upper).in(unit).doc("the distribution is truncated above");
-  t.add("measured", &Variable::measured)
-      .as(FieldType::file)
-      .doc("CSV file of measurements, in SI, that the distribution is fitted to");
+  t.add("measured", &Variable::measured).as(FieldType::file).doc("CSV file of measurements, in SI, that the distribution is fitted to");
   t.add("column", &Variable::column).doc("its column, by name or number");
   t.add("value", &Variable::value)
       .in(unit)
@@ -73,21 +68,17 @@ FieldTable correlation_fields() {
 FieldTable response_fields() {
   FieldTable t;
   t.add("name", &Response::name).required().doc("letters, digits and _: expressions use it");
-  t.add("model", &Response::model)
-      .doc("the model it is taken from, where there are several: the file's name without ending");
-  t.add("channel", &Response::channel)
-      .doc("channel of the run, a pattern with * and ?: the outermost of all that match");
+  t.add("model", &Response::model).doc("the model it is taken from, where there are several: the file's name without ending");
+  t.add("channel", &Response::channel).doc("channel of the run, a pattern with * and ?: the outermost of all that match");
   t.add("what", &Response::what)
-      .one_of({"highest", "lowest", "largest", "time_of_highest", "time_of_lowest", "time_of_largest", "final",
-               "initial", "mean", "path", "count", "time_of_first", "verdict"})
+      .one_of({"highest", "lowest", "largest", "time_of_highest", "time_of_lowest", "time_of_largest", "final", "initial", "mean", "path",
+               "count", "time_of_first", "verdict"})
       .doc("extremes are located, largest is of the absolute value; mean and path (sum of all ways) are of the samples "
            "every output.step; count and "
            "time_of_first are of events; verdict: 0 hold, 1 open, 2 inspect, 3 reject");
   t.add("event", &Response::event).doc("pattern of events, as events.csv writes them, for count and time_of_first");
   t.add("element", &Response::element).doc("pattern of the elements whose events count; all if not given");
-  t.add("otherwise", &Response::otherwise)
-      .in("s")
-      .doc("the time of an event that never happens; infinite if not given");
+  t.add("otherwise", &Response::otherwise).in("s").doc("the time of an event that never happens; infinite if not given");
   t.add("expression", &Response::expression).doc("of variables and of responses that stand before it");
   t.add("unit", &Response::unit).doc("of an expression, for tables");
   return t;
@@ -96,17 +87,14 @@ FieldTable response_fields() {
 FieldTable limit_state_fields() {
   FieldTable t;
   t.add("name", &LimitState::name).required().doc("letters, digits and _: expressions of later limit states use it");
-  t.add("expression", &LimitState::expression)
-      .required()
-      .doc("of variables, responses and limit states before it; negative: failure");
+  t.add("expression", &LimitState::expression).required().doc("of variables, responses and limit states before it; negative: failure");
   return t;
 }
 
 FieldTable history_fields() {
   FieldTable t;
   t.add("name", &History::name).required().doc("letters, digits and _");
-  t.add("model", &History::model)
-      .doc("the model it was measured of, where there are several: the file's name without ending");
+  t.add("model", &History::model).doc("the model it was measured of, where there are several: the file's name without ending");
   t.add("channel", &History::channel).required().doc("channel of the run that was measured: its name");
   t.add("file", &History::file).required().as(FieldType::file).doc("CSV file of the record");
   t.add("time", &History::time).doc("column of the times, by name or number");
@@ -123,15 +111,13 @@ FieldTable history_fields() {
 }
 
 std::vector<StudyTable> study_tables() {
-  std::vector<StudyTable> tables{
-      {"", "top-level keys of a study file", false, header_fields()},
-      {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
-      {"correlation", "of two variables with distributions", true, correlation_fields()},
-      {"response", "a number made of a run", true, response_fields()},
-      {"limit_state", "fails where its expression is negative", true, limit_state_fields()},
-      {"history", "a measured record that a fit compares a channel with", true, history_fields()}};
-  for (const StudyKind& kind : study_kinds())
-    tables.push_back({kind.name, "settings of kind = \"" + kind.name + "\"", false, kind.fields});
+  std::vector<StudyTable> tables{{"", "top-level keys of a study file", false, header_fields()},
+                                 {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
+                                 {"correlation", "of two variables with distributions", true, correlation_fields()},
+                                 {"response", "a number made of a run", true, response_fields()},
+                                 {"limit_state", "fails where its expression is negative", true, limit_state_fields()},
+                                 {"history", "a measured record that a fit compares a channel with", true, history_fields()}};
+  for (const StudyKind& kind : study_kinds()) tables.push_back({kind.name, "settings of kind = \"" + kind.name + "\"", false, kind.fields});
   return tables;
 }
 

@@ -25,12 +25,12 @@ struct StudyKind {
   std::string doc;
   FieldTable fields; ///< of its table
   std::shared_ptr<KindSettings> (*create)() = nullptr;
-  std::vector<std::string> shown{};   ///< fields of its table that the page tells
-  bool takes_histories = false;       ///< measured records
-  bool draws_jointly = false;         ///< variables are drawn with their correlations, not set one by one
-  bool shows_running_means = false;   ///< samples drawn one by one: the page shows how shares of failures and means settled
-  std::vector<FindingPart> parts{};   ///< of its findings, by their quantities
-  std::vector<PointRole> points{};    ///< its findings that are places in the space of the variables
+  std::vector<std::string> shown{}; ///< fields of its table that the page tells
+  bool takes_histories = false;     ///< measured records
+  bool draws_jointly = false;       ///< variables are drawn with their correlations, not set one by one
+  bool shows_running_means = false; ///< samples drawn one by one: the page shows how shares of failures and means settled
+  std::vector<FindingPart> parts{}; ///< of its findings, by their quantities
+  std::vector<PointRole> points{};  ///< its findings that are places in the space of the variables
   /// Adds what the kind needs besides what the file says: limit states, variables, variants of the model.
   void (*prepare)(LoadedStudy& loaded) = nullptr;
   /// Appends what is wrong with the study for this kind; nothing has run.

@@ -92,14 +92,11 @@ public:
 
 private:
   void add(const Location& where, std::string message) { problems_.push_back({where, std::move(message)}); }
-  void add_all(const ModelError& error) {
-    problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
-  }
+  void add_all(const ModelError& error) { problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end()); }
   void stop_if_wrong() {
     if (problems_.empty()) return;
-    std::stable_sort(problems_.begin(), problems_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-      return a.where.file == b.where.file && a.where.line < b.where.line;
-    });
+    std::stable_sort(problems_.begin(), problems_.end(),
+                     [](const Diagnostic& a, const Diagnostic& b) { return a.where.file == b.where.file && a.where.line < b.where.line; });
     throw ModelError(problems_);
   }
 
@@ -109,10 +106,8 @@ private:
     const std::vector<GivenField> given = read_fields(table, fields, object, reading, problems_);
     if (problems_.size() != before) return;
     for (const GivenField& field : given) {
-      const std::string problem =
-          field.is_usable && field.node ? range_problem(*field.field, field.field->get(object)) : "";
-      if (!problem.empty())
-        add(field.node->where(), "'" + field.field->name + "' of " + reading.subject + " " + problem);
+      const std::string problem = field.is_usable && field.node ? range_problem(*field.field, field.field->get(object)) : "";
+      if (!problem.empty()) add(field.node->where(), "'" + field.field->name + "' of " + reading.subject + " " + problem);
     }
   }
 
@@ -128,9 +123,8 @@ private:
     const std::vector<std::string> kinds = kind_names();
     kind_ = find_kind(study_.kind);
     if (!kind_)
-      add(document_.root.find("kind")->where(), "there is no kind of study '" + study_.kind + "'" +
-                                                    did_you_mean(study_.kind, kinds) +
-                                                    "; those there are: " + list_text(kinds));
+      add(document_.root.find("kind")->where(),
+          "there is no kind of study '" + study_.kind + "'" + did_you_mean(study_.kind, kinds) + "; those there are: " + list_text(kinds));
   }
 
   void load_models() {
@@ -138,8 +132,7 @@ private:
     for (std::size_t i = 0; i < study_.models.size(); ++i) {
       const std::filesystem::path given = study_.models[i];
       const std::string path =
-          given.is_absolute() ? given.string()
-                              : (std::filesystem::path(study_.file).parent_path() / given).lexically_normal().string();
+          given.is_absolute() ? given.string() : (std::filesystem::path(study_.file).parent_path() / given).lexically_normal().string();
       if (!std::filesystem::exists(path)) {
         add(node->children[i].where(), "there is no model file '" + path + "'");
         continue;
@@ -169,8 +162,8 @@ private:
     if (!array) return;
     if (array->type == Node::Type::array && array->children.empty()) return;
     if (!array->is_array_of_tables())
-      return add(array->where_key(), "'" + name + "' must be an array of tables, each begun by [[" + name + "]], not " +
-                                         array->type_name());
+      return add(array->where_key(),
+                 "'" + name + "' must be an array of tables, each begun by [[" + name + "]], not " + array->type_name());
     for (Node& entry : array->children) read(entry);
   }
 
@@ -183,12 +176,10 @@ private:
     if (!table) {
       if (&kind == kind_)
         for (const Field& field : kind.fields.fields())
-          if (field.is_required)
-            return add(study_.where, "a study of the kind '" + name + "' needs a table [" + name + "]");
+          if (field.is_required) return add(study_.where, "a study of the kind '" + name + "' needs a table [" + name + "]");
       return;
     }
-    if (!table->is_table())
-      return add(table->where_key(), "'" + name + "' must be a table, [" + name + "], not " + table->type_name());
+    if (!table->is_table()) return add(table->where_key(), "'" + name + "' must be a table, [" + name + "], not " + table->type_name());
     settings->where = table->where();
     TableReading reading;
     reading.subject = "[" + name + "]";
@@ -199,23 +190,20 @@ private:
   std::string unit_of_paths(const Node& entry, Variable& v) {
     const Node* paths = entry.find("path");
     const Node* model = entry.find("model");
-    const bool is_factor = entry.find("factor") && entry.find("factor")->type == Node::Type::boolean &&
-                           std::get<bool>(entry.find("factor")->scalar);
+    const bool is_factor =
+        entry.find("factor") && entry.find("factor")->type == Node::Type::boolean && std::get<bool>(entry.find("factor")->scalar);
     if (model && model->type == Node::Type::text && !find_model(model->text()))
       add(model->where(), "there is no model '" + model->text() + "'" + did_you_mean(model->text(), model_names()));
     if (!paths || paths->type != Node::Type::array || paths->children.empty()) {
       if (const Node* unit = entry.find("unit"); unit && unit->type == Node::Type::text) {
-        if (!parse_quantity("1 " + unit->text(), unit->text())
-                 .problem.empty()) // a bare number is none where a unit is wanted
+        if (!parse_quantity("1 " + unit->text(), unit->text()).problem.empty()) // a bare number is none where a unit is wanted
           add(unit->where(), "'" + unit->text() + "' is not a unit");
         return unit->text();
       }
       return "";
     }
-    if (models_.empty())
-      add(paths->where(), "the study has no model, so that variable '" + entry_name(entry) + "' cannot have a path");
-    if (const Node* unit = entry.find("unit"))
-      add(unit->where(), "a variable with a path has the unit of the model's field");
+    if (models_.empty()) add(paths->where(), "the study has no model, so that variable '" + entry_name(entry) + "' cannot have a path");
+    if (const Node* unit = entry.find("unit")) add(unit->where(), "a variable with a path has the unit of the model's field");
     std::optional<std::string> common;
     for (const Node& path : paths->children) {
       if (path.type != Node::Type::text) continue;
@@ -224,13 +212,13 @@ private:
         try {
           const std::string unit = unit_of(m->given, path.text());
           if (common && *common != unit && !is_factor)
-            add(path.where(), "'" + path.text() + "' is in '" + unit + "', the path before it in '" + *common +
-                                  "': one value cannot be both");
+            add(path.where(),
+                "'" + path.text() + "' is in '" + unit + "', the path before it in '" + *common + "': one value cannot be both");
           if (!common) common = unit;
         } catch (const ModelError& error) {
           for (const Diagnostic& d : error.diagnostics())
-            add(path.where(), "path '" + path.text() + "' of variable '" + entry_name(entry) + "' in model '" +
-                                  m->name + "': " + d.message);
+            add(path.where(),
+                "path '" + path.text() + "' of variable '" + entry_name(entry) + "' in model '" + m->name + "': " + d.message);
         }
       }
     }
@@ -258,13 +246,12 @@ private:
     if (ways > 1) add(v.where, subject + ": 'values', 'range' and 'distribution' exclude each other");
     if (ways == 0 && !v.value) add(v.where, subject + " needs 'values', 'range', 'distribution' or 'value'");
     if (entry.find("values") && v.values.empty()) add(entry.find("values")->where(), subject + ": 'values' is empty");
-    if (entry.find("range") && v.range.size() != 2)
-      add(entry.find("range")->where(), subject + ": 'range' is [low, high]");
+    if (entry.find("range") && v.range.size() != 2) add(entry.find("range")->where(), subject + ": 'range' is [low, high]");
     if (v.range.size() == 2 && !(v.range[0] < v.range[1]))
       add(entry.find("range")->where(), subject + ": the first of 'range' must be below the second");
     if (!v.has_distribution())
-      for (const char* key : {"mean", "standard_deviation", "cov", "low", "high", "mode", "shape", "shape2", "scale",
-                              "location", "lower", "upper", "measured", "column"})
+      for (const char* key : {"mean", "standard_deviation", "cov", "low", "high", "mode", "shape", "shape2", "scale", "location", "lower",
+                              "upper", "measured", "column"})
         if (const Node* node = entry.find(key))
           add(node->where_key(), "'" + std::string(key) + "' of " + subject + " goes with 'distribution'");
     if (v.is_factor && v.paths.empty()) add(v.where, subject + ": 'factor' needs a path, whose value it multiplies");
@@ -296,19 +283,15 @@ private:
     if (r.model.empty() && models_.size() > 1)
       return add(r.where, subject + ": say which 'model' it is taken from: " + list_text(model_names()));
     const StudyModel* model = r.model.empty() ? models_.front().get() : find_model(r.model);
-    if (!model)
-      return add(entry.find("model")->where(),
-                 "there is no model '" + r.model + "'" + did_you_mean(r.model, model_names()));
+    if (!model) return add(entry.find("model")->where(), "there is no model '" + r.model + "'" + did_you_mean(r.model, model_names()));
     r.model = model->name;
     const bool is_of_events = r.what == "count" || r.what == "time_of_first", is_verdict = r.what == "verdict";
     if (!is_of_events)
       for (const char* key : {"event", "element", "otherwise"})
-        if (const Node* node = entry.find(key))
-          add(node->where_key(), "'" + std::string(key) + "' of " + subject + " is for events only");
+        if (const Node* node = entry.find(key)) add(node->where_key(), "'" + std::string(key) + "' of " + subject + " is for events only");
     if (is_of_events) return check_events(entry, r, *model);
     if (is_verdict) {
-      if (const Node* node = entry.find("channel"))
-        add(node->where_key(), subject + ": a verdict is of the whole run, not of a channel");
+      if (const Node* node = entry.find("channel")) add(node->where_key(), subject + ": a verdict is of the whole run, not of a channel");
       return;
     }
     check_channel(entry, r, *model);
@@ -321,17 +304,15 @@ private:
     if (event_kinds_matching(r.event).none()) {
       std::vector<std::string> words;
       for (std::size_t k = 1; k < k_event_kinds; ++k) words.emplace_back(words_of(static_cast<EventKind>(k)));
-      add(entry.find("event")->where(), "no kind of event matches '" + r.event + "'" + did_you_mean(r.event, words) +
-                                            "; there are " + list_text(words));
+      add(entry.find("event")->where(),
+          "no kind of event matches '" + r.event + "'" + did_you_mean(r.event, words) + "; there are " + list_text(words));
     }
     if (r.element.empty()) return;
     const auto& names = model.system->element_names;
-    if (std::none_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return matches_pattern(name, r.element); }))
+    if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches_pattern(name, r.element); }))
       add(entry.find("element")->where(),
           "no element of model '" + model.name + "' matches '" + r.element + "'" + did_you_mean(r.element, names));
-    if (r.what == "count" && entry.find("otherwise"))
-      add(entry.find("otherwise")->where_key(), "'otherwise' is for 'time_of_first'");
+    if (r.what == "count" && entry.find("otherwise")) add(entry.find("otherwise")->where_key(), "'otherwise' is for 'time_of_first'");
   }
 
   static bool is_on_request(const Response& r, const StudyModel& model) {
@@ -351,24 +332,20 @@ private:
     const Location where = entry.find("channel")->where();
     if (found.empty()) {
       if (is_on_request(r, model))
-        return add(where, "channel '" + r.channel + "' of model '" + model.name +
-                              "' is made on request only: write also = [\"" + r.channel +
-                              "\"] below the model's [output]");
+        return add(where, "channel '" + r.channel + "' of model '" + model.name + "' is made on request only: write also = [\"" +
+                              r.channel + "\"] below the model's [output]");
       std::vector<std::string> names;
       for (const Channel& c : model.system->channels) names.push_back(c.name);
-      return add(where, "no channel of model '" + model.name + "' is called '" + r.channel + "'" +
-                            did_you_mean(r.channel, names));
+      return add(where, "no channel of model '" + model.name + "' is called '" + r.channel + "'" + did_you_mean(r.channel, names));
     }
     for (const Channel* c : found)
       if (c->unit != found.front()->unit)
-        return add(where, "'" + found.front()->name + "' and '" + c->name +
-                              "' are of different units: the outermost of both means nothing");
+        return add(where,
+                   "'" + found.front()->name + "' and '" + c->name + "' are of different units: the outermost of both means nothing");
     const bool is_extreme = r.what.find("est") != std::string::npos;
     for (const Channel* c : found)
-      if (is_extreme && !c->has_extremes)
-        return add(where, "'" + c->name + "' passes through infinity: it has no extremes");
-    if (!is_extreme && found.size() > 1)
-      return add(where, subject + ": '" + r.what + "' is of one channel, and several match");
+      if (is_extreme && !c->has_extremes) return add(where, "'" + c->name + "' passes through infinity: it has no extremes");
+    if (!is_extreme && found.size() > 1) return add(where, subject + ": '" + r.what + "' is of one channel, and several match");
     r.unit = r.what.starts_with("time_of") ? "s" : found.front()->unit;
   }
 
@@ -394,9 +371,7 @@ private:
       add(h.where, "history '" + h.name + "': say which 'model' was measured: " + list_text(model_names()));
     if (problems_.size() != before) return;
     const StudyModel* model = h.model.empty() ? models_.front().get() : find_model(h.model);
-    if (!model)
-      return add(entry.find("model")->where(),
-                 "there is no model '" + h.model + "'" + did_you_mean(h.model, model_names()));
+    if (!model) return add(entry.find("model")->where(), "there is no model '" + h.model + "'" + did_you_mean(h.model, model_names()));
     h.model = model->name;
     load_history(entry, *model, h, problems_);
     study_.histories.push_back(std::move(h));
@@ -410,8 +385,7 @@ private:
     const std::size_t before = problems_.size();
     read_table(entry, correlation_fields(), &c, reading);
     if (problems_.size() != before) return;
-    if (c.between.size() != 2 || c.between[0] == c.between[1])
-      return add(c.where, "'between' of [[correlation]] names two variables");
+    if (c.between.size() != 2 || c.between[0] == c.between[1]) return add(c.where, "'between' of [[correlation]] names two variables");
     for (std::size_t i = 0; i < 2; ++i) {
       const int v = study_.index_of_variable(c.between[i]);
       std::vector<std::string> names;
@@ -433,8 +407,7 @@ private:
       const std::string problem = name_problem(name);
       if (!problem.empty()) add(where, "the name of " + noun + " '" + name + "' " + problem);
       else if (!taken.insert(name).second)
-        add(where, noun + " '" + name +
-                       "': the name is taken; variables, responses, limit states and histories share their names");
+        add(where, noun + " '" + name + "': the name is taken; variables, responses, limit states and histories share their names");
     };
     for (const Variable& v : study_.variables) check("variable", v.name, v.where);
     for (const Response& r : study_.responses) check("response", r.name, r.where);
@@ -446,10 +419,8 @@ private:
         for (const auto& m : models_) {
           if (!is_set_in(v, *m)) continue;
           const auto [other, is_new] = paths.try_emplace({m->name, path}, &v);
-          if (!is_new && other->second == &v)
-            add(v.where, "variable '" + v.name + "' names the path '" + path + "' twice");
-          else if (!is_new)
-            add(v.where, "'" + path + "' is set by two variables, '" + other->second->name + "' and '" + v.name + "'");
+          if (!is_new && other->second == &v) add(v.where, "variable '" + v.name + "' names the path '" + path + "' twice");
+          else if (!is_new) add(v.where, "'" + path + "' is set by two variables, '" + other->second->name + "' and '" + v.name + "'");
         }
   }
 
@@ -507,8 +478,7 @@ private:
             Model trial = m->given;
             for (const double value : values) set_value(trial, path, factor * value);
           } catch (const ModelError& error) {
-            for (const Diagnostic& d : error.diagnostics())
-              add(v.where, "variable '" + v.name + "', path '" + path + "': " + d.message);
+            for (const Diagnostic& d : error.diagnostics()) add(v.where, "variable '" + v.name + "', path '" + path + "': " + d.message);
           }
         }
     }
@@ -541,9 +511,11 @@ private:
 LoadedStudy read_study(const std::string& path) {
   std::error_code ignored;
   if (is_standard_input(path))
-    throw ModelError(Location{shown_input(path), 0, 0}, "cannot read the study: studies are read more than once, and their models stand beside them. Give a file");
+    throw ModelError(Location{shown_input(path), 0, 0},
+                     "cannot read the study: studies are read more than once, and their models stand beside them. Give a file");
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
-    throw ModelError(Location{path, 0, 0}, "cannot read the study: it is no file. Studies are read more than once, so pipes cannot be taken");
+    throw ModelError(Location{path, 0, 0},
+                     "cannot read the study: it is no file. Studies are read more than once, so pipes cannot be taken");
   const InputFiles inputs;
   LoadedStudy loaded = Reader(load_document(path), path).read();
   loaded.study.text = model_source_text(path);

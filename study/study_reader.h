@@ -14,7 +14,7 @@ namespace steplap::study {
 struct StudyModel {
   std::string path, name; ///< name: the file's without ending
   Model given;
-  std::string text;       ///< effective model, as TOML that stands alone
+  std::string text;             ///< effective model, as TOML that stands alone
   std::vector<InputFile> files; ///< that it was read from: the model, what it extends, its records
   std::unique_ptr<System> system;
   std::vector<double> base; ///< per variable: what the first of its paths holds; not-a-number if it has none here
@@ -30,8 +30,8 @@ struct ModelVariant {
 struct LoadedStudy {
   Study study;
   std::vector<std::shared_ptr<const StudyModel>> models;
-  std::vector<double> nominal; ///< per variable
-  std::vector<InputFile> files; ///< that the study was read from, without its models
+  std::vector<double> nominal;        ///< per variable
+  std::vector<InputFile> files;       ///< that the study was read from, without its models
   std::vector<ModelVariant> variants; ///< not empty: the last variable says which, from 1; 0 is the model as it is
 
   /// Values, responses and limit states: the names that expressions may use, in the order of the numbers.

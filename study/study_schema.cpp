@@ -50,8 +50,7 @@ Json object_schema(const StudyTable& table) {
 } // namespace
 
 std::string study_schema() {
-  Json root{
-      {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "steplap study"}, {"type", "object"}};
+  Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "steplap study"}, {"type", "object"}};
   Json properties = Json::object();
   for (const StudyTable& table : study_tables()) {
     if (table.name.empty()) {

@@ -67,10 +67,8 @@ public:
         if (failures == 0.0) return failed("no failure was met: its levels came no nearer");
         const bool is_counted = share < k_share;
         if (level == 0)
-          return {share, std::sqrt((1.0 - share) / failures), static_cast<long>(failures), static_cast<long>(size_),
-                  is_counted, ""};
-        if (is_counted && failures < 10.0)
-          return failed("most samples have one value, and too few of them fail to be counted");
+          return {share, std::sqrt((1.0 - share) / failures), static_cast<long>(failures), static_cast<long>(size_), is_counted, ""};
+        if (is_counted && failures < 10.0) return failed("most samples have one value, and too few of them fail to be counted");
         return {probability * share, std::sqrt(square + variation(0.0, share)), 0, 0, false, ""};
       }
       if (probability < k_least) return failed("its levels did not arrive at failure");
@@ -90,8 +88,7 @@ private:
   std::vector<double> values_at(const std::vector<double>& points) {
     constexpr double k_extreme = 1e300;
     std::vector<double> g;
-    for (const LimitValue& value : limit_.at(points))
-      g.push_back(value.is_bad ? (is_bad_unsafe_ ? -k_extreme : k_extreme) : value.g);
+    for (const LimitValue& value : limit_.at(points)) g.push_back(value.is_bad ? (is_bad_unsafe_ ? -k_extreme : k_extreme) : value.g);
     return g;
   }
 
@@ -164,9 +161,7 @@ private:
   double width_ = 0.7;
 };
 
-Share with_test(double p, double cov, const Interval& interval, const Interval& test) {
-  return {p, cov * p, interval, test};
-}
+Share with_test(double p, double cov, const Interval& interval, const Interval& test) { return {p, cov * p, interval, test}; }
 
 // The interval is of the logarithm: probabilities of repetitions scatter by factors.
 Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) {
@@ -181,8 +176,7 @@ Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) 
   }
   if (std::all_of(all.begin(), all.end(), [](const Repetition& r) { return r.samples > 0; })) {
     double failures = 0.0, samples = 0.0;
-    for (const Repetition& r : all)
-      failures += static_cast<double>(r.failures), samples += static_cast<double>(r.samples);
+    for (const Repetition& r : all) failures += static_cast<double>(r.failures), samples += static_cast<double>(r.samples);
     return with_test(failures / samples, std::sqrt((1.0 - failures / samples) / failures),
                      proportion_interval(failures, samples, target.confidence),
                      proportion_interval(failures, samples, target.test_confidence));
@@ -206,8 +200,7 @@ void add_problems(const std::vector<Repetition>& all, Estimate& e) {
   const auto failed = std::count_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
   if (failed == 0) return;
   const auto first = std::find_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
-  e.status =
-      std::to_string(failed) + " of " + std::to_string(all.size()) + " repetitions have no result: " + first->problem;
+  e.status = std::to_string(failed) + " of " + std::to_string(all.size()) + " repetitions have no result: " + first->problem;
   e.is_target_met = false;
   e.is_trusted = e.is_trusted && failed == static_cast<long>(all.size());
 }
@@ -231,8 +224,8 @@ Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target) {
     rest.samples = std::max(target.samples - course.used(), target.samples / 2);
     e = monte_carlo(limit, rest);
     e.method = "subset";
-    e.status += std::string(e.status.empty() ? "" : "; ") +
-                "most samples have one value, so that no level lies between: failures were counted";
+    e.status +=
+        std::string(e.status.empty() ? "" : "; ") + "most samples have one value, so that no level lies between: failures were counted";
     e.samples = course.used();
     return e;
   }
@@ -243,8 +236,8 @@ Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target) {
   e.is_target_met = e.cov <= target.cov;
   if (!e.is_target_met) {
     char text[120];
-    std::snprintf(text, sizeof text, "%zu repetitions: coefficient of variation %.3g, %.3g was asked for",
-                  unsafe.size(), e.cov, target.cov);
+    std::snprintf(text, sizeof text, "%zu repetitions: coefficient of variation %.3g, %.3g was asked for", unsafe.size(), e.cov,
+                  target.cov);
     e.status = text;
   }
   add_problems(unsafe, e);

@@ -14,10 +14,7 @@ FieldTable sweep_fields() {
       .one_of({"grid", "list", "one_at_a_time"})
       .doc("grid: all combinations; list: the first values of all, the second, ...; one at a time: the others stay at "
            "their value");
-  t.add("points", &SweepSettings::points)
-      .at_least(2)
-      .at_most(1e6)
-      .doc("of a variable with a range, or a distribution (from 5 % to 95 %)");
+  t.add("points", &SweepSettings::points).at_least(2).at_most(1e6).doc("of a variable with a range, or a distribution (from 5 % to 95 %)");
   return t;
 }
 
@@ -34,8 +31,7 @@ std::vector<double> levels_of(const StudyRun& run, std::size_t i) {
   std::vector<double> levels;
   for (std::size_t k = 0; k < n; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(n - 1);
-    if (v.has_distribution())
-      levels.push_back(run.law.quantile(static_cast<std::size_t>(found - random.begin()), 0.05 + 0.9 * share));
+    if (v.has_distribution()) levels.push_back(run.law.quantile(static_cast<std::size_t>(found - random.begin()), 0.05 + 0.9 * share));
     else levels.push_back(k + 1 == n ? v.range[1] : v.range[0] + share * (v.range[1] - v.range[0]));
   }
   return levels;
@@ -128,8 +124,7 @@ void sweep_list(const std::vector<std::vector<double>>& levels, Sweeper& sweeper
   }
 }
 
-void sweep_one_at_a_time(const std::vector<std::vector<double>>& levels, const std::vector<double>& nominal,
-                         Sweeper& sweeper) {
+void sweep_one_at_a_time(const std::vector<std::vector<double>>& levels, const std::vector<double>& nominal, Sweeper& sweeper) {
   sweeper.add(nominal);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     std::vector<double> point = nominal;
@@ -153,15 +148,13 @@ void check_sweep(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
     count *= levels;
     if (s.design != "list" || levels == 1.0) continue;
     if (longest && static_cast<double>(longest) != levels)
-      problems.push_back(
-          {v.where, "variable '" + v.name + "' has " + number_text(levels) + " values, those before it " +
-                        std::to_string(longest) +
-                        ": a sweep of the design \"list\" takes the first of all, then the second, and so on"});
+      problems.push_back({v.where, "variable '" + v.name + "' has " + number_text(levels) + " values, those before it " +
+                                       std::to_string(longest) +
+                                       ": a sweep of the design \"list\" takes the first of all, then the second, and so on"});
     longest = static_cast<std::size_t>(levels);
   }
   if (study.variables.empty()) problems.push_back({study.where, "a sweep needs a [[variable]]"});
-  if (s.design == "grid" && count > 1e9)
-    problems.push_back({s.where, "the grid has " + number_text(count) + " points: too many"});
+  if (s.design == "grid" && count > 1e9) problems.push_back({s.where, "the grid has " + number_text(count) + " points: too many"});
 }
 
 long points_of(const std::string& design, const std::vector<std::vector<double>>& levels) {

@@ -19,12 +19,12 @@ namespace steplap {
 
 /// Equal clamps on one yoke or on both.
 struct Clamp : TableObject {
-  std::string core;           ///< name of the core
-  std::string at = "both";    ///< yokes: "top", "bottom", "both"
-  std::optional<long> count;  ///< clamps on each yoke; default: as many as `places`, else 1
-  std::vector<double> places; ///< m along the yoke, from the middle between the outer limbs; none: about its middle
-  double preload = 0.0;       ///< N, of each, as tightened
-  double relaxation = 0.0;    ///< share of it that is lost
+  std::string core;                                 ///< name of the core
+  std::string at = "both";                          ///< yokes: "top", "bottom", "both"
+  std::optional<long> count;                        ///< clamps on each yoke; default: as many as `places`, else 1
+  std::vector<double> places;                       ///< m along the yoke, from the middle between the outer limbs; none: about its middle
+  double preload = 0.0;                             ///< N, of each, as tightened
+  double relaxation = 0.0;                          ///< share of it that is lost
   std::optional<double> stiffness, stack_stiffness; ///< N/m, of a clamp and of the stack under it
   double settling = 0.0;                            ///< m
   double warming = 0.0;                             ///< K
@@ -39,11 +39,11 @@ struct Clamp : TableObject {
 
 /// What the clamps of one yoke come to.
 struct YokeClamping {
-  double force = 0.0;    ///< N, together
-  double moment = 0.0;   ///< N m, about the middle of the yoke
-  double length = 0.0;   ///< m, of the yoke
-  double height = 0.0;   ///< m, of its highest packet
-  double middle = 0.0;   ///< m along the active part from its centre of gravity
+  double force = 0.0;  ///< N, together
+  double moment = 0.0; ///< N m, about the middle of the yoke
+  double length = 0.0; ///< m, of the yoke
+  double height = 0.0; ///< m, of its highest packet
+  double middle = 0.0; ///< m along the active part from its centre of gravity
   [[nodiscard]] double pressure() const { return force / (length * height); }
   /// Share of the pressure that there is at x from the middle.
   [[nodiscard]] double share(double x) const { return 1.0 + 12.0 * moment * x / (force * length * length); }

@@ -11,9 +11,7 @@ std::vector<std::string> Core::all_limbs() const {
   return all;
 }
 
-std::string Core::joint_name(std::size_t limb) const {
-  return joints.empty() ? all_limbs()[limb] + " joint" : joints[limb];
-}
+std::string Core::joint_name(std::size_t limb) const { return joints.empty() ? all_limbs()[limb] + " joint" : joints[limb]; }
 
 namespace {
 
@@ -25,22 +23,25 @@ void add_dimensions(FieldTable& f) {
   f.add("joints", &T::joints)
       .doc("names of the joints, one for each limb, middle ones last; default '<limb> joint'. A step_lap_joint of that name "
            "is used as it stands, else one is added");
-  f.add("core_height", &T::core_height).in("m").positive().required().doc(
-      "over both yokes, of the packet with the highest; its middle is at the origin of the limbs' body frames");
-  f.add("limb_width", &T::limb_width).in("m").positive().doc("width of a limb's sheets, of a core of one packet");
-  f.add("yoke_height", &T::yoke_height).in("m").positive().doc("of one yoke, of a core of one packet");
-  f.add("packets", &T::packets).in("m").positive().doc(
-      "stepped section: width of the limb's sheets and depth of each packet, from the front face to the back");
-  f.add("yoke_heights", &T::yoke_heights)
+  f.add("core_height", &T::core_height)
       .in("m")
       .positive()
-      .doc("height of the yoke in each packet; of round yokes the limb's widths");
+      .required()
+      .doc("over both yokes, of the packet with the highest; its middle is at the origin of the limbs' body frames");
+  f.add("limb_width", &T::limb_width).in("m").positive().doc("width of a limb's sheets, of a core of one packet");
+  f.add("yoke_height", &T::yoke_height).in("m").positive().doc("of one yoke, of a core of one packet");
+  f.add("packets", &T::packets)
+      .in("m")
+      .positive()
+      .doc("stepped section: width of the limb's sheets and depth of each packet, from the front face to the back");
+  f.add("yoke_heights", &T::yoke_heights).in("m").positive().doc("height of the yoke in each packet; of round yokes the limb's widths");
   f.add("yoke_steps", &T::yoke_steps)
       .one_of({"both", "window", "outside"})
       .doc("where yokes of several packets are stepped: on both sides (an axis in common), at the "
            "window or outside only");
-  f.add("ducts", &T::ducts).in("m").doc(
-      "oil ducts across the stack: depth of stack in front of each, and its width; sheets on either side do not touch");
+  f.add("ducts", &T::ducts)
+      .in("m")
+      .doc("oil ducts across the stack: depth of stack in front of each, and its width; sheets on either side do not touch");
   f.add("bolt_holes", &T::bolt_holes)
       .in("m")
       .doc("centres of holes at every corner, through limb and yoke: from where the axes of limb "
@@ -57,8 +58,10 @@ void add_dimensions(FieldTable& f) {
       .in("m")
       .positive()
       .doc("of strips: length of sheet on either side of the middle of the mitre; default: 50 mm");
-  f.add("margin", &T::margin).in("m").not_negative().doc(
-      "of strips: of the yoke's sheet beyond the limb's at either end of the mitre; default: 20 mm");
+  f.add("margin", &T::margin)
+      .in("m")
+      .not_negative()
+      .doc("of strips: of the yoke's sheet beyond the limb's at either end of the mitre; default: 20 mm");
   f.add("density", &T::density).in("kg/m^3").positive().doc("of the sheets");
   f.add("centre_of_gravity", &T::centre_of_gravity)
       .one_of({"of_the_sheets", "as_given"})
@@ -81,8 +84,11 @@ void add_stack(FieldTable& f) {
   f.add("book", &T::book)
       .one_of({"saw_tooth", "zig_zag", "zig_zag_doubled"})
       .doc("order of the layers: 1 2 3 | 1 2 3, 1 2 3 2 | 1 2 3 2, or 1 2 3 | 3 2 1");
-  f.add("clearance", &T::clearance).in("m").not_negative().doc("between the sheets of one layer, across the "
-                                                               "mitre; a run says whether a limb closes it");
+  f.add("clearance", &T::clearance)
+      .in("m")
+      .not_negative()
+      .doc("between the sheets of one layer, across the "
+           "mitre; a run says whether a limb closes it");
   f.add("bands", &T::bands)
       .one_of({"mean", "each"})
       .doc("each: every overlap of a book where it is; mean: all of a packet as one of their mean area (quicker)");
@@ -94,10 +100,14 @@ void add_friction(FieldTable& f) {
   f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
   f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
   f.add("bottom_pressure", &T::bottom_pressure).in("Pa").positive().doc("at the bottom corners, if different");
-  f.add("bottom_static_friction", &T::bottom_static_friction).positive().doc("at the bottom corners, if "
-                                                                             "different");
-  f.add("bottom_kinetic_friction", &T::bottom_kinetic_friction).positive().doc("at the bottom corners, if "
-                                                                               "different");
+  f.add("bottom_static_friction", &T::bottom_static_friction)
+      .positive()
+      .doc("at the bottom corners, if "
+           "different");
+  f.add("bottom_kinetic_friction", &T::bottom_kinetic_friction)
+      .positive()
+      .doc("at the bottom corners, if "
+           "different");
   f.add("pressure_shares", &T::pressure_shares)
       .positive()
       .doc("of each packet: its pressure over 'pressure' (or 'bottom_pressure'); where packets "
@@ -137,10 +147,7 @@ void add_joints(FieldTable& f) {
       .in("N/m")
       .positive()
       .doc("of each of the joints added, in translation: they yield before they slide, see step_lap_joint");
-  f.add("contact_stiffness", &T::contact_stiffness)
-      .in("N/m^3")
-      .positive()
-      .doc("the same, of a square metre of one interface");
+  f.add("contact_stiffness", &T::contact_stiffness).in("N/m^3").positive().doc("the same, of a square metre of one interface");
   f.add("shear_modulus", &T::shear_modulus)
       .in("Pa")
       .positive()
@@ -166,7 +173,8 @@ const TableKind& core_kind() {
     TableKind k;
     k.name = "core";
     k.doc = "A core's limbs, mitred to the yokes: adds a step_lap_joint for each limb, with the sheets of its top "
-            "and bottom corner (outer limbs) or of both sides of its points (middle limbs). The overlaps are given by 'overlap' and 'interfaces', or by how the "
+            "and bottom corner (outer limbs) or of both sides of its points (middle limbs). The overlaps are given by 'overlap' and "
+            "'interfaces', or by how the "
             "stack is built; then limbs without a mass get that of their sheets.";
     add_dimensions(k.fields);
     add_stack(k.fields);

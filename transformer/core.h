@@ -14,22 +14,22 @@
 namespace steplap {
 
 struct Core : TableObject {
-  std::string active_part;         ///< body with the yokes
-  std::vector<std::string> limbs;  ///< bodies of the outer limbs
+  std::string active_part;               ///< body with the yokes
+  std::vector<std::string> limbs;        ///< bodies of the outer limbs
   std::vector<std::string> middle_limbs; ///< bodies of the limbs between
-  std::vector<std::string> joints; ///< one for each limb, outer ones first; default "<limb> joint"
+  std::vector<std::string> joints;       ///< one for each limb, outer ones first; default "<limb> joint"
 
-  double core_height = 0.0; ///< m, of the packet with the highest yokes
+  double core_height = 0.0;                                   ///< m, of the packet with the highest yokes
   std::optional<double> limb_width, yoke_height, stack_depth; ///< m, of a core of one packet
-  std::vector<Vec2> packets;         ///< width of the limb's sheets and depth of each, front to back, m
-  std::vector<double> yoke_heights;  ///< of each packet, m
-  std::vector<double> pressure_shares; ///< of each packet, of `pressure`; none: all 1
-  std::string yoke_steps = "both";   ///< where yokes of several packets are stepped: "both", "window", "outside"
-  std::vector<Vec2> ducts;           ///< place in the stack, width, m
-  std::vector<Vec2> bolt_holes;      ///< from where the axes of limb and yoke cross: outwards, away from the window, m
+  std::vector<Vec2> packets;                                  ///< width of the limb's sheets and depth of each, front to back, m
+  std::vector<double> yoke_heights;                           ///< of each packet, m
+  std::vector<double> pressure_shares;                        ///< of each packet, of `pressure`; none: all 1
+  std::string yoke_steps = "both";                            ///< where yokes of several packets are stepped: "both", "window", "outside"
+  std::vector<Vec2> ducts;                                    ///< place in the stack, width, m
+  std::vector<Vec2> bolt_holes;             ///< from where the axes of limb and yoke cross: outwards, away from the window, m
   std::optional<double> bolt_hole_diameter; ///< m
-  std::optional<double> mitre_angle; ///< rad against the yoke; default: from corner to corner
-  std::optional<double> notch_angle; ///< rad, of either side of a T-joint's point against the yoke; default 45°
+  std::optional<double> mitre_angle;        ///< rad against the yoke; default: from corner to corner
+  std::optional<double> notch_angle;        ///< rad, of either side of a T-joint's point against the yoke; default 45°
 
   // Overlaps: either counted and measured, …
   std::optional<double> overlap, interfaces; ///< m; number a corner
@@ -42,7 +42,7 @@ struct Core : TableObject {
   std::string pitch_direction, book; ///< no default: each may double what the joint bears
   std::string bands = "each";        ///< "each" or "mean"
 
-  double density = 7650.0; ///< kg/m³, of the sheets
+  double density = 7650.0;                         ///< kg/m³, of the sheets
   std::string centre_of_gravity = "of_the_sheets"; ///< or "as_given" by the body
 
   double pressure = 0.0; ///< Pa; 0: [[clamp]] tables make it
@@ -53,15 +53,15 @@ struct Core : TableObject {
   std::vector<double> bottom_joint_shares;   ///< at the bottom, if clamps make it another; no field of the table
   /// Pa/m outwards and away from the window, `pressure` being that at the middle of the mitre; at the bottom if different.
   std::optional<Vec2> pressure_gradient, bottom_pressure_gradient;
-  std::string transverse_support;           ///< what holds the stack across: "both" faces, "front" or "back"
-  std::optional<long> transverse_slices;    ///< of each packet, whose pressures follow the acceleration on their own
+  std::string transverse_support;        ///< what holds the stack across: "both" faces, "front" or "back"
+  std::optional<long> transverse_slices; ///< of each packet, whose pressures follow the acceleration on their own
 
   // Of the joints added, see step_lap_joint.
   std::optional<double> tangential_stiffness, contact_stiffness, shear_modulus; ///< N/m, N/m³, Pa
-  std::optional<double> edge_stiffness, allowed_line_load; ///< N/m², N/m
-  std::string pressure_signal, transverse_acceleration;    ///< signals
+  std::optional<double> edge_stiffness, allowed_line_load;                      ///< N/m², N/m
+  std::string pressure_signal, transverse_acceleration;                         ///< signals
   double pressure_loss = 0.0;
-  std::string mode = "slip", on_apart = "stop"; ///< of the joints added
+  std::string mode = "slip", on_apart = "stop";   ///< of the joints added
   std::optional<double> least_margin, most_slide; ///< of the joints added
 
   [[nodiscard]] bool is_counted() const { return overlap || interfaces; }

@@ -29,7 +29,8 @@ public:
     check_names();
     const std::vector<Diagnostic> found = check_dimensions(core_);
     problems_.insert(problems_.end(), found.begin(), found.end());
-    if (core_.pressure == 0.0) error("needs 'pressure' above 0, that clamps its sheets (in Pa), or a [[clamp]] with what presses them", "pressure");
+    if (core_.pressure == 0.0)
+      error("needs 'pressure' above 0, that clamps its sheets (in Pa), or a [[clamp]] with what presses them", "pressure");
     stop_if_wrong();
     const CoreGeometry geometry(core_);
     try {
@@ -86,7 +87,7 @@ private:
 
   const Core& core_;
   Model& model_;
-  std::vector<std::string> limbs_; ///< outer ones, then middle ones
+  std::vector<std::string> limbs_;  ///< outer ones, then middle ones
   std::vector<double> part_shares_; ///< of the limb at hand; empty: packets are not told apart
   std::vector<Diagnostic> problems_;
 };
@@ -110,8 +111,9 @@ void CoreBuilder::check_names() {
       else check_distance(i, j, *active_part);
   }
   if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
-    return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) +
-                 " limbs, got " + std::to_string(core_.joints.size()), "joints");
+    return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) + " limbs, got " +
+                     std::to_string(core_.joints.size()),
+                 "joints");
   for (std::size_t i = 0; i < limbs_.size(); ++i) check_joint(core_.joint_name(i), limbs_[i]);
 }
 
@@ -125,22 +127,22 @@ void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
   }
   if (limb == &active_part) return error("limb '" + name + "' is the active part itself", list_of(i));
   if (!core_.is_middle(i) && std::abs(middle_of_limb(core_, *limb, active_part).x()) < 0.5 * widest())
-    error("limb '" + name + "' stands in the middle of the active part: only outer limbs, at least half a "
-          "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
-          "'middle_limbs'", "limbs");
+    error("limb '" + name +
+              "' stands in the middle of the active part: only outer limbs, at least half a "
+              "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
+              "'middle_limbs'",
+          "limbs");
 }
 
 // Limbs of one core cannot stand in each other.
 void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& active_part) {
   const Body *a = model_.find_body(limbs_[i]), *b = model_.find_body(limbs_[j]);
   if (!a || !b || a == b || a == &active_part || b == &active_part) return;
-  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() -
-                                middle_of_limb(core_, *b, active_part).x());
+  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() - middle_of_limb(core_, *b, active_part).x());
   if (apart < widest())
     error("limbs '" + a->name + "' and '" + b->name + "' stand " + number_text(apart) +
-              " m apart ('position' of the bodies), less than a limb is wide, " +
-              number_text(widest()) + " m ('" + (core_.packets.empty() ? "limb_width" : "packets") +
-              "')",
+              " m apart ('position' of the bodies), less than a limb is wide, " + number_text(widest()) + " m ('" +
+              (core_.packets.empty() ? "limb_width" : "packets") + "')",
           core_.packets.empty() ? "limb_width" : "packets");
 }
 
@@ -151,8 +153,9 @@ void CoreBuilder::check_joint(const std::string& name, const std::string& limb) 
   const auto* joint = dynamic_cast<const StepLapJoint*>(element);
   if (!joint) return error("joint '" + name + "': the element of this name is no step_lap_joint", "joints");
   if (joint->limb != limb || joint->active_part != core_.active_part)
-    error("step_lap_joint '" + name + "' holds '" + joint->limb + "' to '" + joint->active_part +
-          "', not '" + limb + "' to '" + core_.active_part + "'", "joints");
+    error("step_lap_joint '" + name + "' holds '" + joint->limb + "' to '" + joint->active_part + "', not '" + limb + "' to '" +
+              core_.active_part + "'",
+          "joints");
   check_settings(*joint);
 }
 
@@ -161,7 +164,8 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   const auto check = [&](const char* field, bool is_same) {
     if (is_given(field) && !is_same)
       error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
-            "' exists already with another: set it there, and leave it out here", field);
+                "' exists already with another: set it there, and leave it out here",
+            field);
   };
   check("mode", core_.mode == joint.mode);
   check("on_apart", core_.on_apart == joint.on_apart);
@@ -171,7 +175,8 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   const auto check_said = [&](const char* field, bool is_said) {
     if (is_given(field) && !is_said)
       error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
-            "' exists already and does not say its own: give it there, too", field);
+                "' exists already and does not say its own: give it there, too",
+            field);
   };
   check_said("tangential_stiffness", is_elastic(joint));
   check_said("contact_stiffness", is_elastic(joint));
@@ -200,8 +205,7 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
   }
   const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
   find_parts(i, geometry);
-  for (const CoreCorner& corner :
-       geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach)) {
+  for (const CoreCorner& corner : geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach)) {
     for (const Lap& lap : corner.laps) add_interface(i, corner, lap, geometry);
     check_packets(i, corner, geometry);
   }
@@ -215,7 +219,8 @@ void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const C
     if (!stack.is_by_place && likeness(stack, p) != p) continue;
     const auto holds = [&](const Lap& lap) { return !lap.is_between && geometry.packet_of(lap) == p && lap.area > 0.0; };
     if (std::none_of(corner.laps.begin(), corner.laps.end(), holds))
-      return error("no two sheets of packet " + std::to_string(p + 1) + " overlap at " + corner.place + " of '" + limbs_[i] + "': nothing would hold them there",
+      return error("no two sheets of packet " + std::to_string(p + 1) + " overlap at " + corner.place + " of '" + limbs_[i] +
+                       "': nothing would hold them there",
                    core_.packets.empty() ? "stack_depth" : "packets");
   }
 }
@@ -243,8 +248,7 @@ void CoreBuilder::give_settings(StepLapJoint& joint, const CoreGeometry& geometr
   joint.transverse_acceleration = core_.transverse_acceleration;
 }
 
-void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap,
-                        const CoreGeometry& geometry) {
+void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry) {
   const LapPressure pressure = geometry.pressure(corner, lap, core_.joint_share(i, corner.is_top));
   face.pressure = pressure.middle;
   face.pressure_gradient = rotated(pressure.gradient, active_part().angle);
@@ -256,8 +260,8 @@ void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner&
   if (!problems_.empty()) return; // once is enough
   const std::string field = !corner.is_top && core_.bottom_pressure_gradient ? "bottom_pressure_gradient" : "pressure_gradient";
   const std::string level = !corner.is_top && core_.bottom_pressure ? "bottom_pressure" : "pressure";
-  error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] +
-            "' sheets would be pressed by " + number_text(std::round(pressure.least)) + " Pa",
+  error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] + "' sheets would be pressed by " +
+            number_text(std::round(pressure.least)) + " Pa",
         field);
 }
 
@@ -282,10 +286,8 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
   e->count = lap.count;
   e->clearance = core_.clearance;
   press(*e, i, corner, lap, geometry);
-  e->static_friction = corner.is_top ? core_.static_friction
-                                     : core_.bottom_static_friction.value_or(core_.static_friction);
-  e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
-                                                                        : core_.kinetic_friction;
+  e->static_friction = corner.is_top ? core_.static_friction : core_.bottom_static_friction.value_or(core_.static_friction);
+  e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction : core_.kinetic_friction;
   if (!part_shares_.empty()) {
     const std::size_t packet = geometry.packet_of(lap);
     e->part = "packet " + std::to_string(packet + 1);
@@ -298,8 +300,7 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
 bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
   constexpr double k_same = 1e-9; // m
   return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(),
-                    [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
+         std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
 }
 
 // The same sheets at the same place twice would bear twice as much.
@@ -318,15 +319,12 @@ void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
 
 // --- the limbs' steel -------------------------------------------------------------------------------------
 
-void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel,
-                              const std::string& unit) {
+void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
   if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
-  problems_.push_back(
-      {body.where, "'" + std::string(field) + "' of body '" + body.name + "', " +
-                       number_text(given) + " " + unit + ", contradicts core '" + core_.name +
-                       "', whose sheets make it " + number_text(std::round(steel)) + " " + unit +
-                       " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" +
-                       field + "' out to take it from the core"});
+  problems_.push_back({body.where, "'" + std::string(field) + "' of body '" + body.name + "', " + number_text(given) + " " + unit +
+                                       ", contradicts core '" + core_.name + "', whose sheets make it " + number_text(std::round(steel)) +
+                                       " " + unit + " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" + field +
+                                       "' out to take it from the core"});
 }
 
 void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
@@ -349,15 +347,13 @@ void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
 void CoreBuilder::check_yokes() {
   const Core* last = nullptr; // of several tables the last one says it
   for (const TableEntry& entry : model_.tables)
-    if (const auto* core = dynamic_cast<const Core*>(entry.table.get()); core && core->active_part == core_.active_part)
-      last = core;
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get()); core && core->active_part == core_.active_part) last = core;
   if (!problems_.empty() || (last && last->name != core_.name) || active_part().mass <= 0.0) return;
   const double steel = yoke_steel(model_, core_.active_part).value_or(0.0);
   if (active_part().mass < steel)
-    problems_.push_back(
-        {active_part().where, "'mass' of body '" + core_.active_part + "', " + number_text(active_part().mass) +
-                                  " kg, is less than the yokes of core '" + core_.name + "' weigh alone, " +
-                                  number_text(std::round(steel)) + " kg"});
+    problems_.push_back({active_part().where, "'mass' of body '" + core_.active_part + "', " + number_text(active_part().mass) +
+                                                  " kg, is less than the yokes of core '" + core_.name + "' weigh alone, " +
+                                                  number_text(std::round(steel)) + " kg"});
 }
 
 // --- outlines, for bodies whose model gives none ---------------------------------------------------------
@@ -389,8 +385,7 @@ void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
   for (std::size_t i = 0; i < limbs_.size(); ++i)
     for (Body& body : model_.bodies) {
       if (body.name != limbs_[i] || !body.outline.empty()) continue;
-      for (const Vec2& p : limb_corners(i, geometry))
-        body.outline.push_back(middle_in_frame(core_, body) + rotated(p, turn - body.angle));
+      for (const Vec2& p : limb_corners(i, geometry)) body.outline.push_back(middle_in_frame(core_, body) + rotated(p, turn - body.angle));
     }
 }
 
@@ -433,8 +428,7 @@ std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model) {
   const std::vector<std::string> names = core.all_limbs();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Body &limb = *model.find_body(names[i]), &part = *model.find_body(core.active_part);
-    places.push_back(
-        {core.is_middle(i), side_of_limb(core, limb, part), middle_of_limb(core, limb, part).x()});
+    places.push_back({core.is_middle(i), side_of_limb(core, limb, part), middle_of_limb(core, limb, part).x()});
   }
   return places;
 }

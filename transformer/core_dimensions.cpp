@@ -79,27 +79,21 @@ private:
 
 void DimensionCheck::check_section() {
   if (core_.packets.empty()) {
-    need(core_.limb_width.has_value(), "limb_width",
-         "width of a limb's sheets; in m; or 'packets' for a stepped section");
-    need(core_.yoke_height.has_value(), "yoke_height",
-         "height of a yoke's sheets; in m; or 'yoke_heights' besides 'packets'");
+    need(core_.limb_width.has_value(), "limb_width", "width of a limb's sheets; in m; or 'packets' for a stepped section");
+    need(core_.yoke_height.has_value(), "yoke_height", "height of a yoke's sheets; in m; or 'yoke_heights' besides 'packets'");
     if (!core_.yoke_heights.empty()) error("'yoke_heights' is for 'packets', and none are given", "yoke_heights");
-    if (!core_.pressure_shares.empty())
-      error("'pressure_shares' is for 'packets', and none are given", "pressure_shares");
+    if (!core_.pressure_shares.empty()) error("'pressure_shares' is for 'packets', and none are given", "pressure_shares");
   } else {
     for (const char* field : {"limb_width", "yoke_height", "stack_depth"})
-      if ((field == std::string("limb_width") && core_.limb_width) ||
-          (field == std::string("yoke_height") && core_.yoke_height) ||
+      if ((field == std::string("limb_width") && core_.limb_width) || (field == std::string("yoke_height") && core_.yoke_height) ||
           (field == std::string("stack_depth") && core_.stack_depth))
         error("'" + std::string(field) + "' and 'packets' say the same: give one of them", field);
     if (core_.yoke_heights.size() != core_.packets.size())
-      error("'yoke_heights' must give one height for each of the " +
-                std::to_string(core_.packets.size()) + " packets, got " +
+      error("'yoke_heights' must give one height for each of the " + std::to_string(core_.packets.size()) + " packets, got " +
                 std::to_string(core_.yoke_heights.size()) + "; round yokes have the limb's widths",
             core_.yoke_heights.empty() ? "packets" : "yoke_heights");
     if (!core_.pressure_shares.empty() && core_.pressure_shares.size() != core_.packets.size())
-      error("'pressure_shares' must give one share for each of the " +
-                std::to_string(core_.packets.size()) + " packets, got " +
+      error("'pressure_shares' must give one share for each of the " + std::to_string(core_.packets.size()) + " packets, got " +
                 std::to_string(core_.pressure_shares.size()),
             "pressure_shares");
     if (core_.is_counted())
@@ -121,8 +115,7 @@ void DimensionCheck::check_friction() {
   if (core_.kinetic_friction.value_or(0.0) > core_.static_friction)
     error("'kinetic_friction' must not exceed 'static_friction'", "kinetic_friction");
   if (core_.bottom_kinetic_friction.value_or(0.0) > bottom_static)
-    error("'bottom_kinetic_friction' must not exceed the static friction there, " + number_text(bottom_static),
-          "bottom_kinetic_friction");
+    error("'bottom_kinetic_friction' must not exceed the static friction there, " + number_text(bottom_static), "bottom_kinetic_friction");
   if (core_.kinetic_friction && core_.bottom_static_friction && !core_.bottom_kinetic_friction)
     error("needs 'bottom_kinetic_friction' besides 'bottom_static_friction'", "bottom_static_friction");
 }
@@ -134,8 +127,7 @@ void DimensionCheck::check_pressure() {
               std::to_string(core_.joint_pressure_shares.size()),
           "joint_pressure_shares");
   if (core_.bottom_pressure_gradient && !core_.pressure_gradient)
-    error("'bottom_pressure_gradient' needs 'pressure_gradient', that at the top ([0, 0] if there is none)",
-          "bottom_pressure_gradient");
+    error("'bottom_pressure_gradient' needs 'pressure_gradient', that at the top ([0, 0] if there is none)", "bottom_pressure_gradient");
   if (core_.transverse_acceleration.empty()) {
     for (const char* field : {"transverse_support", "transverse_slices"})
       if (field == std::string("transverse_support") ? !core_.transverse_support.empty() : core_.transverse_slices.has_value())
@@ -143,8 +135,8 @@ void DimensionCheck::check_pressure() {
     return;
   }
   if (core_.is_counted())
-    return error("'transverse_acceleration' needs how the stack is built, and '" +
-                     std::string(core_.overlap ? "overlap" : "interfaces") + "' says that overlaps are counted",
+    return error("'transverse_acceleration' needs how the stack is built, and '" + std::string(core_.overlap ? "overlap" : "interfaces") +
+                     "' says that overlaps are counted",
                  "transverse_acceleration");
   if (core_.transverse_support.empty())
     return error("'transverse_acceleration' needs 'transverse_support', what holds the stack across: \"both\" faces alike, "
@@ -175,35 +167,35 @@ void DimensionCheck::check_elastic() {
     error("'mode' = \"monitor\" contradicts '" + stiffness + "': a joint that is only monitored is rigid", "mode");
   const double at_bottom = core_.bottom_static_friction.value_or(core_.static_friction);
   if (core_.kinetic_friction.value_or(core_.static_friction) != core_.static_friction)
-    error("'kinetic_friction' contradicts '" + stiffness + "': an elastic joint has one coefficient, 'static_friction' (the "
-          "kinetic one is on the safe side)",
+    error("'kinetic_friction' contradicts '" + stiffness +
+              "': an elastic joint has one coefficient, 'static_friction' (the "
+              "kinetic one is on the safe side)",
           "kinetic_friction");
   if (core_.bottom_kinetic_friction.value_or(at_bottom) != at_bottom)
-    error("'bottom_kinetic_friction' contradicts '" + stiffness + "': an elastic joint has one coefficient, "
-          "'bottom_static_friction' or 'static_friction'",
+    error("'bottom_kinetic_friction' contradicts '" + stiffness +
+              "': an elastic joint has one coefficient, "
+              "'bottom_static_friction' or 'static_friction'",
           "bottom_kinetic_friction");
 }
 
 void DimensionCheck::check_counted() {
   if (!core_.overlap || !core_.interfaces)
-    error(std::string("needs '") + (core_.overlap ? "interfaces" : "overlap") + "' besides '" +
-              (core_.overlap ? "overlap" : "interfaces") + "'",
+    error(std::string("needs '") + (core_.overlap ? "interfaces" : "overlap") + "' besides '" + (core_.overlap ? "overlap" : "interfaces") +
+              "'",
           core_.overlap ? "overlap" : "interfaces");
-  const std::pair<const char*, bool> built[] = {
-      {"stack_depth", core_.stack_depth.has_value()},
-      {"sheet_thickness", core_.sheet_thickness.has_value()},
-      {"stacking_factor", core_.stacking_factor.has_value()},
-      {"sheets_per_layer", core_.sheets_per_layer.has_value()},
-      {"steps", core_.steps.has_value()},
-      {"step_pitch", core_.step_pitch.has_value()},
-      {"pitch_direction", !core_.pitch_direction.empty()},
-      {"book", !core_.book.empty()},
-      {"bands", core_.bands != "each"},
-      {"ducts", !core_.ducts.empty()}};
+  const std::pair<const char*, bool> built[] = {{"stack_depth", core_.stack_depth.has_value()},
+                                                {"sheet_thickness", core_.sheet_thickness.has_value()},
+                                                {"stacking_factor", core_.stacking_factor.has_value()},
+                                                {"sheets_per_layer", core_.sheets_per_layer.has_value()},
+                                                {"steps", core_.steps.has_value()},
+                                                {"step_pitch", core_.step_pitch.has_value()},
+                                                {"pitch_direction", !core_.pitch_direction.empty()},
+                                                {"book", !core_.book.empty()},
+                                                {"bands", core_.bands != "each"},
+                                                {"ducts", !core_.ducts.empty()}};
   for (const auto& [field, is_given] : built)
     if (is_given)
-      error("give either 'overlap' and 'interfaces', or how the stack is built: '" + std::string(field) +
-                "' is of the other, not both",
+      error("give either 'overlap' and 'interfaces', or how the stack is built: '" + std::string(field) + "' is of the other, not both",
             field);
 }
 
@@ -247,18 +239,16 @@ void DimensionCheck::check_strips() {
 
 void DimensionCheck::check_holes() {
   if (core_.bolt_holes.empty() != !core_.bolt_hole_diameter)
-    error(core_.bolt_holes.empty() ? "'bolt_hole_diameter' needs 'bolt_holes', their places"
-                                   : "'bolt_holes' needs 'bolt_hole_diameter'",
+    error(core_.bolt_holes.empty() ? "'bolt_hole_diameter' needs 'bolt_holes', their places" : "'bolt_holes' needs 'bolt_hole_diameter'",
           core_.bolt_holes.empty() ? "bolt_hole_diameter" : "bolt_holes");
   if (core_.bolt_holes.empty()) return;
   check_places_of_holes();
   if (core_.has_strips()) error("'bolt_holes' need real sheets, and 'sheet_outlines' is \"strips\"", "bolt_holes");
   for (std::size_t i = 0; i < core_.bolt_holes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (core_.bolt_hole_diameter &&
-          (core_.bolt_holes[i] - core_.bolt_holes[j]).norm() <= 1.05 * *core_.bolt_hole_diameter)
-        error("bolt holes " + std::to_string(j + 1) + " and " + std::to_string(i + 1) + " run into each other: " +
-                  metres((core_.bolt_holes[i] - core_.bolt_holes[j]).norm()) + " apart, 'bolt_hole_diameter' " +
+      if (core_.bolt_hole_diameter && (core_.bolt_holes[i] - core_.bolt_holes[j]).norm() <= 1.05 * *core_.bolt_hole_diameter)
+        error("bolt holes " + std::to_string(j + 1) + " and " + std::to_string(i + 1) +
+                  " run into each other: " + metres((core_.bolt_holes[i] - core_.bolt_holes[j]).norm()) + " apart, 'bolt_hole_diameter' " +
                   metres(*core_.bolt_hole_diameter),
               "bolt_holes");
 }
@@ -273,9 +263,8 @@ void DimensionCheck::check_places_of_holes() {
   }
   for (std::size_t i = 0; i < core_.bolt_holes.size(); ++i)
     if (const Vec2& hole = core_.bolt_holes[i]; std::abs(hole.x()) >= 0.5 * width && std::abs(hole.y()) >= 0.5 * height)
-      error("bolt hole " + std::to_string(i + 1) + " at (" + metres(hole.x()) + ", " +
-                metres(hole.y()) + ") lies outside a limb of " + metres(width) + " and a yoke of " +
-                metres(height) + ": places are from where their axes cross",
+      error("bolt hole " + std::to_string(i + 1) + " at (" + metres(hole.x()) + ", " + metres(hole.y()) + ") lies outside a limb of " +
+                metres(width) + " and a yoke of " + metres(height) + ": places are from where their axes cross",
             "bolt_holes");
 }
 
@@ -294,20 +283,18 @@ void DimensionCheck::check_angle(std::size_t packet, bool is_middle) {
   const Mitre m = geometry.mitre(packet, is_middle);
   if (angle < k_least_angle || angle > k_largest_angle)
     return error(std::string("a ") + (is_middle ? "notch" : "mitre") + " at " +
-                     number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) +
-                     "° to the yoke: must be 10° to 80°" +
+                     number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "° to the yoke: must be 10° to 80°" +
                      (m.angle ? ""
-                              : "; it follows from the yoke's height of " + metres(m.yoke_height) +
-                                    " and the limb's width of " + metres(m.limb_width) +
-                                    " unless 'mitre_angle' is given"),
+                              : "; it follows from the yoke's height of " + metres(m.yoke_height) + " and the limb's width of " +
+                                    metres(m.limb_width) + " unless 'mitre_angle' is given"),
                  is_middle           ? "notch_angle"
                  : core_.mitre_angle ? "mitre_angle"
                                      : "yoke_height");
   if (!is_middle) return;
   const auto [s, c] = portable::sin_cos(angle);
   if (const double depth = 0.5 * m.limb_width * s / c; depth > m.yoke_height)
-    error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " +
-              metres(m.yoke_height) + ": take a smaller 'notch_angle'",
+    error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " + metres(m.yoke_height) +
+              ": take a smaller 'notch_angle'",
           "notch_angle");
 }
 
@@ -357,8 +344,7 @@ void DimensionCheck::check_ducts(const Stack& stack) {
   double depth = 0.0;
   for (const Packet& p : stack.packets) depth += p.depth;
   for (const Duct& duct : stack.ducts) {
-    if (!(duct.width > 0.0))
-      error("a duct needs a place and a width above 0 m: 'ducts' = [[place, width], …]", "ducts");
+    if (!(duct.width > 0.0)) error("a duct needs a place and a width above 0 m: 'ducts' = [[place, width], …]", "ducts");
     if (duct.place <= 0.0 || duct.place >= depth)
       error("a duct at " + metres(duct.place) + " lies outside the stack of " + metres(depth) +
                 ": its place is the depth of steel and insulation in front of it",
@@ -375,8 +361,7 @@ void DimensionCheck::check_cuts() {
       if (likeness(stack, p) != p || (is_middle ? core_.middle_limbs : core_.limbs).empty()) continue;
       double half = 0.5 * core_.overlap.value_or(0.0);
       if (!core_.is_counted())
-        half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) +
-                      stack.book.clearance);
+        half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) + stack.book.clearance);
       check_cut(p, is_middle, -half, half);
       if (!problems_.empty()) return; // said once
     }
@@ -389,16 +374,15 @@ void DimensionCheck::check_cut(std::size_t packet, bool is_middle, double lowest
                                               : "a book that reaches " + metres(highest - lowest) + " across the mitre";
   const std::string field = core_.is_counted() ? "overlap" : "step_pitch";
   if (highest >= least_shift(m))
-    return error(what + " is wider than the sheets: where a limb of " + metres(m.limb_width) +
-                     " and a yoke of " + metres(m.yoke_height) + " cross there are " +
-                     metres(least_shift(m)) + " on either side of the mitre",
+    return error(what + " is wider than the sheets: where a limb of " + metres(m.limb_width) + " and a yoke of " + metres(m.yoke_height) +
+                     " cross there are " + metres(least_shift(m)) + " on either side of the mitre",
                  field);
   if (!is_middle) return;
   const auto [s, c] = portable::sin_cos(*m.angle);
   const double depth = 0.5 * m.limb_width * s / c, tip = depth - lowest / c;
   if (0.5 * m.limb_width * s <= highest || tip > m.yoke_height)
-    error(what + " does not fit the point of a middle limb, " + metres(depth) +
-              " high: its layers reach " + metres(tip) + " into a yoke of " + metres(m.yoke_height),
+    error(what + " does not fit the point of a middle limb, " + metres(depth) + " high: its layers reach " + metres(tip) +
+              " into a yoke of " + metres(m.yoke_height),
           field);
 }
 

@@ -64,12 +64,10 @@ struct CoreGeometry::End {
 Stack stack_of(const Core& core) {
   Stack stack;
   for (std::size_t i = 0; i < core.packets.size(); ++i)
-    stack.packets.push_back(
-        {core.packets[i].x(), i < core.yoke_heights.size() ? core.yoke_heights[i] : 0.0,
-         core.packets[i].y(), i < core.pressure_shares.size() ? core.pressure_shares[i] : 1.0});
+    stack.packets.push_back({core.packets[i].x(), i < core.yoke_heights.size() ? core.yoke_heights[i] : 0.0, core.packets[i].y(),
+                             i < core.pressure_shares.size() ? core.pressure_shares[i] : 1.0});
   if (stack.packets.empty())
-    stack.packets.push_back({core.limb_width.value_or(0.0), core.yoke_height.value_or(0.0),
-                             core.stack_depth.value_or(0.0), 1.0});
+    stack.packets.push_back({core.limb_width.value_or(0.0), core.yoke_height.value_or(0.0), core.stack_depth.value_or(0.0), 1.0});
   for (const Vec2& duct : core.ducts) stack.ducts.push_back({duct.x(), duct.y()});
   stack.stacking_factor = core.stacking_factor.value_or(1.0);
   stack.sheet_thickness = core.sheet_thickness.value_or(0.0);
@@ -160,8 +158,7 @@ Polygon CoreGeometry::punched(const std::vector<Vec2>& ring, double side, std::i
       if (place != Place::across) continue;
       const Region left = exact_difference(sheet, round);
       if (left.size() != 1)
-        throw PolygonError("the bolt hole at (" + number_text(hole.x()) + " m, " +
-                           number_text(hole.y()) + " m), 'bolt_hole_diameter' " +
+        throw PolygonError("the bolt hole at (" + number_text(hole.x()) + " m, " + number_text(hole.y()) + " m), 'bolt_hole_diameter' " +
                            number_text(diameter) + " m, cuts a sheet in two");
       sheet = left.front();
     }
@@ -191,8 +188,7 @@ Polygon CoreGeometry::yoke_sheet(std::size_t packet, const End& end, double q) c
   return punched(yoke_end(m, end.side, end.level, q, reach), end.side, {end.level});
 }
 
-Lap CoreGeometry::lap(std::size_t limb_packet, double inner, std::size_t yoke_packet, double outer,
-                      const End& end) const {
+Lap CoreGeometry::lap(std::size_t limb_packet, double inner, std::size_t yoke_packet, double outer, const End& end) const {
   Lap lap;
   lap.inner = inner;
   lap.outer = outer;
@@ -313,7 +309,8 @@ std::vector<CoreCorner> CoreGeometry::corners(bool is_middle, double side, doubl
   std::vector<CoreCorner> all;
   for (const double level : {1.0, -1.0}) {
     if (!is_middle) all.push_back(corner({false, side, level, reach}));
-    else for (const double half : {1.0, -1.0}) all.push_back(corner({true, half, level, reach}));
+    else
+      for (const double half : {1.0, -1.0}) all.push_back(corner({true, half, level, reach}));
   }
   return all;
 }
@@ -326,9 +323,9 @@ LimbSteel CoreGeometry::limb_steel(bool is_middle, double side) const {
     sum.add(punched(ring, is_middle ? 1.0 : side, {1.0, -1.0}), weight);
   };
   if (core_.is_counted()) add(0, 0.0, 1.0);
-  else for (const LayerCount& layer : layer_counts(stack_))
-      add(layer.shape.packet, line(layer.shape, is_middle) + 0.5 * stack_.book.clearance,
-          static_cast<double>(layer.sheets));
+  else
+    for (const LayerCount& layer : layer_counts(stack_))
+      add(layer.shape.packet, line(layer.shape, is_middle) + 0.5 * stack_.book.clearance, static_cast<double>(layer.sheets));
   LimbSteel steel;
   steel.centre = sum.first / sum.area;
   if (core_.is_counted()) return steel;
@@ -363,8 +360,8 @@ double CoreGeometry::yoke_strip(const LimbPlace& outer) const {
   double mass = 0.0;
   if (core_.is_counted()) return mass;
   for (const Packet& packet : stack_.packets)
-    mass += 2.0 * core_.density * stack_.sheet_thickness * static_cast<double>(sheets_in(stack_, packet)) *
-            packet.yoke_height * (outer.side * outer.x + 0.5 * packet.width);
+    mass += 2.0 * core_.density * stack_.sheet_thickness * static_cast<double>(sheets_in(stack_, packet)) * packet.yoke_height *
+            (outer.side * outer.x + 0.5 * packet.width);
   return mass;
 }
 

@@ -16,36 +16,36 @@ namespace steplap {
 
 /// One kind of interface at a corner: where a yoke sheet of one layer and a limb sheet of a neighbouring layer overlap.
 struct Lap {
-  std::string name;  ///< within its corner: "", "3", "packet 2, 3", "packets 2 and 3, 1"
+  std::string name; ///< within its corner: "", "3", "packet 2, 3", "packets 2 and 3, 1"
   Polygon yoke, limb;
   double inner = 0.0, outer = 0.0; ///< m, across the mitre: limb sheet beyond the one, yoke sheet before the other
-  double count = 0.0; ///< of such interfaces in the stack
-  double area = 0.0;  ///< m², of one
-  double pressure = 1.0; ///< share of the corner's
-  std::size_t packet = 0; ///< the one that both layers are like
-  bool is_between = false; ///< layers of two packets instead
-  std::size_t zone = 0;   ///< of a stack by place (stack.h)
-  double before = 0.0;    ///< sheets in front of it, in the mean; of a stack by place
-  long first = 0, last = 0; ///< sheets in front of the foremost and the rearmost of these interfaces
-  Vec2 middle = Vec2::Zero();     ///< of the overlap
-  std::vector<Vec2> overlap;      ///< its vertices
+  double count = 0.0;              ///< of such interfaces in the stack
+  double area = 0.0;               ///< m², of one
+  double pressure = 1.0;           ///< share of the corner's
+  std::size_t packet = 0;          ///< the one that both layers are like
+  bool is_between = false;         ///< layers of two packets instead
+  std::size_t zone = 0;            ///< of a stack by place (stack.h)
+  double before = 0.0;             ///< sheets in front of it, in the mean; of a stack by place
+  long first = 0, last = 0;        ///< sheets in front of the foremost and the rearmost of these interfaces
+  Vec2 middle = Vec2::Zero();      ///< of the overlap
+  std::vector<Vec2> overlap;       ///< its vertices
 };
 
 /// One mitre: an outer limb has one at either end, a middle limb two.
 struct CoreCorner {
   bool is_top = true;
-  std::string place; ///< "top", "bottom front"
-  CornerFrame frame; ///< of the widest packet
+  std::string place;       ///< "top", "bottom front"
+  CornerFrame frame;       ///< of the widest packet
   Vec2 out = Vec2::Ones(); ///< signs of x outwards (at a T-joint off the limb's axis) and of y away from the window
   std::vector<Lap> laps;
 };
 
 /// By which the sheets of one kind of interface are pressed on each other; active part's axes.
 struct LapPressure {
-  double middle = 0.0;           ///< Pa, at the middle of the overlap
-  Vec2 gradient = Vec2::Zero();  ///< Pa/m
-  double least = 0.0;            ///< Pa, anywhere in the overlap
-  double transverse = 0.0;       ///< Pa per m/s² of acceleration across the stack, from the front face to the back
+  double middle = 0.0;            ///< Pa, at the middle of the overlap
+  Vec2 gradient = Vec2::Zero();   ///< Pa/m
+  double least = 0.0;             ///< Pa, anywhere in the overlap
+  double transverse = 0.0;        ///< Pa per m/s² of acceleration across the stack, from the front face to the back
   double transverse_spread = 0.0; ///< the same, by which the outermost of these interfaces differs from their mean
 };
 
@@ -57,8 +57,8 @@ struct LimbPlace {
 
 /// Of a limb's sheets.
 struct LimbSteel {
-  double mass = 0.0;         ///< kg; zero where the stack is not known (overlaps counted)
-  double inertia = 0.0;      ///< kg m², about the centre of gravity
+  double mass = 0.0;          ///< kg; zero where the stack is not known (overlaps counted)
+  double inertia = 0.0;       ///< kg m², about the centre of gravity
   Vec2 centre = Vec2::Zero(); ///< of gravity, m
 };
 
@@ -104,8 +104,7 @@ private:
   [[nodiscard]] CornerFrame frame(std::size_t packet, const End& end) const;
   [[nodiscard]] Polygon limb_sheet(std::size_t packet, const End& end, double q) const;
   [[nodiscard]] Polygon yoke_sheet(std::size_t packet, const End& end, double q) const;
-  [[nodiscard]] Lap lap(std::size_t limb_packet, double inner, std::size_t yoke_packet,
-                        double outer, const End& end) const;
+  [[nodiscard]] Lap lap(std::size_t limb_packet, double inner, std::size_t yoke_packet, double outer, const End& end) const;
   void add_built(const End& end, std::vector<Lap>& laps) const;
   void add_counted(const End& end, std::vector<Lap>& laps) const;
   void merge(const End& end, std::size_t packet, std::size_t zone, std::vector<Lap>& laps) const;

@@ -56,13 +56,9 @@ std::vector<Vec2> band(const CornerFrame& frame, double s0, double s1, double q0
   return {at(s0, q0), at(s1, q0), at(s1, q1), at(s0, q1)};
 }
 
-std::vector<Vec2> beyond(const std::vector<Vec2>& ring, const CornerFrame& frame, double q) {
-  return cut(ring, frame, q, 1.0);
-}
+std::vector<Vec2> beyond(const std::vector<Vec2>& ring, const CornerFrame& frame, double q) { return cut(ring, frame, q, 1.0); }
 
-std::vector<Vec2> before(const std::vector<Vec2>& ring, const CornerFrame& frame, double q) {
-  return cut(ring, frame, q, -1.0);
-}
+std::vector<Vec2> before(const std::vector<Vec2>& ring, const CornerFrame& frame, double q) { return cut(ring, frame, q, -1.0); }
 
 std::vector<Vec2> limb_end(const Mitre& m, double side, double level, double q) {
   const auto strip = rectangle(-0.5 * m.limb_width, 0.5 * m.limb_width, 0.0, 0.5 * level * m.core_height);

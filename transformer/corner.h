@@ -25,7 +25,7 @@ namespace steplap {
 
 struct Mitre {
   double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
-  std::optional<double> angle; ///< rad against the yoke; none: from corner to corner
+  std::optional<double> angle;                                   ///< rad against the yoke; none: from corner to corner
 };
 
 struct CornerFrame {

@@ -23,7 +23,7 @@ constexpr double k_off_centre = 10e-3; // m, a given centre of gravity from that
 
 const char* const k_assumed = "assumed: nothing published was found";
 
-constexpr double k_shop_mitre = 0.25 * std::numbers::pi; // what workshops cut
+constexpr double k_shop_mitre = 0.25 * std::numbers::pi;         // what workshops cut
 constexpr double k_same_angle = 0.05 * std::numbers::pi / 180.0; // angles are told to a tenth of a degree
 
 std::string degrees_text(double angle) { return number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "°"; }
@@ -36,8 +36,7 @@ std::string rounded_text(double value) {
 
 class Look {
 public:
-  Look(const Model& model, const Core& core, std::vector<CoreRemark>& said)
-      : model_(model), core_(core), said_(said) {}
+  Look(const Model& model, const Core& core, std::vector<CoreRemark>& said) : model_(model), core_(core), said_(said) {}
 
   void run() {
     look_at_fields();
@@ -54,8 +53,8 @@ private:
   void look_at(const std::string& field, double value, const std::string& unit, const std::string& name) {
     for (const UsualRange& usual : usual_ranges())
       if (usual.field == field && (value < usual.low || value > usual.high))
-        say(field, name + " = " + number_text(value) + (unit.empty() ? "" : " " + unit) + " is unusual: " + usual.text +
-                       " are usual (" + usual.source + ")");
+        say(field, name + " = " + number_text(value) + (unit.empty() ? "" : " " + unit) + " is unusual: " + usual.text + " are usual (" +
+                       usual.source + ")");
   }
 
   void look_at_fields() {
@@ -75,9 +74,9 @@ private:
     for (const double share : {*least, *most})
       for (const UsualRange& usual : usual_ranges())
         if (const double p = share * core_.pressure; usual.field == std::string("pressure") && (p < usual.low || p > usual.high) &&
-                                                    core_.pressure >= usual.low && core_.pressure <= usual.high)
-          say(field, "'" + field + "': " + number_text(share) + " of 'pressure' is " + number_text(p) + " Pa, which is unusual: " +
-                         usual.text + " are usual (" + usual.source + ")");
+                                                     core_.pressure >= usual.low && core_.pressure <= usual.high)
+          say(field, "'" + field + "': " + number_text(share) + " of 'pressure' is " + number_text(p) +
+                         " Pa, which is unusual: " + usual.text + " are usual (" + usual.source + ")");
   }
 
   void look_at_packets() {
@@ -102,17 +101,14 @@ private:
     const Mitre m = geometry.mitre(geometry.largest(), false);
     const double window = m.core_height - 2.0 * m.yoke_height;
     if (window < m.limb_width)
-      say("core_height",
-          "'core_height' = " + number_text(m.core_height) + " m leaves a window " +
-              rounded_text(window) + " m high between limbs " + number_text(m.limb_width) +
-              " m wide: windows are usually higher than limbs are wide (" + k_assumed + ")");
+      say("core_height", "'core_height' = " + number_text(m.core_height) + " m leaves a window " + rounded_text(window) +
+                             " m high between limbs " + number_text(m.limb_width) +
+                             " m wide: windows are usually higher than limbs are wide (" + k_assumed + ")");
     if (core_.is_counted()) return;
     const double depth = depth_of(geometry.stack());
     if (depth < 0.4 * m.limb_width || depth > 1.8 * m.limb_width)
-      say("stack_depth",
-          "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(m.limb_width) +
-              " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" +
-              k_assumed + ")");
+      say("stack_depth", "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(m.limb_width) +
+                             " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" + k_assumed + ")");
   }
 
   // From corner to corner the angle is nobody's choice.
@@ -131,8 +127,9 @@ private:
     if (k_shop_mitre - least < k_same_angle && most - k_shop_mitre < k_same_angle) return;
     const bool is_one = packets == 1;
     said_.push_back({core_.place("mitre_angle"),
-                     "core '" + core_.name + "': without 'mitre_angle' the mitre runs from corner to corner, here at " + each + " against the yoke" +
-                         (is_one ? "" : ", packet by packet") + ". Workshops cut 45°: if this core is cut so, give 'mitre_angle' = \"45 degree\"",
+                     "core '" + core_.name + "': without 'mitre_angle' the mitre runs from corner to corner, here at " + each +
+                         " against the yoke" + (is_one ? "" : ", packet by packet") +
+                         ". Workshops cut 45°: if this core is cut so, give 'mitre_angle' = \"45 degree\"",
                      true});
   }
 
@@ -150,17 +147,16 @@ private:
       }
       const Vec2 centre = rotated(steel.centre, part.angle - limb.angle);
       if (core_.centre_of_gravity == "of_the_sheets" && (limb.cg - centre).norm() > k_off_centre)
-        said_.push_back({limb.where, body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " +
-                                         number_text(limb.cg.y()) + "] m, the sheets of core '" + core_.name +
-                                         "' have theirs at [" + rounded_text(centre.x()) + ", " +
+        said_.push_back({limb.where, body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " + number_text(limb.cg.y()) +
+                                         "] m, the sheets of core '" + core_.name + "' have theirs at [" + rounded_text(centre.x()) + ", " +
                                          rounded_text(centre.y()) + "] m from the middle of the limb"});
     }
   }
 
   void compare(const Location& where, const std::string& what, double given, double steel, double low, double high, const char* unit) {
     if (given >= low * steel && given <= high * steel) return;
-    said_.push_back({where, what + " = " + number_text(given) + " " + unit + ", the sheets of core '" +
-                                core_.name + "' make it " + rounded_text(steel) + " " + unit +
+    said_.push_back({where, what + " = " + number_text(given) + " " + unit + ", the sheets of core '" + core_.name + "' make it " +
+                                rounded_text(steel) + " " + unit +
                                 (given < steel ? ": too light a limb takes too little friction to be held"
                                                : ": more than tie plates and bindings usually add")});
   }
@@ -213,9 +209,8 @@ std::vector<CoreRemark> implausible_cores(const Model& model) {
     if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) Look(model, clamped(*core, model), said).run();
   // Interfaces given one by one; those of a core stand where the core does.
   const auto is_of_core = [&](const StepLapInterface& face) {
-    return std::any_of(model.tables.begin(), model.tables.end(), [&](const TableEntry& entry) {
-      return face.name.rfind(entry.table->name + ": ", 0) == 0;
-    });
+    return std::any_of(model.tables.begin(), model.tables.end(),
+                       [&](const TableEntry& entry) { return face.name.rfind(entry.table->name + ": ", 0) == 0; });
   };
   for (const ElementEntry& entry : model.elements) {
     const auto* face = dynamic_cast<const StepLapInterface*>(entry.element.get());
@@ -224,10 +219,10 @@ std::vector<CoreRemark> implausible_cores(const Model& model) {
       for (const auto& [field, value] : {std::pair<std::string, double>{"pressure", face->pressure},
                                          {"static_friction", face->static_friction},
                                          {"kinetic_friction", face->kinetic_friction.value_or(face->static_friction)}})
-        if (field == usual.field && (value < usual.low || value > usual.high) &&
-            (field != "kinetic_friction" || face->kinetic_friction))
+        if (field == usual.field && (value < usual.low || value > usual.high) && (field != "kinetic_friction" || face->kinetic_friction))
           said.push_back({face->where, "step_lap_interface '" + face->name + "': '" + field + "' = " + number_text(value) +
-                                                  (field == "pressure" ? " Pa" : "") + " is unusual: " + usual.text + " are usual (" + usual.source + ")"});
+                                           (field == "pressure" ? " Pa" : "") + " is unusual: " + usual.text + " are usual (" +
+                                           usual.source + ")"});
   }
   return said;
 }

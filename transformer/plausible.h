@@ -13,8 +13,8 @@ namespace steplap {
 /// What a value of a [[core]] usually is.
 struct UsualRange {
   const char* field;
-  double low, high;   ///< SI
-  const char* text;   ///< "0.18 mm to 0.35 mm"
+  double low, high; ///< SI
+  const char* text; ///< "0.18 mm to 0.35 mm"
   const char* source;
 };
 

@@ -11,13 +11,13 @@ namespace steplap {
 
 /// A recorder as a model file describes it.
 struct Recorder : TableObject {
-  std::string marker;                ///< where it sat; a marker of a body that can move
-  std::string x, y;                  ///< axis of the record along the marker's x and y: "x", "-z", …, or "none"
-  std::string plane = "lengthwise";  ///< a word for people
-  std::vector<std::string> replaces; ///< elements that moved the tank and give way to the record
-  std::string rotation = "held";     ///< of the driven body: "held" or "free"
-  std::string drift = "none";        ///< of each event: "none", or "line": velocity ends where it began
-  double settle = 0.5;               ///< s, run on after each event without a load
+  std::string marker;                 ///< where it sat; a marker of a body that can move
+  std::string x, y;                   ///< axis of the record along the marker's x and y: "x", "-z", …, or "none"
+  std::string plane = "lengthwise";   ///< a word for people
+  std::vector<std::string> replaces;  ///< elements that moved the tank and give way to the record
+  std::string rotation = "held";      ///< of the driven body: "held" or "free"
+  std::string drift = "none";         ///< of each event: "none", or "line": velocity ends where it began
+  double settle = 0.5;                ///< s, run on after each event without a load
   std::vector<std::string> knows_not; ///< what the model leaves out, for the reader of a decision
 };
 

@@ -29,8 +29,7 @@ public:
     std::vector<LayerPair> pairs;
     for (const bool is_same_packet : {true, false})
       for (const auto& [shapes, n] : counts_)
-        if (n > 0 && (shapes.first.packet == shapes.second.packet) == is_same_packet)
-          pairs.push_back({shapes.first, shapes.second, n});
+        if (n > 0 && (shapes.first.packet == shapes.second.packet) == is_same_packet) pairs.push_back({shapes.first, shapes.second, n});
     return pairs;
   }
 
@@ -44,7 +43,7 @@ public:
       if (gaps.count(before) > 0) return;
       LayerPair& pair = found.try_emplace({zone, shapes}, LayerPair{shapes.first, shapes.second, 0, zone, 0.0}).first->second;
       pair.before += static_cast<double>(before); // a sum until the end
-      if (pair.count == 0) pair.first = before; // they come from the front to the back
+      if (pair.count == 0) pair.first = before;   // they come from the front to the back
       pair.last = before;
       ++pair.count;
     };
@@ -78,14 +77,11 @@ private:
 
   void count_within(std::size_t p) {
     const long pairs = layers_in(stack_, stack_.packets[p]) - 1, period = period_of(stack_.book);
-    for (long i = 0; i < std::min(pairs, period); ++i)
-      counts_[ordered(shape(p, i), shape(p, i + 1))] += count_of(pairs, i, period);
+    for (long i = 0; i < std::min(pairs, period); ++i) counts_[ordered(shape(p, i), shape(p, i + 1))] += count_of(pairs, i, period);
   }
 
   // Packets without a sheet are none: the core refuses them.
-  [[nodiscard]] Shapes seam(std::size_t p) const {
-    return ordered(shape(p, layers_in(stack_, stack_.packets[p]) - 1), shape(p + 1, 0));
-  }
+  [[nodiscard]] Shapes seam(std::size_t p) const { return ordered(shape(p, layers_in(stack_, stack_.packets[p]) - 1), shape(p + 1, 0)); }
   void count_between(std::size_t p) { ++counts_[seam(p)]; }
 
   // Takes out the pair that a duct behind so many sheets parts, if it lies between two layers.

@@ -45,17 +45,15 @@ struct LayerShape {
   friend bool operator<(const LayerShape& a, const LayerShape& b) {
     return a.packet != b.packet ? a.packet < b.packet : a.position < b.position;
   }
-  friend bool operator==(const LayerShape& a, const LayerShape& b) {
-    return a.packet == b.packet && a.position == b.position;
-  }
+  friend bool operator==(const LayerShape& a, const LayerShape& b) { return a.packet == b.packet && a.position == b.position; }
 };
 
 /// Two layers that touch, `a` not after `b`: which of them is in front does not matter.
 struct LayerPair {
   LayerShape a, b;
-  long count = 0; ///< times in the stack
-  std::size_t zone = 0; ///< of a stack by place: packet · slices + slice
-  double before = 0.0;  ///< of a stack by place: sheets in front of it, in the mean
+  long count = 0;           ///< times in the stack
+  std::size_t zone = 0;     ///< of a stack by place: packet · slices + slice
+  double before = 0.0;      ///< of a stack by place: sheets in front of it, in the mean
   long first = 0, last = 0; ///< of a stack by place: sheets in front of the foremost and of the rearmost such pair
 };
 

@@ -15,21 +15,28 @@ void check_path(const Uncertain& uncertain, const std::string& path, const Model
   try {
     static_cast<void>(number_of(model, path));
   } catch (const ModelError& error) {
-    throw ModelError(uncertain.place("paths"), "'" + path + "' of uncertain '" + uncertain.name + "': " + error.diagnostics().front().message);
+    throw ModelError(uncertain.place("paths"),
+                     "'" + path + "' of uncertain '" + uncertain.name + "': " + error.diagnostics().front().message);
   }
 }
 
 void check(const Uncertain& uncertain, const Model& model) {
-  if (uncertain.paths.empty()) throw ModelError(uncertain.place("paths"), "uncertain '" + uncertain.name + "' has no path: say which number of the model it is");
+  if (uncertain.paths.empty())
+    throw ModelError(uncertain.place("paths"), "uncertain '" + uncertain.name + "' has no path: say which number of the model it is");
   for (const std::string& path : uncertain.paths) check_path(uncertain, path, model);
   const std::string unit = unit_of(model, uncertain.paths.front());
   for (const std::string& path : uncertain.paths)
     if (unit_of(model, path) != unit)
-      throw ModelError(uncertain.place("paths"), "the paths of uncertain '" + uncertain.name + "' have different units: one number cannot be both");
+      throw ModelError(uncertain.place("paths"),
+                       "the paths of uncertain '" + uncertain.name + "' have different units: one number cannot be both");
   if (uncertain.source_text.empty())
-    throw ModelError(uncertain.where, "uncertain '" + uncertain.name + "' needs 'source_text': by whom it was " + uncertain.source + ", or why");
-  const std::pair<const char*, const std::string*> texts[] = {{"mean", &uncertain.mean}, {"standard_deviation", &uncertain.standard_deviation},
-    {"low", &uncertain.low}, {"high", &uncertain.high}, {"mode", &uncertain.mode}, {"lower", &uncertain.lower}, {"upper", &uncertain.upper}};
+    throw ModelError(uncertain.where,
+                     "uncertain '" + uncertain.name + "' needs 'source_text': by whom it was " + uncertain.source + ", or why");
+  const std::pair<const char*, const std::string*> texts[] = {
+      {"mean", &uncertain.mean},  {"standard_deviation", &uncertain.standard_deviation},
+      {"low", &uncertain.low},    {"high", &uncertain.high},
+      {"mode", &uncertain.mode},  {"lower", &uncertain.lower},
+      {"upper", &uncertain.upper}};
   for (const auto& [field, text] : texts) static_cast<void>(value_of_text(uncertain, field, *text, model));
 }
 
@@ -57,8 +64,10 @@ const TableKind& uncertain_kind() {
     FieldTable& f = k.fields;
     f.add("paths", &T::paths).required().doc("fields of the model that get the value, as in [\"core.core.static_friction\"]");
     f.add("factor", &T::is_factor).doc("true: the value multiplies what the model has at the paths");
-    f.add("distribution", &T::distribution).one_of({"normal", "lognormal", "uniform", "triangular", "gumbel"}).required().doc(
-        "by its moments, or by 'low' and 'high'");
+    f.add("distribution", &T::distribution)
+        .one_of({"normal", "lognormal", "uniform", "triangular", "gumbel"})
+        .required()
+        .doc("by its moments, or by 'low' and 'high'");
     f.add("mean", &T::mean).as(FieldType::quantity).doc("of the distribution, in the unit of the paths");
     f.add("standard_deviation", &T::standard_deviation).as(FieldType::quantity).doc("of the distribution, in the unit of the paths");
     f.add("cov", &T::cov).positive().doc("coefficient of variation: standard deviation over mean");

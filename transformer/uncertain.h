@@ -27,6 +27,7 @@ struct Uncertain : TableObject {
 [[nodiscard]] std::vector<const Uncertain*> uncertain_of(const Model& model);
 
 /// What a text of the table is worth in SI; empty if it is not given. Throws ModelError at the field. `model`: as given or completed.
-[[nodiscard]] std::optional<double> value_of_text(const Uncertain& uncertain, const std::string& field, const std::string& text, const Model& model);
+[[nodiscard]] std::optional<double> value_of_text(const Uncertain& uncertain, const std::string& field, const std::string& text,
+                                                  const Model& model);
 
 } // namespace steplap

@@ -14,9 +14,9 @@ namespace {
 constexpr int k_max_newton = 100;
 constexpr double k_tolerance = 1e-11;       // on z + ∇h(η), in units of the capacity
 constexpr double k_gauge_tolerance = 1e-10; // on the direction; u is good to its square
-constexpr double k_rank = 1e-12;    // eigenvalues of A below this share of the largest: zero
-constexpr double k_touches = 1e-12; // a load beyond the bound by this share of itself: below the tolerance
-constexpr double k_no_slip = 1e-15; // η below this share of b is rounding of b + A z
+constexpr double k_rank = 1e-12;            // eigenvalues of A below this share of the largest: zero
+constexpr double k_touches = 1e-12;         // a load beyond the bound by this share of itself: below the tolerance
+constexpr double k_no_slip = 1e-15;         // η below this share of b is rounding of b + A z
 
 /// Pseudo-inverse and range of a symmetric positive semidefinite matrix.
 struct Inverse {
@@ -53,8 +53,7 @@ Point point_at(const ScaledPatch& patch, const Vec3& z, const Vec3& eta, int& ev
 }
 
 /// Full friction against the free acceleration.
-Point start_opposed(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Vec3& along,
-                    int& evaluations) {
+Point start_opposed(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Vec3& along, int& evaluations) {
   const Vec3 z = -patch.evaluate(along).gradient;
   ++evaluations;
   return point_at(patch, z, b + a * z, evaluations);
@@ -62,16 +61,15 @@ Point start_opposed(const ScaledPatch& patch, const Mat3& a, const Vec3& b, cons
 
 /// On the ray η = −λn, n the normal at which the unlimited wrench z0 leaves the set: there the
 /// dual has its minimum at λ = (n·z0 − h(n))/(n·A⁻¹n). Good when z0 is only just outside.
-Point start_on_ray(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Inverse& inverse,
-                   const Vec3& z0, const Gauge& exit, int& evaluations) {
+Point start_on_ray(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Inverse& inverse, const Vec3& z0, const Gauge& exit,
+                   int& evaluations) {
   const Vec3 n = exit.y, along = inverse.inverse * n;
   const double used = z0.norm() * exit.value; // n·z0 / h(n) > 1
   const double lambda = n.dot(z0) * (1 - 1 / used) / n.dot(along);
   // among the wrenches that hold b, start from the one that uses least
   Vec3 z = z0.norm() * exit.wrench - lambda * along;
   const Vec3 eta = -lambda * n;
-  for (int i = 0; i < 2; ++i)
-    z += inverse.inverse * (eta - b - a * z); // η small beside b: keep b + A z = η to rounding
+  for (int i = 0; i < 2; ++i) z += inverse.inverse * (eta - b - a * z); // η small beside b: keep b + A z = η to rounding
   return point_at(patch, z, eta, evaluations);
 }
 
@@ -96,8 +94,7 @@ bool minimise(const ScaledPatch& patch, const Mat3& a, const Vec3& b, Point& p, 
 
 } // namespace
 
-AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
-                                   const Vec3& free_acceleration, const Vec3& warm) {
+AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, const Vec3& free_acceleration, const Vec3& warm) {
   AdmissibleWrench out;
   if (patch.empty()) {
     out.acceleration = free_acceleration;
@@ -110,8 +107,7 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
   const Inverse inverse(a);
   Vec3 z0 = -inverse.inverse * b; // holds b, as far as any wrench can
   z0 -= inverse.inverse * (b + a * z0);
-  const bool holdable =
-      (b - inverse.range * b).norm() <= k_rank * (b.norm() + a.norm() * z0.norm());
+  const bool holdable = (b - inverse.range * b).norm() <= k_rank * (b.norm() + a.norm() * z0.norm());
   const double size = z0.norm();
   if (holdable && size == 0) return out;
 

@@ -79,8 +79,7 @@ void add_turned(CentreIntegrals& out, const Vec2& t, const EdgeCurvature& k) {
 }
 
 /// The part of the traction that is uniform: w × degrees 1, 0, −1.
-template <bool WithCurvature>
-void add_uniform(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, double w) {
+template <bool WithCurvature> void add_uniform(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, double w) {
   const double d = e.d, wd = w * d, s = e.s1 + e.s2;
   const double s_rho = 0.5 * (e.d_rho * s + length * (e.rho1 + e.rho2)); // s₂ρ₂ − s₁ρ₁
   out.distance += wd * (1.0 / 6) * (s_rho + d * d * e.log_term);
@@ -96,16 +95,13 @@ void add_uniform(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double 
 }
 
 /// The part of the traction that grows as β·r, r from c: degrees 2, 1, 0.
-template <bool WithCurvature>
-void add_linear(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length,
-                const Vec2& beta) {
+template <bool WithCurvature> void add_linear(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, const Vec2& beta) {
   const double d = e.d;
   const double bm = d * (beta.x() * t.y() - beta.y() * t.x()), bt = beta.dot(t);
   const double s_rho = 0.5 * (e.d_rho * (e.s1 + e.s2) + length * (e.rho1 + e.rho2));
-  const double rho = 0.5 * (s_rho + d * d * e.log_term);     // ∫ρ ds
-  const double s2_over = 0.5 * (s_rho - d * d * e.log_term); // ∫s²/ρ ds
-  const double rho_s =
-      e.d_rho * (e.rho1 * e.rho1 + e.rho1 * e.rho2 + e.rho2 * e.rho2) / 3; // ∫sρ ds
+  const double rho = 0.5 * (s_rho + d * d * e.log_term);                                    // ∫ρ ds
+  const double s2_over = 0.5 * (s_rho - d * d * e.log_term);                                // ∫s²/ρ ds
+  const double rho_s = e.d_rho * (e.rho1 * e.rho1 + e.rho1 * e.rho2 + e.rho2 * e.rho2) / 3; // ∫sρ ds
   out.distance += 0.25 * d * (bm * rho + bt * rho_s);
   const double outward = d / 3 * d * (bm * e.log_term + bt * e.d_rho);
   const double along = d / 3 * (bm * e.d_rho + bt * s2_over);
@@ -115,17 +111,14 @@ void add_linear(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double l
     const double q = e.s2 / e.rho2 - e.s1 / e.rho1;
     const double i = -e.d_rho / (e.rho1 * e.rho2);
     const double k0 = q, k1 = -d * d * i, k2 = e.log_term - q, k3 = e.d_rho + d * d * i;
-    add_turned(out, t,
-               {0.5 * d * (bm * k2 + bt * k3), -0.5 * d * (bm * k1 / d + bt * d * k2),
-                0.5 * d * (bm * k0 + bt * k1)});
+    add_turned(out, t, {0.5 * d * (bm * k2 + bt * k3), -0.5 * d * (bm * k1 / d + bt * d * k2), 0.5 * d * (bm * k0 + bt * k1)});
   }
 }
 
 } // namespace
 
 template <bool WithCurvature>
-CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction,
-                                const Vec2& c) {
+CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& c) {
   // An edge whose line passes within this of c contributes nothing that a double could hold.
   constexpr double no_foot = 1e-140;
   CentreIntegrals out;
@@ -149,9 +142,7 @@ CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const
   return out;
 }
 
-template CentreIntegrals integrate_about<false>(const PatchEdge*, std::size_t, const Traction&,
-                                                const Vec2&);
-template CentreIntegrals integrate_about<true>(const PatchEdge*, std::size_t, const Traction&,
-                                               const Vec2&);
+template CentreIntegrals integrate_about<false>(const PatchEdge*, std::size_t, const Traction&, const Vec2&);
+template CentreIntegrals integrate_about<true>(const PatchEdge*, std::size_t, const Traction&, const Vec2&);
 
 } // namespace steplap

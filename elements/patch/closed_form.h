@@ -39,12 +39,9 @@ struct CentreIntegrals {
 /// Closed form for the centre of rotation `c` (relative to the piece's centroid, anywhere, also on
 /// an edge or a vertex). The second derivatives are left zero unless `WithCurvature`.
 template <bool WithCurvature>
-[[nodiscard]] CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count,
-                                              const Traction& traction, const Vec2& c);
+[[nodiscard]] CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& c);
 
-extern template CentreIntegrals integrate_about<false>(const PatchEdge*, std::size_t,
-                                                       const Traction&, const Vec2&);
-extern template CentreIntegrals integrate_about<true>(const PatchEdge*, std::size_t,
-                                                      const Traction&, const Vec2&);
+extern template CentreIntegrals integrate_about<false>(const PatchEdge*, std::size_t, const Traction&, const Vec2&);
+extern template CentreIntegrals integrate_about<true>(const PatchEdge*, std::size_t, const Traction&, const Vec2&);
 
 } // namespace steplap

@@ -8,9 +8,7 @@ namespace steplap {
 
 namespace {
 
-std::size_t next(std::size_t i, std::size_t n) {
-  return i + 1 == n ? 0 : i + 1;
-}
+std::size_t next(std::size_t i, std::size_t n) { return i + 1 == n ? 0 : i + 1; }
 
 Corner corner(const RingView& ring, std::size_t i, bool is_second) {
   return {ring.corners[i], ring.sides ? ring.sides[i] : PartSide{}, is_second};
@@ -21,14 +19,11 @@ struct Cutter {
   Vec2 from, along;
   PartSide side;
   Cutter(const RingView& b, std::size_t i)
-      : from(b.corners[i]), along(b.corners[next(i, b.count)] - b.corners[i]),
-        side(b.sides ? b.sides[i] : PartSide{}) {}
+      : from(b.corners[i]), along(b.corners[next(i, b.count)] - b.corners[i]), side(b.sides ? b.sides[i] : PartSide{}) {}
   [[nodiscard]] double inwards(const Vec2& p) const { return cross(along, p - from); }
 };
 
-Vec2 crossing(const Vec2& from, double d_from, const Vec2& to, double d_to) {
-  return from + (to - from) * (d_from / (d_from - d_to));
-}
+Vec2 crossing(const Vec2& from, double d_from, const Vec2& to, double d_to) { return from + (to - from) * (d_from / (d_from - d_to)); }
 
 // --- few corners -------------------------------------------------------------------------------
 
@@ -48,10 +43,8 @@ bool cut(const Cutter& by, ClipWorkspace& w) {
   for (std::size_t i = n - 1, j = 0; j < n; i = j++) {
     const Corner &from = w.ring[i], &to = w.ring[j];
     const double d_from = w.beyond[i], d_to = w.beyond[j];
-    if (d_from >= 0 && d_to < 0)
-      w.spare.push_back({crossing(from.at, d_from, to.at, d_to), by.side, true});
-    else if (d_from < 0 && d_to >= 0)
-      w.spare.push_back({crossing(from.at, d_from, to.at, d_to), from.side, from.is_second});
+    if (d_from >= 0 && d_to < 0) w.spare.push_back({crossing(from.at, d_from, to.at, d_to), by.side, true});
+    else if (d_from < 0 && d_to >= 0) w.spare.push_back({crossing(from.at, d_from, to.at, d_to), from.side, from.is_second});
     if (d_to >= 0) w.spare.push_back(to);
   }
   std::swap(w.ring, w.spare);
@@ -71,8 +64,7 @@ class Walk {
 public:
   Walk(const RingView& a, std::vector<ClipWorkspace::Link>& links) : links_(links) {
     links_.clear();
-    for (std::size_t i = 0; i < a.count; ++i)
-      links_.push_back({corner(a, i, false), next(i, a.count), i == 0 ? a.count - 1 : i - 1});
+    for (std::size_t i = 0; i < a.count; ++i) links_.push_back({corner(a, i, false), next(i, a.count), i == 0 ? a.count - 1 : i - 1});
   }
 
   /// To the corner farthest out. Consecutive cutters turn to the left, and so does that corner move.
@@ -150,8 +142,7 @@ double gap_of_few(const RingView& ring, const RingView& other, double enough) {
   for (std::size_t i = 0; i < ring.count && widest < enough; ++i) {
     const Vec2 e = ring.corners[next(i, ring.count)] - ring.corners[i];
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < other.count; ++k)
-      nearest = std::min(nearest, -cross(e, other.corners[k] - ring.corners[i]));
+    for (std::size_t k = 0; k < other.count; ++k) nearest = std::min(nearest, -cross(e, other.corners[k] - ring.corners[i]));
     widest = std::max(widest, nearest / e.norm());
   }
   return widest;

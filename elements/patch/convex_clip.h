@@ -45,7 +45,6 @@ void clip(const RingView& a, const RingView& b, ClipWorkspace& w);
 
 /// Greatest signed distance of the nearest corner of `other` from an edge of `ring`, outwards
 /// positive: positive means that the edge separates them. Not looked for further once it is `enough`.
-[[nodiscard]] double widest_gap(const RingView& ring, const RingView& other,
-                                double enough = std::numeric_limits<double>::infinity());
+[[nodiscard]] double widest_gap(const RingView& ring, const RingView& other, double enough = std::numeric_limits<double>::infinity());
 
 } // namespace steplap

@@ -140,8 +140,8 @@ private:
 } // namespace
 
 template <bool WithCurvature>
-PieceDissipation integrate_far(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius,
-                               const Vec2& v, double omega) {
+PieceDissipation integrate_far(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius, const Vec2& v,
+                               double omega) {
   Integral<WithCurvature> integral(traction, radius, v, omega);
   for (std::size_t first = 0, end = 0; first < count; first = end) {
     for (end = first + 1; end < count && !edges[end].opens_ring; ++end) {}
@@ -153,9 +153,7 @@ PieceDissipation integrate_far(const PatchEdge* edges, std::size_t count, const 
 PieceDissipation integrate_far(const Polygon& polygon, const Vec2& centre, const Traction& traction, double radius, const Vec2& v,
                                double omega) {
   Integral<false> integral(traction, radius, v, omega);
-  const auto add = [&](const Ring& ring) {
-    integral.add_ring(ring.size(), [&](std::size_t i) { return Vec2(ring[i] - centre); });
-  };
+  const auto add = [&](const Ring& ring) { integral.add_ring(ring.size(), [&](std::size_t i) { return Vec2(ring[i] - centre); }); };
   add(polygon.outer);
   for (const Ring& hole : polygon.holes) add(hole);
   return integral.sum();

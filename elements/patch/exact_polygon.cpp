@@ -22,19 +22,13 @@ using ExactRing = std::vector<ExactPoint>;
 using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel; // doubles, exact decisions
 using Point = Predicates::Point_2;
 
-Point point(const Vec2& p) {
-  return {p.x(), p.y()};
-}
+Point point(const Vec2& p) { return {p.x(), p.y()}; }
 
-std::size_t next(std::size_t i, std::size_t n) {
-  return i + 1 == n ? 0 : i + 1;
-}
+std::size_t next(std::size_t i, std::size_t n) { return i + 1 == n ? 0 : i + 1; }
 
 struct Box {
   Vec2 low, high;
-  [[nodiscard]] bool apart(const Box& o) const {
-    return (high.array() < o.low.array()).any() || (o.high.array() < low.array()).any();
-  }
+  [[nodiscard]] bool apart(const Box& o) const { return (high.array() < o.low.array()).any() || (o.high.array() < low.array()).any(); }
 };
 
 Box edge_box(const Ring& r, std::size_t i) {
@@ -43,17 +37,15 @@ Box edge_box(const Ring& r, std::size_t i) {
 }
 
 bool edges_meet(const Ring& r, std::size_t i, const Ring& q, std::size_t j) {
-  return !edge_box(r, i).apart(edge_box(q, j)) &&
-         CGAL::do_intersect(Predicates::Segment_2(point(r[i]), point(r[next(i, r.size())])),
-                            Predicates::Segment_2(point(q[j]), point(q[next(j, q.size())])));
+  return !edge_box(r, i).apart(edge_box(q, j)) && CGAL::do_intersect(Predicates::Segment_2(point(r[i]), point(r[next(i, r.size())])),
+                                                                     Predicates::Segment_2(point(q[j]), point(q[next(j, q.size())])));
 }
 
 /// Consecutive edges a-b, b-c: they meet beyond b only when the second runs back over the first.
 bool folds_back(const Ring& r, std::size_t i) {
   const std::size_t j = next(i, r.size());
   const Vec2 &a = r[i], &b = r[j], &c = r[next(j, r.size())];
-  return CGAL::orientation(point(a), point(b), point(c)) == CGAL::COLLINEAR &&
-         (b - a).dot(c - b) <= 0;
+  return CGAL::orientation(point(a), point(b), point(c)) == CGAL::COLLINEAR && (b - a).dot(c - b) <= 0;
 }
 
 std::optional<std::array<std::size_t, 4>> clash_within(const Ring& r, std::size_t index) {
@@ -150,8 +142,8 @@ bool is_within(const ExactPoint& p, const ExactRings& rings) {
 ExactPoint middle(const ExactEdge& e) { return CGAL::midpoint(e.from, e.to); }
 
 /// Adds those edges of one polygon that lie in the other (`wanted`) or outside it.
-void keep_apart(const std::vector<ExactEdge>& edges, const std::set<ExactEdge>& of_other, const ExactRings& other, bool wanted, bool reverse,
-                std::vector<ExactEdge>& out) {
+void keep_apart(const std::vector<ExactEdge>& edges, const std::set<ExactEdge>& of_other, const ExactRings& other, bool wanted,
+                bool reverse, std::vector<ExactEdge>& out) {
   for (const ExactEdge& e : edges) {
     if (of_other.contains(e) || of_other.contains({e.to, e.from}) || is_within(middle(e), other) != wanted) continue;
     out.push_back(reverse ? ExactEdge{e.to, e.from} : e);
@@ -268,10 +260,8 @@ std::optional<std::array<std::size_t, 4>> find_clash(const std::vector<Ring>& ri
 
 bool is_inside(const Vec2& p, const Ring& ring) {
   std::vector<Point> points;
-  for (const Vec2& v : ring)
-    points.push_back(point(v));
-  return CGAL::bounded_side_2(points.begin(), points.end(), point(p), Predicates()) ==
-         CGAL::ON_BOUNDED_SIDE;
+  for (const Vec2& v : ring) points.push_back(point(v));
+  return CGAL::bounded_side_2(points.begin(), points.end(), point(p), Predicates()) == CGAL::ON_BOUNDED_SIDE;
 }
 
 Region exact_intersection(const Polygon& a, const Polygon& b, const Pose& b_in_a) {

@@ -48,9 +48,7 @@ public:
 private:
   struct Extent {
     double low_x, high_x, low_y, high_y;
-    [[nodiscard]] bool apart(const Extent& o) const {
-      return high_x < o.low_x || o.high_x < low_x || high_y < o.low_y || o.high_y < low_y;
-    }
+    [[nodiscard]] bool apart(const Extent& o) const { return high_x < o.low_x || o.high_x < low_x || high_y < o.low_y || o.high_y < low_y; }
   };
 
   void add_ring(const Ring& ring) {
@@ -139,8 +137,6 @@ private:
 
 } // namespace
 
-std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon) {
-  return Cutter(polygon).triangles();
-}
+std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon) { return Cutter(polygon).triangles(); }
 
 } // namespace steplap

@@ -17,8 +17,7 @@ constexpr int k_nodes = 10;
 /// 1/n
 constexpr auto k_inverse = [] {
   std::array<double, FarField::k_order + 4> inverse{};
-  for (int n = 1; n < FarField::k_order + 4; ++n)
-    inverse[n] = 1.0 / n;
+  for (int n = 1; n < FarField::k_order + 4; ++n) inverse[n] = 1.0 / n;
   return inverse;
 }();
 
@@ -31,8 +30,7 @@ struct EdgeRule {
 constexpr auto k_root = [] {
   std::array<double, FarField::k_order + 1> b{};
   b[0] = 1;
-  for (int j = 1; j <= FarField::k_order; ++j)
-    b[j] = b[j - 1] * (1.5 - j) / j;
+  for (int j = 1; j <= FarField::k_order; ++j) b[j] = b[j - 1] * (1.5 - j) / j;
   return b;
 }();
 
@@ -78,7 +76,9 @@ template <bool WithCurvature>
 }
 
 /// Both numbers times (x, y), given as (x, x, …) and (−y, y, …).
-[[gnu::always_inline]] inline void turn(Four& r, const Four& x, const Four& y) { r = x * r + y * __builtin_shufflevector(r, r, 1, 0, 3, 2); }
+[[gnu::always_inline]] inline void turn(Four& r, const Four& x, const Four& y) {
+  r = x * r + y * __builtin_shufflevector(r, r, 1, 0, 3, 2);
+}
 
 /// Sums over l; beside g there is d/dφ, Re(−il e·r) = l Im(e·r).
 template <bool WithCurvature> class PolarSums {
@@ -139,10 +139,9 @@ template <bool WithCurvature>
 [[gnu::always_inline]] inline void add_moments(double* a, int row, const Vec2& z, double uniform, double linear) {
   constexpr int k_order = FarField::k_order, k_rows = k_order / 2 + 1;
   std::array<double, k_order + 1> weight{};
-  std::array<Four, k_rows> square; // |z|^2k of row l, one power less of l + 2; of the first place no more than a zero
+  std::array<Four, k_rows> square;    // |z|^2k of row l, one power less of l + 2; of the first place no more than a zero
   std::array<Two, k_order + 4> power; // z^l
-  for (int n = 0; n <= k_order; ++n)
-    weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
+  for (int n = 0; n <= k_order; ++n) weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
   const double norm = z.squaredNorm();
   double now = 1, before = 0;
   for (Four& s : square) {
@@ -197,8 +196,7 @@ int FarField::needed_order(double x) {
   return std::min(2 + (4 * bits + k - 1) / k, k_order);
 }
 
-FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius)
-    : FarField(radius) {
+FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius) : FarField(radius) {
   add(edges, count, traction, Vec2::Zero());
   finish();
 }
@@ -241,8 +239,7 @@ void FarField::add_node(const Vec2& z, double uniform, double linear) {
   add_moments(a_.data(), 4 * k_row, z, uniform, linear);
 }
 
-template <bool WithCurvature>
-PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
+template <bool WithCurvature> PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
   const double speed = std::sqrt(v.x() * v.x() + v.y() * v.y());
   const double cx = v.x() / speed, cy = v.y() / speed;
   const double kappa = omega * radius_ / speed;

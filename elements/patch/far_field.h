@@ -45,11 +45,10 @@ public:
   [[nodiscard]] static int needed_order(double kappa_radius);
 
   /// Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.
-  template <bool WithCurvature>
-  [[nodiscard]] PieceDissipation evaluate(const Vec2& v, double omega) const;
+  template <bool WithCurvature> [[nodiscard]] PieceDissipation evaluate(const Vec2& v, double omega) const;
 
 private:
-  static constexpr int k_row = k_order / 2 + 1; // room for one l
+  static constexpr int k_row = k_order / 2 + 1;   // room for one l
   static constexpr int k_pairs = k_order / 2 + 1; // of rows, l and l + 2
 
   /// Moments of a node at z (in radii) of the rule along an edge.

@@ -17,9 +17,7 @@ struct Trial {
   Dissipation d;
   [[nodiscard]] double value(const Vec3& w) const { return 0.5 * d.h * d.h - w.dot(y); }
   [[nodiscard]] Vec3 residual(const Vec3& w) const { return d.h * d.gradient - w; }
-  [[nodiscard]] Mat3 curvature() const {
-    return d.gradient * d.gradient.transpose() + d.h * d.hessian;
-  }
+  [[nodiscard]] Mat3 curvature() const { return d.gradient * d.gradient.transpose() + d.h * d.hessian; }
 };
 
 /// The multiple of y that minimises φ along it.
@@ -57,12 +55,10 @@ Trial start(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, int& eval
 bool is_acceptable(double value0, double slope0, double value, double slope, double step) {
   const double rounding = 1e-13 * (1 + std::abs(value0));
   return value <= value0 + 1e-4 * step * slope0 ||
-         (std::abs(slope) <= 0.5 * std::abs(slope0) &&
-          (value <= value0 + rounding || std::abs(slope0) <= rounding));
+         (std::abs(slope) <= 0.5 * std::abs(slope0) && (value <= value0 + rounding || std::abs(slope0) <= rounding));
 }
 
-Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, double tolerance,
-                 const Mat3& subspace) {
+Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, double tolerance, const Mat3& subspace) {
   Gauge out;
   const bool whole = subspace.isIdentity(0);
   const Mat3 across = Mat3::Identity() - subspace;
@@ -83,8 +79,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
       next.y = t.y + s * step;
       next.d = is_likely_last ? patch.evaluate_gradient(next.y) : patch.evaluate(next.y);
       ++out.evaluations;
-      if (is_acceptable(value0, slope0, next.value(w), reduced(next.residual(w)).dot(step), s))
-        break;
+      if (is_acceptable(value0, slope0, next.value(w), reduced(next.residual(w)).dot(step), s)) break;
     }
     t = next;
     residual = reduced(t.residual(w));

@@ -13,19 +13,18 @@ struct Gauge {
   Vec3 y = Vec3::Zero();      ///< maximiser
   Vec3 wrench = Vec3::Zero(); ///< h∇h
   int evaluations = 0;
-  double residual = 0;        ///< |h∇h − w| on the subspace; the value is good to its square
+  double residual = 0; ///< |h∇h − w| on the subspace; the value is good to its square
   bool converged = false;
 };
 
 /// For |w| = 1. `warm`: a direction to start from, or zero; with a `subspace` (orthogonal
 /// projector) both must lie in it. `tolerance` is on the projection of h∇h − w.
-[[nodiscard]] Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm,
-                               double tolerance, const Mat3& subspace = Mat3::Identity());
+[[nodiscard]] Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, double tolerance,
+                               const Mat3& subspace = Mat3::Identity());
 
 /// Line search: sufficient decrease of a convex function along a step, or, where rounding hides
 /// it, a slope that has become small without the value rising beyond rounding (the approximate
 /// Wolfe condition of Hager and Zhang).
-[[nodiscard]] bool is_acceptable(double value0, double slope0, double value, double slope,
-                                 double step);
+[[nodiscard]] bool is_acceptable(double value0, double slope0, double value, double slope, double step);
 
 } // namespace steplap

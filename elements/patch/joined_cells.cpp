@@ -29,18 +29,15 @@ bool has_outside(const Vec2* corners, std::size_t count, const Box& box) {
 
 class Joiner {
 public:
-  Joiner(const ConvexCut& a, const ConvexCut& b, double rounding, CellWorkspace& w)
-      : a_(a), b_(b), rounding_(rounding), w_(w) {}
+  Joiner(const ConvexCut& a, const ConvexCut& b, double rounding, CellWorkspace& w) : a_(a), b_(b), rounding_(rounding), w_(w) {}
 
   void make_cells() {
     w_.cells.clear();
     w_.corners.clear();
     w_.cell_at.clear();
     w_.boxes.resize(b_.parts.size());
-    for (std::size_t j = 0; j < b_.parts.size(); ++j)
-      w_.boxes[j] = box_of(&w_.placed[b_.parts[j].first], b_.parts[j].count);
-    if (w_.cell_of.size() < a_.parts.size() * b_.parts.size())
-      w_.cell_of.resize(a_.parts.size() * b_.parts.size(), k_none);
+    for (std::size_t j = 0; j < b_.parts.size(); ++j) w_.boxes[j] = box_of(&w_.placed[b_.parts[j].first], b_.parts[j].count);
+    if (w_.cell_of.size() < a_.parts.size() * b_.parts.size()) w_.cell_of.resize(a_.parts.size() * b_.parts.size(), k_none);
     for (std::size_t i = 0; i < a_.parts.size(); ++i)
       for (std::size_t j = 0; j < b_.parts.size(); ++j)
         if (!is_apart(a_.parts[i].box, w_.boxes[j])) make_cell(i, j);
@@ -82,8 +79,7 @@ private:
     const ConvexPart &p = a_.parts[i], &q = b_.parts[j];
     if (has_outside(&a_.corners[p.first], p.count, w_.boxes[j])) return;
     if (has_outside(&w_.placed[q.first], q.count, p.box)) return;
-    clip({&a_.corners[p.first], &a_.sides[p.first], p.count}, {&w_.placed[q.first], &b_.sides[q.first], q.count},
-         w_.clip);
+    clip({&a_.corners[p.first], &a_.sides[p.first], p.count}, {&w_.placed[q.first], &b_.sides[q.first], q.count}, w_.clip);
     const std::vector<Corner>& ring = w_.clip.ring;
     if (ring.size() < 3 || is_narrow(ring)) return;
     slot(i, j) = w_.cells.size();
@@ -122,8 +118,8 @@ private:
     if (other.count > cell.count) return;
     for (std::size_t l = other.first; l < other.first + other.count; ++l) {
       const Corner& d = w_.corners[l];
-      const bool is_it = d.is_second == c.is_second && d.side.edge == c.side.edge && w_.partner[l] == k_none &&
-                         agree(k, next(l)) && agree(next(k), l);
+      const bool is_it =
+          d.is_second == c.is_second && d.side.edge == c.side.edge && w_.partner[l] == k_none && agree(k, next(l)) && agree(next(k), l);
       if (!is_it) continue;
       w_.partner[k] = l;
       w_.partner[l] = k;
@@ -197,8 +193,7 @@ private:
 
 } // namespace
 
-void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w,
-                Region& out) {
+void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w, Region& out) {
   Joiner joiner(a, b, rounding, w);
   joiner.make_cells();
   joiner.find_partners();

@@ -19,14 +19,14 @@ struct CellWorkspace {
   struct Cell {
     std::size_t first = 0, count = 0; ///< corners
     std::size_t parts[2] = {0, 0};
-    std::size_t root = 0;             ///< a cell that it hangs together with
+    std::size_t root = 0; ///< a cell that it hangs together with
     int polygon = -1;
   };
   static constexpr std::size_t k_none = static_cast<std::size_t>(-1);
 
   ClipWorkspace clip;
-  Ring placed;                      ///< corners of the second sheet's parts
-  std::vector<Box> boxes;           ///< of those parts
+  Ring placed;            ///< corners of the second sheet's parts
+  std::vector<Box> boxes; ///< of those parts
   std::vector<Cell> cells;
   std::vector<std::size_t> cell_of; ///< by pair of parts; all k_none between calls
   std::vector<Corner> corners;      ///< of all cells
@@ -39,8 +39,7 @@ struct CellWorkspace {
 
 /// Appends a ∩ b, b's corners being those in w.placed, to `out`: polygons with more than
 /// `least_area`, their storage taken from w's spare ones. Coordinates are good to `rounding`, and what is narrower is nothing.
-void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w,
-                Region& out);
+void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w, Region& out);
 
 /// Takes the polygons out of `out`, keeping their storage.
 void empty_keeping_storage(Region& out, CellWorkspace& w);

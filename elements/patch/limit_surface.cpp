@@ -10,9 +10,7 @@
 namespace steplap {
 
 struct PatchAccess {
-  static const FarField* far(const Patch& p, std::size_t i) {
-    return p.far_.empty() ? nullptr : &p.far_[i];
-  }
+  static const FarField* far(const Patch& p, std::size_t i) { return p.far_.empty() ? nullptr : &p.far_[i]; }
   static const std::vector<Patch::Group>& groups(const Patch& p) { return p.groups_; }
   static const std::vector<std::size_t>& members(const Patch& p) { return p.members_; }
 };
@@ -21,8 +19,7 @@ namespace {
 
 /// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬w|r−c|, and u = ±ẑ×(r−c)/|r−c|.
 template <bool WithCurvature>
-PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece, const Vec2& v,
-                               double omega) {
+PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece, const Vec2& v, double omega) {
   const Vec2 c(-v.y() / omega, v.x() / omega);
   const auto k = integrate_about<WithCurvature>(edges, piece.edges, piece.traction, c);
   const double sign = omega > 0 ? 1.0 : -1.0, size = std::abs(omega);
@@ -43,21 +40,17 @@ PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece
   return out;
 }
 
-template <bool WithCurvature>
-PieceDissipation evaluate_piece(const Patch& patch, std::size_t i, const Vec2& v, double omega) {
+template <bool WithCurvature> PieceDissipation evaluate_piece(const Patch& patch, std::size_t i, const Vec2& v, double omega) {
   const Patch::Piece& piece = patch.pieces()[i];
   const double reach = k_far_ratio * piece.radius * omega;
   if (v.squaredNorm() <= reach * reach)
-    return omega == 0 ? PieceDissipation{}
-                      : evaluate_near<WithCurvature>(patch.edges(piece), piece, v, omega);
-  if (const FarField* far = PatchAccess::far(patch, i))
-    return far->evaluate<WithCurvature>(v, omega);
+    return omega == 0 ? PieceDissipation{} : evaluate_near<WithCurvature>(patch.edges(piece), piece, v, omega);
+  if (const FarField* far = PatchAccess::far(patch, i)) return far->evaluate<WithCurvature>(v, omega);
   return integrate_far<WithCurvature>(patch.edges(piece), piece.edges, piece.traction, piece.radius, v, omega);
 }
 
 /// Adds a piece whose centroid is at `arm` from the reference: v_piece = v + ω ẑ×arm.
-template <bool WithCurvature>
-void add_shifted(Dissipation& out, const PieceDissipation& p, const Vec2& arm) {
+template <bool WithCurvature> void add_shifted(Dissipation& out, const PieceDissipation& p, const Vec2& arm) {
   const double x = -arm.y(), y = arm.x();
   out.h += p.value;
   out.gradient += Vec3(p.fx, p.fy, p.m + x * p.fx + y * p.fy);
@@ -73,16 +66,14 @@ void add_shifted(Dissipation& out, const PieceDissipation& p, const Vec2& arm) {
   }
 }
 
-template <bool WithCurvature>
-void add_piece(Dissipation& out, const Patch& patch, std::size_t i, const Vec2& point, const Vec3& nu) {
+template <bool WithCurvature> void add_piece(Dissipation& out, const Patch& patch, std::size_t i, const Vec2& point, const Vec3& nu) {
   const Vec2 arm = patch.pieces()[i].centroid - point;
   const Vec2 v(nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x());
   add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, nu[2]), arm);
 }
 
 /// Pieces that lie over each other at once, if the centre of rotation is far from all of them.
-template <bool WithCurvature>
-void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const Vec3& nu) {
+template <bool WithCurvature> void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const Vec3& nu) {
   for (const auto& group : PatchAccess::groups(patch)) {
     const Vec2 arm = group.centre - point;
     const Vec2 v(nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x());
@@ -96,8 +87,7 @@ void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const V
   }
 }
 
-template <bool WithCurvature>
-Dissipation evaluate_all(const Patch& patch, const Vec2& point, const Vec3& nu) {
+template <bool WithCurvature> Dissipation evaluate_all(const Patch& patch, const Vec2& point, const Vec3& nu) {
   Dissipation out;
   if (!PatchAccess::groups(patch).empty()) {
     add_groups<WithCurvature>(out, patch, point, nu);
@@ -168,13 +158,10 @@ void Patch::add_ring(const Ring& ring, const Vec2& centroid, double& radius) {
   }
 }
 
-void Patch::add(const Polygon& polygon, double traction) {
-  add(polygon, Traction{traction, {0, 0}});
-}
+void Patch::add(const Polygon& polygon, double traction) { add(polygon, Traction{traction, {0, 0}}); }
 
 void Patch::add(const Region& region, double traction) {
-  for (const Polygon& polygon : region)
-    add(polygon, traction);
+  for (const Polygon& polygon : region) add(polygon, traction);
 }
 
 void Patch::add(const Polygon& polygon, const Traction& traction) {
@@ -187,8 +174,7 @@ void Patch::add(const Polygon& polygon, const Traction& traction) {
   piece.area = a;
   piece.first_edge = edges_.size();
   add_ring(polygon.outer, piece.centroid, piece.radius);
-  for (const Ring& hole : polygon.holes)
-    add_ring(hole, piece.centroid, piece.radius);
+  for (const Ring& hole : polygon.holes) add_ring(hole, piece.centroid, piece.radius);
   piece.edges = edges_.size() - piece.first_edge;
 
   if (!traction.gradient.isZero(0))
@@ -231,8 +217,7 @@ void Patch::group_pieces() {
     group.first = members_.size();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const double reach = (pieces_[i].centroid - group.centre).norm() + pieces_[i].radius;
-      const bool is_like = reach <= k_wider * pieces_[largest].radius &&
-                           pieces_[i].radius >= k_smaller * pieces_[largest].radius;
+      const bool is_like = reach <= k_wider * pieces_[largest].radius && pieces_[i].radius >= k_smaller * pieces_[largest].radius;
       if (is_grouped_[i] || !(is_like || i == largest)) continue;
       is_grouped_[i] = 1;
       members_.push_back(i);
@@ -252,25 +237,14 @@ void Patch::group_pieces() {
   if (groups_.size() == pieces_.size()) groups_.clear(); // no two lie over each other
 }
 
-double Patch::gyration() const {
-  return std::sqrt(polar_ / force_);
-}
+double Patch::gyration() const { return std::sqrt(polar_ / force_); }
 
-Dissipation evaluate(const Patch& patch, const Vec3& nu) {
-  return evaluate_all<true>(patch, patch.reference(), nu);
-}
-Dissipation evaluate_gradient(const Patch& patch, const Vec3& nu) {
-  return evaluate_all<false>(patch, patch.reference(), nu);
-}
-Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu) {
-  return evaluate_all<true>(patch, point, nu);
-}
-Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu) {
-  return evaluate_all<false>(patch, point, nu);
-}
+Dissipation evaluate(const Patch& patch, const Vec3& nu) { return evaluate_all<true>(patch, patch.reference(), nu); }
+Dissipation evaluate_gradient(const Patch& patch, const Vec3& nu) { return evaluate_all<false>(patch, patch.reference(), nu); }
+Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu) { return evaluate_all<true>(patch, point, nu); }
+Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu) { return evaluate_all<false>(patch, point, nu); }
 
-Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point, const Vec3& nu,
-                    Patch& spare) {
+Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point, const Vec3& nu, Patch& spare) {
   Vec2 centre = Vec2::Zero();
   for (const Vec2& corner : polygon.outer) centre += corner;
   centre /= static_cast<double>(polygon.outer.size());

@@ -56,12 +56,10 @@ public:
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
   [[nodiscard]] const Vec2& reference() const { return reference_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  [[nodiscard]] const PatchEdge* edges(const Piece& p) const {
-    return edges_.data() + p.first_edge;
-  }
+  [[nodiscard]] const PatchEdge* edges(const Piece& p) const { return edges_.data() + p.first_edge; }
 
-  [[nodiscard]] double area() const { return area_; }   ///< [m²]
-  [[nodiscard]] double force() const { return force_; } ///< ∬ w dA [N]: capacity in translation
+  [[nodiscard]] double area() const { return area_; }              ///< [m²]
+  [[nodiscard]] double force() const { return force_; }            ///< ∬ w dA [N]: capacity in translation
   [[nodiscard]] Vec2 centroid() const { return moment_ / force_; } ///< of the traction [m]
   /// Radius of gyration of the traction about centroid() [m].
   [[nodiscard]] double gyration() const;
@@ -109,12 +107,11 @@ struct Dissipation {
 
 /// The same with twist and wrench about another point [m] than the patch's reference.
 [[nodiscard]] Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu);
-[[nodiscard]] Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point,
-                                                  const Vec3& nu);
+[[nodiscard]] Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu);
 
 /// ∇h of one polygon with the traction w(r) = at_centroid + gradient·(r − origin), about `point`, for who asks once: where the
 /// centre of rotation is far, nothing is made of the polygon but what is asked for; where it is near, `spare` is made of it.
-[[nodiscard]] Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point,
-                                  const Vec3& nu, Patch& spare);
+[[nodiscard]] Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point, const Vec3& nu,
+                                  Patch& spare);
 
 } // namespace steplap

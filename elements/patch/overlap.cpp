@@ -36,8 +36,7 @@ void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Rin
   const auto [s, c] = turn;
   out.resize(ring.size());
   for (std::size_t i = 0; i < ring.size(); ++i)
-    out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x,
-              s * ring[i].x() + c * ring[i].y() + pose.y};
+    out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x, s * ring[i].x() + c * ring[i].y() + pose.y};
 }
 
 /// out := the part of the convex ring on the left of the line through p and q. False, with `out` untouched: that is all of it.
@@ -74,29 +73,22 @@ RingView part(const ConvexCut& cut, std::size_t i, const Ring& corners) {
 }
 
 /// Of convex rings: the least overlap over all edge normals of both.
-double depth(const RingView& a, const RingView& b) {
-  return -std::max(widest_gap(a, b), widest_gap(b, a));
-}
+double depth(const RingView& a, const RingView& b) { return -std::max(widest_gap(a, b), widest_gap(b, a)); }
 
-double depth(const Box& a, const Box& b) {
-  return (a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low)).minCoeff();
-}
+double depth(const Box& a, const Box& b) { return (a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low)).minCoeff(); }
 
 /// The deepest pair of convex parts. No pair is deeper than its boxes, nor than boxes around these: most need not be
 /// looked at, whatever the order.
 class DeepestPair {
 public:
-  DeepestPair(const Outline& a, const Outline& b, const Ring& placed, const BoxTree& parts)
-      : a_(a), b_(b), placed_(placed), parts_(parts) {
+  DeepestPair(const Outline& a, const Outline& b, const Ring& placed, const BoxTree& parts) : a_(a), b_(b), placed_(placed), parts_(parts) {
     guess();
     search(BoxTree::k_root, BoxTree::k_root);
   }
   [[nodiscard]] double depth() const { return deepest_; }
 
 private:
-  [[nodiscard]] double bound(std::size_t p, std::size_t q) const {
-    return steplap::depth(a_.parts.box(p), parts_.box(q));
-  }
+  [[nodiscard]] double bound(std::size_t p, std::size_t q) const { return steplap::depth(a_.parts.box(p), parts_.box(q)); }
 
   /// The two nodes below the pair, in the tree that goes on farther up.
   [[nodiscard]] std::array<std::array<std::size_t, 2>, 2> below(std::size_t p, std::size_t q) const {
@@ -144,9 +136,7 @@ private:
 
 double depth_of_parts(const Outline& a, const Outline& b, OverlapWorkspace& w) {
   const Ring& placed = w.cells.placed;
-  w.parts.build(b.cut.parts.size(), 1, [&](std::size_t j) {
-    return box_of(&placed[b.cut.parts[j].first], b.cut.parts[j].count);
-  });
+  w.parts.build(b.cut.parts.size(), 1, [&](std::size_t j) { return box_of(&placed[b.cut.parts[j].first], b.cut.parts[j].count); });
   return DeepestPair(a, b, placed, w.parts).depth();
 }
 
@@ -196,8 +186,7 @@ Outline make_outline(Polygon polygon) {
     high = high.cwiseMax(p);
   }
   out.centre = 0.5 * (low + high);
-  for (const Vec2& p : out.polygon.outer)
-    out.radius = std::max(out.radius, (p - out.centre).norm());
+  for (const Vec2& p : out.polygon.outer) out.radius = std::max(out.radius, (p - out.centre).norm());
   out.cut = out.convex ? uncut(out.polygon.outer) : cut_into_convex(out.polygon);
   out.boundary = boundary_of(out.polygon);
   build_edge_tree(out.boundary, out.boundary.corners, out.tree);
@@ -205,8 +194,7 @@ Outline make_outline(Polygon polygon) {
   return out;
 }
 
-void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w,
-               Region& out) {
+void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w, Region& out) {
   empty_keeping_storage(out, w.cells);
   if (circles_apart(a, b, pose, turn_of(pose.theta))) return;
   if (a.convex && b.convex) return intersect_convex(a, b, pose, w, out);
@@ -216,8 +204,7 @@ void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWork
   join_cells(a.cut, b.cut, k_rounding * reach, least_area(a, b), w.cells, out);
 }
 
-void intersect_exactly(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w,
-                       Region& out) {
+void intersect_exactly(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w, Region& out) {
   if (circles_apart(a, b, pose, turn_of(pose.theta)) || (a.convex && b.convex)) return intersect(a, b, pose, w, out);
   out = exact_intersection(a.polygon, b.polygon, pose);
   std::erase_if(out, [&](const Polygon& p) { return area(p) <= least_area(a, b); });

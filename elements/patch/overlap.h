@@ -23,13 +23,13 @@ inline constexpr double k_no_area = 1e-15;
 /// A sheet's polygon, validated, with what every overlap needs to know about it.
 struct Outline {
   Polygon polygon;
-  bool convex = false;     ///< a convex ring without holes
-  Vec2 centre{0, 0};       ///< of a circle that contains it
-  double radius = 0;       ///< of that circle [m]
-  ConvexCut cut;           ///< convex parts, together the polygon; one if it is convex
-  Boundary boundary;       ///< all its edges
-  BoxTree tree;            ///< over them
-  BoxTree parts;           ///< over the convex parts
+  bool convex = false; ///< a convex ring without holes
+  Vec2 centre{0, 0};   ///< of a circle that contains it
+  double radius = 0;   ///< of that circle [m]
+  ConvexCut cut;       ///< convex parts, together the polygon; one if it is convex
+  Boundary boundary;   ///< all its edges
+  BoxTree tree;        ///< over them
+  BoxTree parts;       ///< over the convex parts
 };
 
 /// Repairs and prepares a polygon. Throws PolygonError as repaired() does.
@@ -45,20 +45,17 @@ struct OverlapWorkspace {
 
 /// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate once
 /// workspace and `out` have grown.
-void intersect(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace,
-               Region& out);
+void intersect(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace, Region& out);
 
 /// The same for convex pairs; others in exact arithmetic, for what is done once. Throws PolygonError
 /// only if the exact kernel refuses outlines that make_outline accepted.
-void intersect_exactly(const Outline& a, const Outline& b, const Pose& b_in_a,
-                       OverlapWorkspace& workspace, Region& out);
+void intersect_exactly(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace, Region& out);
 
 /// How far the two must move to part [m]: for convex pairs the least overlap over all edge normals
 /// of both (negative: a gap that one of the normals sees, at most the distance); otherwise the
 /// largest over all pairs of convex parts, along a's axes, too. Continuous in the pose; its sign is
 /// that of "overlaps".
-[[nodiscard]] double penetration(const Outline& a, const Outline& b, const Pose& b_in_a,
-                                 OverlapWorkspace& workspace);
+[[nodiscard]] double penetration(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace);
 
 /// penetration() at one pose, and what it leaves of it at others, for next to nothing.
 struct DepthBound {

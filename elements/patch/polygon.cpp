@@ -40,8 +40,7 @@ void add_sums(RingSums& sums, const Polygon& polygon, const Vec2& origin) {
     sums.moment6 += s.moment6;
   };
   add(polygon.outer);
-  for (const Ring& hole : polygon.holes)
-    add(hole);
+  for (const Ring& hole : polygon.holes) add(hole);
 }
 
 /// A ring whose vertices remember their place in the input, for messages.
@@ -77,8 +76,7 @@ TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
   TracedRing out;
   out.name = name;
   for (std::size_t i = 0; i < input.size(); ++i) {
-    if (!input[i].allFinite())
-      throw PolygonError(name + ": vertex " + std::to_string(i) + " is not a finite number");
+    if (!input[i].allFinite()) throw PolygonError(name + ": vertex " + std::to_string(i) + " is not a finite number");
     out.ring.push_back(input[i]);
     out.from.push_back(i);
   }
@@ -97,8 +95,7 @@ TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
     }
   }
   if (out.ring.size() < 3)
-    throw PolygonError(name + ": has no area" +
-                       (input.empty() ? "" : ", with " + vertex_name({name, input, {0}}, 0)) +
+    throw PolygonError(name + ": has no area" + (input.empty() ? "" : ", with " + vertex_name({name, input, {0}}, 0)) +
                        "; it needs three vertices that are not on one line");
   return out;
 }
@@ -117,14 +114,11 @@ std::string edge_name(const TracedRing& r, std::size_t edge) {
 
 void require_simple(const std::vector<TracedRing>& rings) {
   std::vector<Ring> plain;
-  for (const TracedRing& r : rings)
-    plain.push_back(r.ring);
+  for (const TracedRing& r : rings) plain.push_back(r.ring);
   if (const auto clash = find_clash(plain)) {
     const auto [a, b, ea, eb] = *clash;
-    throw PolygonError(
-        rings[a].name + ": " + edge_name(rings[a], ea) + " meets " +
-        (a == b ? std::string() : rings[b].name + "'s ") + edge_name(rings[b], eb) +
-        (a == b ? "; a ring must not cross or touch itself" : "; rings must not cross or touch"));
+    throw PolygonError(rings[a].name + ": " + edge_name(rings[a], ea) + " meets " + (a == b ? std::string() : rings[b].name + "'s ") +
+                       edge_name(rings[b], eb) + (a == b ? "; a ring must not cross or touch itself" : "; rings must not cross or touch"));
   }
   for (std::size_t i = 1; i < rings.size(); ++i)
     if (!is_inside(plain[i].front(), plain[0]))
@@ -137,21 +131,17 @@ void require_simple(const std::vector<TracedRing>& rings) {
 
 } // namespace
 
-double signed_area(const Ring& ring) {
-  return ring.empty() ? 0.0 : 0.5 * sums_about(ring, ring.front()).area2;
-}
+double signed_area(const Ring& ring) { return ring.empty() ? 0.0 : 0.5 * sums_about(ring, ring.front()).area2; }
 
 double area(const Polygon& polygon) {
   double sum = signed_area(polygon.outer);
-  for (const Ring& hole : polygon.holes)
-    sum += signed_area(hole);
+  for (const Ring& hole : polygon.holes) sum += signed_area(hole);
   return sum;
 }
 
 double area(const Region& region) {
   double sum = 0;
-  for (const Polygon& polygon : region)
-    sum += area(polygon);
+  for (const Polygon& polygon : region) sum += area(polygon);
   return sum;
 }
 
@@ -165,8 +155,7 @@ Vec2 centroid(const Polygon& polygon) {
 Vec2 centroid(const Region& region) {
   RingSums sums;
   const Vec2 origin = region.front().outer.front();
-  for (const Polygon& polygon : region)
-    add_sums(sums, polygon, origin);
+  for (const Polygon& polygon : region) add_sums(sums, polygon, origin);
   return origin + sums.moment6 / (3.0 * sums.area2);
 }
 
@@ -198,8 +187,7 @@ Polygon repaired(Polygon polygon, const std::vector<std::string>& hole_names) {
   }
   require_simple(rings);
   polygon.outer = std::move(rings[0].ring);
-  for (std::size_t i = 0; i < polygon.holes.size(); ++i)
-    polygon.holes[i] = std::move(rings[i + 1].ring);
+  for (std::size_t i = 0; i < polygon.holes.size(); ++i) polygon.holes[i] = std::move(rings[i + 1].ring);
   return polygon;
 }
 

@@ -21,8 +21,7 @@ std::optional<Vec2> centre_of_rotation(const Vec2& reference, const Vec3& nu) {
   return reference + Vec2(-nu[1], nu[0]) / nu[2];
 }
 
-RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const Vec3& warm,
-                                   double tolerance) {
+RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const Vec3& warm, double tolerance) {
   RequiredPressure out;
   if (wrench.isZero(0)) return out;
   if (patch.empty()) {
@@ -35,8 +34,7 @@ RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const
   const double size = all.norm();
   const Vec3 w = all / size;
 
-  const Gauge g =
-      find_gauge(scaled, w, warm.isZero(0) ? warm : scaled.scaled_twist(warm), tolerance);
+  const Gauge g = find_gauge(scaled, w, warm.isZero(0) ? warm : scaled.scaled_twist(warm), tolerance);
   out.u = size * g.value;
   out.evaluations = g.evaluations;
   out.residual = g.residual;

@@ -31,8 +31,7 @@ struct RequiredPressure {
 /// direction to start from (a previous result's). W = 0 gives u = 0 without direction; an empty
 /// patch and W ≠ 0 give u = ∞. Several evaluations: prepare() the patch first. `tolerance` bounds
 /// |h∇h/u − W| relative to |W|; the error of u is of the order of its square.
-[[nodiscard]] RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench,
-                                                 const Vec3& warm = Vec3::Zero(),
+[[nodiscard]] RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const Vec3& warm = Vec3::Zero(),
                                                  double tolerance = 1e-10);
 
 /// What a patch can bear along each axis about its centroid: all that cheap bounds on u need.

@@ -10,8 +10,7 @@ namespace steplap {
 class ScaledPatch {
 public:
   /// Precondition: the patch is not empty.
-  explicit ScaledPatch(const Patch& patch)
-      : patch_(patch), centre_(patch.centroid()), force_(patch.force()), size_(patch.gyration()) {
+  explicit ScaledPatch(const Patch& patch) : patch_(patch), centre_(patch.centroid()), force_(patch.force()), size_(patch.gyration()) {
     const Vec2 arm = centre_ - patch.reference();
     // y = S ν: v_centre = v + ω ẑ×arm, third component size·ω
     to_scaled_ << 1, 0, -arm.y(), 0, 1, arm.x(), 0, 0, size_;
@@ -21,14 +20,10 @@ public:
   [[nodiscard]] double force() const { return force_; }
   [[nodiscard]] Vec3 scaled_twist(const Vec3& nu) const { return to_scaled_ * nu; }
   [[nodiscard]] Vec3 twist(const Vec3& y) const { return from_scaled_ * y; }
-  [[nodiscard]] Vec3 scaled_wrench(const Vec3& w) const {
-    return from_scaled_.transpose() * w / force_;
-  }
+  [[nodiscard]] Vec3 scaled_wrench(const Vec3& w) const { return from_scaled_.transpose() * w / force_; }
   [[nodiscard]] Vec3 wrench(const Vec3& w) const { return to_scaled_.transpose() * w * force_; }
   /// Of a matrix that takes wrenches to twists.
-  [[nodiscard]] Mat3 scaled_mobility(const Mat3& a) const {
-    return to_scaled_ * a * to_scaled_.transpose() * force_;
-  }
+  [[nodiscard]] Mat3 scaled_mobility(const Mat3& a) const { return to_scaled_ * a * to_scaled_.transpose() * force_; }
 
   [[nodiscard]] Dissipation evaluate(const Vec3& y) const {
     Dissipation d = evaluate_about(patch_, centre_, {y[0], y[1], y[2] / size_});

@@ -22,10 +22,8 @@ using Order = TraceWorkspace::Order;
 
 class Tracer {
 public:
-  Tracer(const BoundaryView& a, const BoundaryView& b, double rounding, const Vec2& push_direction, TraceWorkspace& w,
-         CellWorkspace& spare)
-      : sheets_{a, b}, rounding_(rounding), margin_(k_margin * rounding), push_(k_push * rounding * push_direction), w_(w),
-        spare_(spare) {}
+  Tracer(const BoundaryView& a, const BoundaryView& b, double rounding, const Vec2& push_direction, TraceWorkspace& w, CellWorkspace& spare)
+      : sheets_{a, b}, rounding_(rounding), margin_(k_margin * rounding), push_(k_push * rounding * push_direction), w_(w), spare_(spare) {}
 
   bool find_crossings() {
     w_.crossings.clear();
@@ -140,8 +138,7 @@ private:
     for (const Crossing& c : w_.crossings) ++order.start[c.edge[sheet] + 1];
     for (std::size_t i = 1; i < order.start.size(); ++i) order.start[i] += order.start[i - 1];
     // each start goes to its end as the crossings are put down, and back
-    for (std::size_t c = 0; c < w_.crossings.size(); ++c)
-      order.crossings[order.start[w_.crossings[c].edge[sheet]]++] = c;
+    for (std::size_t c = 0; c < w_.crossings.size(); ++c) order.crossings[order.start[w_.crossings[c].edge[sheet]]++] = c;
     for (std::size_t i = order.start.size() - 1; i > 0; --i) order.start[i] = order.start[i - 1];
     order.start[0] = 0;
     for (std::size_t i = 0; i + 1 < order.start.size(); ++i)
@@ -218,8 +215,7 @@ private:
     const BoxTree& tree = *sheets_[sheet].tree;
     const Box& box = tree.box(node);
     if (p.y() < box.low.y() || p.y() > box.high.y() || p.x() > box.high.x()) return 0;
-    if (!tree.is_leaf(node))
-      return crossings_to_the_right(sheet, 2 * node, p) + crossings_to_the_right(sheet, 2 * node + 1, p);
+    if (!tree.is_leaf(node)) return crossings_to_the_right(sheet, 2 * node, p) + crossings_to_the_right(sheet, 2 * node + 1, p);
     int crossings = 0;
     for (std::size_t i = tree.first(node); i < tree.end(node); ++i)
       crossings += is_to_the_right(corner(sheet, i), corner(sheet, next(sheet, i)), p);
@@ -253,8 +249,7 @@ private:
     for (Polygon& polygon : out) {
       const Ring& ring = polygon.outer;
       int crossings = 0;
-      for (std::size_t i = 0; i < ring.size(); ++i)
-        crossings += is_to_the_right(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1], p);
+      for (std::size_t i = 0; i < ring.size(); ++i) crossings += is_to_the_right(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1], p);
       if (crossings % 2 == 1 && (!found || signed_area(ring) < signed_area(found->outer))) found = &polygon;
     }
     return found;

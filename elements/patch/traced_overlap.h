@@ -30,8 +30,8 @@ struct TraceWorkspace {
     std::vector<std::size_t> place;     ///< of a crossing in `crossings`
   };
 
-  Ring placed;      ///< corners of the second sheet's boundary
-  BoxTree tree;     ///< over its edges
+  Ring placed;  ///< corners of the second sheet's boundary
+  BoxTree tree; ///< over its edges
   std::vector<Crossing> crossings;
   Order orders[2];
   std::vector<char> is_done; ///< by crossing
@@ -47,7 +47,7 @@ struct BoundaryView {
 
 /// Puts a ∩ b into `out`, which must be empty, as join_cells() does, its storage taken from `spare`. False, and nothing
 /// is put there, where a question was too close to call. Coordinates are good to `rounding`.
-[[nodiscard]] bool trace_overlap(const BoundaryView& a, const BoundaryView& b, double rounding, double least_area,
-                                 TraceWorkspace& w, CellWorkspace& spare, Region& out);
+[[nodiscard]] bool trace_overlap(const BoundaryView& a, const BoundaryView& b, double rounding, double least_area, TraceWorkspace& w,
+                                 CellWorkspace& spare, Region& out);
 
 } // namespace steplap

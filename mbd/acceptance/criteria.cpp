@@ -56,9 +56,7 @@ std::string limits_text(const Criterion& c, const std::string& unit) {
   return text;
 }
 
-Verdict consequence_of(const Criterion& c) {
-  return c.consequence == "reject" ? Verdict::reject : Verdict::inspect;
-}
+Verdict consequence_of(const Criterion& c) { return c.consequence == "reject" ? Verdict::reject : Verdict::inspect; }
 
 CriterionResult result_for(const Criterion& c, const std::string& text, const std::string& where, Verdict outcome) {
   CriterionResult result;

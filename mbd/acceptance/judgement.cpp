@@ -6,14 +6,10 @@ namespace steplap {
 
 const char* name_of(Verdict verdict) {
   switch (verdict) {
-  case Verdict::hold:
-    return "hold";
-  case Verdict::open:
-    return "open";
-  case Verdict::inspect:
-    return "inspect";
-  case Verdict::reject:
-    break;
+  case Verdict::hold: return "hold";
+  case Verdict::open: return "open";
+  case Verdict::inspect: return "inspect";
+  case Verdict::reject: break;
   }
   return "reject";
 }

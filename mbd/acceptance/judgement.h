@@ -38,11 +38,11 @@ struct CriterionResult {
 
 /// The verdict on one run with all that it was made of.
 struct Judgement {
-  Verdict verdict = Verdict::hold;       ///< on the run
-  Verdict so_far = Verdict::hold;        ///< of what was computed: the verdict itself, but for a run that broke off
-  bool has_criteria = false;             ///< anything was asked of the run; where nothing was, the verdict is open
-  std::string distrust;                  ///< not empty: why the run itself is not to be trusted, and what to try; its verdict is then open
-  std::vector<std::string> caps;         ///< why the run cannot mean "hold", whatever it meets: what is unusual in the model, what it was not asked
+  Verdict verdict = Verdict::hold; ///< on the run
+  Verdict so_far = Verdict::hold;  ///< of what was computed: the verdict itself, but for a run that broke off
+  bool has_criteria = false;       ///< anything was asked of the run; where nothing was, the verdict is open
+  std::string distrust;            ///< not empty: why the run itself is not to be trusted, and what to try; its verdict is then open
+  std::vector<std::string> caps; ///< why the run cannot mean "hold", whatever it meets: what is unusual in the model, what it was not asked
   std::vector<CriterionResult> criteria; ///< elements' first, then the model's, each in the order of the model
 };
 

@@ -48,7 +48,8 @@ std::string distrust_of(const Model& model, const System& system, const RunResul
     return "a step left joints open by " + limit_text(s.max_position_residual) + " m or rad: " + remedy(model.simulation);
   if (s.passed_pulse)
     return "time stepping passed over a part of a load at t = " + limit_text(*s.passed_pulse) +
-           " s that is far shorter than its steps: bodies have its impulse, but no force or acceleration shows it: " + remedy(model.simulation);
+           " s that is far shorter than its steps: bodies have its impulse, but no force or acceleration shows it: " +
+           remedy(model.simulation);
   if (s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale && s.energy_residual > s.energy_rounding)
     return "the energy balance is off by " + limit_text(s.energy_residual) + " J of " + limit_text(s.energy_scale) +
            " J turned over: " + remedy(model.simulation);

@@ -171,8 +171,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
   if (!estimate.unknown_because.empty()) return leave_open(judgement, estimate.unknown_because);
   const WorstError& worst = estimate.error.of(ErrorKind::position);
   if (worst.value <= k_most_trusted_error) return;
-  distrust(judgement, "the estimated error of '" + worst.where + "' is " + share_text(worst.value) +
-                          ": try a smaller step or tolerance");
+  distrust(judgement, "the estimated error of '" + worst.where + "' is " + share_text(worst.value) + ": try a smaller step or tolerance");
 }
 
 void leave_open(Judgement& judgement, const std::string& why) {

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "mbd/acceptance/judgement.h"
-#include "mbd/trust/global_error.h"
 #include "mbd/model/model.h"
+#include "mbd/trust/global_error.h"
 
 namespace steplap {
 
@@ -24,6 +24,7 @@ void leave_open(Judgement& judgement, const std::string& why);
 /// The error of a channel by its name; nullptr if there is no such channel.
 [[nodiscard]] const ChannelError* find_error(const std::string& channel, const System& system, const GlobalErrorEstimate& estimate);
 /// The error of the time, s, of an event of the element at exactly `t`; empty if there is none.
-[[nodiscard]] std::optional<double> event_error(const std::string& element, double t, const RunResult& run, const GlobalErrorEstimate& estimate);
+[[nodiscard]] std::optional<double> event_error(const std::string& element, double t, const RunResult& run,
+                                                const GlobalErrorEstimate& estimate);
 
 } // namespace steplap

@@ -79,7 +79,7 @@ public:
   DenseLu& operator=(DenseLu&&) noexcept;
 
   void factor(const MatX& a);
-  [[nodiscard]] double least_pivot() const; ///< |U_ii|
+  [[nodiscard]] double least_pivot() const;     ///< |U_ii|
   void solve(const VecX& right, VecX& x) const; ///< two vectors
   [[nodiscard]] VecX solve(const VecX& right) const;
   [[nodiscard]] VecX solve_transposed(const VecX& right) const;

@@ -11,8 +11,7 @@ namespace steplap {
 
 Qr qr_of(const MatX& a, Eigen::Index columns_of_q) {
   const Eigen::HouseholderQR<MatX> qr(a);
-  return {qr.householderQ() * MatX::Identity(a.rows(), columns_of_q),
-          qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>()};
+  return {qr.householderQ() * MatX::Identity(a.rows(), columns_of_q), qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>()};
 }
 
 MatX orthonormal(const MatX& a, Eigen::Index columns) {
@@ -61,8 +60,7 @@ PivotedQr::NullSpace PivotedQr::null_space(double least) const {
     return found;
   }
   const MatX& r = factor_->matrixR();
-  vectors.topRows(rank_) =
-      -r.topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solve(r.topRightCorner(rank_, k));
+  vectors.topRows(rank_) = -r.topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solve(r.topRightCorner(rank_, k));
   vectors = (vectors.array().abs() < least).select(0.0, vectors);
   found.vectors = factor_->colsPermutation() * vectors;
   for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(column(rank_ + j));
@@ -72,8 +70,10 @@ PivotedQr::NullSpace PivotedQr::null_space(double least) const {
 MatX PivotedQr::solve_by_rank(const MatX& right) const {
   MatX found = MatX::Zero(cols_, right.cols());
   if (rank_ == 0 || right.cols() == 0) return found;
-  found.topRows(rank_) = factor_->matrixR().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solve(
-      (factor_->householderQ().transpose() * right).topRows(rank_));
+  found.topRows(rank_) = factor_->matrixR()
+                             .topLeftCorner(rank_, rank_)
+                             .triangularView<Eigen::Upper>()
+                             .solve((factor_->householderQ().transpose() * right).topRows(rank_));
   return factor_->colsPermutation() * found;
 }
 

@@ -21,8 +21,7 @@ ModelError::ModelError(std::vector<Diagnostic> diagnostics) : diagnostics_(std::
   for (const Diagnostic& d : diagnostics_) text_ += (text_.empty() ? "" : "\n") + d.text();
 }
 
-ModelError::ModelError(const Location& where, std::string message)
-    : ModelError(std::vector<Diagnostic>{{where, std::move(message)}}) {}
+ModelError::ModelError(const Location& where, std::string message) : ModelError(std::vector<Diagnostic>{{where, std::move(message)}}) {}
 
 namespace {
 

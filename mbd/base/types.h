@@ -18,9 +18,7 @@ using MatX = Eigen::MatrixXd;
 inline constexpr int k_ground = 0; ///< index of the ground among the bodies of a compiled system
 
 /// a × b, the z component of the cross product.
-[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// ẑ × a: a turned by +90°.
 [[nodiscard]] inline Vec2 perp(const Vec2& a) { return {-a.y(), a.x()}; }

@@ -43,7 +43,8 @@ void ConstraintSolution::prepare() {
   const auto count = static_cast<std::size_t>(layout.schur.size());
   if (count == 0) return;
   for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
-  if (layout.has_long_rows()) [[unlikely]] pull_parts();
+  if (layout.has_long_rows()) [[unlikely]]
+    pull_parts();
   layout.schur.factor(layout.schur_rows);
 }
 
@@ -84,7 +85,8 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   const auto count = static_cast<std::size_t>(layout.schur.size());
   double* const right = multiplier_.data();
   for (std::size_t r = 0; r < count; ++r) right[r] = less_accelerations(layout.schur_rows[r], right[r], a);
-  if (layout.has_long_rows()) [[unlikely]] take_part_accelerations(a, right);
+  if (layout.has_long_rows()) [[unlikely]]
+    take_part_accelerations(a, right);
   if (layout.has_mechanisms()) solve_mechanisms(force, a);
   if (layout.active.empty()) return;
   drive(t);
@@ -93,7 +95,8 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   if (count == 0) return;
   layout.schur.solve(layout.schur_rows, right);
   add_responses(layout.schur_rows.data(), count, right, a);
-  if (layout.has_long_rows()) [[unlikely]] add_part_responses(right, a);
+  if (layout.has_long_rows()) [[unlikely]]
+    add_part_responses(right, a);
 }
 
 double ConstraintSolution::power_of_drives() const {
@@ -113,7 +116,8 @@ STEPLAP_INLINE void ConstraintSolution::compare_row(std::size_t r, double t) {
 
 void ConstraintSolution::compare(double t) {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) compare_row(r, t);
-  if (layout_->has_long_rows()) [[unlikely]] compare_parts();
+  if (layout_->has_long_rows()) [[unlikely]]
+    compare_parts();
   for (Mechanism& m : layout_->mechanisms) m.reduce_rows(layout_->schur_rows.data() + m.first_row);
 }
 
@@ -154,7 +158,8 @@ void ConstraintSolution::take_away(const double* r, double* change) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
     for (int side = 0; side < 2; ++side)
       if (layout.schur_rows[i].body[side] >= 0) add_response(layout.schur_rows[i], side, response[i], change);
-  if (layout.has_long_rows()) [[unlikely]] add_part_responses(response, change);
+  if (layout.has_long_rows()) [[unlikely]]
+    add_part_responses(response, change);
   for (const Mechanism& m : layout.mechanisms) {
     if (m.row_count == 0) continue;
     m.solve_rows(response + m.first_row);
@@ -173,7 +178,8 @@ double ConstraintSolution::along(std::size_t r, const double* change) const {
   for (int side = 0; side < 2; ++side)
     if (row.body[side] >= 0)
       for (int c = 0; c < 3; ++c) sum += row.j[side][c] * change[3 * row.body[side] + c];
-  if (layout.has_long_rows()) [[unlikely]] sum += along_parts(r, change);
+  if (layout.has_long_rows()) [[unlikely]]
+    sum += along_parts(r, change);
   return sum;
 }
 

@@ -17,8 +17,7 @@ public:
   Taken(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
   void remove_from(VecX& row) const {
     const auto taken = basis_.leftCols(count_);
-    for (int pass = 0; pass < 2; ++pass)
-      row -= taken * (taken.transpose() * row); // the second takes what rounding left
+    for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second takes what rounding left
   }
   // `row` is orthogonal to those taken. False if nothing can be beyond them any more.
   bool take(const VecX& row) {
@@ -40,8 +39,7 @@ struct Candidate {
 
 } // namespace
 
-std::vector<char> dependent_rows(const std::vector<WeightedRow>& rows, const char* can_stay_out,
-                                 const std::vector<char>& was_out) {
+std::vector<char> dependent_rows(const std::vector<WeightedRow>& rows, const char* can_stay_out, const std::vector<char>& was_out) {
   std::vector<char> out(rows.size(), 0);
   if (rows.empty()) return out;
   Taken taken(rows[0].row.size(), static_cast<Eigen::Index>(rows.size()));
@@ -61,10 +59,9 @@ std::vector<char> dependent_rows(const std::vector<WeightedRow>& rows, const cha
   }
   for (Candidate& c : candidates) taken.remove_from(c.beyond);
   while (!candidates.empty()) {
-    const auto farthest =
-        std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-          return a.beyond.norm() / (a.allowed * a.length) < b.beyond.norm() / (b.allowed * b.length);
-        });
+    const auto farthest = std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return a.beyond.norm() / (a.allowed * a.length) < b.beyond.norm() / (b.allowed * b.length);
+    });
     if (!(farthest->beyond.norm() > farthest->allowed * farthest->length) || !taken.take(farthest->beyond)) break;
     out[farthest->row] = 0;
     candidates.erase(farthest);

@@ -1,6 +1,5 @@
 #include "mbd/dynamics/dynamics.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,9 +83,7 @@ void Dynamics::record_rank(State& state) const {
   }
 }
 
-void Dynamics::set_time_limit(double limit) {
-  time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity());
-}
+void Dynamics::set_time_limit(double limit) { time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity()); }
 
 void Dynamics::begin_stages() { stage_programs_.enter(*layout_, *state_, layouts_); }
 
@@ -161,8 +158,7 @@ void Dynamics::finish_watches() {
   const auto watch = [&](int f) {
     const FrictionUnit& unit = system_.frictions[f];
     if (!shared || shared->group_of(f) < 0) [[likely]]
-      unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
-                                 &arrays_.watch[unit.watch]);
+      unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], &arrays_.watch[unit.watch]);
     watch_place(f);
   };
   for (const int f : layout.holding) watch(f);
@@ -345,7 +341,8 @@ void Dynamics::count_stage(double t, const double* y, const double* dy) {
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
   reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
-  const StageFound found{dy + coordinate_count(), arrays_.watch.data(), arrays_.watch_rate.data(), friction_force_, layout_->smallest_pivot()};
+  const StageFound found{dy + coordinate_count(), arrays_.watch.data(), arrays_.watch_rate.data(), friction_force_,
+                         layout_->smallest_pivot()};
   program->record(system_, *state_, evaluation_, now, y, found);
 }
 
@@ -369,8 +366,7 @@ double Dynamics::mechanical_energy(double t, const double* y) {
     potential -= c.mass * (system_.gravity.x() * m.x + system_.gravity.y() * m.y);
   }
   for (const auto& group : system_.groups) potential += group->potential(motion_);
-  for (const ForceGroup* group : system_.inner_groups)
-    potential += group->inner_energy(motion_, y + 2 * coordinate_count());
+  for (const ForceGroup* group : system_.inner_groups) potential += group->inner_energy(motion_, y + 2 * coordinate_count());
   return kinetic + potential;
 }
 

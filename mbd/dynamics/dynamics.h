@@ -35,13 +35,13 @@ struct ConstraintFailure : NumericalFailure {
 
 /// What is asked of an evaluation beside the rates.
 enum class Request : unsigned char {
-  rates,           ///< all by-products. Near a singular position the rates are those of the nearest state on the constraints
-  rates_as_given,  ///< all by-products, with the rates at y itself: the function of y and t that Linearization differentiates
-  stage,           ///< of a stage inside a step: watch() and the count of evaluations. Other by-products may be those of the
-                   ///< evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it is `rates`
+  rates,            ///< all by-products. Near a singular position the rates are those of the nearest state on the constraints
+  rates_as_given,   ///< all by-products, with the rates at y itself: the function of y and t that Linearization differentiates
+  stage,            ///< of a stage inside a step: watch() and the count of evaluations. Other by-products may be those of the
+                    ///< evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it is `rates`
   stage_near_limit, ///< as `stage`, and the watch values of merged joints and of groups that share a load, where some are near their limit
   stage_and_joints, ///< as `stage`, and those watch values in any case
-  end,             ///< of a step's end: rates, watch() and watch_merged(). Other by-products are found when somebody asks for them
+  end,              ///< of a step's end: rates, watch() and watch_merged(). Other by-products are found when somebody asks for them
 };
 
 /// The evaluation made last, if it was made by code: then its by-products are still to be found, and this is what is known of it.
@@ -247,7 +247,8 @@ private:
   void count_stage(double t, const double* y, const double* dy);
   void defer_byproducts(const StageProgram& program, double t, const double* y);
   void ensure_byproducts() {
-    if (pending_.is_pending()) [[unlikely]] evaluate_byproducts();
+    if (pending_.is_pending()) [[unlikely]]
+      evaluate_byproducts();
   }
   void evaluate_byproducts();
   void settle_loads();
@@ -262,8 +263,8 @@ private:
   LayoutStore layouts_;
   Coordinates choice_ = Coordinates::absolute;
   Layout* layout_ = nullptr;
-  bool is_rank_new_ = false; ///< which rows of friction the equations leave out is decided, or was, since set_state()
-  bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
+  bool is_rank_new_ = false;     ///< which rows of friction the equations leave out is decided, or was, since set_state()
+  bool is_merged_near_ = false;  ///< some merged joint or group was near its limit when last watched
   bool was_merged_near_ = false; ///< or the time before: the other end of a step
   double time_cap_ = std::numeric_limits<double>::infinity();
   long evaluations_ = 0, coded_stages_ = 0;
@@ -276,15 +277,15 @@ private:
   ConstraintSolution rows_;
   Reactions reactions_;
   StagePrograms stage_programs_;
-  const Motion<double>* motion_;   ///< of kinematics_
-  double* friction_force_;         ///< of reactions_
+  const Motion<double>* motion_; ///< of kinematics_
+  double* friction_force_;       ///< of reactions_
   double lowest_pivot_ = 1.0;
-  double booked_[2] = {0.0, 0.0};       ///< dissipated energy and work at the last rates(), J
+  double booked_[2] = {0.0, 0.0}; ///< dissipated energy and work at the last rates(), J
   const Integrals* integrals_ = nullptr;
   PendingEvaluation pending_;
-  std::vector<double> placed_;     ///< state of rates_nearby
-  std::vector<double> kept_;       ///< scratch of keep_allowed, per active row
-  std::vector<char> was_out_;      ///< scratch of decide_rank, per active row
+  std::vector<double> placed_;                        ///< state of rates_nearby
+  std::vector<double> kept_;                          ///< scratch of keep_allowed, per active row
+  std::vector<char> was_out_;                         ///< scratch of decide_rank, per active row
   mutable std::vector<double> cluster_q_, cluster_v_; ///< 3 per cluster, where some are in mechanisms
   std::vector<double> cluster_a_;
 };

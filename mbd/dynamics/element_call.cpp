@@ -64,7 +64,8 @@ std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
     if (is_used[static_cast<std::size_t>(body)] != 0) slots.push_back(body);
   for (int i = 0; i < system_.links.size(); ++i) {
     const Link& link = system_.links[i];
-    if (is_used[static_cast<std::size_t>(link.a)] != 0 && is_used[static_cast<std::size_t>(link.b)] != 0) slots.push_back(system_.links.slot(i));
+    if (is_used[static_cast<std::size_t>(link.a)] != 0 && is_used[static_cast<std::size_t>(link.b)] != 0)
+      slots.push_back(system_.links.slot(i));
   }
   return slots;
 }
@@ -125,7 +126,8 @@ void ElementCall::trace(int f, TracedEvaluation& e, const Traced* rate, Traced* 
   std::vector<char> is_used(system_.bodies.size(), 0);
   friction.mark_bodies(is_used);
   const RowSpec* const rows = friction.rows(e.friction[f]);
-  for (int r = 0; r < friction.dimension(); ++r) is_used[static_cast<std::size_t>(rows[r].a)] = is_used[static_cast<std::size_t>(rows[r].b)] = 1;
+  for (int r = 0; r < friction.dimension(); ++r)
+    is_used[static_cast<std::size_t>(rows[r].a)] = is_used[static_cast<std::size_t>(rows[r].b)] = 1;
   take_surroundings(is_used, e);
   for (std::size_t i = 0; i < arrays_.contact_force.size(); ++i) take(e.contact_force[i], arrays_.contact_force[i]);
   for (int r = 0; r < friction.dimension(); ++r) {

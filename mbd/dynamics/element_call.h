@@ -55,10 +55,10 @@ private:
   EvaluationArrays arrays_;
   std::vector<double> inner_;
   double rate_[3] = {0, 0, 0}, wrench_[3] = {0, 0, 0};
-  std::vector<double*> places_;         ///< of the arguments, behind its own address
-  std::vector<Constant> constants_;     ///< what is added to begins with these
-  std::vector<const double*> found_;    ///< the results
-  std::vector<Traced> arguments_;       ///< while it is written down, as `results_`
+  std::vector<double*> places_;      ///< of the arguments, behind its own address
+  std::vector<Constant> constants_;  ///< what is added to begins with these
+  std::vector<const double*> found_; ///< the results
+  std::vector<Traced> arguments_;    ///< while it is written down, as `results_`
   std::vector<Traced*> results_;
   bool has_failed_ = false;
 };

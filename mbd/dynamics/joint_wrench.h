@@ -15,20 +15,18 @@ void place_edges(const System& system, const Layout& layout, const State& state,
 /// What a member of a cluster lacks: m (R a_c + α ẑ×r − ω² r − g) less the forces on it, R the same for all. `k`, `a`:
 /// motion and accelerations of the cluster; `f`: on the member.
 template <class S>
-STEPLAP_INLINE BodyForceOf<S> member_lack(const BodyData& body, const Placement& place, const Vec2& gravity,
-                                          const Motion<S>& k, const S* a, const BodyForceOf<S>& f) {
+STEPLAP_INLINE BodyForceOf<S> member_lack(const BodyData& body, const Placement& place, const Vec2& gravity, const Motion<S>& k, const S* a,
+                                          const BodyForceOf<S>& f) {
   const S fx = body.mass * (a[0] - gravity.x()) - f.fx, fy = body.mass * (a[1] - gravity.y()) - f.fy;
   const Pair<S> at_centre{k.c * fx + k.s * fy, k.c * fy - k.s * fx};
   const S turning = body.mass * a[2], centripetal = body.mass * k.omega * k.omega;
   const double x = place.offset.x(), y = place.offset.y();
-  return {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
-          body.inertia * a[2] - f.m};
+  return {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y, body.inertia * a[2] - f.m};
 }
 
 /// Takes what a row, or a part of one, bears from the lack of the members of clusters that it acts on.
 template <class S>
-void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, const Motion<S>* motion,
-                  BodyForceOf<S>* lack) {
+void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, const Motion<S>* motion, BodyForceOf<S>* lack) {
   const int body[2] = {spec.a, spec.b};
   if (!layout.is_carried[body[0]] && !layout.is_carried[body[1]]) return;
   const MeasureValue<S> m = evaluate_row<false>(spec, motion[spec.a], motion[spec.b]);
@@ -47,8 +45,7 @@ void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, co
 /// Hands on what members lack from child to parent. `bears(edge, along)`: the wrench on the rows' body a about the
 /// joint's point, along the rows (two axes fixed in b, then the angle).
 template <class S, class F>
-STEPLAP_INLINE void hand_on_lack(const Layout& layout, const std::vector<EdgeGeometry>& edges, BodyForceOf<S>* lack,
-                                 const F& bears) {
+STEPLAP_INLINE void hand_on_lack(const Layout& layout, const std::vector<EdgeGeometry>& edges, BodyForceOf<S>* lack, const F& bears) {
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
     const EdgeGeometry& geometry = edges[e];

@@ -43,8 +43,7 @@ int find_root(std::vector<int>& parent, int i) {
 }
 
 // Joints that merge (a spanning forest, the ground excluded) come back; the others stay rows.
-std::vector<char> merge(const System& system, const std::vector<RigidJoint>& joints,
-                        std::vector<int>& parent) {
+std::vector<char> merge(const System& system, const std::vector<RigidJoint>& joints, std::vector<int>& parent) {
   parent.resize(system.bodies.size());
   std::iota(parent.begin(), parent.end(), 0);
   std::vector<char> is_merged(joints.size(), 0);
@@ -119,8 +118,7 @@ void find_slots(const System& system, Layout& layout) {
 }
 
 // Edges of each cluster's spanning tree, leaves first (reverse breadth-first from the roots).
-void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>& is_merged,
-                 int body_count, Layout& layout) {
+void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>& is_merged, int body_count, Layout& layout) {
   std::vector<std::vector<std::size_t>> at_body(body_count);
   for (std::size_t i = 0; i < joints.size(); ++i)
     if (is_merged[i]) {
@@ -168,8 +166,8 @@ void add_active(Layout& layout, const ActiveRow& row) {
 }
 
 // Bilateral rows: locks where a drive prescribes one coordinate of a body that is alone, else rows.
-void want_bilateral(const System& system, const std::vector<char>& is_block_merged, const std::vector<char>& is_pin,
-                    Layout& layout, std::vector<ActiveRow>& wanted) {
+void want_bilateral(const System& system, const std::vector<char>& is_block_merged, const std::vector<char>& is_pin, Layout& layout,
+                    std::vector<ActiveRow>& wanted) {
   for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
     const RowBlock& block = system.row_blocks[i];
     if (is_block_merged[i] || is_pin[i] != 0) continue;
@@ -179,20 +177,19 @@ void want_bilateral(const System& system, const std::vector<char>& is_block_merg
       layout.redundant_blocks.push_back(i);
       continue;
     }
-    const bool is_free = block.coordinate >= 0 && place.is_alone &&
-                         layout.clusters[place.cluster].w[block.coordinate] > 0.0;
+    const bool is_free = block.coordinate >= 0 && place.is_alone && layout.clusters[place.cluster].w[block.coordinate] > 0.0;
     if (is_free) {
       layout.clusters[place.cluster].w[block.coordinate] = 0.0;
-      layout.locks.push_back({place.cluster, block.coordinate, block.first, block.coordinate < 2 ? first.point_b[block.coordinate] : 0.0, {}});
+      layout.locks.push_back(
+          {place.cluster, block.coordinate, block.first, block.coordinate < 2 ? first.point_b[block.coordinate] : 0.0, {}});
       continue;
     }
-    for (int r = block.first; r < block.first + block.count; ++r)
-      wanted.push_back({&system.rows[r], r, -1, 0});
+    for (int r = block.first; r < block.first + block.count; ++r) wanted.push_back({&system.rows[r], r, -1, 0});
   }
 }
 
-void want_frictions(const System& system, const State& state, const std::vector<char>& is_friction_merged,
-                    Layout& layout, std::vector<ActiveRow>& wanted) {
+void want_frictions(const System& system, const State& state, const std::vector<char>& is_friction_merged, Layout& layout,
+                    std::vector<ActiveRow>& wanted) {
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     if (is_friction_merged[f]) {
       layout.merged.push_back(f);
@@ -214,12 +211,10 @@ void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layou
     return cluster < layout.absolute_count ? -1 : layout.mechanism_of_cluster(cluster).first_cluster;
   };
   if (layout.has_mechanisms())
-    std::stable_sort(wanted.begin(), wanted.end(),
-                     [&](const ActiveRow& a, const ActiveRow& b) { return place_of(a) < place_of(b); });
+    std::stable_sort(wanted.begin(), wanted.end(), [&](const ActiveRow& a, const ActiveRow& b) { return place_of(a) < place_of(b); });
   for (const ActiveRow& row : wanted) {
     if (row.friction >= 0)
-      layout.held_rows.push_back(
-          {static_cast<int>(layout.active.size()), system.frictions[row.friction].row + row.friction_row});
+      layout.held_rows.push_back({static_cast<int>(layout.active.size()), system.frictions[row.friction].row + row.friction_row});
     add_active(layout, row);
   }
   auto row = layout.active.begin();
@@ -299,8 +294,7 @@ void find_links(const System& system, const State& state, Layout& layout) {
     is_needed[layout.sliding_link.back()] = 1;
   }
   for (int i = 0; i < system.links.size(); ++i)
-    if (is_needed[system.links.slot(i)])
-      layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
+    if (is_needed[system.links.slot(i)]) layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
 }
 
 // One row of each pin or rod by which a member of a mechanism hangs.
@@ -379,7 +373,8 @@ MergedRows merged_rows(const System& system, const std::vector<RigidJoint>& join
 }
 
 // Angles instead of places, where small mechanisms have them. Returns which row blocks are pins that need no rows then.
-std::vector<char> choose_coordinates(const System& system, const State& state, Coordinates coordinates, const MergedRows& merged, Layout& layout) {
+std::vector<char> choose_coordinates(const System& system, const State& state, Coordinates coordinates, const MergedRows& merged,
+                                     Layout& layout) {
   // The small blocks of inner states (Linearization::InnerBlock) are between clusters in absolute coordinates.
   if (coordinates == Coordinates::absolute || system.inner_count() != 0) return std::vector<char>(system.row_blocks.size(), 0);
   JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, merged.is_block, merged.is_friction);
@@ -402,8 +397,7 @@ void find_carried_rows(const System& system, Layout& layout) {
 void weigh_clusters(const System& system, Layout& layout) {
   for (int k = 0; k < layout.absolute_count; ++k) {
     const Cluster& cluster = layout.clusters[k];
-    layout.weight.insert(layout.weight.end(),
-                         {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
+    layout.weight.insert(layout.weight.end(), {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
     layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
   }
 }
@@ -457,8 +451,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   const MergedRows without_rows = merged_rows(system, joints, is_merged);
   const std::vector<char> is_pin = choose_coordinates(system, state, coordinates, without_rows, layout);
   layout.is_carried.assign(system.bodies.size(), 0);
-  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
-    order_edges(joints, is_merged, system.body_count(), layout);
+  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end()) order_edges(joints, is_merged, system.body_count(), layout);
   std::vector<ActiveRow> wanted;
   want_bilateral(system, without_rows.is_block, is_pin, layout, wanted);
   want_frictions(system, state, without_rows.is_friction, layout, wanted);
@@ -471,7 +464,8 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   number_coordinates(system, layout);
   find_lock_terms(layout);
   fill_rows(layout);
-  for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
+  for (const ActiveRow& row : layout.active)
+    layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
   layout.forget_sharing();
   analyze_rows(layout);
   return layout;

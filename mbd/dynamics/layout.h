@@ -36,10 +36,10 @@ struct Cluster {
 
 /// Place of a body in its cluster.
 struct Placement {
-  int cluster = -1;        ///< −1: the ground
-  bool is_alone = true;    ///< the only body of its cluster
-  bool is_trivial = true;  ///< it moves as its cluster does: alone, or placed at its centre of gravity
-  Vec2 offset = Vec2::Zero(); ///< centre of gravity in the cluster's axes
+  int cluster = -1;                     ///< −1: the ground
+  bool is_alone = true;                 ///< the only body of its cluster
+  bool is_trivial = true;               ///< it moves as its cluster does: alone, or placed at its centre of gravity
+  Vec2 offset = Vec2::Zero();           ///< centre of gravity in the cluster's axes
   double angle = 0.0, c = 1.0, s = 0.0; ///< against the cluster's
 };
 
@@ -50,8 +50,8 @@ enum class RowPullKind : unsigned char { other, angle, axis, slide };
 /// Where the row comes from.
 struct ActiveRow {
   const RowSpec* spec = nullptr;
-  int row = -1;        ///< bilateral row, or −1
-  int friction = -1;   ///< friction element and which of its rows, or −1
+  int row = -1;      ///< bilateral row, or −1
+  int friction = -1; ///< friction element and which of its rows, or −1
   int friction_row = 0;
   int link = 0;          ///< slot of the row's bodies
   bool is_simple = true; ///< both bodies are clusters of their own, or the ground
@@ -67,8 +67,8 @@ struct LockedTerm {
 /// A driven coordinate of a cluster that consists of one body.
 struct Lock {
   int cluster = 0, coordinate = 0;
-  int row = 0; ///< the bilateral row it stands for
-  double offset = 0.0; ///< m: of the coordinate against what the row measures, which is seen from a point of the ground
+  int row = 0;                   ///< the bilateral row it stands for
+  double offset = 0.0;           ///< m: of the coordinate against what the row measures, which is seen from a point of the ground
   std::vector<LockedTerm> terms; ///< active rows that act on its cluster
 };
 
@@ -92,9 +92,9 @@ struct RigidEdge {
 
 /// Where a rigid joint lies in the axes of its cluster, which do not change while it sticks.
 struct EdgeGeometry {
-  Pair<double> lever;   ///< from the parent's centre of gravity to the child's
-  Pair<double> axis[2]; ///< of the joint's rows
-  Pair<double> point;   ///< of the joint, from the centre of gravity of the rows' body a
+  Pair<double> lever;      ///< from the parent's centre of gravity to the child's
+  Pair<double> axis[2];    ///< of the joint's rows
+  Pair<double> point;      ///< of the joint, from the centre of gravity of the rows' body a
   bool is_child_a = false; ///< the child is the rows' body a
 };
 
@@ -119,15 +119,15 @@ struct Layout {
   std::vector<Mechanism> mechanisms; ///< of the others
   int coordinate_count = 0;
   std::vector<CoordinateScale> scales; ///< per coordinate
-  std::vector<Placement> placements; ///< per body
-  std::vector<int> riding;           ///< bodies whose motion is not their cluster's, that forces or rows act on
-  std::vector<int> riding_along;     ///< the others whose motion is not their cluster's
-  std::vector<int> slots;            ///< of the clusters' motions and forces
-  int slot_count = 0;                ///< those in use: bodies, links, clusters of several bodies
+  std::vector<Placement> placements;   ///< per body
+  std::vector<int> riding;             ///< bodies whose motion is not their cluster's, that forces or rows act on
+  std::vector<int> riding_along;       ///< the others whose motion is not their cluster's
+  std::vector<int> slots;              ///< of the clusters' motions and forces
+  int slot_count = 0;                  ///< those in use: bodies, links, clusters of several bodies
 
-  std::vector<ActiveRow> active;     ///< of clusters in absolute coordinates first, then of each mechanism
+  std::vector<ActiveRow> active; ///< of clusters in absolute coordinates first, then of each mechanism
   std::vector<Lock> locks;
-  std::vector<double> weight; ///< m g, per coordinate of the absolute clusters
+  std::vector<double> weight;       ///< m g, per coordinate of the absolute clusters
   std::vector<double> inverse_mass; ///< W of those; 1 for a joint coordinate
   std::vector<RigidEdge> edges;
   std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
@@ -135,21 +135,21 @@ struct Layout {
   bool is_carried_by_pins = false;   ///< pins of mechanisms do
   std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
   std::vector<ActiveLink> links;
-  std::vector<int> sliding;          ///< friction elements in phase slip
-  std::vector<int> sliding_link;     ///< slot of each of those
-  std::vector<int> holding;          ///< friction elements in phase stick that are not merged
-  std::vector<int> merged;           ///< friction elements in phase stick that are merged
-  bool can_merged_slip = false;      ///< some of those can
-  bool is_merged_watched = false;    ///< and are watched, as sticking elements that share a load are
-  std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
-  std::vector<double> reference;     ///< coordinates in the reference pose, for error scales
-  std::vector<HeldRow> held_rows;    ///< of the elements in `holding`
-  std::vector<char> is_friction_row; ///< per active row: it holds friction that can slip
-  std::vector<int> driven_rows;      ///< active rows that move with time
-  SchurSolver schur;                 ///< of the rows between absolute clusters
-  std::vector<SchurRow> schur_rows;  ///< per active row, then per part: bodies filled in, numbers are scratch
-  std::vector<SchurPart> parts;      ///< of rows over more than two bodies; those are between absolute clusters
-  std::vector<const RowSpec*> part_specs; ///< of each of those
+  std::vector<int> sliding;                            ///< friction elements in phase slip
+  std::vector<int> sliding_link;                       ///< slot of each of those
+  std::vector<int> holding;                            ///< friction elements in phase stick that are not merged
+  std::vector<int> merged;                             ///< friction elements in phase stick that are merged
+  bool can_merged_slip = false;                        ///< some of those can
+  bool is_merged_watched = false;                      ///< and are watched, as sticking elements that share a load are
+  std::unique_ptr<LoadSharing> sharing;                ///< null until rows have been met that depend on each other
+  std::vector<double> reference;                       ///< coordinates in the reference pose, for error scales
+  std::vector<HeldRow> held_rows;                      ///< of the elements in `holding`
+  std::vector<char> is_friction_row;                   ///< per active row: it holds friction that can slip
+  std::vector<int> driven_rows;                        ///< active rows that move with time
+  SchurSolver schur;                                   ///< of the rows between absolute clusters
+  std::vector<SchurRow> schur_rows;                    ///< per active row, then per part: bodies filled in, numbers are scratch
+  std::vector<SchurPart> parts;                        ///< of rows over more than two bodies; those are between absolute clusters
+  std::vector<const RowSpec*> part_specs;              ///< of each of those
   std::vector<std::unique_ptr<StageProgram>> programs; ///< of sets of modes that have this layout (stage_program.h)
 
   /// As when it was made: what rows share hangs on the pose in which that was first asked for.
@@ -164,12 +164,12 @@ struct Layout {
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
   /// The mechanism of a cluster or row that is not absolute.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
-    return *std::prev(std::upper_bound(mechanisms.begin(), mechanisms.end(), cluster,
-                                       [](int k, const Mechanism& m) { return k < m.first_cluster; }));
+    return *std::prev(
+        std::upper_bound(mechanisms.begin(), mechanisms.end(), cluster, [](int k, const Mechanism& m) { return k < m.first_cluster; }));
   }
   [[nodiscard]] const Mechanism& mechanism_of_row(int row) const {
-    return *std::prev(std::upper_bound(mechanisms.begin(), mechanisms.end(), row,
-                                       [](int r, const Mechanism& m) { return r < m.first_row; }));
+    return *std::prev(
+        std::upper_bound(mechanisms.begin(), mechanisms.end(), row, [](int r, const Mechanism& m) { return r < m.first_row; }));
   }
 
   // Of all constraint equations, as SchurSolver says of its own.

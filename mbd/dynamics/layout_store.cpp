@@ -28,8 +28,8 @@ LayoutStore::LayoutStore(const System& system) : system_(system), most_(usual_co
 
 LayoutStore::Found LayoutStore::at(const State& state, Coordinates coordinates) {
   layout_key(state, coordinates, key_);
-  const auto known = std::lower_bound(by_key_.begin(), by_key_.end(), key_,
-                                      [](const Place& place, const LayoutKey& key) { return place->key < key; });
+  const auto known =
+      std::lower_bound(by_key_.begin(), by_key_.end(), key_, [](const Place& place, const LayoutKey& key) { return place->key < key; });
   if (known != by_key_.end() && (*known)->key == key_) {
     layouts_.splice(layouts_.begin(), layouts_, *known);
     return {layouts_.front(), false};

@@ -40,9 +40,9 @@ private:
   void give_up_beyond(std::size_t count);
 
   const System& system_;
-  std::list<Layout> layouts_;         ///< the last one used first
-  std::vector<Place> by_key_;         ///< in the order of their keys: a run looks for one at every event
-  std::list<MergedBodies> merged_;    ///< as many as joints that let go since clear(), at most
+  std::list<Layout> layouts_;      ///< the last one used first
+  std::vector<Place> by_key_;      ///< in the order of their keys: a run looks for one at every event
+  std::list<MergedBodies> merged_; ///< as many as joints that let go since clear(), at most
   LayoutKey key_;
   std::size_t most_;
 };

@@ -32,8 +32,7 @@ double side_of(const VecX& capacity, Eigen::Index row, double wrench) {
 } // namespace
 
 LeastUsage::LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> pivots, std::vector<double> length)
-    : dimension_(std::move(dimension)), pivots_(std::move(pivots)), length_(std::move(length)),
-      basis_(std::move(basis)) {
+    : dimension_(std::move(dimension)), pivots_(std::move(pivots)), length_(std::move(length)), basis_(std::move(basis)) {
   int first = 0;
   for (const int d : dimension_) {
     first_.push_back(first);

@@ -35,8 +35,7 @@ struct DualRow {
   D12 j[6]; ///< gradient by the coordinates of either side
 };
 
-template <bool WithBias>
-DualRow differentiate(const RowSpec& spec, const Layout& layout, const std::vector<Motion<double>>& motion) {
+template <bool WithBias> DualRow differentiate(const RowSpec& spec, const Layout& layout, const std::vector<Motion<double>>& motion) {
   const int body[2] = {spec.a, spec.b};
   DualRow row;
   Motion<D12> cluster[2], member[2];
@@ -80,10 +79,8 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   for (const PairJacobian& part : parts_) add_forces(part);
   inner_parts_.clear();
   inner_.clear();
-  for (const ForceGroup* group : dynamics.system().inner_groups)
-    group->add_inner_jacobian(dynamics.evaluation(), inner_parts_);
-  for (const InnerJacobian& part : inner_parts_)
-    add_inner(part);
+  for (const ForceGroup* group : dynamics.system().inner_groups) group->add_inner_jacobian(dynamics.evaluation(), inner_parts_);
+  for (const InnerJacobian& part : inner_parts_) add_inner(part);
   if (dynamics.inner_count() > 0) add_states();
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
   if (!layout_->sliding.empty()) motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
@@ -103,8 +100,7 @@ void Linearization::add_body_block(int row_body, int column_body, const Mat3& by
     const Motion<double>& centre = motion[layout_->clusters[column.cluster].motion];
     const double x = motion[column_body].x - centre.x, y = motion[column_body].y - centre.y;
     // v_body = v + ω ẑ×lever, and the lever turns with θ.
-    k.col(2) += -y * by_pose.col(0) + x * by_pose.col(1) -
-                centre.omega * (x * by_velocity.col(0) + y * by_velocity.col(1));
+    k.col(2) += -y * by_pose.col(0) + x * by_pose.col(1) - centre.omega * (x * by_velocity.col(0) + y * by_velocity.col(1));
     d.col(2) += -y * by_velocity.col(0) + x * by_velocity.col(1);
   }
   if (!row.is_trivial) {
@@ -124,8 +120,7 @@ void Linearization::add_forces(const PairJacobian& part) {
   const int body[2] = {part.a, part.b};
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j)
-      add_body_block(body[i], body[j], part.stiffness.block<3, 3>(3 * i, 3 * j),
-                     part.damping.block<3, 3>(3 * i, 3 * j));
+      add_body_block(body[i], body[j], part.stiffness.block<3, 3>(3 * i, 3 * j), part.damping.block<3, 3>(3 * i, 3 * j));
 }
 
 void Linearization::add_inner(const InnerJacobian& part) {
@@ -141,11 +136,9 @@ void Linearization::add_inner(const InnerJacobian& part) {
     const Placement& place = layout_->placements[body[side]];
     if (place.cluster < 0) continue;
     block.cluster[side] = place.cluster;
-    Mat3 f = part.force.middleRows<3>(3 * side), p = part.by_pose.middleCols<3>(3 * side),
-         v = part.by_velocity.middleCols<3>(3 * side);
+    Mat3 f = part.force.middleRows<3>(3 * side), p = part.by_pose.middleCols<3>(3 * side), v = part.by_velocity.middleCols<3>(3 * side);
     if (!place.is_trivial) { // as in add_body_block
-      const Motion<double>&m = dynamics_->motion()[body[side]],
-            &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+      const Motion<double>&m = dynamics_->motion()[body[side]], &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
       const double x = m.x - centre.x, y = m.y - centre.y;
       f.row(2) += x * f.row(1) - y * f.row(0);
       p.col(2) += -y * p.col(0) + x * p.col(1) - centre.omega * (x * v.col(0) + y * v.col(1));
@@ -163,7 +156,8 @@ void Linearization::add_states() {
   state_jacobian_.clear();
   for (auto* const entries : {&states_.by_pose, &states_.by_velocity, &states_.by_state, &states_.forces}) entries->clear();
   for (const auto& group : dynamics_->system().groups)
-    if (const auto* const reader = dynamic_cast<const StateReader*>(group.get())) reader->add_state_jacobian(dynamics_->evaluation(), state_jacobian_);
+    if (const auto* const reader = dynamic_cast<const StateReader*>(group.get()))
+      reader->add_state_jacobian(dynamics_->evaluation(), state_jacobian_);
   const std::vector<Motion<double>>& motion = dynamics_->motion();
   for (const StateJacobian::ByMotion& part : state_jacobian_.by_motion) { // as in add_body_block
     const Placement& place = layout_->placements[part.body];
@@ -263,7 +257,7 @@ struct Linearization::Sliding {
   const FrictionElement& friction;
   const FrictionState& state;
   const RowSpec* specs;
-  int count; ///< rows: 1 or 3
+  int count;        ///< rows: 1 or 3
   Evaluation moved; ///< what the slip law looks at, changed one number at a time
   DualRow rows[3] = {};
   double rate[3] = {0, 0, 0}, wrench[3] = {0, 0, 0};
@@ -342,8 +336,7 @@ void Linearization::differentiate_by_pose(Sliding& sliding) {
     }
     a = start;
     for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 6; ++k)
-        sliding.by_state[r][k] += (ends[0][r] - ends[1][r]) / (2.0 * k_pose_step) * sliding.rows[c].j[k].v;
+      for (int k = 0; k < 6; ++k) sliding.by_state[r][k] += (ends[0][r] - ends[1][r]) / (2.0 * k_pose_step) * sliding.rows[c].j[k].v;
   }
   sliding.moved.motion = dynamics_->evaluation().motion;
 }
@@ -401,8 +394,7 @@ void Linearization::take_out_transport(const Sliding& sliding) {
     const int body = side == 0 ? sliding.specs[0].a : sliding.specs[0].b;
     const Placement& place = layout_->placements[body];
     if (place.cluster < 0 || place.is_trivial) continue;
-    const Motion<double>&m = dynamics_->motion()[body],
-                       &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+    const Motion<double>&m = dynamics_->motion()[body], &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
     double along_lever = 0.0;
     for (int r = 0; r < sliding.count; ++r) {
       const DualRow& row = sliding.rows[r];

@@ -51,7 +51,7 @@ public:
   [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
   /// M⁻¹ Jᵀ, n × m; empty where all clusters are in absolute coordinates.
   [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }
-  [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; } ///< G_q, m × n
+  [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; }     ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
 
   /// An inner state between two clusters: columns and rows of either side in turn, zero for the ground and locked columns.
@@ -117,10 +117,10 @@ private:
   /// A coordinate of a mechanism that moves a cluster.
   struct Lever {
     int coordinate = 0;
-    int axis = -1;         ///< of a place: 0 x, 1 y
-    bool is_own = false;   ///< it is the cluster's angle
+    int axis = -1;       ///< of a place: 0 x, 1 y
+    bool is_own = false; ///< it is the cluster's angle
     double omega = 0.0, alpha = 0.0;
-    Pair<double> arm;      ///< what it turns
+    Pair<double> arm; ///< what it turns
   };
   /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by
   /// the coordinate, its acceleration by the rate.
@@ -130,11 +130,11 @@ private:
   [[nodiscard]] static Lever place_lever(int coordinate, int axis);
   [[nodiscard]] static LeverRates rates_of(const Lever& lever, int c);
   template <class F> void for_levers(int at, const F& f) const;
-  std::vector<std::vector<Lever>> levers_; ///< per cluster; empty: absolute
+  std::vector<std::vector<Lever>> levers_;                     ///< per cluster; empty: absolute
   std::vector<Triplet> kept_gradient_, kept_pose_, kept_rate_; ///< scratch of reduce
-  MatX by_pose_, by_rate_;                 ///< of one mechanism
-  std::vector<char> is_touched_;           ///< per coordinate: they have entries there
-  std::vector<Motion<double>> motion_;   ///< scratch of the slip law's differences
+  MatX by_pose_, by_rate_;                                     ///< of one mechanism
+  std::vector<char> is_touched_;                               ///< per coordinate: they have entries there
+  std::vector<Motion<double>> motion_;                         ///< scratch of the slip law's differences
   std::vector<double> normal_;
 };
 

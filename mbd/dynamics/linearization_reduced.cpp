@@ -11,13 +11,10 @@ Linearization::LeverRates Linearization::rates_of(const Lever& lever, int c) {
   if (lever.axis >= 0) return {lever.axis == c ? 1.0 : 0.0, 0.0, 0.0, 0.0};
   if (c == 2) return {lever.is_own ? 1.0 : 0.0, 0.0, 0.0, 0.0};
   const double along = c == 0 ? lever.arm.x : lever.arm.y, across = c == 0 ? -lever.arm.y : lever.arm.x;
-  return {across, -lever.omega * along, -lever.alpha * along - lever.omega * lever.omega * across,
-          -2.0 * lever.omega * along};
+  return {across, -lever.omega * along, -lever.alpha * along - lever.omega * lever.omega * across, -2.0 * lever.omega * along};
 }
 
-Linearization::Lever Linearization::place_lever(int coordinate, int axis) {
-  return {coordinate, axis, false, 0.0, 0.0, {}};
-}
+Linearization::Lever Linearization::place_lever(int coordinate, int axis) { return {coordinate, axis, false, 0.0, 0.0, {}}; }
 
 void Linearization::find_levers() {
   const double* const s = dy_.data() + n_;
@@ -53,8 +50,7 @@ void Linearization::reduce() {
   kept_rate_.clear();
   const int absolute = 3 * layout_->absolute_count;
   for (const Triplet& e : stiffness_)
-    if (e.row() < absolute)
-      for_levers(e.col(), [&](int at, const LeverRates& r) { put(kept_pose_, e.row(), at, e.value() * r.rate); });
+    if (e.row() < absolute) for_levers(e.col(), [&](int at, const LeverRates& r) { put(kept_pose_, e.row(), at, e.value() * r.rate); });
   for (const Triplet& e : damping_)
     if (e.row() < absolute)
       for_levers(e.col(), [&](int at, const LeverRates& r) {
@@ -117,9 +113,7 @@ void Linearization::start_columns() {
 // M⁻¹ K_s and M⁻¹ D_s of one mechanism, column by column.
 void Linearization::reduce_forces(const Mechanism& m) {
   start_columns();
-  const auto is_here = [&m](int row) {
-    return row / 3 >= m.first_cluster && row / 3 < m.first_cluster + m.cluster_count();
-  };
+  const auto is_here = [&m](int row) { return row / 3 >= m.first_cluster && row / 3 < m.first_cluster + m.cluster_count(); };
   const auto add = [&](const Triplet& e, bool is_damping) {
     if (!is_here(e.row())) return;
     for (const Lever& lever : levers_[e.row() / 3]) {

@@ -88,8 +88,7 @@ std::vector<LoadSharing::HeldRow> LoadSharing::held_rows(const State& state) con
     const FrictionUnit& unit = system_.frictions[f];
     const RowSpec* specs = unit.friction->rows(state.friction[f]);
     const bool is_bounded = !unit.friction->never_slips();
-    for (int r = 0; r < unit.friction->dimension(); ++r)
-      (is_bounded ? bounded : rows).push_back({specs + r, f, unit.row + r, is_bounded});
+    for (int r = 0; r < unit.friction->dimension(); ++r) (is_bounded ? bounded : rows).push_back({specs + r, f, unit.row + r, is_bounded});
   }
   rows.insert(rows.end(), bounded.begin(), bounded.end());
   return rows;
@@ -215,11 +214,9 @@ void LoadSharing::make_groups(ConnectedRows& part, const std::vector<int>& pivot
       rows.push_back(static_cast<int>(r));
       slots.push_back(row.slot);
       for (const int body : {row.spec->a, row.spec->b})
-        if (body != k_ground)
-          gyration = std::max(gyration, std::sqrt(system_.bodies[body].inertia / system_.bodies[body].mass));
+        if (body != k_ground) gyration = std::max(gyration, std::sqrt(system_.bodies[body].inertia / system_.bodies[body].mass));
     }
-    for (const int r : rows)
-      length.push_back(part.rows[part.free_count + r].spec->kind == MeasureKind::angle ? gyration : 1.0);
+    for (const int r : rows) length.push_back(part.rows[part.free_count + r].spec->kind == MeasureKind::angle ? gyration : 1.0);
     for (std::size_t j = 0; j < roots.size(); ++j)
       if (roots[j] == root) {
         columns.push_back(static_cast<int>(j));
@@ -257,9 +254,8 @@ VecX LoadSharing::off_balance(const ConnectedRows& part, const std::vector<Motio
 // Rows that were found to depend nearly were out of balance from the first.
 bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const {
   if (left_out != left_out_) return false;
-  return std::all_of(parts_.begin(), parts_.end(), [&](const ConnectedRows& part) {
-    return ((off_balance(part, motion) - part.off).array() <= k_out_of_balance).all();
-  });
+  return std::all_of(parts_.begin(), parts_.end(),
+                     [&](const ConnectedRows& part) { return ((off_balance(part, motion) - part.off).array() <= k_out_of_balance).all(); });
 }
 
 namespace {
@@ -289,7 +285,9 @@ namespace {
 
 // What moves by the vector c makes of a row whose gradient is j, whichever way it points: the direction of a row is known no
 // better than k_discord of a radian, and rows that differ by less hold what moves across them alike.
-double across(const double* j, const double* c) { return (std::abs(j[0]) + std::abs(j[1])) * (std::abs(c[0]) + std::abs(c[1])) + std::abs(j[2] * c[2]); }
+double across(const double* j, const double* c) {
+  return (std::abs(j[0]) + std::abs(j[1])) * (std::abs(c[0]) + std::abs(c[1])) + std::abs(j[2] * c[2]);
+}
 
 // Sums over the rows of a null vector, each with that of the terms it is made of.
 struct Discord {
@@ -306,7 +304,8 @@ struct Discord {
 
 // Of one row, which the null vector has n times. `is_led`: joints or drives are among the rows that depend on each other, and
 // hold along the way that the bodies have come.
-void add_row(const System& system, const RowSpec& spec, double n, bool is_led, const Evaluation& e, const double* acceleration, Discord& sum) {
+void add_row(const System& system, const RowSpec& spec, double n, bool is_led, const Evaluation& e, const double* acceleration,
+             Discord& sum) {
   const auto m = evaluate_row<true>(spec, e.motion);
   const SignalJet target = row_target(spec, e.memory, e.t);
   double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
@@ -365,9 +364,9 @@ void LoadSharing::solve(const Evaluation& evaluation, const double* friction_for
     // Pivots that run out leave bounds from both sides: only between them is it open whether the group holds.
     if (group.least.usage() > 1.0 && group.least.lower() < 1.0 - k_open)
       throw ElementFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
-                             "' and what shares its load hold cannot be told at t = " + rounded_text(evaluation.t, 12) + " s: between " +
-                             rounded_text(group.least.lower()) + " and " + rounded_text(group.least.usage()) +
-                             " of the capacity are needed. Give feet of one pair of bodies a common coulomb_stick",
+                               "' and what shares its load hold cannot be told at t = " + rounded_text(evaluation.t, 12) + " s: between " +
+                               rounded_text(group.least.lower()) + " and " + rounded_text(group.least.usage()) +
+                               " of the capacity are needed. Give feet of one pair of bodies a common coulomb_stick",
                            {system_.element_names[system_.frictions[group.frictions.front()].element]});
   }
 }
@@ -403,8 +402,7 @@ void LoadSharing::settle(double* row_force, double* friction_force) const {
     VecX force(part.null.rows());
     for (Eigen::Index r = 0; r < force.size(); ++r) force[r] = slot(r);
     force += part.null.leftCols(part.shared_count) * z.head(part.shared_count);
-    if (part.settle.rows() > 0)
-      force += part.null.rightCols(part.settle.rows()) * (part.settle * force.head(part.free_count));
+    if (part.settle.rows() > 0) force += part.null.rightCols(part.settle.rows()) * (part.settle * force.head(part.free_count));
     for (Eigen::Index r = 0; r < force.size(); ++r) slot(r) = force[r];
   }
 }

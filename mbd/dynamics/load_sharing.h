@@ -70,13 +70,13 @@ private:
   };
   /// Rows between bodies that are connected, with their null vectors: first those that load friction.
   struct ConnectedRows {
-    std::vector<HeldRow> rows; ///< bounded ones last
-    int free_count = 0;        ///< rows that are not
-    MatX null;                 ///< rows × vectors
-    VecX off;                  ///< per vector: what it moved in the pose that it was found in, of its terms
-    int shared_count = 0;      ///< vectors that load friction
-    MatX settle;               ///< of the others: coefficients that take multipliers of the free rows to the least
-    std::vector<int> groups;   ///< of this part
+    std::vector<HeldRow> rows;             ///< bounded ones last
+    int free_count = 0;                    ///< rows that are not
+    MatX null;                             ///< rows × vectors
+    VecX off;                              ///< per vector: what it moved in the pose that it was found in, of its terms
+    int shared_count = 0;                  ///< vectors that load friction
+    MatX settle;                           ///< of the others: coefficients that take multipliers of the free rows to the least
+    std::vector<int> groups;               ///< of this part
     std::vector<std::vector<int>> columns; ///< per group: its vectors
   };
   void analyze(ConnectedRows& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index);

@@ -30,16 +30,16 @@ namespace steplap {
 
 /// A cluster, or a rod without mass, and what it hangs on.
 struct Member {
-  int cluster = -1;        ///< −1: a rod
-  int slot = -1;           ///< of its motion and force
-  int parent = -1;         ///< member that it hangs on, −1: the ground or nothing
+  int cluster = -1; ///< −1: a rod
+  int slot = -1;    ///< of its motion and force
+  int parent = -1;  ///< member that it hangs on, −1: the ground or nothing
   bool is_free = false;
   int coordinate = 0;      ///< of its angle; of a free one x and y are the two before
-  int block = -1; ///< rows of the joint by which it hangs, −1: none (free, or a rod, which leaves them to its end)
+  int block = -1;          ///< rows of the joint by which it hangs, −1: none (free, or a rod, which leaves them to its end)
   bool is_rod_end = false; ///< that is a distance, its parent the rod
   double mass = 0.0, inertia = 0.0;
-  Pair<double> pin;        ///< from its parent's pin, in the parent's axes; a place of the ground
-  Pair<double> centre;     ///< from its pin, in its axes
+  Pair<double> pin;    ///< from its parent's pin, in the parent's axes; a place of the ground
+  Pair<double> centre; ///< from its pin, in its axes
 };
 
 struct MechanismWork;

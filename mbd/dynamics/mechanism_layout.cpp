@@ -40,9 +40,8 @@ bool is_pin(const System& system, const RowBlock& block) {
   if (block.count != 2) return false;
   const RowSpec &x = system.rows[block.first], &y = system.rows[block.first + 1];
   const bool are_fixed = !x.drive && !y.drive && x.memory < 0 && y.memory < 0;
-  return are_fixed && x.kind == MeasureKind::axis && y.kind == MeasureKind::axis && x.a == y.a && x.b == y.b &&
-         x.point_a == y.point_a && x.point_b == y.point_b &&
-         std::abs(x.direction.x() * y.direction.y() - x.direction.y() * y.direction.x()) > 0.5;
+  return are_fixed && x.kind == MeasureKind::axis && y.kind == MeasureKind::axis && x.a == y.a && x.b == y.b && x.point_a == y.point_a &&
+         x.point_b == y.point_b && std::abs(x.direction.x() * y.direction.y() - x.direction.y() * y.direction.x()) > 0.5;
 }
 
 bool is_rod(const System& system, const RowBlock& block) {
@@ -55,8 +54,7 @@ public:
   Finder(const System& system, const State& state, const Layout& layout, Coordinates choice)
       : system_(system), state_(state), layout_(layout), choice_(choice), islands_(layout.clusters.size()),
         rows_(layout.clusters.size(), 0), hinges_at_(layout.clusters.size()), is_driven_(layout.clusters.size(), 0),
-        is_long_(clusters_on_long_rows(system, layout)),
-        member_(layout.clusters.size(), -1) {}
+        is_long_(clusters_on_long_rows(system, layout)), member_(layout.clusters.size(), -1) {}
 
   JointCoordinates find(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
     found_.mechanism_of.assign(layout_.clusters.size(), -1);
@@ -97,8 +95,7 @@ private:
       if (is_friction_merged[f] || state_.friction[f].phase != FrictionPhase::stick) continue;
       const FrictionElement& friction = *system_.frictions[f].friction;
       for (int r = 0; r < friction.dimension(); ++r)
-        if (const RowSpec& row = friction.rows(state_.friction[f])[r]; cluster_of(row.a) >= 0 || cluster_of(row.b) >= 0)
-          add_row(row);
+        if (const RowSpec& row = friction.rows(state_.friction[f])[r]; cluster_of(row.a) >= 0 || cluster_of(row.b) >= 0) add_row(row);
     }
   }
 
@@ -239,8 +236,8 @@ private:
   std::vector<Hinge> hinges_;
   std::vector<std::vector<int>> hinges_at_;
   std::vector<char> is_driven_;
-  std::vector<char> is_long_; // of a row over more than two bodies
-  std::vector<int> member_; // of a cluster
+  std::vector<char> is_long_;       // of a row over more than two bodies
+  std::vector<int> member_;         // of a cluster
   std::vector<int> reached_, used_; // clusters and blocks of tree_
   Mechanism tree_;
   JointCoordinates found_;
@@ -261,9 +258,8 @@ std::vector<char> clusters_on_long_rows(const System& system, const Layout& layo
   return is_long;
 }
 
-JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
-                                        Coordinates choice, const std::vector<char>& is_block_merged,
-                                        const std::vector<char>& is_friction_merged) {
+JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout, Coordinates choice,
+                                        const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
   return Finder(system, state, layout, choice).find(is_block_merged, is_friction_merged);
 }
 

@@ -22,8 +22,7 @@ struct JointCoordinates {
 [[nodiscard]] std::vector<char> clusters_on_long_rows(const System& system, const Layout& layout);
 
 /// `is_block_merged`, `is_friction_merged`: held inside clusters.
-[[nodiscard]] JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
-                                                      Coordinates choice,
+[[nodiscard]] JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout, Coordinates choice,
                                                       const std::vector<char>& is_block_merged,
                                                       const std::vector<char>& is_friction_merged);
 

@@ -92,9 +92,7 @@ void refine(const MechanismWork& w, int m, double* x) {
 } // namespace
 
 bool Mechanism::is_dependent(int row) const { return work_->inverse_pivot[row] == 0.0; }
-const double* Mechanism::gradient(int row) const {
-  return work_->gradient.data() + static_cast<std::ptrdiff_t>(row) * k_most;
-}
+const double* Mechanism::gradient(int row) const { return work_->gradient.data() + static_cast<std::ptrdiff_t>(row) * k_most; }
 
 void Mechanism::find_patterns(const SchurRow* rows) {
   MechanismWork& w = *work_;
@@ -154,7 +152,8 @@ void Mechanism::add_response(const double* lambda, double* change) const {
 void Mechanism::factor_rows(const SchurRow* rows, double shift) {
   for (int r = 0; r < row_count; ++r) work_->whiten_row(static_cast<std::size_t>(r), rows[r]);
   factor_as_is(shift);
-  if (is_rank_open_) [[unlikely]] keep_rank(shift);
+  if (is_rank_open_) [[unlikely]]
+    keep_rank(shift);
 }
 
 void Mechanism::factor_as_is(double shift) {

@@ -21,13 +21,11 @@ template <class S> struct MechanismWorkOf {
     S c{1.0}, s{0.0}, omega{0.0};
     Pair<S> o, v, bias; ///< of its pin; bias: its acceleration at s̈ = 0
     Pair<S> arm, lever, turned_moment;
-    Pair<S> force;      ///< scratch: of all that hangs on it
+    Pair<S> force; ///< scratch: of all that hangs on it
     S couple{0.0};
   };
 
-  STEPLAP_INLINE static Pair<S> turned(const S& c, const S& s, const Pair<double>& p) {
-    return {c * p.x - s * p.y, s * p.x + c * p.y};
-  }
+  STEPLAP_INLINE static Pair<S> turned(const S& c, const S& s, const Pair<double>& p) { return {c * p.x - s * p.y, s * p.x + c * p.y}; }
   STEPLAP_INLINE static void add(Pair<S>& to, const Pair<S>& p) {
     to.x += p.x;
     to.y += p.y;
@@ -186,8 +184,7 @@ template <class S> struct MechanismWorkOf {
       if (now->parent >= 0) {
         const Link& above = first[now->parent];
         const S alpha = s[above.coordinate], w2 = above.omega * above.omega;
-        now->force = {above.force.x - alpha * now->arm.y - w2 * now->arm.x,
-                      above.force.y + alpha * now->arm.x - w2 * now->arm.y};
+        now->force = {above.force.x - alpha * now->arm.y - w2 * now->arm.x, above.force.y + alpha * now->arm.x - w2 * now->arm.y};
       } else if (now->is_free) {
         now->force = {s[now->coordinate - 2], s[now->coordinate - 1]};
       } else {
@@ -300,10 +297,10 @@ template <class S> struct MechanismWorkOf {
   std::vector<Link> links;
   mutable std::vector<Link> packed; ///< scratch of pack and unpack, which leave the pose placed as it is
   std::array<S, k_most> placed_q{}, placed_v{};
-  std::array<std::int8_t, k_most> up{};          ///< the coordinate next above
-  std::array<std::uint8_t, k_most> all{};        ///< coordinates, the last first
-  std::array<S, k_most * k_most> mass{};         ///< M, then L below the diagonal
-  std::array<S, k_most> inverse_d{};             ///< of M
+  std::array<std::int8_t, k_most> up{};   ///< the coordinate next above
+  std::array<std::uint8_t, k_most> all{}; ///< coordinates, the last first
+  std::array<S, k_most * k_most> mass{};  ///< M, then L below the diagonal
+  std::array<S, k_most> inverse_d{};      ///< of M
 
   // Rows, k_most numbers each.
   struct RowPattern {
@@ -314,9 +311,9 @@ template <class S> struct MechanismWorkOf {
   struct Shared {
     std::uint16_t begin = 0, count = 0; ///< of shared_at
   };
-  std::vector<Shared> shared;            ///< per pair of rows (r, t ≤ r): r (r + 1)/2 + t
-  std::vector<std::uint8_t> shared_at;   ///< coordinates in both patterns
-  std::vector<S> gradient, white, scaled; ///< J, L⁻ᵀJᵀ and that over D
+  std::vector<Shared> shared;                ///< per pair of rows (r, t ≤ r): r (r + 1)/2 + t
+  std::vector<std::uint8_t> shared_at;       ///< coordinates in both patterns
+  std::vector<S> gradient, white, scaled;    ///< J, L⁻ᵀJᵀ and that over D
   std::vector<S> factor, inverse_pivot, own; ///< own: J_c W J_cᵀ of each row
   double shift = 0.0;
 };

@@ -38,8 +38,7 @@ void Dynamics::pack(const State& state, double* y) const {
     q[1] += share * bq[1];
     v[0] += share * bv[0];
     v[1] += share * bv[1];
-    v[2] += (system_.bodies[i].inertia * bv[2] +
-             system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
+    v[2] += (system_.bodies[i].inertia * bv[2] + system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
   }
   // Angular momentum was taken about the cluster's centre, where Σ m lever = 0: no correction is due.
   if (layout_->has_mechanisms()) {

@@ -1,8 +1,8 @@
 // Dynamics onto its constraints: projection of states, rates near singular positions, and what an error
 // estimate there may leave out.
-#include "mbd/dynamics/dynamics.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/system/element_failure.h"
 
 #include <algorithm>
@@ -77,9 +77,8 @@ void Dynamics::fail_projection(double t) const {
   for (std::size_t r = 1; r < layout.active.size(); ++r)
     if (!(std::abs(rows_.off()[r]) <= std::abs(rows_.off()[worst]))) worst = static_cast<int>(r);
   const RowSpec& spec = *layout.active[worst].spec;
-  throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
-                              system_.element_names[spec.element] + "' cannot be met at t = " +
-                              number_text(t) + " s: residual " + rounded_text(rows_.off()[worst], 3) +
+  throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
+                              "' cannot be met at t = " + number_text(t) + " s: residual " + rounded_text(rows_.off()[worst], 3) +
                               (spec.kind == MeasureKind::angle ? " rad" : " m"),
                           spec.element, rows_.off()[worst], spec.kind == MeasureKind::angle);
 }
@@ -91,9 +90,8 @@ void Dynamics::fail_velocities(double t) const {
     if (!(std::abs(rows_.rate_off()[r]) <= std::abs(rows_.rate_off()[worst]))) worst = r;
   const RowSpec& spec = *layout.active[worst].spec;
   throw ElementFailure("the rate of constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
-                         "' cannot be met at t = " + number_text(t) + " s: " + rounded_text(rows_.rate_off()[worst], 3) +
-                         (spec.kind == MeasureKind::angle ? " rad/s" : " m/s") +
-                         " are left. It contradicts other joints or drives there",
+                           "' cannot be met at t = " + number_text(t) + " s: " + rounded_text(rows_.rate_off()[worst], 3) +
+                           (spec.kind == MeasureKind::angle ? " rad/s" : " m/s") + " are left. It contradicts other joints or drives there",
                        {system_.element_names[spec.element]});
 }
 
@@ -147,12 +145,10 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
   double farthest = 0.0;
-  for (const int slot : layout.slots)
-    farthest = std::max({farthest, std::abs(motion_[slot].x), std::abs(motion_[slot].y)});
+  for (const int slot : layout.slots) farthest = std::max({farthest, std::abs(motion_[slot].x), std::abs(motion_[slot].y)});
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
   Residual now = first;
-  if (!reach_positions(t, y, is_close ? k_close * place_rounding(y) : std::max(tolerance, least), now))
-    fail_projection(t);
+  if (!reach_positions(t, y, is_close ? k_close * place_rounding(y) : std::max(tolerance, least), now)) fail_projection(t);
   reach_velocities(t, y, now, is_close ? k_close * rate_rounding(y) : std::max(tolerance, least));
   return first;
 }
@@ -183,8 +179,7 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& 
     rows_.take_away(rows_.off().data(), y);
     now = constraint_values(t, y);
     if (now.position > k_chord_worth * before) rows_.forget_factors();
-    if (now.position >= 0.5 * before && now.position <= place_rounding(y) && --patience < 0)
-      break;
+    if (now.position >= 0.5 * before && now.position <= place_rounding(y) && --patience < 0) break;
   }
   return true;
 }
@@ -197,16 +192,13 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
     rows_.factor();
     const double before = now.velocity;
     rows_.take_away(rows_.rate_off().data(), y + coordinate_count());
-    if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot &&
-        !layout_->is_singular())
-      return;
+    if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot && !layout_->is_singular()) return;
     now = constraint_values(t, y);
     if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
   }
   double fastest = 0.0;
   for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
-  if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest)))
-    fail_velocities(t);
+  if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest))) fail_velocities(t);
 }
 
 // Near a singular position what a stage is off the constraints by, a power of the step size, is divided by the

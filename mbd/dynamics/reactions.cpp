@@ -41,9 +41,8 @@ void place_edges(const System& system, const Layout& layout, const State& state,
   edges.resize(layout.edges.size());
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
-    const RowSpec* const rows =
-        edge.block >= 0 ? &system.rows[system.row_blocks[edge.block].first]
-                        : system.frictions[edge.friction].friction->rows(state.friction[edge.friction]);
+    const RowSpec* const rows = edge.block >= 0 ? &system.rows[system.row_blocks[edge.block].first]
+                                                : system.frictions[edge.friction].friction->rows(state.friction[edge.friction]);
     const auto turned = [](const Placement& p, const Vec2& local) {
       return Pair<double>{p.c * local.x() - p.s * local.y(), p.s * local.x() + p.c * local.y()};
     };
@@ -58,16 +57,13 @@ void place_edges(const System& system, const Layout& layout, const State& state,
   }
 }
 
-void Reactions::add_carried(const RowSpec& spec, double lambda) {
-  take_carried(*layout_, spec, lambda, motion_, wrench_.data());
-}
+void Reactions::add_carried(const RowSpec& spec, double lambda) { take_carried(*layout_, spec, lambda, motion_, wrench_.data()); }
 
 // Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
 void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
   for (const Mechanism& mechanism : layout.mechanisms) {
-    mechanism.pin_forces(cluster_a, force_, layout.schur_rows.data() + mechanism.first_row, lambda + mechanism.first_row,
-                         pin_force_);
+    mechanism.pin_forces(cluster_a, force_, layout.schur_rows.data() + mechanism.first_row, lambda + mechanism.first_row, pin_force_);
     for (std::size_t i = 0; i < mechanism.members.size(); ++i) {
       const Member& m = mechanism.members[i];
       if (m.block < 0) continue;
@@ -91,9 +87,8 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
   for (const RigidEdge& edge : layout.edges) {
     const Placement& place = layout.placements[edge.child];
-    wrench_[edge.child] =
-        member_lack(system_.bodies[edge.child], place, system_.gravity, motion_[layout.clusters[place.cluster].motion],
-                    cluster_a + 3 * place.cluster, force_[edge.child]);
+    wrench_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, motion_[layout.clusters[place.cluster].motion],
+                                      cluster_a + 3 * place.cluster, force_[edge.child]);
   }
   for (const int r : layout.carried_rows)
     for (const RowSpec* part = layout.active[r].spec; part; part = part->next) add_carried(*part, lambda[r]);

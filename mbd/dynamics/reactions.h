@@ -19,7 +19,9 @@ template <class S>
   const int k = 3 * lock.cluster + lock.coordinate;
   const Cluster& cluster = layout.clusters[lock.cluster];
   S force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
-            (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
+            (lock.coordinate == 0   ? f.fx
+             : lock.coordinate == 1 ? f.fy
+                                    : f.m);
   for (const LockedTerm& term : lock.terms) force -= rows[term.row].j[term.side][lock.coordinate] * lambda[term.multiplier];
   return force;
 }
@@ -44,8 +46,8 @@ public:
   [[nodiscard]] double of_lock(const Lock& lock, const double* a, const double* lambda) const;
 
   [[nodiscard]] const std::vector<double>& acceleration() const { return acceleration_; }
-  [[nodiscard]] std::vector<double>& row_force() { return row_force_; }             ///< of every bilateral row
-  [[nodiscard]] std::vector<double>& friction_force() { return friction_force_; }   ///< of every friction element's
+  [[nodiscard]] std::vector<double>& row_force() { return row_force_; }           ///< of every bilateral row
+  [[nodiscard]] std::vector<double>& friction_force() { return friction_force_; } ///< of every friction element's
 
 private:
   void add_carried(const RowSpec& spec, double lambda);

@@ -29,8 +29,7 @@ void ConstraintSolution::add_part_responses(const double* lambda, double* a) con
 
 double ConstraintSolution::along_parts(std::size_t r, const double* change) const {
   const std::vector<SchurPart>& parts = layout_->parts; // in the order of their rows
-  auto part = std::lower_bound(parts.begin(), parts.end(), static_cast<int>(r),
-                               [](const SchurPart& p, int row) { return p.of < row; });
+  auto part = std::lower_bound(parts.begin(), parts.end(), static_cast<int>(r), [](const SchurPart& p, int row) { return p.of < row; });
   double sum = 0.0;
   for (; part != parts.end() && part->of == static_cast<int>(r); ++part)
     sum -= less_accelerations(layout_->schur_rows[part->row], 0.0, change);

@@ -44,8 +44,7 @@ template <class S> STEPLAP_INLINE RowPull<S> pull_along_slide(const RowSpec& row
 }
 
 /// Fills one side of a row in the clusters' coordinates.
-template <class S>
-STEPLAP_INLINE void set_gradient(SchurRowOf<S>& row, int side, const S& fx, const S& fy, const S& couple) {
+template <class S> STEPLAP_INLINE void set_gradient(SchurRowOf<S>& row, int side, const S& fx, const S& fy, const S& couple) {
   const double* const w = row.w[side];
   S* const j = row.j[side];
   S* const wj = row.wj[side];
@@ -84,8 +83,7 @@ template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, Sch
 
 /// A body `off` from its cluster's centre has the acceleration −ω² off where its cluster has none: what is due to that in the second
 /// rate of a row.
-template <class S>
-STEPLAP_INLINE void add_centripetal(int side, const Pair<S>& direction, const S& omega, const Pair<S>& off, S& bias) {
+template <class S> STEPLAP_INLINE void add_centripetal(int side, const Pair<S>& direction, const S& omega, const Pair<S>& off, S& bias) {
   const S term = omega * omega * dot(direction, off);
   if (side == 0) bias -= term;
   else bias += term;
@@ -143,8 +141,7 @@ STEPLAP_INLINE MeasureValue<S> load_row(const Layout& layout, const ActiveRow& a
 }
 
 /// Fills in an active row for an evaluation of accelerations; returns γ.
-template <class S>
-STEPLAP_INLINE S pull_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
+template <class S> STEPLAP_INLINE S pull_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
   if (active.pull == RowPullKind::angle) return S(0.0);
   if (active.pull == RowPullKind::other) return -load_row<true>(layout, active, motion, row).bias;
   return pull_simple_row(active, row, motion);

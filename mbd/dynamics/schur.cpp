@@ -1,8 +1,8 @@
 #include "mbd/dynamics/schur.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/types.h"
-#include "mbd/system/motion.h"
 #include "mbd/dynamics/dependent_rows.h"
+#include "mbd/system/motion.h"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -101,7 +101,8 @@ std::uint16_t place_in_rows(int row, std::size_t member, int side) {
 
 } // namespace
 
-void SchurSolver::list_dense_products(const std::vector<SchurRow>& rows, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of) {
+void SchurSolver::list_dense_products(const std::vector<SchurRow>& rows, const std::vector<SchurCoupling>& coupled,
+                                      const std::vector<int>& of) {
   for (int k = 0; k < n_; ++k) position_[k] = k;
   dense_products_.clear();
   dense_turns_.clear();
@@ -112,8 +113,7 @@ void SchurSolver::list_dense_products(const std::vector<SchurRow>& rows, const s
     const auto entry = static_cast<std::uint16_t>(of[c.i] * n_ + of[c.j]);
     const DenseProduct product{entry, place_in_rows(c.i, offsetof(SchurRow, wj), c.side_i),
                                place_in_rows(c.j, offsetof(SchurRow, j), c.side_j)};
-    if (row.is_constant && other.is_constant)
-      dense_constant_[entry] += row.wj[c.side_i][2] * other.j[c.side_j][2];
+    if (row.is_constant && other.is_constant) dense_constant_[entry] += row.wj[c.side_i][2] * other.j[c.side_j][2];
     else (row.is_constant || other.is_constant ? dense_turns_ : dense_products_).push_back(product);
   }
 }
@@ -257,7 +257,8 @@ std::vector<char> SchurSolver::dependent_friction(const std::vector<SchurRow>& r
 
 void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
   factor_as_is(rows, shift);
-  if (is_rank_open_) [[unlikely]] keep_rank(rows, shift);
+  if (is_rank_open_) [[unlikely]]
+    keep_rank(rows, shift);
 }
 
 namespace {
@@ -357,9 +358,7 @@ void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double leas
   if (!is_small()) return trace_sparse(rows, least_pivot, x, pivots);
   // Places in the rows as doubles: of which row, which side.
   constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
-  const auto side_of = [](std::size_t place, std::size_t member) {
-    return (place % k_row - member / sizeof(double)) / 3;
-  };
+  const auto side_of = [](std::size_t place, std::size_t member) { return (place % k_row - member / sizeof(double)) / 3; };
   std::array<Traced, k_max_dense * k_max_dense> m;
   std::array<Traced, k_max_dense> inverse_d;
   for (int i = 0; i < n_ * n_; ++i) m[i] = dense_constant_[i];
@@ -369,22 +368,21 @@ void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double leas
     m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
   for (const DenseProduct& p : dense_turns_)
-    m[p.entry] += rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))][2] *
-                  rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))][2];
+    m[p.entry] +=
+        rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))][2] * rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))][2];
   const double least = n_ > 1 ? least_pivot : k_pivot_tolerance; // one row alone is never near to others
-  eliminate_rows<0>(m.data(), inverse_d.data(), n_, [](const Traced& diagonal) { return diagonal; },
-                    [&](int, const Traced& d, const Traced& diagonal) {
-                      if (!(d > least * diagonal)) throw NotTraceable();
-                      if (n_ > 1) pivots.push_back({d, diagonal});
-                      return Traced(1.0) / d;
-                    });
+  eliminate_rows<0>(
+      m.data(), inverse_d.data(), n_, [](const Traced& diagonal) { return diagonal; },
+      [&](int, const Traced& d, const Traced& diagonal) {
+        if (!(d > least * diagonal)) throw NotTraceable();
+        if (n_ > 1) pivots.push_back({d, diagonal});
+        return Traced(1.0) / d;
+      });
   if (n_ == 1) x[0] *= inverse_d[0];
   else substitute<0>(m.data(), inverse_d.data(), n_, x);
 }
 
-template <int N> void SchurSolver::solve_dense(double* x) const {
-  substitute<N>(dense_.data(), inverse_d_.data(), n_, x);
-}
+template <int N> void SchurSolver::solve_dense(double* x) const { substitute<N>(dense_.data(), inverse_d_.data(), n_, x); }
 
 // What the further parts of row k add to its entries.
 template <class S> void SchurSolver::add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const {
@@ -399,8 +397,8 @@ template <class S> void SchurSolver::add_part_products(const std::vector<SchurRo
 // L D Lᵀ, a row of the pattern after the other. `fill`: room for an index a column; `y`: a number a column, all zero before and
 // after. `invert(k, d, diagonal)` gives 1/d, or 0 where the row that is eliminated as k-th is left out.
 template <class S, class Raise, class Invert>
-STEPLAP_INLINE void SchurSolver::eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d, const Raise& raise,
-                                                   const Invert& invert) const {
+STEPLAP_INLINE void SchurSolver::eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d,
+                                                   const Raise& raise, const Invert& invert) const {
   for (int k = 0; k < n_; ++k) fill[k] = column_begin_[k];
   for (int k = 0; k < n_; ++k) {
     const SchurRowOf<S>& row_k = rows[order_[k]];
@@ -410,7 +408,8 @@ STEPLAP_INLINE void SchurSolver::eliminate_pattern(const std::vector<SchurRowOf<
       const S* b = rows[product.row].j[product.side_i];
       y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
-    if (!part_products_.empty()) [[unlikely]] add_part_products(rows, k, y);
+    if (!part_products_.empty()) [[unlikely]]
+      add_part_products(rows, k, y);
     const S diagonal = raise(y[k]);
     S d = diagonal;
     y[k] = S(0.0);
@@ -444,15 +443,17 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
   smallest_pivot_ = smallest_pivot;
 }
 
-void SchurSolver::trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const {
+void SchurSolver::trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x,
+                               std::vector<TracedPivot>& pivots) const {
   std::vector<int> fill(column_fill_.size());
   std::vector<Traced> y(work_.size(), Traced(0.0)), l(l_.size()), inverse_d(inverse_d_.size());
-  eliminate_pattern(rows, fill.data(), y.data(), l.data(), inverse_d.data(), [](const Traced& diagonal) { return diagonal; },
-                    [&](int, const Traced& d, const Traced& diagonal) {
-                      if (!(d > least_pivot * diagonal)) throw NotTraceable();
-                      pivots.push_back({d / diagonal, Traced(1.0)}); // as factor_sparse compares them
-                      return Traced(1.0) / d;
-                    });
+  eliminate_pattern(
+      rows, fill.data(), y.data(), l.data(), inverse_d.data(), [](const Traced& diagonal) { return diagonal; },
+      [&](int, const Traced& d, const Traced& diagonal) {
+        if (!(d > least_pivot * diagonal)) throw NotTraceable();
+        pivots.push_back({d / diagonal, Traced(1.0)}); // as factor_sparse compares them
+        return Traced(1.0) / d;
+      });
   substitute_pattern(l.data(), inverse_d.data(), y.data(), x);
 }
 
@@ -484,9 +485,11 @@ void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right,
       for (int side = 0; side < 2; ++side)
         if (rows[r].body[side] >= 0)
           for (int c = 0; c < 3; ++c) response_[3 * rows[r].body[side] + c] += rows[r].wj[side][c] * x[r];
-    for_parts([&](const SchurPart& part, const SchurRow& row, int side, double* response) {
-      for (int c = 0; c < 3; ++c) response[c] += row.wj[side][c] * x[part.of];
-    }, rows);
+    for_parts(
+        [&](const SchurPart& part, const SchurRow& row, int side, double* response) {
+          for (int c = 0; c < 3; ++c) response[c] += row.wj[side][c] * x[part.of];
+        },
+        rows);
     for (int r = 0; r < n_; ++r) {
       double sum = right[r];
       for (int side = 0; side < 2; ++side)
@@ -494,9 +497,11 @@ void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right,
           for (int c = 0; c < 3; ++c) sum -= rows[r].j[side][c] * response_[3 * rows[r].body[side] + c];
       correction[r] = sum;
     }
-    for_parts([&](const SchurPart& part, const SchurRow& row, int side, const double* response) {
-      for (int c = 0; c < 3; ++c) correction[part.of] -= row.j[side][c] * response[c];
-    }, rows);
+    for_parts(
+        [&](const SchurPart& part, const SchurRow& row, int side, const double* response) {
+          for (int c = 0; c < 3; ++c) correction[part.of] -= row.j[side][c] * response[c];
+        },
+        rows);
     eliminate(correction);
     double size = 0.0, scale = 0.0;
     for (int r = 0; r < n_; ++r) {

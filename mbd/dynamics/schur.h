@@ -27,11 +27,11 @@ namespace steplap {
 
 /// Row in the coordinates of the moving bodies ("clusters") of one layout; S is double, or written down (mbd/tape).
 template <class S> struct SchurRowOf {
-  int body[2] = {-1, -1};     ///< cluster on either side, −1: the ground
-  bool is_constant = false;   ///< j and wj are the same in every pose, and zero but for θ
-  double w[2][3] = {};        ///< inverse masses of either side, 0 where locked
-  S j[2][3] = {};             ///< ∂measure/∂(x, y, θ) of either side
-  S wj[2][3] = {};            ///< W times that
+  int body[2] = {-1, -1};   ///< cluster on either side, −1: the ground
+  bool is_constant = false; ///< j and wj are the same in every pose, and zero but for θ
+  double w[2][3] = {};      ///< inverse masses of either side, 0 where locked
+  S j[2][3] = {};           ///< ∂measure/∂(x, y, θ) of either side
+  S wj[2][3] = {};          ///< W times that
 };
 using SchurRow = SchurRowOf<double>;
 
@@ -102,7 +102,8 @@ private:
   void trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
   template <class S> void add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const;
   template <class S, class Raise, class Invert>
-  void eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d, const Raise& raise, const Invert& invert) const;
+  void eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d, const Raise& raise,
+                         const Invert& invert) const;
   template <class S> void substitute_pattern(const S* l, const S* inverse_d, S* y, S* x) const;
   template <class F> void for_parts(const F& f, const std::vector<SchurRow>& rows) const;
   template <int N> void solve_dense(double* x) const;
@@ -112,13 +113,13 @@ private:
   struct DenseProduct {
     std::uint16_t entry, wj, j; ///< wj, j: as doubles from the first row's start
   };
-  std::vector<DenseProduct> dense_products_, dense_turns_; ///< three terms; that of θ alone
+  std::vector<DenseProduct> dense_products_, dense_turns_;         ///< three terms; that of θ alone
   std::array<double, k_max_dense * k_max_dense> dense_constant_{}; ///< from constant rows
   std::array<double, k_max_dense * k_max_dense> dense_{};
 
   struct Product {
-    int row;                   ///< the earlier row in elimination order
-    int position;              ///< its position in elimination order
+    int row;      ///< the earlier row in elimination order
+    int position; ///< its position in elimination order
     unsigned char side_k, side_i;
   };
   /// The same of a part of the later row, which is not the row itself.
@@ -133,9 +134,7 @@ private:
   int body_count_ = 0;
   double shift_ = 0.0;
   /// Is the row, whose pivot is `d` of `diagonal`, to be left out?
-  [[nodiscard]] bool leaves_out(int row, double d, double diagonal) {
-    return is_left_out(row) || !(d > k_pivot_tolerance * diagonal);
-  }
+  [[nodiscard]] bool leaves_out(int row, double d, double diagonal) { return is_left_out(row) || !(d > k_pivot_tolerance * diagonal); }
   void keep_rank(const std::vector<SchurRow>& rows, double shift);
   [[nodiscard]] bool is_in_doubt(const std::vector<SchurRow>& rows) const;
   [[nodiscard]] std::vector<char> dependent_friction(const std::vector<SchurRow>& rows) const;
@@ -144,9 +143,9 @@ private:
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
-  double length_ = 1.0; ///< rows over k_usual_rows, at least 1
-  std::vector<int> order_;     ///< order_[k]: row eliminated as k-th
-  std::vector<int> position_;  ///< inverse of order_
+  double length_ = 1.0;       ///< rows over k_usual_rows, at least 1
+  std::vector<int> order_;    ///< order_[k]: row eliminated as k-th
+  std::vector<int> position_; ///< inverse of order_
   std::vector<int> product_begin_;
   std::vector<Product> products_;
   std::vector<int> pattern_begin_, pattern_; ///< columns of row k of L, ascending

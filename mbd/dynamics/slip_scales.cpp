@@ -48,15 +48,13 @@ bool Dynamics::slip_scales(double* scale) {
       const int cluster = layout_->placements[body].cluster;
       if (cluster < 0) continue;
       const Motion<double>& centre = motion_[layout_->clusters[cluster].motion];
-      const double lever =
-          found.lever + portable::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
+      const double lever = found.lever + portable::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
       if (cluster >= layout_->absolute_count) {
         narrow_scales(*layout_, cluster, found, lever, scale);
         continue;
       }
       double* const of_cluster = scale + 3 * cluster;
-      for (int c = 0; c < 3; ++c)
-        of_cluster[c] = std::min(of_cluster[c], c < 2 ? found.speed : found.speed / lever);
+      for (int c = 0; c < 3; ++c) of_cluster[c] = std::min(of_cluster[c], c < 2 ? found.speed : found.speed / lever);
     }
   }
   return is_any;

@@ -9,10 +9,8 @@
 namespace steplap {
 
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
-    : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
-      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), inner_count_(state.inner.size()),
-      time_count_(time_input_count(layout)), choice_(choice),
-      is_hopeless_(!MachineCode::is_available()) {
+    : layout_(&layout), modes_(state.mode.begin(), state.mode.end()), coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)),
+      inner_count_(state.inner.size()), time_count_(time_input_count(layout)), choice_(choice), is_hopeless_(!MachineCode::is_available()) {
   inputs_.resize(2 * coordinate_count_ + inner_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
   family_ = tape_family(key());
@@ -31,8 +29,7 @@ std::uint64_t StageProgram::key() const {
   for (const std::uint64_t part : l.key) add(part);
   for (const UnitMode mode : modes_) add(mode);
   for (const Friction& f : frictions_)
-    add(static_cast<std::uint64_t>(f.foot) << 16U | static_cast<std::uint64_t>(f.phase) << 8U |
-        static_cast<std::uint8_t>(f.sign));
+    add(static_cast<std::uint64_t>(f.foot) << 16U | static_cast<std::uint64_t>(f.phase) << 8U | static_cast<std::uint8_t>(f.sign));
   return hash;
 }
 
@@ -43,7 +40,9 @@ void StageProgram::look_for_candidate() {
 bool StageProgram::is_of(const State& state) const {
   return std::equal(modes_.begin(), modes_.end(), state.mode.begin(), state.mode.end()) &&
          std::equal(frictions_.begin(), frictions_.end(), state.friction.begin(), state.friction.end(),
-                    [](const Friction& a, const FrictionState& b) { return a == Friction{b.phase, b.sign, b.foot}; });
+                    [](const Friction& a, const FrictionState& b) {
+                      return a == Friction{b.phase, b.sign, b.foot};
+                    });
 }
 
 void StageProgram::look_for_code() {
@@ -147,8 +146,8 @@ void StageProgram::record(const System& system, const State& state, const Evalua
     std::vector<TapeStep>& from;
     ~GiveBack() { from.swap(steps); }
   } const give_back{traced_.tape.steps};
-  const bool is_traced = trace_rates(system, *layout_, state, live, t, y, {time_inputs(), time_count_}, k_traced_pivot,
-                                     traced_, known ? &known->tape() : nullptr);
+  const bool is_traced = trace_rates(system, *layout_, state, live, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
+                                     known ? &known->tape() : nullptr);
   // By chance of the same key, or on another branch: it will be written down if it lasts.
   if (known && !is_traced) return;
   is_hopeless_ = !is_traced || !has_found(found); // to the bit

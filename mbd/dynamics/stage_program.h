@@ -95,7 +95,7 @@ private:
   std::vector<Friction> frictions_;
   TracedRates traced_;
   std::shared_ptr<TapeFamily> family_;
-  std::shared_ptr<TapeCode> candidate_;  ///< a tape that has code, which this one should be; null: none, or it was not
+  std::shared_ptr<TapeCode> candidate_; ///< a tape that has code, which this one should be; null: none, or it was not
   std::shared_ptr<TapeCode> tape_code_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
   std::vector<double> inputs_, outputs_;

@@ -231,8 +231,8 @@ private:
     e_.work += of_drives;
     for (std::size_t i = 0; i < layout_.locks.size(); ++i) {
       const Lock& lock = layout_.locks[i];
-      e_.work += missing_force(layout_, lock, force_[layout_.clusters[lock.cluster].motion], a_.data(), rows_.data(),
-                               multiplier_.data()) * of_lock(i)[1];
+      e_.work += missing_force(layout_, lock, force_[layout_.clusters[lock.cluster].motion], a_.data(), rows_.data(), multiplier_.data()) *
+                 of_lock(i)[1];
     }
   }
 
@@ -279,12 +279,10 @@ private:
     for (const RigidEdge& edge : layout_.edges) {
       const Placement& place = layout_.placements[edge.child];
       const Motion<Traced>& k = motion_[layout_.clusters[place.cluster].motion];
-      lack_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, k, a + 3 * place.cluster,
-                                      force_[edge.child]);
+      lack_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, k, a + 3 * place.cluster, force_[edge.child]);
     }
     for (const int r : layout_.carried_rows)
-      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(),
-                   lack_.data());
+      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(), lack_.data());
     place_edges(system_, layout_, state_, edges_);
     hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const Traced* along) {
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
@@ -299,8 +297,7 @@ private:
     if (mechanisms_.empty()) return a_.data();
     cluster_a_.resize(3 * layout_.clusters.size());
     std::copy_n(a_.begin(), 3 * absolute_count(), cluster_a_.begin());
-    for (TracedMechanism& m : mechanisms_)
-      m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
+    for (TracedMechanism& m : mechanisms_) m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
     return cluster_a_.data();
   }
 
@@ -332,9 +329,7 @@ private:
 
 } // namespace
 
-std::size_t time_input_count(const Layout& layout) {
-  return k_of_lock * layout.locks.size() + k_of_driven_row * layout.driven_rows.size();
-}
+std::size_t time_input_count(const Layout& layout) { return k_of_lock * layout.locks.size() + k_of_driven_row * layout.driven_rows.size(); }
 
 bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t, const double* y,
                  std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known) {

@@ -23,15 +23,15 @@ struct TracedRates {
   /// merged joints and the end of a step ask for: wrenches, and of each pivot that and its diagonal.
   Tape tape;
   std::vector<TimeInput> signals;
-  std::vector<int> watches;      ///< the slots of watch values
-  std::vector<int> watch_rates;  ///< those whose rate is no constant
-  bool has_wrenches = false;     ///< else merged joints are not to be looked at by it
-  std::vector<int> wrenches;     ///< the slots (Snapshot::friction_force) of merged joints that can slip
-  std::vector<int> pivots;       ///< how many of the rows between absolute clusters, then of each mechanism
+  std::vector<int> watches;     ///< the slots of watch values
+  std::vector<int> watch_rates; ///< those whose rate is no constant
+  bool has_wrenches = false;    ///< else merged joints are not to be looked at by it
+  std::vector<int> wrenches;    ///< the slots (Snapshot::friction_force) of merged joints that can slip
+  std::vector<int> pivots;      ///< how many of the rows between absolute clusters, then of each mechanism
 
   /// Where in the outputs accelerations, watch values and their rates end.
   [[nodiscard]] std::size_t usual_outputs() const { return tape.usual_outputs; }
-  std::vector<double> inputs, outputs; ///< those traced
+  std::vector<double> inputs, outputs;             ///< those traced
   std::vector<std::unique_ptr<ElementCall>> calls; ///< what the tape calls
 };
 
@@ -43,7 +43,8 @@ struct TracedRates {
 /// many coordinates or rows, or rows that depend on each other. `live`: the evaluation whose modes and memory calls of elements see;
 /// it must outlive `traced`. `least_pivot`: the tape's condition. `known`: a tape that this one should be, which then is not
 /// written once more (Traced::start); false, too, if it is another.
-[[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t, const double* y,
-                               std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known = nullptr);
+[[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t,
+                               const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced,
+                               const Tape* known = nullptr);
 
 } // namespace steplap

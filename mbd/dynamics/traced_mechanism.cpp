@@ -65,12 +65,13 @@ void TracedMechanism::solve_rows(const SchurRowOf<Traced>* rows, double least_pi
     work_.reduce(rows[r], member, &work_.gradient[at * Mechanism::k_most]);
   }
   for (int r = 0; r < count; ++r) work_.whiten_row(static_cast<std::size_t>(r), rows[r]);
-  work_.factor_rows<0>(count, [](const Traced& d, const Traced&) { return d; },
-                       [&](int, const Traced& d, const Traced& own) {
-                         if (!(d > least_pivot * own)) throw NotTraceable();
-                         pivots.push_back({d, own});
-                         return 1.0 / d;
-                       });
+  work_.factor_rows<0>(
+      count, [](const Traced& d, const Traced&) { return d; },
+      [&](int, const Traced& d, const Traced& own) {
+        if (!(d > least_pivot * own)) throw NotTraceable();
+        pivots.push_back({d, own});
+        return 1.0 / d;
+      });
   work_.eliminate<0>(count, lambda);
   std::array<Traced, Mechanism::k_most> pull;
   work_.pull_rows(count, lambda, pull.data());

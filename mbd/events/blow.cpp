@@ -64,8 +64,7 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
   const auto n = static_cast<Eigen::Index>(struck.ropes.size());
   const MatX a = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(answer.compliance.data(), n, n);
   const VecX u = Eigen::Map<const VecX>(struck.rate.data(), n), rounding = Eigen::Map<const VecX>(struck.rounding.data(), n);
-  BoxSolution solution =
-      solve_box_problem(a, u, VecX::Constant(n, -std::numeric_limits<double>::infinity()), VecX::Zero(n), rounding);
+  BoxSolution solution = solve_box_problem(a, u, VecX::Constant(n, -std::numeric_limits<double>::infinity()), VecX::Zero(n), rounding);
   if (solution.is_solved) return solution;
   throw ElementFailure("at t = " + rounded_text(loose.t, 12) + " s it cannot be decided which ropes take the blow",
                        {system.element_names[system.frictions[struck.ropes.front()].element]});
@@ -175,8 +174,7 @@ bool was_struck(const System& system, std::size_t f, const std::vector<double>& 
 std::string blow_text(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
   const int blow = one_sided_row(*system.frictions[f].friction)->blow;
   if (!was_struck(system, f, before, state)) return {};
-  return "with " + rounded_text(state.memory[blow], 4) + " N s, " + rounded_text(state.memory[blow + 1] - before[blow + 1], 4) +
-         " J lost";
+  return "with " + rounded_text(state.memory[blow], 4) + " N s, " + rounded_text(state.memory[blow + 1] - before[blow + 1], 4) + " J lost";
 }
 
 } // namespace steplap

@@ -11,16 +11,16 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_looks = 130;
-constexpr int k_free_looks = 60;         // halving alone from then on: the last 70 close any bracket
-constexpr int k_patience = 6;             // looks that need not halve the bracket
-constexpr double k_least_reach = 4.0;     // in spacings of t;
+constexpr int k_free_looks = 60;           // halving alone from then on: the last 70 close any bracket
+constexpr int k_patience = 6;              // looks that need not halve the bracket
+constexpr double k_least_reach = 4.0;      // in spacings of t;
 constexpr double k_tolerance_share = 1e-6; // … or of the tolerance, by which the motion is off anyway: in parts of the step;
-constexpr double k_most_tolerance = 1e-3; // larger ones are given to have steps of a fixed length
-constexpr double k_unexpected = 16.0;     // times the error expected
-constexpr double k_most_rounding = 1e-8;  // of the step: beyond it an error is not rounding
-constexpr double k_wider = 8.0;           // a reach that did not find the other side
-constexpr int k_polish = 3;               // secants inside a bracket that was closed by a wider reach
-constexpr double k_closed = 4.0;          // a bracket of so many times its ends' uncertainty
+constexpr double k_most_tolerance = 1e-3;  // larger ones are given to have steps of a fixed length
+constexpr double k_unexpected = 16.0;      // times the error expected
+constexpr double k_most_rounding = 1e-8;   // of the step: beyond it an error is not rounding
+constexpr double k_wider = 8.0;            // a reach that did not find the other side
+constexpr int k_polish = 3;                // secants inside a bracket that was closed by a wider reach
+constexpr double k_closed = 4.0;           // a bracket of so many times its ends' uncertainty
 
 } // namespace
 
@@ -28,8 +28,8 @@ constexpr double k_closed = 4.0;          // a bracket of so many times its ends
 // Once that is known to the spacing of t, a millionth of the tolerance, or the rounding of the values, a look beyond it
 // closes the bracket, if the values there and their slopes say that the root lies as near as that; else one on either side.
 void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
-  const double spacing = 2.0 * std::numeric_limits<double>::epsilon() *
-                         std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
+  const double spacing =
+      2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
   known_[0] = low_;
   known_[1] = high_;
   known_count_ = 2;
@@ -82,8 +82,7 @@ bool EventFinder::is_root_just_before(const Look& beyond, double reach) const {
 
 double EventFinder::first_secant() const {
   double share = 1.0;
-  for (const int slot : fired_)
-    share = std::min(share, low_.watch[slot] / (low_.watch[slot] - high_.watch[slot]));
+  for (const int slot : fired_) share = std::min(share, low_.watch[slot] / (low_.watch[slot] - high_.watch[slot]));
   // Not too near an end, where rounding has made the value what it is.
   return low_.theta + std::clamp(share, 0.1, 0.9) * (high_.theta - low_.theta);
 }

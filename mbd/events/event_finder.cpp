@@ -17,7 +17,8 @@ constexpr double k_off_joints = 10.0;
 } // namespace
 
 EventFinder::EventFinder(const System& system, int max_dimension)
-    : system_(system), slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1), armed_before_(slots_, 1) {
+    : system_(system), slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1),
+      armed_before_(slots_, 1) {
   slack_.assign(slots_, 0.0);
   near_.reserve(slots_);
   curves_.reserve(slots_);
@@ -76,7 +77,8 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const Dyna
     if (2.0 * low > nodes.high(i)) continue; // far
     const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
     const double start = fresh[i] ? std::max(w0, 0.0) : w0;
-    const WatchedStep watched{i, is_merged(dynamics, i), is_of_joint_[i] != 0, {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]}};
+    const WatchedStep watched{
+        i, is_merged(dynamics, i), is_of_joint_[i] != 0, {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]}};
     if (w1 < 0.0) {
       // A plain crossing. A value that is fresh, or negative from the start (rounding, or the projection at another
       // event), has to be followed.
@@ -126,8 +128,7 @@ bool EventFinder::is_any_merged_near(const Integrator& integrator, const Dynamic
   return std::any_of(merged.begin(), merged.end(), [&](int f) {
     const int first = system_.frictions[f].watch;
     const auto is_of_joint = [first](int slot) { return slot >= first && slot < first + k_friction_watches; };
-    return integrator.watch1()[first] < 0.0 || integrator.watch1()[first + 1] < 0.0 ||
-           std::any_of(near_.begin(), near_.end(), is_of_joint);
+    return integrator.watch1()[first] < 0.0 || integrator.watch1()[first + 1] < 0.0 || std::any_of(near_.begin(), near_.end(), is_of_joint);
   });
 }
 

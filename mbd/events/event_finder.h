@@ -107,7 +107,7 @@ private:
   double theta_ = 0.0;
   bool is_step_withdrawn_ = false;
   std::vector<double> y_, dy_;
-  Look low_, high_, middle_;     ///< the bracket's ends, and a place between them
+  Look low_, high_, middle_; ///< the bracket's ends, and a place between them
   static constexpr std::size_t k_most_known = 7;
   std::array<Look, k_most_known> known_; ///< the last ones, from which the next place is estimated
   std::size_t known_count_ = 0;
@@ -129,12 +129,12 @@ private:
   std::vector<double> slack_;
   std::vector<int> place_slots_, rate_slots_; ///< of units
   std::vector<char> is_of_joint_;             ///< per slot: of friction over an area
-  std::vector<int> near_;        ///< slots that ends and stages do not make certain
-  std::vector<char> merged_;     ///< slots of joints that are merged, once somebody has asked in this step
+  std::vector<int> near_;                     ///< slots that ends and stages do not make certain
+  std::vector<char> merged_;                  ///< slots of joints that are merged, once somebody has asked in this step
   bool are_merged_known_ = false;
-  std::vector<Near> curves_;     ///< of those among near_ that are looked at in the part
-  std::vector<Part> parts_;      ///< still to be looked through, the first one last
-  bool is_merged_near_ = false;  ///< some joint that is merged may give way in the step
+  std::vector<Near> curves_;               ///< of those among near_ that are looked at in the part
+  std::vector<Part> parts_;                ///< still to be looked through, the first one last
+  bool is_merged_near_ = false;            ///< some joint that is merged may give way in the step
   std::vector<char> armed_, armed_before_; ///< believed when negative
   std::vector<int> fired_, fired_before_;
 };

@@ -56,19 +56,16 @@ EventHandler::EventHandler(const System& system, Dynamics& dynamics)
       friction_of_slot_(system.watch_count, -1), fresh_(system.watch_count, 0), has_switched_(system.watch_count, 0),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   for (std::size_t u = 0; u < system.units.size(); ++u)
-    for (int w = 0; w < system.units[u].watch_count; ++w)
-      unit_of_slot_[system.units[u].watch + w] = static_cast<int>(u);
+    for (int w = 0; w < system.units[u].watch_count; ++w) unit_of_slot_[system.units[u].watch + w] = static_cast<int>(u);
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
-    for (int w = 0; w < k_friction_watches; ++w)
-      friction_of_slot_[system.frictions[f].watch + w] = static_cast<int>(f);
+    for (int w = 0; w < k_friction_watches; ++w) friction_of_slot_[system.frictions[f].watch + w] = static_cast<int>(f);
 }
 
 void EventHandler::slip_rates(const State& state, int f, double* rate) {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
   place_bodies(state.q, state.v, motion_);
-  for (int r = 0; r < friction.dimension(); ++r)
-    rate[r] = evaluate_row<false>(rows[r], motion_.data()).rate;
+  for (int r = 0; r < friction.dimension(); ++r) rate[r] = evaluate_row<false>(rows[r], motion_.data()).rate;
 }
 
 // Element f has got its normal force: at the place that the pose asks for (it is not watched while there
@@ -76,8 +73,7 @@ void EventHandler::slip_rates(const State& state, int f, double* rate) {
 void EventHandler::load(State& state, int f) {
   FrictionState& friction = state.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
-  if (element.watch_place(dynamics_.evaluation(), friction) < 0.0)
-    element.change_place(dynamics_.evaluation(), friction);
+  if (element.watch_place(dynamics_.evaluation(), friction) < 0.0) element.change_place(dynamics_.evaluation(), friction);
   if (friction.phase == FrictionPhase::apart) return;
   modes_.set_anchor(state, f);
   double rate[3] = {0, 0, 0};
@@ -98,8 +94,7 @@ void EventHandler::load(State& state, int f) {
 // While a rigid joint slides, its two bodies move against each other: layouts that merge them are stale.
 void EventHandler::forget_moved_layouts(const State& state) {
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
-    if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid())
-      return dynamics_.forget_layouts();
+    if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid()) return dynamics_.forget_layouts();
 }
 
 // Joints and drives alone, friction let go: which friction slides depends on the velocities they leave.
@@ -126,8 +121,7 @@ void EventHandler::start(State& state) {
     FrictionState& friction = state.friction[f];
     if (one_sided_row(*system_.frictions[f].friction)) continue;
     modes_.set_anchor(state, f);
-    if (friction.phase != FrictionPhase::apart &&
-        system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
+    if (friction.phase != FrictionPhase::apart && system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
       load(state, f);
   }
   modes_.forget_evaluation();
@@ -137,8 +131,7 @@ void EventHandler::start(State& state) {
   clear_fresh();
 }
 
-bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
-                                std::vector<Event>& events) {
+bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
   bool is_any = false;
   for (const int slot : fired) {
     const int u = unit_of_slot_[slot];
@@ -147,8 +140,7 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
     // Inside a step the joints are met to its tolerance only: what is no kink where they are met was none.
     if (unit.group->watch_kind(slot - unit.watch) != WatchKind::exact && dynamics_.watch()[slot] > 0.5 * k_met) continue;
     const UnitMode from = state.mode[u];
-    const UnitMode to =
-        unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
+    const UnitMode to = unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
     if (to == from) continue;
     state.mode[u] = to;
     has_switched_[slot] = 1;
@@ -265,7 +257,8 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
 namespace {
 
 // What a rope has done: taut, slack, or taut and slack again at once.
-void note_rope(const System& system, std::size_t f, FrictionPhase phase_before, const std::vector<double>& memory_before, const State& state, std::vector<Event>& events) {
+void note_rope(const System& system, std::size_t f, FrictionPhase phase_before, const std::vector<double>& memory_before,
+               const State& state, std::vector<Event>& events) {
   const std::string& name = system.element_names[system.frictions[f].element];
   const bool was_taut = phase_before == FrictionPhase::stick, is_taut = state.friction[f].phase == FrictionPhase::stick;
   const bool is_caught = !was_taut && (is_taut || was_struck(system, f, memory_before, state));
@@ -283,8 +276,8 @@ std::vector<int> fallen(const std::vector<double>& before, const std::vector<dou
 
 } // namespace
 
-void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before,
-                                 const State& state, std::vector<Event>& events) {
+void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
+                                 std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState& old = before[f];
     const FrictionState& now = state.friction[f];
@@ -299,8 +292,7 @@ void EventHandler::note_friction(const std::vector<FrictionState>& before, const
     const FrictionUnit& unit = system_.frictions[f];
     for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
     const std::string& name = system_.element_names[unit.element];
-    if (old.foot != now.foot && now.phase != FrictionPhase::apart)
-      events.push_back({state.t, name, unit.friction->place_change(old, now)});
+    if (old.foot != now.foot && now.phase != FrictionPhase::apart) events.push_back({state.t, name, unit.friction->place_change(old, now)});
     if (old.phase == now.phase && is_same_slip) continue;
     EventKind kind = EventKind::none;
     switch (now.phase) {
@@ -310,8 +302,7 @@ void EventHandler::note_friction(const std::vector<FrictionState>& before, const
     case FrictionPhase::apart: kind = EventKind::comes_apart; break;
     }
     events.push_back({state.t, name, kind});
-    if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart())
-      stop_reason_ = "'" + name + "' came apart";
+    if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart()) stop_reason_ = "'" + name + "' came apart";
     if (!unit.friction->is_rigid()) continue;
     dynamics_.forget_layouts();
     modes_.forget_evaluation();
@@ -371,7 +362,7 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
     if (one_sided_row(*system_.frictions[f].friction) && slot == system_.frictions[f].watch + 1) fail_on_pulley(state, f);
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
     if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
-    if (group >= 0) { // fires in the slots of all its elements
+    if (group >= 0) {                                                   // fires in the slots of all its elements
       if (!is_released_[group]) modes_.release(state, group);
       is_released_[group] = 1;
       continue;
@@ -443,7 +434,8 @@ bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_b
 
 // A state is evaluated, and set to rest, once in each set of modes that is tried: twice at most events, and what the last
 // evaluation found is where the next step begins.
-void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before, std::vector<Event>& events) {
+void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before,
+                          std::vector<Event>& events) {
   clear_fresh();
   std::fill(has_switched_.begin(), has_switched_.end(), 0);
   settled_ = 0.0;

@@ -91,15 +91,15 @@ private:
   FrictionModes modes_;
   std::vector<int> unit_of_slot_, friction_of_slot_;
   std::vector<char> fresh_;
-  std::vector<char> has_switched_;       ///< per watch slot, in the event at hand
+  std::vector<char> has_switched_; ///< per watch slot, in the event at hand
   std::string stop_reason_;
   double settled_ = 0.0;
   std::vector<double> y_, dy_;
-  std::vector<FrictionState> before_;    ///< as friction was when handle() began
+  std::vector<FrictionState> before_; ///< as friction was when handle() began
   std::vector<double> memory_before_;
-  std::vector<char> is_released_;        ///< per group of those that share a load
-  std::vector<char> has_fired_;          ///< per friction element
-  std::vector<Motion<double>> motion_;   ///< of the bodies: scratch
+  std::vector<char> is_released_;      ///< per group of those that share a load
+  std::vector<char> has_fired_;        ///< per friction element
+  std::vector<Motion<double>> motion_; ///< of the bodies: scratch
 };
 
 } // namespace steplap

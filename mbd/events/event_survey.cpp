@@ -19,16 +19,16 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-9;    // part of a step that is not divided
-constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends;
+constexpr double k_shortest = 1e-9;                       // part of a step that is not divided
+constexpr double k_margin_of_cut = 0.1;                   // of a part: not nearer to its ends;
 constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3; // … where the error is a larger share of the values than this
-constexpr double k_stalled = 0.9;      // of the error of the part before: no more exact
-constexpr int k_most_stalled = 4;      // generations in a row
-constexpr int k_most_parts = 400;      // of one step
+constexpr double k_stalled = 0.9;                         // of the error of the part before: no more exact
+constexpr int k_most_stalled = 4;                         // generations in a row
+constexpr int k_most_parts = 400;                         // of one step
 // Of the step: nearer to its start nobody believes what was not positive there (dense output does not know so small
 // changes); what has not become positive at all is decided anew here.
 constexpr double k_at_once = 1e-4;
-constexpr double k_off_places = 0.25;  // of a gap between places: a check is not made nearer to these, where nothing can be off
+constexpr double k_off_places = 0.25; // of a gap between places: a check is not made nearer to these, where nothing can be off
 // Beside what a polynomial is off by at one place it may be off by so many times that at others: between the first two
 // places it reaches about a quarter of what it does in the middle.
 constexpr double k_elsewhere = 4.0;

@@ -137,7 +137,8 @@ template <int N> Enclosure<N> swung(const Enclosure<N>& a, bool is_cosine) {
   const double d = reach<N>(a);
   if (!a.has_polynomial() || !(d <= k_widest_angle)) return without_polynomial<N>(a.is_partial);
   const portable::SinCos at = portable::sin_cos(a.c[0]);
-  const std::array<double, 4> cycle = is_cosine ? std::array{at.cos, -at.sin, -at.cos, at.sin} : std::array{at.sin, at.cos, -at.sin, -at.cos};
+  const std::array<double, 4> cycle =
+      is_cosine ? std::array{at.cos, -at.sin, -at.cos, at.sin} : std::array{at.sin, at.cos, -at.sin, -at.cos};
   Coefficients<N> series;
   double factorial = 1.0, left_out = 1.0;
   for (int k = 0; k <= N; ++k) {
@@ -394,7 +395,9 @@ template <int N> Enclosure<N> EnclosingNumbers<N>::ln(const Value& a) {
   const Interval natural = interval::ln(a.range, e.is_partial);
   return settled<N>(e, natural);
 }
-template <int N> Enclosure<N> EnclosingNumbers<N>::log10(const Value& a) { return multiply(Value::of_number(1.0 / std::numbers::ln10), ln(a)); }
+template <int N> Enclosure<N> EnclosingNumbers<N>::log10(const Value& a) {
+  return multiply(Value::of_number(1.0 / std::numbers::ln10), ln(a));
+}
 
 template <int N> Enclosure<N> EnclosingNumbers<N>::less(const Value& a, const Value& b) {
   if (is_none(a) || is_none(b)) return none<N>();

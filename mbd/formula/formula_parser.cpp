@@ -19,11 +19,11 @@ struct Function {
   bool takes_more = false; ///< it is applied from the left
 };
 
-constexpr Function k_functions[] = {
-    {"abs", FormulaOp::abs, 1},       {"sqrt", FormulaOp::sqrt, 1},       {"hypot", FormulaOp::hypot, 2}, {"min", FormulaOp::min, 2, true},
-    {"max", FormulaOp::max, 2, true}, {"sin", FormulaOp::sin, 1},         {"cos", FormulaOp::cos, 1},     {"tan", FormulaOp::tan, 1},
-    {"asin", FormulaOp::asin, 1},     {"acos", FormulaOp::acos, 1},       {"atan", FormulaOp::atan, 1},   {"atan2", FormulaOp::atan2, 2},
-    {"exp", FormulaOp::exp, 1},       {"ln", FormulaOp::ln, 1},           {"log10", FormulaOp::log10, 1}};
+constexpr Function k_functions[] = {{"abs", FormulaOp::abs, 1},       {"sqrt", FormulaOp::sqrt, 1},     {"hypot", FormulaOp::hypot, 2},
+                                    {"min", FormulaOp::min, 2, true}, {"max", FormulaOp::max, 2, true}, {"sin", FormulaOp::sin, 1},
+                                    {"cos", FormulaOp::cos, 1},       {"tan", FormulaOp::tan, 1},       {"asin", FormulaOp::asin, 1},
+                                    {"acos", FormulaOp::acos, 1},     {"atan", FormulaOp::atan, 1},     {"atan2", FormulaOp::atan2, 2},
+                                    {"exp", FormulaOp::exp, 1},       {"ln", FormulaOp::ln, 1},         {"log10", FormulaOp::log10, 1}};
 
 constexpr int k_deepest = 64; // of brackets and signs: each is a call of the parser within a call
 
@@ -228,7 +228,8 @@ private:
     if (unit.starts_with('/')) unit.insert(0, 1, '1'); // '3/s'
     const std::optional<UnitDimension> dimension = dimension_of(unit);
     if (!dimension)
-      fail("has a unit that formulas do not know: '" + inside + "'; they know m s kg t N J W Pa bar rad deg min h gravity %, with prefixes, and products");
+      fail("has a unit that formulas do not know: '" + inside +
+           "'; they know m s kg t N J W Pa bar rad deg min h gravity %, with prefixes, and products");
     at_ = end + 1;
     skip();
     return add_number((is_negative ? -size : size) * dimension->factor, dimension->powers, begin);
@@ -262,7 +263,8 @@ private:
 
   int word() {
     const std::size_t begin = at_;
-    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '_' || text_[at_] == '.')) ++at_;
+    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '_' || text_[at_] == '.'))
+      ++at_;
     const std::string word = text_.substr(begin, at_ - begin);
     skip();
     if (at_ < text_.size() && text_[at_] == '(') return call(word, begin);
@@ -272,7 +274,8 @@ private:
   }
 
   int call(const std::string& word, std::size_t begin) {
-    const auto* const function = std::find_if(std::begin(k_functions), std::end(k_functions), [&](const Function& f) { return f.name == word; });
+    const auto* const function =
+        std::find_if(std::begin(k_functions), std::end(k_functions), [&](const Function& f) { return f.name == word; });
     if (function == std::end(k_functions)) {
       std::vector<std::string> known;
       for (const Function& f : k_functions) known.emplace_back(f.name);
@@ -312,7 +315,8 @@ private:
   int nesting_ = 0;
 };
 
-Formula::Formula(const std::string& text, const std::string& subject, const Location& where) : text_(text), subject_(subject), where_(where) {
+Formula::Formula(const std::string& text, const std::string& subject, const Location& where)
+    : text_(text), subject_(subject), where_(where) {
   FormulaParser(*this).run();
 }
 

@@ -38,8 +38,9 @@ void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
     default: is_plain = !is_any; break;
     }
     if (!is_plain)
-      throw std::invalid_argument("has the time in a function, a power, a divisor or a product with itself, and no step can know how fast that changes: make it a "
-                                  "[[signal]] and name that, or a [[state]]");
+      throw std::invalid_argument(
+          "has the time in a function, a power, a divisor or a product with itself, and no step can know how fast that changes: make it a "
+          "[[signal]] and name that, or a [[state]]");
     has_time.push_back(stays ? 1 : 0);
   }
 }
@@ -63,7 +64,8 @@ int FormulaProgram::add(FormulaOp op, int a, int b, int c) {
   step.op = op;
   step.of = {a, b, c};
   if (is_switch(op)) {
-    if (switch_count_ == k_most_switches) throw std::invalid_argument("has more than 32 places where abs, min, max and comparisons switch: split it into several elements");
+    if (switch_count_ == k_most_switches)
+      throw std::invalid_argument("has more than 32 places where abs, min, max and comparisons switch: split it into several elements");
     step.index = switch_count_++;
     comparisons_.push_back(op == FormulaOp::less || op == FormulaOp::less_or_equal ? 1 : 0);
   }
@@ -93,13 +95,16 @@ bool FormulaProgram::is_boolean(int node) const {
 }
 
 void FormulaProgram::require_condition(int node) const {
-  if (!is_boolean(node)) throw std::invalid_argument("has a condition that compares nothing: an event is where a comparison changes, so write x > 0 instead of x");
+  if (!is_boolean(node))
+    throw std::invalid_argument(
+        "has a condition that compares nothing: an event is where a comparison changes, so write x > 0 instead of x");
 }
 
 // Whole exponents as products: a number of any kind can be multiplied.
 int FormulaProgram::add_power(int base, int exponent) {
   const Step& known = steps_[static_cast<std::size_t>(exponent)];
-  const bool is_number = known.op == FormulaOp::number || (known.op == FormulaOp::negate && steps_[static_cast<std::size_t>(known.of[0])].op == FormulaOp::number);
+  const bool is_number = known.op == FormulaOp::number ||
+                         (known.op == FormulaOp::negate && steps_[static_cast<std::size_t>(known.of[0])].op == FormulaOp::number);
   if (!is_number) return add(FormulaOp::power, base, exponent);
   const double value = known.op == FormulaOp::number ? known.number : -steps_[static_cast<std::size_t>(known.of[0])].number;
   const double size_of = std::abs(value);

@@ -124,7 +124,9 @@ public:
     return run<false>(operands, t, given, values, quantity);
   }
   /// The same with bits that are found, but for those given; afterwards `bits.values` holds all that count.
-  double find_bits(const double* operands, double t, Bits& bits, double* values) const { return run<true>(operands, t, bits, values, static_cast<double*>(nullptr)); }
+  double find_bits(const double* operands, double t, Bits& bits, double* values) const {
+    return run<true>(operands, t, bits, values, static_cast<double*>(nullptr));
+  }
   /// Which switches count with these bits.
   [[nodiscard]] SwitchBits counting(SwitchBits bits) const;
 
@@ -205,7 +207,9 @@ template <bool Finds, class S> S FormulaProgram::run(const S* operands, const S&
     case FormulaOp::min: *value = bit_of<Finds>(step.index, S(of(1) - of(0)), bits, quantity) ? of(0) : of(1); break;
     case FormulaOp::max: *value = bit_of<Finds>(step.index, S(of(0) - of(1)), bits, quantity) ? of(0) : of(1); break;
     case FormulaOp::less:
-    case FormulaOp::less_or_equal: *value = S(bit_of<Finds>(step.index, S(of(1) - of(0)), bits, quantity, step.op == FormulaOp::less) ? 1.0 : 0.0); break;
+    case FormulaOp::less_or_equal:
+      *value = S(bit_of<Finds>(step.index, S(of(1) - of(0)), bits, quantity, step.op == FormulaOp::less) ? 1.0 : 0.0);
+      break;
     case FormulaOp::both: *value = S(is_true(step.of[0]) && is_true(step.of[1]) ? 1.0 : 0.0); break;
     case FormulaOp::either: *value = S(is_true(step.of[0]) || is_true(step.of[1]) ? 1.0 : 0.0); break;
     case FormulaOp::negation: *value = S(is_true(step.of[0]) ? 0.0 : 1.0); break;

@@ -11,12 +11,38 @@
 namespace steplap {
 
 enum class FormulaOp : unsigned char {
-  number, operand, time,
-  add, subtract, multiply, divide, power, negate,
-  abs, sqrt, hypot, min, max, sin, cos, tan, asin, acos, atan, atan2, exp, ln, log10,
-  less, less_or_equal, equal, both, either, negation, ///< true is 1, false is 0; what is not 0 is true
-  choice,                                             ///< the second where the first is true, else the third
-  finite,                                             ///< not-a-number where it is infinite
+  number,
+  operand,
+  time,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  negate,
+  abs,
+  sqrt,
+  hypot,
+  min,
+  max,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  exp,
+  ln,
+  log10,
+  less,
+  less_or_equal,
+  equal,
+  both,
+  either,
+  negation, ///< true is 1, false is 0; what is not 0 is true
+  choice,   ///< the second where the first is true, else the third
+  finite,   ///< not-a-number where it is infinite
 };
 
 struct FormulaNode {
@@ -24,8 +50,8 @@ struct FormulaNode {
   std::array<int, 3> of{-1, -1, -1}; ///< nodes that it is made from
   double number = 0.0;               ///< SI
   int operand = 0;
-  std::array<double, 3> powers{};      ///< of a number's unit: kg, m, s
-  std::size_t begin = 0, end = 0;      ///< what of the text it and its operands span
+  std::array<double, 3> powers{}; ///< of a number's unit: kg, m, s
+  std::size_t begin = 0, end = 0; ///< what of the text it and its operands span
 };
 
 using FormulaTree = std::vector<FormulaNode>;

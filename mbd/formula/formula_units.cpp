@@ -67,20 +67,18 @@ Formula::Typed Formula::of_operation(const FormulaNode& node, const std::vector<
   case FormulaOp::subtract:
   case FormulaOp::hypot:
   case FormulaOp::min:
-  case FormulaOp::max:
-    return same(node, a, of(1));
+  case FormulaOp::max: return same(node, a, of(1));
   case FormulaOp::atan2:
   case FormulaOp::less:
   case FormulaOp::less_or_equal:
-  case FormulaOp::equal:
-    (void)same(node, a, of(1));
-    return {};
+  case FormulaOp::equal: (void)same(node, a, of(1)); return {};
   case FormulaOp::choice:
     if (!a.is_number()) fail(node, "the condition has " + said(a.powers) + ": compare it with something");
     return same(node, of(1), of(2));
   case FormulaOp::both:
   case FormulaOp::either:
-    if (!a.is_number() || !of(1).is_number()) fail(node, "a condition has " + said(a.is_number() ? of(1).powers : a.powers) + ": compare it with something");
+    if (!a.is_number() || !of(1).is_number())
+      fail(node, "a condition has " + said(a.is_number() ? of(1).powers : a.powers) + ": compare it with something");
     return {};
   case FormulaOp::multiply:
   case FormulaOp::divide: {
@@ -101,13 +99,9 @@ Formula::Typed Formula::of_operation(const FormulaNode& node, const std::vector<
     a.is_constant = a.is_any = false;
     return a;
   }
-  case FormulaOp::negate:
-    a.value = -a.value;
-    return a;
+  case FormulaOp::negate: a.value = -a.value; return a;
   case FormulaOp::abs:
-  case FormulaOp::finite:
-    a.is_constant = false;
-    return a;
+  case FormulaOp::finite: a.is_constant = false; return a;
   case FormulaOp::sqrt:
     for (double& power : a.powers) power *= 0.5;
     a.is_constant = false;

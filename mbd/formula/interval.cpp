@@ -81,9 +81,7 @@ Interval multiply(const Interval& a, const Interval& b) {
   return of_corners(product(a.low, b.low), product(a.low, b.high), product(a.high, b.low), product(a.high, b.high));
 }
 
-Interval divide(const Interval& a, const Interval& b, bool& is_partial) {
-  return multiply(a, reciprocal(b, is_partial));
-}
+Interval divide(const Interval& a, const Interval& b, bool& is_partial) { return multiply(a, reciprocal(b, is_partial)); }
 
 Interval power(const Interval& a, double exponent, bool& is_partial) {
   if (exponent == 0.0) return {1.0, 1.0};
@@ -149,7 +147,8 @@ Interval atan(const Interval& a) { return widened(portable::atan2(a.low, 1.0), p
 // Where it does not touch the half-axis on which the angle jumps its extremes are at corners.
 Interval atan2(const Interval& y, const Interval& x) {
   if (y.holds(0.0) && x.low <= 0.0) return {-k_pi, std::nextafter(k_pi, 4.0)};
-  return of_corners(portable::atan2(y.low, x.low), portable::atan2(y.low, x.high), portable::atan2(y.high, x.low), portable::atan2(y.high, x.high));
+  return of_corners(portable::atan2(y.low, x.low), portable::atan2(y.low, x.high), portable::atan2(y.high, x.low),
+                    portable::atan2(y.high, x.high));
 }
 
 Interval exp(const Interval& a) {

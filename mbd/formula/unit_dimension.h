@@ -13,7 +13,7 @@
 namespace steplap {
 
 struct UnitDimension {
-  double factor = 1.0; ///< so many SI units
+  double factor = 1.0;            ///< so many SI units
   std::array<double, 3> powers{}; ///< of kg, m, s
 
   [[nodiscard]] bool is_number() const { return powers == std::array<double, 3>{}; }

@@ -12,8 +12,8 @@ namespace {
 
 // Rows of A, scaled to a diagonal of 1, that are beyond the others by less than this depend on them.
 constexpr double k_dependent = 1e-12; // a square: SchurSolver::k_dependent
-constexpr double k_rounding = 1e-13; // of the terms of g_i
-constexpr int k_most_steps = 2; // to the minimum of one set of free variables: what these leave is rounding
+constexpr double k_rounding = 1e-13;  // of the terms of g_i
+constexpr int k_most_steps = 2;       // to the minimum of one set of free variables: what these leave is rounding
 
 class ActiveSet {
 public:
@@ -26,8 +26,7 @@ public:
   BoxSolution solve() {
     BoxSolution solution;
     const Eigen::Index most = 20 * (n_ + 2) * (n_ + 2);
-    for (Eigen::Index i = 0; i < most && !solution.is_solved; ++i)
-      solution.is_solved = !move_free() && !release_one();
+    for (Eigen::Index i = 0; i < most && !solution.is_solved; ++i) solution.is_solved = !move_free() && !release_one();
     solution.w = w_;
     solution.g = gradient();
     for (Eigen::Index i = 0; i < n_; ++i) solution.is_free.push_back(at_bound_[i] == 0 || !pulls(i, solution.g[i]));
@@ -115,7 +114,7 @@ private:
   const VecX &b_, &lower_, &upper_, &rounding_;
   Eigen::Index n_;
   VecX w_;
-  int steps_to_minimum_ = 0; ///< of the present set
+  int steps_to_minimum_ = 0;          ///< of the present set
   std::vector<signed char> at_bound_; ///< −1, 1: at the lower or upper bound; 0: free
 };
 

@@ -17,10 +17,10 @@
 namespace steplap {
 
 struct BoxSolution {
-  VecX w;                   ///< minimiser
-  VecX g;                   ///< A w + b
+  VecX w;                    ///< minimiser
+  VecX g;                    ///< A w + b
   std::vector<char> is_free; ///< g_i = 0: not held at its bound by g_i
-  bool is_solved = false;   ///< false: the set of bounds repeated itself
+  bool is_solved = false;    ///< false: the set of bounds repeated itself
 };
 
 /// `rounding`: how much of b_i is not known.

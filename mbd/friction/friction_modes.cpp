@@ -1,9 +1,9 @@
 #include "mbd/friction/friction_modes.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/system/element_failure.h"
 #include "mbd/friction/box_problem.h"
 #include "mbd/friction/rest_rate.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
@@ -37,11 +37,10 @@ constexpr double k_rest_error = 2.0;
 // A, and the accelerations are unique even where the wrenches are not.
 class DualProblem {
 public:
-  DualProblem(const System& system, const State& state, const std::vector<int>& elements,
-              const Evaluation& evaluation, const Dynamics::Candidates& candidates)
-      : system_(system), state_(state), elements_(elements), evaluation_(evaluation),
-        candidates_(candidates), n_(candidates.rows.size()), wrench_(n_, 0.0),
-        blocks_(elements.size()), is_kinetic_(elements.size(), 0) {
+  DualProblem(const System& system, const State& state, const std::vector<int>& elements, const Evaluation& evaluation,
+              const Dynamics::Candidates& candidates)
+      : system_(system), state_(state), elements_(elements), evaluation_(evaluation), candidates_(candidates), n_(candidates.rows.size()),
+        wrench_(n_, 0.0), blocks_(elements.size()), is_kinetic_(elements.size(), 0) {
     for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
   }
 
@@ -84,8 +83,7 @@ private:
   }
 
   [[nodiscard]] FrictionBlock block_of(std::size_t e, const double* a, const double* b) const {
-    return system_.frictions[elements_[e]].friction->solve_block(evaluation_, state_.friction[elements_[e]], a, b,
-                                                                 is_kinetic_[e] != 0);
+    return system_.frictions[elements_[e]].friction->solve_block(evaluation_, state_.friction[elements_[e]], a, b, is_kinetic_[e] != 0);
   }
 
   [[noreturn]] void fail(const std::string& why) const {
@@ -95,7 +93,8 @@ private:
       names.push_back(system_.element_names[system_.frictions[f].element]);
       message += " '" + names.back() + "'";
     }
-    throw ElementFailure(message + ". Give feet of one pair of bodies a common coulomb_stick, or check their normal forces", std::move(names));
+    throw ElementFailure(message + ". Give feet of one pair of bodies a common coulomb_stick, or check their normal forces",
+                         std::move(names));
   }
 
   void sweep_until_settled() {
@@ -139,10 +138,8 @@ private:
     for (std::size_t i = 0; i < m; ++i) {
       b[i] = candidates_.acceleration[row + i];
       for (std::size_t j = 0; j < n_; ++j)
-        if (j < row || j >= row + m)
-          b[i] += candidates_.compliance[(row + i) * n_ + j] * wrench_[j];
-      for (std::size_t j = 0; j < m; ++j)
-        a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
+        if (j < row || j >= row + m) b[i] += candidates_.compliance[(row + i) * n_ + j] * wrench_[j];
+      for (std::size_t j = 0; j < m; ++j) a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
     }
     blocks_[e] = block_of(e, a, b);
     for (std::size_t i = 0; i < m; ++i) {
@@ -199,8 +196,7 @@ void FrictionModes::set_anchor(State& state, int f) const {
   const RowSpec* rows = friction.rows(state.friction[f]);
   place_bodies(state.q, state.v, motion_);
   for (int r = 0; r < friction.dimension(); ++r)
-    if (rows[r].memory >= 0)
-      state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion_.data()).value;
+    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion_.data()).value;
 }
 
 // Within one slip the direction does not change.
@@ -237,16 +233,14 @@ std::vector<int> FrictionModes::held_beyond(const State& state) const {
 
 // The candidates alone, everything else as it is: fills in their phases.
 void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
-  for (const int f : candidates)
-    state.friction[f].phase = FrictionPhase::free;
+  for (const int f : candidates) state.friction[f].phase = FrictionPhase::free;
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   dynamics_.rates(state.t, y_.data(), dy_.data());
   Dynamics::Candidates problem;
   for (const int f : candidates) {
     const FrictionElement& friction = *system_.frictions[f].friction;
-    for (int r = 0; r < friction.dimension(); ++r)
-      problem.rows.push_back(friction.rows(state.friction[f]) + r);
+    for (int r = 0; r < friction.dimension(); ++r) problem.rows.push_back(friction.rows(state.friction[f]) + r);
   }
   dynamics_.respond(problem, dy_.data());
   DualProblem dual(system_, state, candidates, dynamics_.evaluation(), problem);
@@ -400,8 +394,7 @@ void FrictionModes::settle_candidates(State& state, std::vector<int> candidates)
   // Candidates only grow, but where a group is let go, which happens to an element once.
   const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
   for (std::size_t pass = 0; !candidates.empty(); ++pass) {
-    if (pass > most)
-      throw NumericalFailure("friction modes cannot be decided at t = " + rounded_text(state.t, 12) + " s");
+    if (pass > most) throw NumericalFailure("friction modes cannot be decided at t = " + rounded_text(state.t, 12) + " s");
     solve(state, candidates);
     std::vector<int> more = violated(state);
     const bool is_any_over = !more.empty();

@@ -71,7 +71,7 @@ private:
   Dynamics& dynamics_;
   std::vector<double> y_, dy_;
   bool is_evaluated_ = false;
-  std::vector<double> rest_error_; ///< per element: of its rate, m/s, as it came to rest at the present event
+  std::vector<double> rest_error_;             ///< per element: of its rate, m/s, as it came to rest at the present event
   mutable std::vector<Motion<double>> motion_; ///< of the bodies at an anchor: scratch
 };
 

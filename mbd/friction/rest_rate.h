@@ -19,7 +19,8 @@ inline double point_speed(const Motion<double>& m, const Pair<double>& lever, do
 
 /// A rate of `row`, measured as `m`, that is none.
 inline double rest_rate(const RowSpec& row, const MeasureValue<double>& m, const Motion<double>* motion) {
-  return k_rest_velocity + k_rest_share * (point_speed(motion[row.a], m.lever_a, m.couple) + point_speed(motion[row.b], m.lever_b, m.couple));
+  return k_rest_velocity +
+         k_rest_share * (point_speed(motion[row.a], m.lever_a, m.couple) + point_speed(motion[row.b], m.lever_b, m.couple));
 }
 
 } // namespace steplap

@@ -20,22 +20,22 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_loose = 1e-5;         // tolerance above which order 5 is cheaper than order 8
-constexpr double k_limited = 0.8;        // share of the stability bound that counts as limited by it
-constexpr int k_steps_limited = 5;       // in a row (each must be; an accurate step is well below)
-constexpr int k_steps_implicit = 60;     // before the explicit method is tried again
-constexpr double k_worth = 6.0;          // an implicit step costs about as much as so many explicit ones
+constexpr double k_loose = 1e-5;     // tolerance above which order 5 is cheaper than order 8
+constexpr double k_limited = 0.8;    // share of the stability bound that counts as limited by it
+constexpr int k_steps_limited = 5;   // in a row (each must be; an accurate step is well below)
+constexpr int k_steps_implicit = 60; // before the explicit method is tried again
+constexpr double k_worth = 6.0;      // an implicit step costs about as much as so many explicit ones
 // Share of an accurate step of dop853 along an oscillation, at a tolerance of 1e-8; it goes as the error's eighth root.
 constexpr double k_accurate_share = 0.26;
-constexpr double k_suspicious = 2.0;     // times that share, on average: hardly accuracy
-constexpr double k_memory = 1.0 / 16.0;  // weight of a step in averages
-constexpr int k_steps_before_trial = 32; // the first time, so that the averages are those of these steps
+constexpr double k_suspicious = 2.0;       // times that share, on average: hardly accuracy
+constexpr double k_memory = 1.0 / 16.0;    // weight of a step in averages
+constexpr int k_steps_before_trial = 32;   // the first time, so that the averages are those of these steps
 constexpr long k_most_before_trial = 1024; // a trial in vain costs some 40 explicit steps: 4 % at most
 // However accurate its steps look, after so many the explicit method is compared: what an accurate share is, is known of
 // oscillations alone. After each trial in vain it has four times as many, so that all of them together cost a few percent of a long run.
 constexpr long k_steps_before_any = 128;
-constexpr int k_steps_to_grow = 8;       // of a method taken up again: steps grow sixfold each
-constexpr double k_grows = 1.2;          // from step to step: a trial behind an event begins with short ones
+constexpr int k_steps_to_grow = 8; // of a method taken up again: steps grow sixfold each
+constexpr double k_grows = 1.2;    // from step to step: a trial behind an event begins with short ones
 
 class Automatic final : public Integrator {
 public:
@@ -81,7 +81,6 @@ public:
   }
 
   void make_try(Dynamics& dynamics) override { active_->make_try(dynamics); }
-
 
   [[nodiscard]] bool conclude_try(Dynamics& dynamics) override {
     if (!active_->conclude_try(dynamics)) return false;
@@ -173,7 +172,7 @@ private:
   int count_ = 0;
   double explicit_step_ = 0.0; ///< the longest that stability allows, or in a trial what the method came to, s
   double suspicious_share_;
-  double mean_share_ = 0.0, mean_step_ = 0.0; ///< of explicit steps; s
+  double mean_share_ = 0.0, mean_step_ = 0.0;                           ///< of explicit steps; s
   long steps_explicit_ = 0, steps_before_trial_ = k_steps_before_trial; ///< since the method was taken up again
   long steps_before_any_ = k_steps_before_any;
   double last_step_ = 0.0;     ///< s
@@ -184,8 +183,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<Integrator> make_automatic(const Dynamics& dynamics, const IntegratorSettings& settings,
-                                           int max_dimension) {
+std::unique_ptr<Integrator> make_automatic(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension) {
   return std::make_unique<Automatic>(dynamics, settings, max_dimension);
 }
 

@@ -42,11 +42,9 @@ public:
     double* __restrict result = out;
     const int m = stride_;
     for (int i = 0; i < n_; ++i)
-      result[i] = y[i] +
-               s * (r[i] + u * (r[m + i] +
-                                s * (r[2 * m + i] +
-                                     u * (r[3 * m + i] +
-                                          s * (r[4 * m + i] + u * (r[5 * m + i] + s * r[6 * m + i]))))));
+      result[i] =
+          y[i] + s * (r[i] + u * (r[m + i] +
+                                  s * (r[2 * m + i] + u * (r[3 * m + i] + s * (r[4 * m + i] + u * (r[5 * m + i] + s * r[6 * m + i]))))));
   }
 
   [[nodiscard]] double share_of_stability(Dynamics&) override {
@@ -60,9 +58,7 @@ protected:
   double try_step(Dynamics& dynamics) override {
     using namespace dop853;
     is_dense_ready_ = false;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (stage<a, I + 1>(dynamics, c[I + 1]), ...);
-    }(std::make_index_sequence<11>{});
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (stage<a, I + 1>(dynamics, c[I + 1]), ...); }(std::make_index_sequence<11>{});
     add_stages<a, 12, 12>(y1_.data());
     return error_of_stages(dynamics);
   }
@@ -149,8 +145,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<Integrator> make_dop853(const Dynamics& dynamics, const IntegratorSettings& settings,
-                                        int max_dimension) {
+std::unique_ptr<Integrator> make_dop853(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension) {
   return std::make_unique<Dop853>(dynamics, settings, max_dimension);
 }
 

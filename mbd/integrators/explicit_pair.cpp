@@ -19,10 +19,8 @@ constexpr double k_closer = 0.5;
 
 } // namespace
 
-ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings,
-                           int max_dimension, int stages, int order)
-    : Integrator(dynamics, settings, max_dimension),
-      k_(static_cast<std::size_t>(stages) * max_dimension, 0.0), stride_(max_dimension),
+ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension, int stages, int order)
+    : Integrator(dynamics, settings, max_dimension), k_(static_cast<std::size_t>(stages) * max_dimension, 0.0), stride_(max_dimension),
       order_(order), next_h_(settings.step) {
   control_.order = order;
 }
@@ -94,8 +92,7 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   is_crossing_ = error <= 1.0;
   const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
   if (has_choice && error == std::numeric_limits<double>::infinity() && settings_.tolerance < k_near_rounding)
-    throw JointsNearSingular("a singular position of the joints behind t = " + rounded_text(t0_, 12) +
-                             " s is not passed");
+    throw JointsNearSingular("a singular position of the joints behind t = " + rounded_text(t0_, 12) + " s is not passed");
   return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
 }
 

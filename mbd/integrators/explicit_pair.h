@@ -16,8 +16,7 @@ struct JointsNearSingular : NumericalFailure {
 
 class ExplicitPair : public Integrator {
 public:
-  ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension,
-               int stages, int order);
+  ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension, int stages, int order);
   [[nodiscard]] bool is_adaptive() const override { return true; }
   void step(Dynamics& dynamics, double t_limit) override { step_by_parts(dynamics, t_limit); }
   void begin_step(Dynamics& dynamics, double t_limit) override;
@@ -25,9 +24,7 @@ public:
   [[nodiscard]] bool conclude_try(Dynamics& dynamics) override;
   [[nodiscard]] bool bears_look(Dynamics& dynamics) final;
   void dense(Dynamics& dynamics, double theta, double* out) final;
-  [[nodiscard]] double stability_share(Dynamics& dynamics) final {
-    return is_crossing_ ? 0.0 : share_of_stability(dynamics);
-  }
+  [[nodiscard]] double stability_share(Dynamics& dynamics) final { return is_crossing_ ? 0.0 : share_of_stability(dynamics); }
 
 protected:
   virtual void dense_of_pair(Dynamics& dynamics, double theta, double* out) = 0;
@@ -40,8 +37,7 @@ protected:
   void on_restart(Dynamics& dynamics) override;
   [[nodiscard]] bool withdraw(Dynamics& dynamics, double h) final;
 
-  template <const auto& Rows, std::size_t Row>
-  void stage(Dynamics& dynamics, double c) {
+  template <const auto& Rows, std::size_t Row> void stage(Dynamics& dynamics, double c) {
     add_stages<Rows, Row, Row>(scratch_.data());
     evaluate_stage(dynamics, t0_ + c * h_, scratch_.data(), k(Row), c);
   }
@@ -74,8 +70,8 @@ protected:
 private:
   /// Of the step that is being tried.
   struct Attempt {
-    double left = 0.0;   ///< to the limit, s
-    double h = 0.0;      ///< that is wanted, before it is cut to end well
+    double left = 0.0; ///< to the limit, s
+    double h = 0.0;    ///< that is wanted, before it is cut to end well
     bool is_last = false, is_retry = false, has_tried_crossing = false;
     std::optional<SingularPassage> passage;
   };

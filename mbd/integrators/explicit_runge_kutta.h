@@ -64,8 +64,7 @@ inline const bool has_registers_of_four = __builtin_cpu_supports("avx") != 0;
 #endif
 
 /// The same for all i < n.
-template <auto Coefficient, std::size_t Count, class F>
-inline void for_sums(const double* k, int stride, int n, double* out, const F& f) {
+template <auto Coefficient, std::size_t Count, class F> inline void for_sums(const double* k, int stride, int n, double* out, const F& f) {
 #if defined(__x86_64__)
   if (has_registers_of_four) return put_sums_by_four<Coefficient, Count>(k, stride, n, out, f);
 #endif
@@ -79,8 +78,7 @@ struct AsItIs {
 
 /// out = y + h Σ_j coefficient_j k_j. Rows is a constexpr array of rows, Row and Count pick the first Count entries of one.
 template <const auto& Rows, std::size_t Row, std::size_t Count>
-inline void combine(const double* __restrict y, double h, const double* __restrict k, int stride, int n,
-                    double* __restrict out) {
+inline void combine(const double* __restrict y, double h, const double* __restrict k, int stride, int n, double* __restrict out) {
   for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(
       k, stride, n, out, [=]<class S>(int i, S& sum) __attribute__((always_inline)) {
         S before;
@@ -104,7 +102,7 @@ inline void weighted_row(double h, const double* __restrict k, int stride, int n
 
 /// The adaptive loop around a pair: PI control after Hairer & Wanner, Solving ODEs II, IV.2.
 struct StepControl {
-  int order = 5;          ///< of the error estimate + 1: err = O(h^order)
+  int order = 5; ///< of the error estimate + 1: err = O(h^order)
   double safety = 0.9;
   double largest = 6.0, smallest = 0.2;
   double beta = 0.04;
@@ -112,9 +110,7 @@ struct StepControl {
 
   [[nodiscard]] double factor(double error, bool is_after_rejection) {
     const double alpha = 1.0 / order - 0.75 * beta;
-    double f = error > 0.0
-                   ? safety * portable::pow(error, -alpha) * portable::pow(previous_error, beta)
-                   : largest;
+    double f = error > 0.0 ? safety * portable::pow(error, -alpha) * portable::pow(previous_error, beta) : largest;
     f = std::clamp(f, smallest, is_after_rejection ? 1.0 : largest);
     previous_error = std::max(error, 1e-4);
     return f;

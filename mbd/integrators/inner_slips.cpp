@@ -16,9 +16,10 @@ namespace {
 
 // Usages of parts are those of means: of a peak between straight lines that is as wide as a part they lack as much as they change by.
 constexpr double k_reach = 1.5;
-constexpr double k_noise = 1e-6; // of usages: wrenches are settled to this (time_stepping.cpp)
+constexpr double k_noise = 1e-6;  // of usages: wrenches are settled to this (time_stepping.cpp)
 constexpr double k_glance = 1e-3; // of a part
-constexpr double k_unlike_parabola = 0.3; // of what it bends by in a part: harmonics turn by 0.4 rad at most, but a usage may be one over them
+constexpr double k_unlike_parabola =
+    0.3; // of what it bends by in a part: harmonics turn by 0.4 rad at most, but a usage may be one over them
 constexpr double k_places[] = {0.125, 0.5625, 1.0}; // of a part, the last its end
 
 // What usage may reach between 0 and 1: the largest of the parabola through three values at k_places, and a share of its bend.

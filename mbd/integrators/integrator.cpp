@@ -39,11 +39,9 @@ double slip_share(int division) { return k_slip_share / (static_cast<double>(div
 } // namespace
 
 Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
-    : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
-      y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
-      watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_),
-      watch_rate1_(watch0_), nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_),
-      slip_scale_inside_(slip_scale0_) {
+    : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0), y1_(max_dimension, 0.0), weight_(max_dimension, 0.0),
+      scratch_(3 * max_dimension, 0.0), watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_), watch_rate1_(watch0_),
+      nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_), slip_scale_inside_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -184,9 +182,7 @@ bool Integrator::try_finish_step(Dynamics& dynamics) {
   return false;
 }
 
-bool Integrator::is_merged_look_due(double theta) const {
-  return theta > last_merged_look_ + k_merged_look && theta < 1.0 - k_merged_end;
-}
+bool Integrator::is_merged_look_due(double theta) const { return theta > last_merged_look_ + k_merged_look && theta < 1.0 - k_merged_end; }
 
 void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta) {
   const bool is_due = is_merged_look_due(theta);
@@ -216,8 +212,7 @@ void Integrator::update_weights(Dynamics& dynamics) {
     double displacement = std::abs(y0_[i] - layout.reference[i]);
     if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // whatever it turns goes no further
     weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
-    weight_[m + i] =
-        is_locked ? 0.0 : 1.0 / (tolerance * (rate_floor_ * size + std::abs(y0_[m + i])));
+    weight_[m + i] = is_locked ? 0.0 : 1.0 / (tolerance * (rate_floor_ * size + std::abs(y0_[m + i])));
   };
   for (int i = 0; i < m; ++i) weigh(i);
   if (has_slip_scale0_) {
@@ -227,8 +222,8 @@ void Integrator::update_weights(Dynamics& dynamics) {
   }
   // Inner states are displacements (of an elastic joint: m, m, rad), known as well as those of bodies.
   for (int i = 2 * m; i < n_ - 2; ++i)
-    weight_[i] = 1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) +
-                                     std::abs(y0_[i] - system_.initial_inner[i - 2 * m])));
+    weight_[i] =
+        1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) + std::abs(y0_[i] - system_.initial_inner[i - 2 * m])));
   // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
   const double floor_rate = rate_floor_ * k_displacement_floor * length_scale_;
   double energy = std::abs(y0_[n_ - 2]) + std::abs(y0_[n_ - 1]);
@@ -268,8 +263,7 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
     dynamics.evaluate(Request::stage, t0_ + h, y, f);
     double turned = 0.0;
-    for (int i = m; i < 2 * m; ++i)
-      turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));
+    for (int i = m; i < 2 * m; ++i) turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));
     if (turned <= 1.0) return attempt == 0 ? h : h / settings_.division;
     h *= std::isfinite(turned) ? std::max(k_most_shortened, 0.8 / std::sqrt(turned)) : k_most_shortened;
   }
@@ -282,10 +276,8 @@ double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
   double* y = scratch_.data();
   double* f = y + n_;
   double* change = f + n_;
-  for (int i = 0; i < n_; ++i)
-    change[i] = i < dynamics.coordinate_count() ? y0_[i] - dynamics.layout().reference[i] : y0_[i];
-  for (int i = 2 * dynamics.coordinate_count(); i < n_ - 2; ++i)
-    change[i] -= system_.initial_inner[i - 2 * dynamics.coordinate_count()];
+  for (int i = 0; i < n_; ++i) change[i] = i < dynamics.coordinate_count() ? y0_[i] - dynamics.layout().reference[i] : y0_[i];
+  for (int i = 2 * dynamics.coordinate_count(); i < n_ - 2; ++i) change[i] -= system_.initial_inner[i - 2 * dynamics.coordinate_count()];
   const double size = error_norm(change) + 1.0 / settings_.tolerance * 1e-3;
   const double slope = error_norm(k0_);
   double h = slope > 0.0 ? 0.01 * size / slope : h_max;

@@ -18,11 +18,10 @@
 
 namespace steplap {
 
-
 struct IntegratorSettings {
-  double tolerance = 1e-8;            ///< relative local error of adaptive methods
-  double step = 0.0;                  ///< s; fixed-step methods need it, others take it as the first step
-  double max_step = 0.0;              ///< s; 0: none
+  double tolerance = 1e-8; ///< relative local error of adaptive methods
+  double step = 0.0;       ///< s; fixed-step methods need it, others take it as the first step
+  double max_step = 0.0;   ///< s; 0: none
   double projection_tolerance = 1e-12;
   /// Of a finer run, above 1: whatever else limits a step (a breakpoint, a harmonic, the forces behind an event, a slip that
   /// ends) limits one of so many parts. Fixed steps are cut as steps of division × step would be, and then divided.
@@ -161,7 +160,7 @@ protected:
 
   const System& system_;
   IntegratorSettings settings_;
-  int n_ = 0; ///< dimension now
+  int n_ = 0;                 ///< dimension now
   bool is_restarted_ = false; ///< no step was made since
   bool are_looks_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
@@ -172,11 +171,11 @@ protected:
   std::vector<double> watch0_, watch1_, watch_rate0_, watch_rate1_;
   WatchNodes nodes_;
   double longest_step_ = std::numeric_limits<double>::infinity();
-  double last_merged_look_ = 0.0; ///< theta at which joints that are merged were last looked at inside the step
+  double last_merged_look_ = 0.0;                 ///< theta at which joints that are merged were last looked at inside the step
   std::vector<double> slip_scale0_, slip_scale1_; ///< per rate (Dynamics::slip_scales)
   std::vector<double> slip_scale_inside_;         ///< where the step is used up to
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;
-  double slip_care_ = 1.0; ///< of the errors that velocities of a slip may have: less where nothing checks the output within a step
+  double slip_care_ = 1.0;  ///< of the errors that velocities of a slip may have: less where nothing checks the output within a step
   double decay_rate_ = 0.0; ///< of slip laws where the next step begins, 1/s; of methods that choose no steps
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
@@ -185,8 +184,7 @@ protected:
 };
 
 /// One of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.
-[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name,
-                                                          const Dynamics& dynamics,
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynamics& dynamics,
                                                           const IntegratorSettings& settings);
 
 } // namespace steplap

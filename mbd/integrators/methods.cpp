@@ -10,12 +10,9 @@ namespace steplap {
 const std::vector<Method>& methods() {
   static const std::vector<Method> list = {
       // name, fixed step, time stepping, for damping, storms stepped over
-      {"rk4", true, false, false, false, make_rk4},
-      {"tsit5", false, false, false, false, make_tsit5},
-      {"dop853", false, false, false, false, make_dop853},
-      {"rodas5p", false, false, true, false, make_rodas5p},
-      {"moreau", true, true, false, false, make_moreau},
-      {"auto", false, false, false, true, make_automatic},
+      {"rk4", true, false, false, false, make_rk4},        {"tsit5", false, false, false, false, make_tsit5},
+      {"dop853", false, false, false, false, make_dop853}, {"rodas5p", false, false, true, false, make_rodas5p},
+      {"moreau", true, true, false, false, make_moreau},   {"auto", false, false, false, true, make_automatic},
   };
   return list;
 }
@@ -32,8 +29,7 @@ const Method& method(const std::string& name) {
   return *found;
 }
 
-std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynamics& dynamics,
-                                            const IntegratorSettings& settings) {
+std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynamics& dynamics, const IntegratorSettings& settings) {
   return method(name).make(dynamics, settings, dynamics.system().largest_dimension());
 }
 

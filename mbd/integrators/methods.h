@@ -14,7 +14,7 @@ std::unique_ptr<Integrator> make_rodas5p(const Dynamics&, const IntegratorSettin
 
 /// Interpolation from both ends of a step: quintic for coordinates (position, velocity, acceleration of
 /// both ends), its derivative for velocities, cubic for what is behind them up to `dimension`.
-void hermite_dense(int coordinates, int dimension, double theta, double h, const double* y0, const double* y1,
-                   const double* rate0, const double* rate1, double* out);
+void hermite_dense(int coordinates, int dimension, double theta, double h, const double* y0, const double* y1, const double* rate0,
+                   const double* rate1, double* out);
 
 } // namespace steplap

@@ -66,8 +66,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<Integrator> make_moreau(const Dynamics& dynamics, const IntegratorSettings& settings,
-                                        int max_dimension) {
+std::unique_ptr<Integrator> make_moreau(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension) {
   return std::make_unique<Moreau>(dynamics, settings, max_dimension);
 }
 

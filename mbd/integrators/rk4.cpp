@@ -77,8 +77,7 @@ private:
     stage(dynamics, 1, 0.5, k(0));
     stage(dynamics, 2, 0.5, k(1));
     stage(dynamics, 3, 1.0, k(2));
-    for (int i = 0; i < n_; ++i)
-      y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
+    for (int i = 0; i < n_; ++i) y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
     return try_finish_step(dynamics);
   }
   // The step that is due, into `division` parts.
@@ -102,8 +101,7 @@ private:
   void velocities_by_cubic(int n, double theta, double* out) const {
     const double s = theta, r = 1.0 - theta;
     for (int i = n; i < 2 * n; ++i)
-      out[i] = r * r * ((1.0 + 2.0 * s) * y0_[i] + s * h_ * k0_[i]) +
-               s * s * ((3.0 - 2.0 * s) * y1_[i] - r * h_ * k1_[i]);
+      out[i] = r * r * ((1.0 + 2.0 * s) * y0_[i] + s * h_ * k0_[i]) + s * s * ((3.0 - 2.0 * s) * y1_[i] - r * h_ * k1_[i]);
   }
   double* k(int i) { return k_.data() + i * stride_; }
   void stage(Dynamics& dynamics, int index, double c, const double* previous) {
@@ -121,13 +119,12 @@ private:
 
 } // namespace
 
-std::unique_ptr<Integrator> make_rk4(const Dynamics& dynamics, const IntegratorSettings& settings,
-                                     int max_dimension) {
+std::unique_ptr<Integrator> make_rk4(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension) {
   return std::make_unique<Rk4>(dynamics, settings, max_dimension);
 }
 
-void hermite_dense(int coordinates, int dimension, double theta, double h, const double* y0, const double* y1,
-                   const double* rate0, const double* rate1, double* out) {
+void hermite_dense(int coordinates, int dimension, double theta, double h, const double* y0, const double* y1, const double* rate0,
+                   const double* rate1, double* out) {
   const int n = coordinates;
   const double s = theta, s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
   // Quintic basis on [0, 1] for (q0, h v0, h² a0, q1, h v1, h² a1) and its derivative.
@@ -148,8 +145,7 @@ void hermite_dense(int coordinates, int dimension, double theta, double h, const
     out[n + i] = d3 * change / h + d1 * v0 + d4 * v1 + h * (d2 * a0 + d5 * a1);
   }
   const double c1 = s - 2 * s2 + s3, c2 = 3 * s2 - 2 * s3, c3 = s3 - s2;
-  for (int i = 2 * n; i < dimension; ++i)
-    out[i] = y0[i] + c2 * (y1[i] - y0[i]) + h * (c1 * rate0[i] + c3 * rate1[i]);
+  for (int i = 2 * n; i < dimension; ++i) out[i] = y0[i] + c2 * (y1[i] - y0[i]) + h * (c1 * rate0[i] + c3 * rate1[i]);
 }
 
 } // namespace steplap

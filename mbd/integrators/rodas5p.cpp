@@ -13,13 +13,13 @@
 //
 // A singular position of the joints ahead is crossed as the explicit methods do (singular_crossing.h): the linearisation
 // is worth nothing there. Where forces are too stiff for that the usual steps go on.
-#include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
+#include "mbd/integrators/scene_rate.h"
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
-#include "mbd/integrators/scene_rate.h"
 #include "mbd/math/portable_math.h"
 
 #include <limits>
@@ -36,9 +36,8 @@ const double k_lobatto[2] = {0.5 - std::sqrt(0.05), 0.5 + std::sqrt(0.05)};
 class Rodas5p final : public Integrator {
 public:
   Rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
-      : Integrator(dynamics, settings, max_dimension), k_(2 * max_dimension), u_(8 * max_dimension),
-        rate_(max_dimension), slope_(max_dimension), right_(max_dimension), raw_(max_dimension),
-        stride_(max_dimension), next_h_(settings.step) {
+      : Integrator(dynamics, settings, max_dimension), k_(2 * max_dimension), u_(8 * max_dimension), rate_(max_dimension),
+        slope_(max_dimension), right_(max_dimension), raw_(max_dimension), stride_(max_dimension), next_h_(settings.step) {
     slip_care_ = 0.1; // as tsit5: nothing checks the output within a step
     set_rate_storage(k_.data(), k_.data() + stride_);
     control_.order = 5;
@@ -299,9 +298,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
       return note_end(dynamics);
     }
     ++rejections_;
-    h = std::isfinite(error)
-            ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / control_.order), 0.1, 0.9)
-            : 0.2 * h_;
+    h = std::isfinite(error) ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / control_.order), 0.1, 0.9) : 0.2 * h_;
     refuse_shorter_than_rounding(h);
   }
 }
@@ -314,8 +311,7 @@ void Rodas5p::refuse_shorter_than_rounding(double h) const {
 
 } // namespace
 
-std::unique_ptr<Integrator> make_rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings,
-                                         int max_dimension) {
+std::unique_ptr<Integrator> make_rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension) {
   return std::make_unique<Rodas5p>(dynamics, settings, max_dimension);
 }
 

@@ -15,9 +15,7 @@ namespace steplap {
 inline constexpr double k_metre_rate = 3.1320919526731650; ///< 1/s: √(9.81 m/s² / 1 m)
 
 /// 1/s.
-[[nodiscard]] inline double scene_rate(const System& system) {
-  return system.gravity.isZero(0.0) ? k_metre_rate : system.scale.rate;
-}
+[[nodiscard]] inline double scene_rate(const System& system) { return system.gravity.isZero(0.0) ? k_metre_rate : system.scale.rate; }
 
 /// To what size of time a step's length is compared, where it is asked whether rounding leaves any of it: t, and near zero a
 /// little of the time in which the scene moves.

@@ -87,8 +87,7 @@ const GaussTable& gauss_table() {
       for (int j = 0; j < n; ++j) {
         if (j == i) continue;
         const long double scale = 1.0L / (c[i] - c[j]);
-        for (int p = ++degree; p >= 0; --p)
-          power[p] = ((p > 0 ? power[p - 1] : 0.0L) - c[j] * (p < degree ? power[p] : 0.0L)) * scale;
+        for (int p = ++degree; p >= 0; --p) power[p] = ((p > 0 ? power[p - 1] : 0.0L) - c[j] * (p < degree ? power[p] : 0.0L)) * scale;
       }
       const auto integral = [&power](long double theta) {
         long double sum = 0.0L;
@@ -107,8 +106,8 @@ const GaussTable& gauss_table() {
 // --- the step ------------------------------------------------------------------------------------------
 
 SingularCrossing::SingularCrossing(int max_dimension)
-    : stride_(max_dimension), state_(static_cast<std::size_t>(k_stages) * max_dimension),
-      rate_(state_.size()), work_(2 * static_cast<std::size_t>(max_dimension)) {}
+    : stride_(max_dimension), state_(static_cast<std::size_t>(k_stages) * max_dimension), rate_(state_.size()),
+      work_(2 * static_cast<std::size_t>(max_dimension)) {}
 
 double SingularCrossing::distance(Dynamics& dynamics, const Step& step, double theta) {
   const double tau = theta * step.h;

@@ -53,7 +53,7 @@ public:
     const double* y0 = nullptr;
     const double* rate0 = nullptr;
     int n = 0;
-    Norm norm;     ///< 1: as large as tolerated
+    Norm norm;                                                         ///< 1: as large as tolerated
     std::function<void(const double* rates, double theta)> note_stage; ///< after each stage's last evaluation
   };
 

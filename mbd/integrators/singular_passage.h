@@ -17,9 +17,7 @@ public:
   /// Before each try.
   void begin_try() { dynamics_.forget_pivots(); }
   /// After a try that would be accepted: should it end elsewhere?
-  [[nodiscard]] bool wants_other_end() {
-    return !begins_near_ && other_ends_ < k_max_other_ends && is_near() && ++other_ends_ > 0;
-  }
+  [[nodiscard]] bool wants_other_end() { return !begins_near_ && other_ends_ < k_max_other_ends && is_near() && ++other_ends_ > 0; }
   /// After one that would not: because a stage came too close?
   [[nodiscard]] bool wants_other_stages() {
     return dynamics_.lowest_pivot() < k_close_pivot && tries_across_ < k_max_tries_across && ++tries_across_ > 0;
@@ -28,9 +26,7 @@ public:
   static constexpr double k_shorter_end = 0.75, k_shorter_across = 0.88;
 
 private:
-  [[nodiscard]] bool is_near() const {
-    return !dynamics_.layout().active.empty() && dynamics_.smallest_pivot() < k_end_pivot;
-  }
+  [[nodiscard]] bool is_near() const { return !dynamics_.layout().active.empty() && dynamics_.smallest_pivot() < k_end_pivot; }
 
   // Squares of distances, rad².
   static constexpr double k_close_pivot = 1e-3, k_end_pivot = 1e-4;

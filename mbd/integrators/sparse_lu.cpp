@@ -13,10 +13,8 @@ void SparseLu::begin(int n) {
   if (n != n_) is_known_ = false;
   n_ = n;
   count_ = 0;
-  if (is_known_)
-    std::fill(values_.begin(), values_.end(), 0.0);
-  else
-    added_.clear();
+  if (is_known_) std::fill(values_.begin(), values_.end(), 0.0);
+  else added_.clear();
 }
 
 // From the first entry that is not where it was: the matrix is read back from what has been summed
@@ -24,8 +22,7 @@ void SparseLu::begin(int n) {
 void SparseLu::add_unknown(std::size_t k, int row, int column, double value) {
   if (is_known_) {
     added_.assign(k, 0.0);
-    for (std::size_t i = k; i-- > 0;)
-      std::swap(added_[i], values_[places_[i]]);
+    for (std::size_t i = k; i-- > 0;) std::swap(added_[i], values_[places_[i]]);
     is_known_ = false;
   }
   rows_.resize(k);
@@ -40,16 +37,14 @@ void SparseLu::analyze() {
   const std::size_t count = rows_.size();
   std::vector<int> sorted(count);
   std::iota(sorted.begin(), sorted.end(), 0);
-  std::sort(sorted.begin(), sorted.end(), [this](int a, int b) {
-    return columns_[a] != columns_[b] ? columns_[a] < columns_[b] : rows_[a] < rows_[b];
-  });
+  std::sort(sorted.begin(), sorted.end(),
+            [this](int a, int b) { return columns_[a] != columns_[b] ? columns_[a] < columns_[b] : rows_[a] < rows_[b]; });
   begin_.assign(n_ + 1, 0);
   index_.clear();
   places_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const int e = sorted[i];
-    const bool is_new =
-        i == 0 || columns_[e] != columns_[sorted[i - 1]] || rows_[e] != rows_[sorted[i - 1]];
+    const bool is_new = i == 0 || columns_[e] != columns_[sorted[i - 1]] || rows_[e] != rows_[sorted[i - 1]];
     if (is_new) {
       index_.push_back(rows_[e]);
       ++begin_[columns_[e] + 1];
@@ -58,24 +53,20 @@ void SparseLu::analyze() {
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   values_.assign(index_.size(), 0.0);
-  for (std::size_t e = 0; e < count; ++e)
-    values_[places_[e]] += added_[e];
+  for (std::size_t e = 0; e < count; ++e) values_[places_[e]] += added_[e];
 
   Eigen::SparseMatrix<double> pattern(n_, n_);
   std::vector<Eigen::Triplet<double>> entries;
   for (int c = 0; c < n_; ++c)
-    for (int k = begin_[c]; k < begin_[c + 1]; ++k)
-      entries.emplace_back(index_[k], c, 1.0);
+    for (int k = begin_[c]; k < begin_[c + 1]; ++k) entries.emplace_back(index_[k], c, 1.0);
   pattern.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(n_);
   Eigen::COLAMDOrdering<int> ordering;
   ordering(pattern, permutation);
   order_.resize(n_);
-  for (int c = 0; c < n_; ++c)
-    order_[permutation.indices()[c]] = c;
+  for (int c = 0; c < n_; ++c) order_[permutation.indices()[c]] = c;
 
-  for (auto* v : {&position_, &pivot_, &stack_, &resume_, &found_})
-    v->assign(n_, 0);
+  for (auto* v : {&position_, &pivot_, &stack_, &resume_, &found_}) v->assign(n_, 0);
   mark_.assign(n_, -1);
   stamp_ = 0;
   work_.assign(n_, 0.0);
@@ -85,11 +76,9 @@ void SparseLu::analyze() {
 }
 
 bool SparseLu::factor() {
-  if (is_known_ &&
-      count_ != rows_.size()) { // the pattern of before goes on where this one has ended
+  if (is_known_ && count_ != rows_.size()) { // the pattern of before goes on where this one has ended
     added_.assign(count_, 0.0);
-    for (std::size_t i = count_; i-- > 0;)
-      std::swap(added_[i], values_[places_[i]]);
+    for (std::size_t i = count_; i-- > 0;) std::swap(added_[i], values_[places_[i]]);
     rows_.resize(count_);
     columns_.resize(count_);
     is_known_ = false;
@@ -137,31 +126,27 @@ bool SparseLu::factor_anew() {
   has_pivots_ = false;
   std::fill(position_.begin(), position_.end(), -1);
   std::fill(work_.begin(), work_.end(), 0.0);
-  for (auto* v : {&l_row_, &u_position_})
-    v->clear();
+  for (auto* v : {&l_row_, &u_position_}) v->clear();
   l_.clear();
   u_.clear();
   l_begin_.assign(1, 0);
   u_begin_.assign(1, 0);
   for (int k = 0; k < n_; ++k) {
     const int column = order_[k], top = reach(column);
-    for (int p = begin_[column]; p < begin_[column + 1]; ++p)
-      work_[index_[p]] = values_[p];
+    for (int p = begin_[column]; p < begin_[column + 1]; ++p) work_[index_[p]] = values_[p];
     for (int p = top; p < n_; ++p) {
       const int row = found_[p], position = position_[row];
       if (position < 0) continue;
       const double u = work_[row];
       u_position_.push_back(position);
       u_.push_back(u);
-      for (int e = l_begin_[position]; e < l_begin_[position + 1]; ++e)
-        work_[l_row_[e]] -= l_[e] * u;
+      for (int e = l_begin_[position]; e < l_begin_[position + 1]; ++e) work_[l_row_[e]] -= l_[e] * u;
       work_[row] = 0.0;
     }
     int best = -1;
     for (int p = top; p < n_; ++p) {
       const int row = found_[p];
-      if (position_[row] < 0 && (best < 0 || std::abs(work_[row]) > std::abs(work_[best])))
-        best = row;
+      if (position_[row] < 0 && (best < 0 || std::abs(work_[row]) > std::abs(work_[best]))) best = row;
     }
     u_begin_.push_back(static_cast<int>(u_.size()));
     if (best < 0 || !(std::abs(work_[best]) > 0.0)) return false;
@@ -193,20 +178,17 @@ bool SparseLu::factor_anew() {
 bool SparseLu::refactor() {
   for (int k = 0; k < n_; ++k) {
     const int column = order_[k];
-    for (int p = begin_[column]; p < begin_[column + 1]; ++p)
-      work_[index_[p]] = values_[p];
+    for (int p = begin_[column]; p < begin_[column + 1]; ++p) work_[index_[p]] = values_[p];
     for (int e = u_begin_[k]; e < u_begin_[k + 1]; ++e) {
       const int position = u_position_[e], row = pivot_[position];
       const double u = work_[row];
       u_[e] = u;
       work_[row] = 0.0;
-      for (int i = l_begin_[position]; i < l_begin_[position + 1]; ++i)
-        work_[l_row_[i]] -= l_[i] * u;
+      for (int i = l_begin_[position]; i < l_begin_[position + 1]; ++i) work_[l_row_[i]] -= l_[i] * u;
     }
     const double pivot = work_[pivot_[k]];
     double largest = 0.0;
-    for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e)
-      largest = std::max(largest, std::abs(work_[l_row_[e]]));
+    for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) largest = std::max(largest, std::abs(work_[l_row_[e]]));
     if (!(std::abs(pivot) > k_pivot_share * largest)) return false; // also 0 of 0
     inverse_pivot_[k] = 1.0 / pivot;
     work_[pivot_[k]] = 0.0;
@@ -222,13 +204,11 @@ void SparseLu::solve(double* x) {
   for (int k = 0; k < n_; ++k) {
     const double value = x[pivot_[k]];
     work_[k] = value;
-    for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e)
-      x[l_row_[e]] -= l_[e] * value;
+    for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) x[l_row_[e]] -= l_[e] * value;
   }
   for (int k = n_ - 1; k >= 0; --k) {
     const double value = work_[k] * inverse_pivot_[k];
-    for (int e = u_begin_[k]; e < u_begin_[k + 1]; ++e)
-      work_[u_position_[e]] -= u_[e] * value;
+    for (int e = u_begin_[k]; e < u_begin_[k + 1]; ++e) work_[u_position_[e]] -= u_[e] * value;
     x[order_[k]] = value;
     work_[k] = 0.0;
   }

@@ -68,7 +68,8 @@ void StageSystem::add_state_forces(const double* r) {
   if (states_.empty()) return;
   state_right_.resize(static_cast<Eigen::Index>(states_.size()));
   for (std::size_t k = 0; k < states_.size(); ++k) state_right_[static_cast<Eigen::Index>(k)] = r[2 * n_ + states_[k]];
-  for (std::size_t c = 0; c < state_columns_.size(); ++c) state_right_ += g_ * r[state_columns_[c]] * state_pose_.col(static_cast<Eigen::Index>(c));
+  for (std::size_t c = 0; c < state_columns_.size(); ++c)
+    state_right_ += g_ * r[state_columns_[c]] * state_pose_.col(static_cast<Eigen::Index>(c));
   const VecX force = state_force_ * (state_answer_ * state_right_);
   for (std::size_t i = 0; i < state_rows_.size(); ++i) moved_[state_rows_[i]] += force[static_cast<Eigen::Index>(i)] / g_;
 }
@@ -97,8 +98,7 @@ void StageSystem::add_inner_forces(const double* r) {
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     const Linearization::InnerBlock& block = linearization_->inner()[i];
     Vec3 z = Vec3::Zero();
-    for (int k = 0; k < block.count; ++k)
-      z[k] = r[2 * n_ + block.first + k];
+    for (int k = 0; k < block.count; ++k) z[k] = r[2 * n_ + block.first + k];
     for (int c = 0; c < 6; ++c)
       if (block.cluster[c / 3] >= 0) z += g_ * block.by_pose.col(c) * r[3 * block.cluster[c / 3] + c % 3];
     const Eigen::Matrix<double, 6, 1> f = block.force * (inner_[i].answer * z);
@@ -109,19 +109,16 @@ void StageSystem::add_inner_forces(const double* r) {
 
 void StageSystem::solve_inner(const double* r, double* u) {
   const int count = linearization_->inner_count();
-  for (int k = 0; k < count; ++k)
-    u[2 * n_ + k] = g_ * r[2 * n_ + k];
+  for (int k = 0; k < count; ++k) u[2 * n_ + k] = g_ * r[2 * n_ + k];
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     const Linearization::InnerBlock& block = linearization_->inner()[i];
     Vec3 z = Vec3::Zero();
-    for (int k = 0; k < block.count; ++k)
-      z[k] = r[2 * n_ + block.first + k];
+    for (int k = 0; k < block.count; ++k) z[k] = r[2 * n_ + block.first + k];
     for (int c = 0; c < 6; ++c)
       if (const int at = 3 * block.cluster[c / 3] + c % 3; at >= 0)
         z += block.by_pose.col(c) * u[at] + block.by_velocity.col(c) * u[n_ + at];
     z = inner_[i].answer * z;
-    for (int k = 0; k < block.count; ++k)
-      u[2 * n_ + block.first + k] = z[k];
+    for (int k = 0; k < block.count; ++k) u[2 * n_ + block.first + k] = z[k];
   }
 }
 
@@ -140,7 +137,8 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
   }
   for (std::size_t i = 0; i < state_rows_.size(); ++i)
     for (std::size_t c = 0; c < state_columns_.size(); ++c)
-      put(state_rows_[i], state_columns_[c], -g * w[state_rows_[i]] * state_damping_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)));
+      put(state_rows_[i], state_columns_[c],
+          -g * w[state_rows_[i]] * state_damping_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)));
   const auto put_row = [&](const Linearization::Triplet& e, double value) {
     put(n_ + e.row(), e.col(), is_redundant_[e.row()] ? 0.0 : value);
   };
@@ -149,8 +147,7 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
     put_row(e, e.value());
     if (is_diagonal) put(e.col(), n_ + e.row(), is_redundant_[e.row()] ? 0.0 : -w[e.col()] * e.value());
   }
-  for (const auto& e : linearization_->response())
-    put(e.row(), n_ + e.col(), is_redundant_[e.col()] ? 0.0 : -e.value());
+  for (const auto& e : linearization_->response()) put(e.row(), n_ + e.col(), is_redundant_[e.col()] ? 0.0 : -e.value());
   for (const auto& e : linearization_->bias_by_pose()) put_row(e, -g * g * e.value());
   for (const auto& e : linearization_->bias_by_velocity()) put_row(e, -g * e.value());
   for (int r = 0; r < m_; ++r) put(n_ + r, n_ + r, is_redundant_[r] ? 1.0 : 0.0);
@@ -182,8 +179,7 @@ void StageSystem::solve(const double* r, double* u) {
   for (int i = 0; i < n_; ++i) right_[i] = g_ * (r_v[i] + g_ * w[i] * moved_[i]);
   right_.tail(m_).setZero();
   for (const auto& e : linearization_->gradient()) right_[n_ + e.row()] += g_ * e.value() * r_v[e.col()];
-  for (const auto& e : linearization_->bias_by_pose())
-    right_[n_ + e.row()] += g_ * g_ * e.value() * r[e.col()];
+  for (const auto& e : linearization_->bias_by_pose()) right_[n_ + e.row()] += g_ * g_ * e.value() * r[e.col()];
   for (int i = 0; i < m_; ++i)
     if (is_redundant_[i]) right_[n_ + i] = 0.0;
   solve_unknowns();

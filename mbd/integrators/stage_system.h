@@ -19,9 +19,9 @@
 // Once a system of its size has been solved nothing is allocated.
 #pragma once
 
-#include "mbd/integrators/sparse_lu.h"
 #include "mbd/algebra/decompositions.h"
 #include "mbd/dynamics/linearization.h"
+#include "mbd/integrators/sparse_lu.h"
 
 namespace steplap {
 
@@ -54,8 +54,8 @@ private:
   SparseLu sparse_;
   VecX right_, solution_, moved_;
   struct Inner {
-    Mat3 answer;                                       ///< A
-    Eigen::Matrix<double, 6, 6> damping;               ///< F_z A (g P + V)
+    Mat3 answer;                         ///< A
+    Eigen::Matrix<double, 6, 6> damping; ///< F_z A (g P + V)
   };
   std::vector<Inner> inner_;
   // Own states: u_z = A (r_z + P u_q + V u_v), of those coordinates alone that they hang on or act at.
@@ -63,10 +63,10 @@ private:
   void factor_states();
   void add_state_forces(const double* r);
   void solve_states(const double* r, double* u);
-  std::vector<int> states_;        ///< as inner states
-  std::vector<int> state_columns_; ///< coordinates that they follow
-  std::vector<int> state_rows_;    ///< coordinates that they act at
-  MatX state_pose_, state_velocity_, state_force_; ///< P, V, F_z
+  std::vector<int> states_;                            ///< as inner states
+  std::vector<int> state_columns_;                     ///< coordinates that they follow
+  std::vector<int> state_rows_;                        ///< coordinates that they act at
+  MatX state_pose_, state_velocity_, state_force_;     ///< P, V, F_z
   MatX state_by_state_, state_answer_, state_damping_; ///< Z, A, F_z A (g P + V)
   VecX state_right_;
 };

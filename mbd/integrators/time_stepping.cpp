@@ -10,15 +10,11 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_mode_passes = 12; // beyond, contacts go round in a circle: the step is halved
-constexpr int k_max_force_passes =
-    60; // repetitions for the normal forces of the step's end; beyond, it is halved
-constexpr int k_passes_in_full =
-    12; // later ones go half the way: two that throw each other to and fro meet
-constexpr int k_passes_repeated =
-    20; // later ones take bounds as functions of the wrenches: repetition has no end
-constexpr int k_passes_static =
-    6; // later ones leave an element that has slipped its kinetic coefficient
+constexpr int k_max_mode_passes = 12;  // beyond, contacts go round in a circle: the step is halved
+constexpr int k_max_force_passes = 60; // repetitions for the normal forces of the step's end; beyond, it is halved
+constexpr int k_passes_in_full = 12;   // later ones go half the way: two that throw each other to and fro meet
+constexpr int k_passes_repeated = 20;  // later ones take bounds as functions of the wrenches: repetition has no end
+constexpr int k_passes_static = 6;     // later ones leave an element that has slipped its kinetic coefficient
 constexpr int k_max_halvings = 20;
 // Wrenches that still change by so much, of an element's, are settled: far below the method's own
 // error.
@@ -53,8 +49,7 @@ void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& s
   for (std::size_t u = 0; u < system.units.size(); ++u) {
     const Unit& unit = system.units[u];
     for (int w = 0; w < unit.watch_count; ++w)
-      if (dynamics.watch()[unit.watch + w] < 0.0)
-        (void)unit.group->next_mode(unit.index, state.mode[u], w, dynamics.evaluation());
+      if (dynamics.watch()[unit.watch + w] < 0.0) (void)unit.group->next_mode(unit.index, state.mode[u], w, dynamics.evaluation());
   }
 }
 
@@ -62,13 +57,11 @@ void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& s
 
 TimeStepping::TimeStepping(const System& system) : system_(system) {
   const auto n = static_cast<std::size_t>(system.largest_dimension());
-  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_})
-    v->assign(n, 0.0);
+  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_}) v->assign(n, 0.0);
 }
 
 bool TimeStepping::is_rounding(double t0, double t1) const {
-  const double rounding = k_roundings_of_time * std::numeric_limits<double>::epsilon() *
-                          std::max(std::abs(t0), std::abs(t1));
+  const double rounding = k_roundings_of_time * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0), std::abs(t1));
   return t1 - t0 <= std::max(rounding, k_negligible * longest_);
 }
 
@@ -79,8 +72,7 @@ void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   dynamics.pack(state, y1_.data());
   const Means means(dynamics, time_of_loads(state.t));
   dynamics.rates(time_of_loads(t1), y1_.data(), dy_.data());
-  for (int i = 0; i < dynamics.dimension(); ++i)
-    y1_[i] += h * dy_[i];
+  for (int i = 0; i < dynamics.dimension(); ++i) y1_[i] += h * dy_[i];
   dynamics.unpack(t1, y1_.data(), state);
 }
 
@@ -105,7 +97,8 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
     if (!trouble.what) {
       const bool is_near = note_sticking(dynamics, end);
       finish_phases(dynamics, state, h);
-      if (is_near && std::isnan(held_time_) && h > k_shortest_looked_into * longest_ && slips_inside(dynamics, end, tolerance)) trouble.what = "a slip inside it";
+      if (is_near && std::isnan(held_time_) && h > k_shortest_looked_into * longest_ && slips_inside(dynamics, end, tolerance))
+        trouble.what = "a slip inside it";
       if (is_near) dynamics.set_state(state);
     }
     if (!trouble.what) {
@@ -125,11 +118,10 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
 }
 
 void TimeStepping::fail(const Trouble& trouble, double t, double h) const {
-  std::string message = "a time step at t = " + number_text(t) + " s, halved down to " +
-                        number_text(h) + " s, has no consistent end: " + trouble.what;
+  std::string message =
+      "a time step at t = " + number_text(t) + " s, halved down to " + number_text(h) + " s, has no consistent end: " + trouble.what;
   if (trouble.element >= 0)
-    message += " of '" + system_.element_names[trouble.element] + "', off by " +
-               number_text(trouble.residual) + trouble.unit;
+    message += " of '" + system_.element_names[trouble.element] + "', off by " + number_text(trouble.residual) + trouble.unit;
   throw NumericalFailure(message);
 }
 
@@ -142,13 +134,10 @@ void TimeStepping::evaluate(Dynamics& dynamics, double t, const double* y) {
 void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
   const int numbers = 2 * n_ + dynamics.inner_count(); // own states follow the free motion
   std::copy(y0_.begin(), y0_.begin() + numbers + 2, y1_.begin());
-  for (int i = 0; i < numbers; ++i)
-    y1_[i] += free_[i];
+  for (int i = 0; i < numbers; ++i) y1_[i] += free_[i];
   for (int r = 0; r < rows_; ++r)
-    if (const double* const response = &response_[static_cast<std::size_t>(r) * 2 * n_];
-        wrench_[r] != 0.0)
-      for (int i = 0; i < 2 * n_; ++i)
-        y1_[i] += response[i] * wrench_[r];
+    if (const double* const response = &response_[static_cast<std::size_t>(r) * 2 * n_]; wrench_[r] != 0.0)
+      for (int i = 0; i < 2 * n_; ++i) y1_[i] += response[i] * wrench_[r];
   const Residual found = dynamics.project(time_of_loads(t1), y1_.data(), tolerance);
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);
@@ -165,11 +154,9 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
     if (pass >= k_passes_repeated) couple_bounds(dynamics, t1, tolerance);
     before_ = wrench_;
     free_rates(dynamics, tolerance);
-    if (const Trouble trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what)
-      return trouble;
+    if (const Trouble trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what) return trouble;
     if (pass >= k_passes_in_full && !is_coupled_)
-      for (int r = 0; r < rows_; ++r)
-        wrench_[r] = 0.5 * (before_[r] + wrench_[r]);
+      for (int r = 0; r < rows_; ++r) wrench_[r] = 0.5 * (before_[r] + wrench_[r]);
     move(dynamics, t1, tolerance);
     const double last = change;
     change = 0.0;
@@ -179,12 +166,10 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
         change = c;
         worst = static_cast<int>(p);
       }
-    if (change <= k_settled || (change <= k_tolerated && pass > 0 && change > 0.5 * last))
-      return {};
+    if (change <= k_settled || (change <= k_tolerated && pass > 0 && change > 0.5 * last)) return {};
   }
   if (change <= k_tolerated) return {};
-  return {"friction and the normal forces it hangs on",
-          system_.frictions[parts_[worst].friction].element, change, " of its force"};
+  return {"friction and the normal forces it hangs on", system_.frictions[parts_[worst].friction].element, change, " of its force"};
 }
 
 // Modes that the end of the step asks for, taken over; the first unit whose mode differs from that
@@ -218,12 +203,10 @@ int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, doub
 }
 
 // From start_ to t1, in y1_ and the modes of `state`.
-TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1,
-                                             double tolerance) {
+TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1, double tolerance) {
   const double h = t1 - state.t;
   for (std::size_t f = 0; f < state.friction.size(); ++f)
-    if (state.friction[f].phase != FrictionPhase::apart &&
-        !system_.frictions[f].friction->never_slips())
+    if (state.friction[f].phase != FrictionPhase::apart && !system_.frictions[f].friction->never_slips())
       state.friction[f].phase = FrictionPhase::free;
   dynamics.set_state(state);
   n_ = dynamics.coordinate_count();
@@ -260,8 +243,7 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
     }
     const Unit& changed = system_.units[unit];
     const double* const watch = &dynamics.watch()[changed.watch];
-    trouble = {"the mode", changed.element, *std::min_element(watch, watch + changed.watch_count),
-               ""};
+    trouble = {"the mode", changed.element, *std::min_element(watch, watch + changed.watch_count), ""};
   }
   return trouble;
 }
@@ -305,8 +287,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     friction.sign = part.block.direction[0] > 0.0 ? 1 : -1;
     if (part.dimension == 3) element.aim(friction, rate);
   }
-  if (has_rejoined)
-    dynamics.forget_layouts(); // those that merge the two have them where they held before
+  if (has_rejoined) dynamics.forget_layouts(); // those that merge the two have them where they held before
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
   book_power(dynamics, state, h);

@@ -62,11 +62,10 @@ private:
   struct FrictionPart {
     int friction = 0, first = 0, dimension = 0; ///< first: among the rows of all parts
     bool is_kinetic = false;
-    bool is_driven = false; ///< some direction that joints and drives alone decide
-    Mat3 mobility =
-        Mat3::Zero(); ///< of such a part: its own block, exact zeros along those directions
-    Mat3 free = Mat3::Identity(); ///< projector along the others
-    double noise = 0.0;           ///< velocity along those directions that counts as rest
+    bool is_driven = false;                  ///< some direction that joints and drives alone decide
+    Mat3 mobility = Mat3::Zero();            ///< of such a part: its own block, exact zeros along those directions
+    Mat3 free = Mat3::Identity();            ///< projector along the others
+    double noise = 0.0;                      ///< velocity along those directions that counts as rest
     double bound = 0.0, kinetic_share = 1.0; ///< of one dimension: what it bears at bound_at_, and sliding, of that
     FrictionBlock block;
   };
@@ -85,10 +84,10 @@ private:
 
   /// An element that sticks, at the end of a part.
   struct Sticking {
-    double t = -1.0;       ///< s, of that end; negative: it does not stick
-    double usage = 0.0;    ///< share of what it bears
-    double change = 0.0;   ///< of that since the part before; 1 where nothing is known of it
-    bool is_near = false;  ///< inside the part usage may have been one
+    double t = -1.0;      ///< s, of that end; negative: it does not stick
+    double usage = 0.0;   ///< share of what it bears
+    double change = 0.0;  ///< of that since the part before; 1 where nothing is known of it
+    bool is_near = false; ///< inside the part usage may have been one
   };
   static constexpr int k_glances = 3;
 
@@ -137,24 +136,23 @@ private:
   Residual residual_;
   State start_;
   std::vector<double> start_watch_, start_watch_rate_; ///< of the part being made
-  double longest_ = 0.0; ///< step so far, s
+  double longest_ = 0.0;                               ///< step so far, s
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;
   std::vector<double> y0_, y1_, dy_, right_, free_, probe_;
   std::vector<FrictionGradient> gradient_; ///< per friction row
   std::vector<double> response_;           ///< rows × 2n: change of state by a unit force
-  std::vector<double>
-      compliance_;           ///< rows × rows: change of a row's rate by a unit force along another
-  std::vector<double> rate_; ///< per row: rate at the end without wrenches
+  std::vector<double> compliance_;         ///< rows × rows: change of a row's rate by a unit force along another
+  std::vector<double> rate_;               ///< per row: rate at the end without wrenches
   std::vector<double> wrench_, before_,
-      last_;              ///< per row: now, before the last repetition, before the last sweep
-  bool is_coupled_ = false;                  ///< bounds as functions of the wrenches
+      last_;                                ///< per row: now, before the last repetition, before the last sweep
+  bool is_coupled_ = false;                 ///< bounds as functions of the wrenches
   std::vector<double> bound_at_, bound_by_; ///< per row: the wrench there; rows × rows: ∂bound/∂wrench
-  std::vector<int> held_; ///< scratch of hold_together
+  std::vector<int> held_;                   ///< scratch of hold_together
   std::vector<double> matrix_, together_, rest_;
-  std::vector<Sticking> sticking_, sticking_now_;            ///< per friction element: of the part before, of the part made
-  std::vector<std::array<double, k_glances>> glance_usage_;  ///< per friction element
+  std::vector<Sticking> sticking_, sticking_now_;               ///< per friction element: of the part before, of the part made
+  std::vector<std::array<double, k_glances>> glance_usage_;     ///< per friction element
   double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< s; not-a-number: time goes on
   double glance_ = 0.0; ///< s: loads are taken by their means over so long before the part's end; 0: over the part
 };

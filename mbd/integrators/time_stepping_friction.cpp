@@ -15,19 +15,16 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_sweeps = 2000;
-constexpr int k_joint_sweeps =
-    10; // the first sweeps are followed by a common solution of all that stick,
+constexpr int k_joint_sweeps = 10;  // the first sweeps are followed by a common solution of all that stick,
 constexpr int k_sweeps_between = 8; // one in so many by a stretch of what it changed
 constexpr double k_longest_stretch = 1e15;
 constexpr int k_bisections = 60;
-constexpr double k_settled =
-    1e-9; // change of a wrench, of the element's own: far below the method's error
+constexpr double k_settled = 1e-9; // change of a wrench, of the element's own: far below the method's error
 // The wrenches of a sweep that changed none by more solve the problem exactly for free velocities
 // that differ from the true ones by what those changes do, as much relatively: that is far below
 // the method's error, too.
 constexpr double k_tolerated = 1e-6;
-constexpr double k_small_share =
-    1e-3; // elements with less than this of the largest wrench count as having that
+constexpr double k_small_share = 1e-3; // elements with less than this of the largest wrench count as having that
 // Mobility that joints and drives leave, of that without them: below it is rounding, and there is
 // none.
 constexpr double k_driven = 1e-12;
@@ -47,16 +44,14 @@ constexpr double k_rest_of_others = 1e-7, k_changes_at_rest = 10.0;
 // less by this factor, so many times.
 constexpr double k_probe = 1e-2, k_shorter = 1e-2;
 constexpr int k_probes = 6;
-constexpr double k_held =
-    1e-6; // what is left of the free velocities, relatively, where holding is possible
+constexpr double k_held = 1e-6; // what is left of the free velocities, relatively, where holding is possible
 
 } // namespace
 
 // Stuck before this step at the same place: its anchor stays, and with it what an element has
 // worked out there.
 bool TimeStepping::has_held(const FrictionState& friction, int f) const {
-  return start_.friction[f].phase == FrictionPhase::stick &&
-         start_.friction[f].foot == friction.foot;
+  return start_.friction[f].phase == FrictionPhase::stick && start_.friction[f].foot == friction.foot;
 }
 
 // Elements that can bear anything, anchored where they are; their rows are forces here, not
@@ -70,13 +65,11 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     if (friction.phase == FrictionPhase::apart || element.never_slips()) continue;
     FrictionState before = friction; // a joint that sticks cannot come apart: the phase counts
     before.phase = start_.friction[f].phase;
-    if (element.watch_place(dynamics.evaluation(), before) < 0.0)
-      element.change_place(dynamics.evaluation(), friction);
+    if (element.watch_place(dynamics.evaluation(), before) < 0.0) element.change_place(dynamics.evaluation(), friction);
     if (friction.phase == FrictionPhase::apart) continue;
     const RowSpec* rows = element.rows(friction);
     for (int r = 0; r < element.dimension() && !has_held(friction, f); ++r)
-      if (rows[r].memory >= 0)
-        state.memory[rows[r].memory] = evaluate_row<false>(rows[r], dynamics.motion().data()).value;
+      if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], dynamics.motion().data()).value;
     FrictionPart part;
     part.friction = f;
     part.first = rows_;
@@ -89,8 +82,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
 }
 
 // Gradient of a friction row in the clusters' coordinates.
-void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec,
-                            FrictionGradient& row) const {
+void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const {
   const Layout& layout = dynamics.layout();
   const std::vector<Motion<double>>& motion = dynamics.motion();
   const auto m = evaluate_row<false>(spec, motion.data());
@@ -105,8 +97,7 @@ void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec,
     put_gradient(m, side, (side == 0 ? m.lever_a : m.lever_b) + off, row.g[side]);
   }
   if (row.cluster[0] < 0 || row.cluster[0] != row.cluster[1]) return;
-  for (int c = 0; c < 3; ++c)
-    row.g[0][c] += row.g[1][c]; // two bodies that move as one
+  for (int c = 0; c < 3; ++c) row.g[0][c] += row.g[1][c]; // two bodies that move as one
   row.cluster[1] = -1;
 }
 
@@ -115,14 +106,11 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
   const std::vector<double>& w = linearization_.inverse_mass();
   const auto n2 = static_cast<std::size_t>(2 * n_), rows = static_cast<std::size_t>(rows_);
   for (const FrictionPart& part : parts_) {
-    const RowSpec* specs = system_.frictions[part.friction].friction->rows(
-        dynamics.evaluation().friction[part.friction]);
-    for (int i = 0; i < part.dimension; ++i)
-      load_row(dynamics, specs[i], gradient_[part.first + i]);
+    const RowSpec* specs = system_.frictions[part.friction].friction->rows(dynamics.evaluation().friction[part.friction]);
+    for (int i = 0; i < part.dimension; ++i) load_row(dynamics, specs[i], gradient_[part.first + i]);
   }
   matrix_.reserve(rows * rows); // of hold_together, which may be asked for the first time late
-  for (auto* v : {&together_, &rest_})
-    v->reserve(rows);
+  for (auto* v : {&together_, &rest_}) v->reserve(rows);
   held_.reserve(rows);
   response_.resize(rows * n2);
   compliance_.assign(rows * rows, 0.0);
@@ -141,11 +129,9 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
     for (int side = 0; side < 2; ++side)
       for (int c = 0; c < 3 && gradient_[i].cluster[side] >= 0; ++c) {
         const std::size_t k = n_ + 3 * gradient_[i].cluster[side] + c;
-        for (std::size_t j = 0; j < rows; ++j)
-          compliance_[i * rows + j] += gradient_[i].g[side][c] * response_[j * n2 + k];
+        for (std::size_t j = 0; j < rows; ++j) compliance_[i * rows + j] += gradient_[i].g[side][c] * response_[j * n2 + k];
       }
-  for (FrictionPart& part : parts_)
-    find_driven(part, h);
+  for (FrictionPart& part : parts_) find_driven(part, h);
 }
 
 // Directions along which joints and drives leave no mobility: no wrench changes the velocity there.
@@ -157,15 +143,12 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
     const FrictionGradient& row = gradient_[part.first + i];
     double own = 0.0;
     for (int side = 0; side < 2; ++side)
-      for (int c = 0; c < 3 && row.cluster[side] >= 0; ++c)
-        own += h * w[3 * row.cluster[side] + c] * row.g[side][c] * row.g[side][c];
+      for (int c = 0; c < 3 && row.cluster[side] >= 0; ++c) own += h * w[3 * row.cluster[side] + c] * row.g[side][c] * row.g[side][c];
     scale[i] = own > 0.0 ? std::sqrt(own) : 1.0;
   }
   for (int i = 0; i < part.dimension; ++i)
     for (int j = 0; j < part.dimension; ++j)
-      scaled(i, j) =
-          compliance_[static_cast<std::size_t>(part.first + i) * rows_ + part.first + j] /
-          (scale[i] * scale[j]);
+      scaled(i, j) = compliance_[static_cast<std::size_t>(part.first + i) * rows_ + part.first + j] / (scale[i] * scale[j]);
   if (part.dimension == 1) {
     part.is_driven = !(scaled(0, 0) > k_driven);
     return;
@@ -190,18 +173,14 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
 void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   const Motion<double>* const motion = dynamics.motion().data();
   for (FrictionPart& part : parts_) {
-    const RowSpec* specs = system_.frictions[part.friction].friction->rows(
-        dynamics.evaluation().friction[part.friction]);
+    const RowSpec* specs = system_.frictions[part.friction].friction->rows(dynamics.evaluation().friction[part.friction]);
     double speed = 0.0;
     for (int i = 0; i < part.dimension; ++i) {
       const std::size_t r = part.first + i;
       rate_[r] = evaluate_row<false>(specs[i], motion).rate;
-      for (int j = 0; j < rows_; ++j)
-        rate_[r] -= compliance_[r * rows_ + j] * wrench_[j];
+      for (int j = 0; j < rows_; ++j) rate_[r] -= compliance_[r * rows_ + j] * wrench_[j];
       for (const int body : {specs[i].a, specs[i].b})
-        if (body != k_ground)
-          speed = std::max({speed, portable::hypot(motion[body].vx, motion[body].vy),
-                            std::abs(motion[body].omega)});
+        if (body != k_ground) speed = std::max({speed, portable::hypot(motion[body].vx, motion[body].vy), std::abs(motion[body].omega)});
     }
     part.noise = k_rest * speed + k_tolerances_at_rest * tolerance;
   }
@@ -248,8 +227,7 @@ void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart&
   for (int attempt = 0; attempt < k_probes; ++attempt, size *= k_shorter) {
     std::copy(y1_.begin(), y1_.end(), probe_.begin());
     const double* const response = &response_[static_cast<std::size_t>(by.first) * 2 * n_];
-    for (int i = 0; i < 2 * n_; ++i)
-      probe_[i] += size * response[i];
+    for (int i = 0; i < 2 * n_; ++i) probe_[i] += size * response[i];
     evaluate(dynamics, t1, probe_.data());
     bool is_short = true;
     for (const FrictionPart& part : parts_) {
@@ -305,8 +283,7 @@ FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
     b[i] = rate_[row];
     for (int j = 0; j < rows_; ++j)
       if (j < part.first || j >= part.first + d) b[i] += c[j] * wrench_[j];
-    for (int j = 0; j < d; ++j)
-      a[i * d + j] = c[part.first + j];
+    for (int j = 0; j < d; ++j) a[i * d + j] = c[part.first + j];
   }
   if (part.is_driven && d == 1) {
     if (std::abs(b[0]) <= part.noise) return {}; // what it takes is the drive's to say: none
@@ -328,8 +305,7 @@ double TimeStepping::size_of(const FrictionPart& part, const double* wrench) con
   double size = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
     const std::size_t r = part.first + i;
-    size =
-        std::max(size, std::abs(wrench[r]) * std::sqrt(std::max(0.0, compliance_[r * rows_ + r])));
+    size = std::max(size, std::abs(wrench[r]) * std::sqrt(std::max(0.0, compliance_[r * rows_ + r])));
   }
   return size;
 }
@@ -353,8 +329,7 @@ double TimeStepping::change_of(const FrictionPart& part, const double* before, d
   double change = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
     const std::size_t r = part.first + i;
-    const double c =
-        std::abs(wrench_[r] - before[i]) * std::sqrt(std::max(0.0, compliance_[r * rows_ + r]));
+    const double c = std::abs(wrench_[r] - before[i]) * std::sqrt(std::max(0.0, compliance_[r * rows_ + r]));
     if (!(c <= change)) change = c;
   }
   const double own = std::max(size_of(part, wrench_.data()), k_small_share * size);
@@ -369,8 +344,7 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   for (FrictionPart& part : parts_) {
     FrictionBlock block;
     block.is_inside = false;
-    if (system_.frictions[part.friction].friction->is_loaded(e, e.friction[part.friction]))
-      block = solve_part(e, part);
+    if (system_.frictions[part.friction].friction->is_loaded(e, e.friction[part.friction])) block = solve_part(e, part);
     double* const wrench = &wrench_[part.first];
     double before[3] = {0, 0, 0};
     std::copy(wrench, wrench + part.dimension, before);
@@ -392,19 +366,15 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
 void TimeStepping::hold_together() {
   held_.clear();
   for (const FrictionPart& part : parts_)
-    for (int i = 0; part.block.is_inside && !part.is_driven && i < part.dimension; ++i)
-      held_.push_back(part.first + i);
+    for (int i = 0; part.block.is_inside && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
   const std::size_t n = held_.size();
   if (n == 0) return;
-  const auto c = [&](std::size_t i, std::size_t j) {
-    return compliance_[static_cast<std::size_t>(held_[i]) * rows_ + held_[j]];
-  };
+  const auto c = [&](std::size_t i, std::size_t j) { return compliance_[static_cast<std::size_t>(held_[i]) * rows_ + held_[j]]; };
   matrix_.resize(n * n);
   for (std::size_t i = 0; i < n; ++i) { // L Lᵀ of the problem's symmetric part, its diagonal raised
     for (std::size_t j = 0; j <= i; ++j) {
       double sum = i == j ? c(i, i) * (1.0 + k_proximal) : 0.5 * (c(i, j) + c(j, i));
-      for (std::size_t k = 0; k < j; ++k)
-        sum -= matrix_[i * n + k] * matrix_[j * n + k];
+      for (std::size_t k = 0; k < j; ++k) sum -= matrix_[i * n + k] * matrix_[j * n + k];
       if (i == j && !(sum > 0.0)) return;
       matrix_[i * n + j] = i == j ? std::sqrt(sum) : sum / matrix_[j * n + j];
     }
@@ -417,30 +387,25 @@ void TimeStepping::hold_together() {
     for (std::size_t i = 0; i < n; ++i) {
       const double* const row = &compliance_[static_cast<std::size_t>(held_[i]) * rows_];
       double sum = -rate_[held_[i]];
-      for (int j = 0; j < rows_; ++j)
-        sum -= row[j] * wrench_[j];
-      for (std::size_t j = 0; j < n; ++j)
-        sum -= row[held_[j]] * (together_[j] - wrench_[held_[j]]);
+      for (int j = 0; j < rows_; ++j) sum -= row[j] * wrench_[j];
+      for (std::size_t j = 0; j < n; ++j) sum -= row[held_[j]] * (together_[j] - wrench_[held_[j]]);
       rest_[i] = sum;
       left = std::max(left, std::abs(sum) / std::sqrt(c(i, i)));
     }
     if (step == 0) wanted = left;
     if (step == k_proximal_steps) break;
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < i; ++k)
-        rest_[i] -= matrix_[i * n + k] * rest_[k];
+      for (std::size_t k = 0; k < i; ++k) rest_[i] -= matrix_[i * n + k] * rest_[k];
       rest_[i] /= matrix_[i * n + i];
     }
     for (std::size_t i = n; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n; ++k)
-        rest_[i] -= matrix_[k * n + i] * rest_[k];
+      for (std::size_t k = i + 1; k < n; ++k) rest_[i] -= matrix_[k * n + i] * rest_[k];
       rest_[i] /= matrix_[i * n + i];
       together_[i] += rest_[i];
     }
   }
   if (!(left <= k_held * wanted)) return;
-  for (std::size_t i = 0; i < n; ++i)
-    wrench_[held_[i]] = together_[i];
+  for (std::size_t i = 0; i < n; ++i) wrench_[held_[i]] = together_[i];
 }
 
 // Do all elements bear the wrenches before the last sweep and `share` of what it changed?
@@ -460,8 +425,7 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
       a[i * d + i] = compliance_[static_cast<std::size_t>(part.first + i) * rows_ + part.first + i];
       b[i] = -a[i * d + i] * w[i];
     }
-    if (!element.solve_block(e, e.friction[part.friction], a, b, part.is_kinetic).is_inside)
-      return false;
+    if (!element.solve_block(e, e.friction[part.friction], a, b, part.is_kinetic).is_inside) return false;
   }
   return true;
 }
@@ -472,8 +436,7 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
 void TimeStepping::stretch(const Evaluation& e) {
   double slope = 0.0, curvature = 0.0;
   for (int i = 0; i < rows_; ++i) {
-    const double s = wrench_[i] - last_[i], *const c =
-                                                &compliance_[static_cast<std::size_t>(i) * rows_];
+    const double s = wrench_[i] - last_[i], *const c = &compliance_[static_cast<std::size_t>(i) * rows_];
     if (s == 0.0) continue;
     slope += s * rate_[i];
     for (int j = 0; j < rows_; ++j) {
@@ -482,18 +445,15 @@ void TimeStepping::stretch(const Evaluation& e) {
     }
   }
   if (!(slope < 0.0)) return;
-  const double best =
-      slope < -k_longest_stretch * curvature ? k_longest_stretch : -slope / curvature;
+  const double best = slope < -k_longest_stretch * curvature ? k_longest_stretch : -slope / curvature;
   double share = 1.0, beyond = 2.0;
-  for (; share < best && bears(e, std::min(beyond, best)); beyond *= 2.0)
-    share = std::min(beyond, best);
+  for (; share < best && bears(e, std::min(beyond, best)); beyond *= 2.0) share = std::min(beyond, best);
   if (share < best)
     for (int i = 0; i < k_bisections; ++i) {
       const double middle = 0.5 * (share + beyond);
       (bears(e, middle) ? share : beyond) = middle;
     }
-  for (int i = 0; i < rows_; ++i)
-    wrench_[i] = last_[i] + share * (wrench_[i] - last_[i]);
+  for (int i = 0; i < rows_; ++i) wrench_[i] = last_[i] + share * (wrench_[i] - last_[i]);
 }
 
 // Elements on the boundary of what they bear whose velocity is that of the others' remaining
@@ -522,22 +482,17 @@ void TimeStepping::stop_at_rest(double change) {
 // kinetic coefficients and stay with them. Each round but the last makes one element more slip:
 // there are no more than elements.
 TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
-  for (FrictionPart& part : parts_)
-    part.is_kinetic = part.is_kinetic && keeps_kinetic;
+  for (FrictionPart& part : parts_) part.is_kinetic = part.is_kinetic && keeps_kinetic;
   for (bool is_changed = true; is_changed;) {
     double change = 0.0;
     int worst = 0;
     for (int i = 0; i < k_max_sweeps; ++i) {
       change = sweep(dynamics, worst);
       if (change <= k_settled) break;
-      if (i < k_joint_sweeps)
-        hold_together();
-      else if (!is_coupled_ && i % k_sweeps_between == 0)
-        stretch(dynamics.evaluation());
+      if (i < k_joint_sweeps) hold_together();
+      else if (!is_coupled_ && i % k_sweeps_between == 0) stretch(dynamics.evaluation());
     }
-    if (!(change <= k_tolerated))
-      return {"friction", system_.frictions[worst].element, change,
-              " of its force in the last of 2000 sweeps"};
+    if (!(change <= k_tolerated)) return {"friction", system_.frictions[worst].element, change, " of its force in the last of 2000 sweeps"};
     stop_at_rest(change);
     is_changed = false;
     for (FrictionPart& part : parts_)

@@ -64,8 +64,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<Integrator> make_tsit5(const Dynamics& dynamics, const IntegratorSettings& settings,
-                                       int max_dimension) {
+std::unique_ptr<Integrator> make_tsit5(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension) {
   return std::make_unique<Tsit5>(dynamics, settings, max_dimension);
 }
 

@@ -16,7 +16,7 @@ constexpr double k_bend_of_range = 2.0;
 // A clamping pressure bends what a load takes of a joint's grip far more where it is least: 1 − 1/q of q = 1 + b (1 − cos 1.6 θ) by
 // 2.56 (1 + b) times its range, and elsewhere hardly at all. b is 9 where a tenth of the mean is left.
 constexpr double k_bend_of_share = 25.6;
-constexpr int k_few = 3; // so few gaps may lie about such a place
+constexpr int k_few = 3;                // so few gaps may lie about such a place
 constexpr double k_unseen_by_one = 2.0; // of what the values at three places differ by
 
 // Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
@@ -36,7 +36,7 @@ template <class Curve> bool tells_bend(const Curve& c) {
 
 // Ranges by the values at four places.
 void widen(int slots, const std::array<const double*, 4>& values, double* __restrict low, double* __restrict high) {
-  const double *__restrict a = values[0], *__restrict b = values[1], *__restrict c = values[2], *__restrict d = values[3];
+  const double* __restrict a = values[0], * __restrict b = values[1], * __restrict c = values[2], * __restrict d = values[3];
   for (int i = 0; i < slots; ++i) {
     double least = low[i], most = high[i];
     least = a[i] < least ? a[i] : least;
@@ -100,7 +100,8 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
   c.start_slope = watched.start.slope;
   c.end_slope = watched.end.slope;
   for (int j = 1; j < n; ++j)
-    c.bend[j] = 2.0 * ((c.w[j + 1] - c.w[j]) / (c.x[j + 1] - c.x[j]) - (c.w[j] - c.w[j - 1]) / (c.x[j] - c.x[j - 1])) / (c.x[j + 1] - c.x[j - 1]);
+    c.bend[j] =
+        2.0 * ((c.w[j + 1] - c.w[j]) / (c.x[j + 1] - c.x[j]) - (c.w[j] - c.w[j - 1]) / (c.x[j] - c.x[j - 1])) / (c.x[j + 1] - c.x[j - 1]);
   c.bend[0] = c.bend[1];
   c.bend[n] = c.bend[n - 1];
   // What is known of slopes at the ends tells more than the stages.

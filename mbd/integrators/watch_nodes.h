@@ -33,8 +33,8 @@ struct WatchedStep {
 class WatchNodes {
 public:
   explicit WatchNodes(int slots)
-      : slots_(slots), stride_((slots + k_block - 1) / k_block * k_block),
-        values_(static_cast<std::size_t>(k_most) * stride_), low_(stride_), high_(stride_) {}
+      : slots_(slots), stride_((slots + k_block - 1) / k_block * k_block), values_(static_cast<std::size_t>(k_most) * stride_),
+        low_(stride_), high_(stride_) {}
 
   void clear() { count_ = 0; }
   /// Values at `theta` (0: the step's start, 1: its end); those at the ends, and beyond capacity, are not kept.
@@ -55,10 +55,10 @@ private:
   static constexpr int k_most = 18;
   /// A value at the places that know it, the step's ends among them.
   struct Curve {
-    int last = 0;                         ///< index of the end
+    int last = 0;                                    ///< index of the end
     std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ by the difference about j
     double start_slope = 0.0, end_slope = 0.0;
-    double most_bend = 0.0; ///< of w″ where few places show it, by what w varies by
+    double most_bend = 0.0;                    ///< of w″ where few places show it, by what w varies by
     [[nodiscard]] double bound(int gap) const; ///< M between places `gap` and `gap` + 1
     [[nodiscard]] bool is_positive_in(int gap) const;
     [[nodiscard]] bool falls_once_in(int gap) const;

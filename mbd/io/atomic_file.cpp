@@ -79,7 +79,8 @@ private:
 } // namespace
 
 void write_file(const std::string& path, const std::string& content, IfExists if_exists) {
-  write_file(path, [&content](const FileSink& put) { put(content); }, if_exists);
+  write_file(
+      path, [&content](const FileSink& put) { put(content); }, if_exists);
 }
 
 void write_file(const std::string& path, const FileContent& content, IfExists if_exists) {

@@ -15,8 +15,7 @@ enum class IfExists { refuse, replace };
 /// Writes the whole content. Throws FileError: the file exists and may not be replaced, the folder
 /// cannot be written, the disk is full. The temporary file is removed in every case, and what stood
 /// at `path` before stays as it was.
-void write_file(const std::string& path, const std::string& content,
-                IfExists if_exists = IfExists::refuse);
+void write_file(const std::string& path, const std::string& content, IfExists if_exists = IfExists::refuse);
 
 using FileSink = std::function<void(std::string_view part)>;
 /// Gives a content part by part, so that it need not be in memory.

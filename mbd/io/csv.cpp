@@ -3,8 +3,8 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/digest.h"
-#include "mbd/io/read_input.h"
 #include "mbd/io/input_files.h"
+#include "mbd/io/read_input.h"
 
 #include <algorithm>
 #include <bit>
@@ -26,8 +26,7 @@ std::string_view trimmed(std::string_view text) {
 
 std::string_view unquoted(std::string_view text) {
   text = trimmed(text);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
-    return text.substr(1, text.size() - 2);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') return text.substr(1, text.size() - 2);
   return text;
 }
 
@@ -76,7 +75,8 @@ enum class FirstField { name, number, nothing };
 
 // Bytes of `text` that a damaged number may have and a name has not: dashes, blanks and digits beyond ASCII.
 std::size_t strange_bytes_of_number(std::string_view text) {
-  for (const std::string_view such : {"\xE2\x88\x92", "\xE2\x80", "\xEF\xBC", "\xC2\xA0", "\xD9"}) // −, dashes and thin blanks, full-width, blank, Arabic
+  for (const std::string_view such :
+       {"\xE2\x88\x92", "\xE2\x80", "\xEF\xBC", "\xC2\xA0", "\xD9"}) // −, dashes and thin blanks, full-width, blank, Arabic
     if (text.starts_with(such)) return such == "\xE2\x80" || such == "\xEF\xBC" ? 3 : such == "\xD9" ? 2 : such.size();
   return 0;
 }
@@ -119,8 +119,7 @@ public:
       read_line(text.substr(0, end));
       text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
     }
-    if (table_.lines.empty())
-      throw ModelError({table_.file, 0, 0}, "the record holds no row of numbers");
+    if (table_.lines.empty()) throw ModelError({table_.file, 0, 0}, "the record holds no row of numbers");
     return std::move(table_);
   }
 
@@ -131,10 +130,8 @@ private:
     split(line, delimiter_, fields_);
     if (table_.columns.empty() && read_header()) return;
     if (fields_.size() != table_.columns.size())
-      fail("expected " + counted(table_.columns.size(), "column", "columns") + ", got " +
-           std::to_string(fields_.size()));
-    for (std::size_t i = 0; i < fields_.size(); ++i)
-      table_.columns[i].push_back(value(i));
+      fail("expected " + counted(table_.columns.size(), "column", "columns") + ", got " + std::to_string(fields_.size()));
+    for (std::size_t i = 0; i < fields_.size(); ++i) table_.columns[i].push_back(value(i));
     table_.lines.push_back(line_);
   }
 
@@ -155,8 +152,9 @@ private:
     }
     if (!is_certain && (!name || !number)) return false;
     if (number)
-      fail("the first row holds both words and numbers: '" + std::string(*name) + "' in column " + std::to_string(name - &fields_.front() + 1) + ", '" +
-           std::string(*number) + "' in column " + std::to_string(number - &fields_.front() + 1) +
+      fail("the first row holds both words and numbers: '" + std::string(*name) + "' in column " +
+           std::to_string(name - &fields_.front() + 1) + ", '" + std::string(*number) + "' in column " +
+           std::to_string(number - &fields_.front() + 1) +
            ". If it is data, correct the word; if it names the columns, take names that are not numbers");
     for (const std::string_view field : fields_) table_.names.push_back(column_name(field));
     return true;
@@ -179,14 +177,12 @@ private:
     const char mark = field.find(',') != std::string_view::npos ? ',' : field.find('.') != std::string_view::npos ? '.' : '\0';
     if (mark == '\0' || mark == decimal_) return;
     if (decimal_ != '\0')
-      fail("'" + std::string(field) + "'" + place + " has a decimal " + (mark == ',' ? "comma" : "point") + ", and numbers before it have a " +
-           (mark == ',' ? "point" : "comma") + ": write all of them alike");
+      fail("'" + std::string(field) + "'" + place + " has a decimal " + (mark == ',' ? "comma" : "point") +
+           ", and numbers before it have a " + (mark == ',' ? "point" : "comma") + ": write all of them alike");
     decimal_ = mark;
   }
 
-  [[noreturn]] void fail(const std::string& message) const {
-    throw ModelError({table_.file, line_, 1}, message);
-  }
+  [[noreturn]] void fail(const std::string& message) const { throw ModelError({table_.file, line_, 1}, message); }
 
   CsvTable table_;
   std::vector<std::string_view> fields_;
@@ -204,16 +200,12 @@ std::size_t CsvTable::column(const std::string& name_or_number, const Location& 
   std::size_t number = 0;
   const char* end = name_or_number.data() + name_or_number.size();
   const auto [rest, status] = std::from_chars(name_or_number.data(), end, number);
-  if (status == std::errc() && rest == end && number >= 1 && number <= columns.size())
-    return number - 1;
-  throw ModelError(where, "the record '" + file + "' has no column '" + name_or_number + "'" +
-                              did_you_mean(name_or_number, names) + "; it has " +
-                              counted(columns.size(), "column", "columns"));
+  if (status == std::errc() && rest == end && number >= 1 && number <= columns.size()) return number - 1;
+  throw ModelError(where, "the record '" + file + "' has no column '" + name_or_number + "'" + did_you_mean(name_or_number, names) +
+                              "; it has " + counted(columns.size(), "column", "columns"));
 }
 
-CsvTable parse_csv(const std::string& text, const std::string& file_name) {
-  return CsvReader(file_name).read(text);
-}
+CsvTable parse_csv(const std::string& text, const std::string& file_name) { return CsvReader(file_name).read(text); }
 
 CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted) {
   const std::string text = read_input(path, where, "the record ");
@@ -227,8 +219,7 @@ CsvTable read_csv(const std::string& path, const Location& where, const std::str
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string result = "\"";
-  for (const char c : text)
-    result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
   return result + "\"";
 }
 
@@ -241,8 +232,7 @@ constexpr std::size_t k_most = 25; // bytes of a number and its comma: -1.234567
 CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
   constexpr std::size_t k_usual_length = 20; // of a number and its comma
   text_.reserve(rows * names.size() * k_usual_length);
-  for (const std::string& name : names)
-    text_ += (text_.empty() ? "" : ",") + csv_field(name);
+  for (const std::string& name : names) text_ += (text_.empty() ? "" : ",") + csv_field(name);
   text_ += '\n';
 }
 

@@ -7,9 +7,8 @@
 namespace steplap {
 
 struct Described {
-  std::string
-      role; ///< "element", "signal", "table" ([[name]]), "settings" ([name]), "model" (top level) or
-            ///< "common" (what every element has)
+  std::string role; ///< "element", "signal", "table" ([[name]]), "settings" ([name]), "model" (top level) or
+                    ///< "common" (what every element has)
   std::string name;
   std::string doc;
   const FieldTable* fields = nullptr;

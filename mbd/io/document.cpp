@@ -1,8 +1,8 @@
 #include "mbd/io/document.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/io/read_input.h"
 #include "mbd/io/input_files.h"
+#include "mbd/io/read_input.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -40,10 +40,8 @@ public:
         merge_entries(*inherited, child);
       } else if (child.is_table()) {
         if (!inherited) inherited = &base.children.emplace_back(without_children(child));
-        if (inherited->is_table())
-          merge_table(*inherited, child, "[" + child.key + "]");
-        else
-          *inherited = std::move(child);
+        if (inherited->is_table()) merge_table(*inherited, child, "[" + child.key + "]");
+        else *inherited = std::move(child);
       } else {
         replace(base, child);
       }
@@ -73,7 +71,9 @@ private:
   }
   [[nodiscard]] bool is_in_part(const std::string& name) const {
     const std::size_t point = name.rfind('.');
-    return point != std::string::npos && std::any_of(part_names_.begin(), part_names_.end(), [&](const std::string& part) { return !part.empty() && part.size() <= point + 1 && name.starts_with(part); });
+    return point != std::string::npos && std::any_of(part_names_.begin(), part_names_.end(), [&](const std::string& part) {
+             return !part.empty() && part.size() <= point + 1 && name.starts_with(part);
+           });
   }
 
   static Node without_children(const Node& node) {
@@ -89,10 +89,8 @@ private:
   }
 
   static void replace(Node& base, Node& child) {
-    if (Node* inherited = base.find(child.key))
-      *inherited = std::move(child);
-    else
-      base.children.push_back(std::move(child));
+    if (Node* inherited = base.find(child.key)) *inherited = std::move(child);
+    else base.children.push_back(std::move(child));
   }
 
   // A parameter that gets another value keeps its range and meaning.
@@ -117,8 +115,7 @@ private:
       over.erase("unset");
     }
     const bool has_parameters = base.key == "parameters";
-    for (Node& child : over.children)
-      has_parameters ? replace_parameter(base, child) : replace(base, child);
+    for (Node& child : over.children) has_parameters ? replace_parameter(base, child) : replace(base, child);
     base.file = over.file;
     base.line = over.line;
     base.column = over.column;
@@ -131,19 +128,16 @@ private:
     }
     for (const Node& item : unset.children) {
       std::vector<std::string> known;
-      for (const Node& child : base.children)
-        known.push_back(child.key);
+      for (const Node& child : base.children) known.push_back(child.key);
       if (!base.find(item.text()))
-        problems_.push_back({item.where(), subject + " inherits no key '" + item.text() +
-                                               "' to unset" + did_you_mean(item.text(), known)});
+        problems_.push_back({item.where(), subject + " inherits no key '" + item.text() + "' to unset" + did_you_mean(item.text(), known)});
       base.erase(item.text());
     }
   }
 
   void merge_entries(Node& base, Node& over) {
     std::unordered_map<std::string, std::size_t> inherited;
-    for (std::size_t i = 0; i < base.children.size(); ++i)
-      inherited.emplace(entry_name(base.children[i]), i);
+    for (std::size_t i = 0; i < base.children.size(); ++i) inherited.emplace(entry_name(base.children[i]), i);
     std::unordered_set<std::string> removed, seen;
     for (Node& entry : over.children) {
       const std::string name = entry_name(entry);
@@ -154,10 +148,8 @@ private:
       const auto found = name.empty() ? inherited.end() : inherited.find(name);
       const bool is_new = found == inherited.end() || !seen.insert(name).second;
       if (take_flag(entry, "remove")) {
-        if (is_new)
-          report_missing(entry, over.key, "removed", inherited);
-        else
-          removed.insert(name);
+        if (is_new) report_missing(entry, over.key, "removed", inherited);
+        else removed.insert(name);
       } else if (is_new) {
         if (take_flag(entry, "replace")) report_missing(entry, over.key, "replaced", inherited);
         Node& added = base.children.emplace_back(without_children(entry));
@@ -166,8 +158,7 @@ private:
         merge_table(base.children[found->second], entry, over.key + " '" + name + "'");
       }
     }
-    if (!removed.empty())
-      std::erase_if(base.children, [&](const Node& n) { return removed.count(entry_name(n)) > 0; });
+    if (!removed.empty()) std::erase_if(base.children, [&](const Node& n) { return removed.count(entry_name(n)) > 0; });
   }
 
   // Reads and drops the key.
@@ -185,12 +176,9 @@ private:
   void report_missing(const Node& entry, const std::string& array, const std::string& what,
                       const std::unordered_map<std::string, std::size_t>& inherited) {
     std::vector<std::string> known;
-    for (const auto& [name, index] : inherited)
-      known.push_back(name);
+    for (const auto& [name, index] : inherited) known.push_back(name);
     const std::string name = entry_name(entry);
-    problems_.push_back({entry.where(), "no " + array + " '" + name +
-                                            "' is inherited that could be " + what +
-                                            did_you_mean(name, known)});
+    problems_.push_back({entry.where(), "no " + array + " '" + name + "' is inherited that could be " + what + did_you_mean(name, known)});
   }
 
   std::vector<Diagnostic>& problems_;
@@ -216,8 +204,7 @@ public:
 private:
   Node load_layer(std::string text, const std::string& file) {
     const std::string id = identity_of(file);
-    Document::Source& source =
-        document_.sources->emplace_back(Document::Source{file, std::move(text)});
+    Document::Source& source = document_.sources->emplace_back(Document::Source{file, std::move(text)});
     chain_.push_back(id);
     names_.push_back(file);
     Node over = parse_toml(source.text, &source.file);
@@ -232,12 +219,9 @@ private:
   Node load_base(const Node& extends, const std::string& file) {
     const std::string name = extends.text();
     if (name.empty())
-      throw ModelError(
-          extends.where(),
-          std::string("'extends' must be the name of a model file, got ") +
-              (extends.type == Node::Type::text ? "an empty string" : extends.type_name()));
-    const std::string path =
-        (std::filesystem::path(file).parent_path() / name).lexically_normal().string();
+      throw ModelError(extends.where(), std::string("'extends' must be the name of a model file, got ") +
+                                            (extends.type == Node::Type::text ? "an empty string" : extends.type_name()));
+    const std::string path = (std::filesystem::path(file).parent_path() / name).lexically_normal().string();
     check_no_cycle(path, extends.where());
     return load_layer(read_layer(path, extends.where()), path);
   }
@@ -249,8 +233,7 @@ private:
     for (std::size_t k = 0; k < chain_.size(); ++k) {
       if (chain_[k] != id) continue;
       std::string text = "'extends' goes round in circles: ";
-      for (std::size_t i = k; i < names_.size(); ++i)
-        text += base_name(names_[i]) + " -> ";
+      for (std::size_t i = k; i < names_.size(); ++i) text += base_name(names_[i]) + " -> ";
       throw ModelError(where, text + base_name(path));
     }
   }
@@ -265,9 +248,7 @@ private:
   // Far beyond what a person keeps apart, far below what the stack holds.
   static constexpr std::size_t k_longest_chain = 100;
 
-  static std::string base_name(const std::string& path) {
-    return std::filesystem::path(path).filename().string();
-  }
+  static std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
   Document document_;
   std::vector<std::string> chain_, names_;
@@ -280,8 +261,7 @@ std::string without_line_ends(std::string text) {
 
 void look_for_control_characters(const Node& node, std::vector<Diagnostic>& problems) {
   const bool has_lines = node.key == "source" && !has_control_character(without_line_ends(node.text()));
-  if (has_control_character(node.key))
-    problems.push_back({node.where_key(), "the key '" + node.key + "' holds a control character"});
+  if (has_control_character(node.key)) problems.push_back({node.where_key(), "the key '" + node.key + "' holds a control character"});
   else if (node.type == Node::Type::text && has_control_character(node.text()) && !has_lines)
     problems.push_back({node.where(), (node.key.empty() ? "the text" : "'" + node.key + "',") + std::string(" '") + node.text() +
                                           "', holds a control character (a line break, a tab or the like): write it without"});
@@ -292,15 +272,13 @@ void look_for_control_characters(const Node& node, std::vector<Diagnostic>& prob
 
 void refuse_control_characters(Document& document) { look_for_control_characters(document.root, document.problems); }
 
-Document load_document(const std::string& path) {
-  return Loader().load(read_layer(path, Location{}), shown_input(path));
-}
+Document load_document(const std::string& path) { return Loader().load(read_layer(path, Location{}), shown_input(path)); }
 
-Document parse_document(std::string text, const std::string& file_name) {
-  return Loader().load(std::move(text), file_name);
-}
+Document parse_document(std::string text, const std::string& file_name) { return Loader().load(std::move(text), file_name); }
 
-bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems) { return Merger(problems).lay_over(base, over, array); }
+bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems) {
+  return Merger(problems).lay_over(base, over, array);
+}
 
 Node load_into(Document& document, const std::string& path, const Location& where) {
   return Loader::load_into(document, read_layer(path, where), path);
@@ -310,8 +288,8 @@ std::string model_source_text(const std::string& path) {
   std::string result;
   const Document document = load_document(path);
   for (const Document::Source& source : *document.sources)
-    result += "# ---- " + std::filesystem::path(source.file).filename().string() + " ----\n" +
-              source.text + (source.text.ends_with('\n') ? "" : "\n");
+    result += "# ---- " + std::filesystem::path(source.file).filename().string() + " ----\n" + source.text +
+              (source.text.ends_with('\n') ? "" : "\n");
   return result;
 }
 

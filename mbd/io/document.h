@@ -34,8 +34,8 @@ struct Document {
 
   Node root;
   std::shared_ptr<std::deque<Source>> sources; ///< the file itself, then those it extends and those of its parts
-  std::vector<Diagnostic> problems; ///< found while merging, to be reported with the rest
-  std::vector<Part> parts;          ///< each after that in which it is
+  std::vector<Diagnostic> problems;            ///< found while merging, to be reported with the rest
+  std::vector<Part> parts;                     ///< each after that in which it is
   std::vector<PartPlace> part_places;
   bool is_repeated = false; ///< some of its entries are repetitions
 };

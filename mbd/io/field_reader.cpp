@@ -1,9 +1,9 @@
 #include "mbd/io/field_reader.h"
 
+#include "mbd/base/number_text.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/standalone_text.h"
 #include "mbd/io/units.h"
-#include "mbd/base/number_text.h"
 #include "mbd/model/field_units.h"
 #include "mbd/model/validate.h"
 
@@ -21,14 +21,12 @@ std::string number_expectation(const std::string& unit) {
 
 std::string dimension_note(const std::string& unit) {
   if (unit.empty()) return "";
-  return unit == "*" ? ", each a number or a string with a unit"
-                     : ", each a number in " + unit + " or a string with a unit";
+  return unit == "*" ? ", each a number or a string with a unit" : ", each a number in " + unit + " or a string with a unit";
 }
 
 std::string list_of(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "'" : ", '") + name + "'";
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
   return text;
 }
 
@@ -44,35 +42,23 @@ public:
 
   FieldValue read(const Node& node) const {
     switch (field_.type) {
-    case FieldType::number:
-      return number(node, field_.unit);
-    case FieldType::integer:
-      return integer(node);
-    case FieldType::boolean:
-      return boolean(node);
-    case FieldType::vec2:
-      return point(node, field_.unit, field_.unit);
-    case FieldType::numbers:
-      return numbers(node);
-    case FieldType::points:
-      return points(node);
-    case FieldType::rings:
-      return rings(node);
+    case FieldType::number: return number(node, field_.unit);
+    case FieldType::integer: return integer(node);
+    case FieldType::boolean: return boolean(node);
+    case FieldType::vec2: return point(node, field_.unit, field_.unit);
+    case FieldType::numbers: return numbers(node);
+    case FieldType::points: return points(node);
+    case FieldType::rings: return rings(node);
     case FieldType::signals:
     case FieldType::elements:
-    case FieldType::texts:
-      return texts(node);
+    case FieldType::texts: return texts(node);
     case FieldType::marker:
       if (node.is_table()) return reading_.add_marker(node, field_);
       return text(node);
-    case FieldType::file:
-      return path(node);
-    case FieldType::quantity:
-      return quantity(node);
-    case FieldType::choice:
-      return choice(node);
-    default:
-      return text(node);
+    case FieldType::file: return path(node);
+    case FieldType::quantity: return quantity(node);
+    case FieldType::choice: return choice(node);
+    default: return text(node);
     }
   }
 
@@ -103,7 +89,8 @@ private:
     const bool is_given = is_formula(node);
     if (node.type != Node::Type::number && !is_given) unexpected(node);
     const double value = is_given ? formula(node, "") : std::get<double>(node.scalar); // 1e5 is an integer too
-    if (is_given && std::nearbyint(value) != value) throw BadValue{&node, "the formula gives " + number_text(value) + ", but an integer is needed"};
+    if (is_given && std::nearbyint(value) != value)
+      throw BadValue{&node, "the formula gives " + number_text(value) + ", but an integer is needed"};
     if (std::nearbyint(value) != value || std::abs(value) > 9e15) unexpected(node);
     return static_cast<long>(value);
   }
@@ -121,7 +108,8 @@ private:
   // "" is what a field holds that is not given; given, it would hide what was meant.
   std::string choice(const Node& node) const {
     std::string chosen = text(node);
-    if (chosen.empty() && !field_.is_required) throw BadValue{&node, "expected " + expected_text(field_) + ", got an empty text: leave the line out if none of them is meant"};
+    if (chosen.empty() && !field_.is_required)
+      throw BadValue{&node, "expected " + expected_text(field_) + ", got an empty text: leave the line out if none of them is meant"};
     return chosen;
   }
 
@@ -136,16 +124,14 @@ private:
   Vec2 point(const Node& node, const std::string& unit_x, const std::string& unit_y) const {
     if (node.type != Node::Type::array) unexpected(node);
     if (node.children.size() != 2)
-      throw BadValue{&node, "expected " + expected_text(field_) + ", got a list of length " +
-                                std::to_string(node.children.size())};
+      throw BadValue{&node, "expected " + expected_text(field_) + ", got a list of length " + std::to_string(node.children.size())};
     return {number(node.children[0], unit_x), number(node.children[1], unit_y)};
   }
 
   std::vector<double> numbers(const Node& node) const {
     if (node.type != Node::Type::array) unexpected(node);
     std::vector<double> result;
-    for (const Node& item : node.children)
-      result.push_back(number(item, field_.unit));
+    for (const Node& item : node.children) result.push_back(number(item, field_.unit));
     return result;
   }
 
@@ -153,24 +139,21 @@ private:
     if (node.type != Node::Type::array) unexpected(node);
     const std::string& unit_y = field_.unit2.empty() ? field_.unit : field_.unit2;
     std::vector<Vec2> result;
-    for (const Node& item : node.children)
-      result.push_back(point(item, field_.unit, unit_y));
+    for (const Node& item : node.children) result.push_back(point(item, field_.unit, unit_y));
     return result;
   }
 
   std::vector<std::vector<Vec2>> rings(const Node& node) const {
     if (node.type != Node::Type::array) unexpected(node);
     std::vector<std::vector<Vec2>> result;
-    for (const Node& item : node.children)
-      result.push_back(points(item));
+    for (const Node& item : node.children) result.push_back(points(item));
     return result;
   }
 
   std::vector<std::string> texts(const Node& node) const {
     if (node.type != Node::Type::array) unexpected(node);
     std::vector<std::string> result;
-    for (const Node& item : node.children)
-      result.push_back(text(item));
+    for (const Node& item : node.children) result.push_back(text(item));
     return result;
   }
 
@@ -179,51 +162,44 @@ private:
 };
 
 // Returns the known key that was probably meant, "" if none.
-std::string report_unknown(const Node& child, const FieldTable& fields, const TableReading& reading,
-                           std::vector<Diagnostic>& problems) {
+std::string report_unknown(const Node& child, const FieldTable& fields, const TableReading& reading, std::vector<Diagnostic>& problems) {
   std::vector<std::string> known = reading.known_keys;
   for (const std::string& name : fields.names())
     if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
   std::string hint = did_you_mean(child.key, known);
   if (hint.empty()) hint = "; known are " + list_of(known);
-  problems.push_back(
-      {child.where_key(), "unknown key '" + child.key + "' in " + reading.subject + hint});
+  problems.push_back({child.where_key(), "unknown key '" + child.key + "' in " + reading.subject + hint});
   return nearest_name(child.key, known);
 }
 
 // With the unit that the fields read before give it.
-FieldValue read_value(const Node& child, const FieldTable& fields, const Field& field, const void* object,
-                      const TableReading& reading) {
+FieldValue read_value(const Node& child, const FieldTable& fields, const Field& field, const void* object, const TableReading& reading) {
   if (!hangs_on_others(field)) return ValueReader(field, reading).read(child);
   Field own = field;
   own.unit = unit_in(fields, field, object);
   return ValueReader(own, reading).read(child);
 }
 
-GivenField read_field(const Node& child, const FieldTable& fields, const Field& field, void* object,
-                      const TableReading& reading, std::vector<Diagnostic>& problems) {
+GivenField read_field(const Node& child, const FieldTable& fields, const Field& field, void* object, const TableReading& reading,
+                      std::vector<Diagnostic>& problems) {
   try {
     field.set(object, read_value(child, fields, field, object, reading));
   } catch (const BadValue& bad) {
-    if (!bad.message.empty()) problems.push_back(
-        {bad.node->where(), "'" + field.name + "' of " + reading.subject + ": " + bad.message});
+    if (!bad.message.empty()) problems.push_back({bad.node->where(), "'" + field.name + "' of " + reading.subject + ": " + bad.message});
     return {&field, &child, false};
   }
   return {&field, &child, true};
 }
 
 // A key that stands there misspelt is not reported a second time as missing.
-void report_missing(const Node& table, const FieldTable& fields, const TableReading& reading,
-                    const std::vector<std::string>& misspelt, std::vector<GivenField>& given,
-                    std::vector<Diagnostic>& problems) {
+void report_missing(const Node& table, const FieldTable& fields, const TableReading& reading, const std::vector<std::string>& misspelt,
+                    std::vector<GivenField>& given, std::vector<Diagnostic>& problems) {
   for (const Field& field : fields.fields()) {
-    const bool is_misspelt =
-        std::find(misspelt.begin(), misspelt.end(), field.name) != misspelt.end();
+    const bool is_misspelt = std::find(misspelt.begin(), misspelt.end(), field.name) != misspelt.end();
     const bool is_excused = reading.is_excused && reading.is_excused(field);
     if (table.find(field.name) || (!is_misspelt && (!field.is_required || is_excused))) continue;
     given.push_back({&field, nullptr, false});
-    if (!is_misspelt)
-      problems.push_back({table.where(), missing_field_message(field, reading.subject)});
+    if (!is_misspelt) problems.push_back({table.where(), missing_field_message(field, reading.subject)});
   }
 }
 
@@ -231,60 +207,38 @@ void report_missing(const Node& table, const FieldTable& fields, const TableRead
 
 std::string expected_text(const Field& field) {
   switch (field.type) {
-  case FieldType::number:
-    return number_expectation(field.unit);
-  case FieldType::integer:
-    return "an integer";
-  case FieldType::boolean:
-    return "true or false";
-  case FieldType::text:
-    return "a string";
-  case FieldType::choice:
-    return "one of " + list_of(field.choices);
-  case FieldType::vec2:
-    return "[x, y]" + dimension_note(field.unit);
-  case FieldType::numbers:
-    return "a list of numbers" + dimension_note(field.unit);
-  case FieldType::points:
-    return "a list of points [x, y]";
-  case FieldType::rings:
-    return "a list of rings, each a list of points [x, y]";
-  case FieldType::body:
-    return "the name of a body";
-  case FieldType::marker:
-    return "the name of a marker or body, or { body = ..., point = [x, y] }";
-  case FieldType::signal:
-    return "the name of a signal";
-  case FieldType::signals:
-    return "a list of names of signals";
-  case FieldType::element:
-    return "the name of an element";
-  case FieldType::elements:
-    return "a list of names of elements";
-  case FieldType::texts:
-    return "a list of strings";
-  case FieldType::file:
-    return "the name of a file";
-  case FieldType::quantity:
-    return number_expectation("*");
+  case FieldType::number: return number_expectation(field.unit);
+  case FieldType::integer: return "an integer";
+  case FieldType::boolean: return "true or false";
+  case FieldType::text: return "a string";
+  case FieldType::choice: return "one of " + list_of(field.choices);
+  case FieldType::vec2: return "[x, y]" + dimension_note(field.unit);
+  case FieldType::numbers: return "a list of numbers" + dimension_note(field.unit);
+  case FieldType::points: return "a list of points [x, y]";
+  case FieldType::rings: return "a list of rings, each a list of points [x, y]";
+  case FieldType::body: return "the name of a body";
+  case FieldType::marker: return "the name of a marker or body, or { body = ..., point = [x, y] }";
+  case FieldType::signal: return "the name of a signal";
+  case FieldType::signals: return "a list of names of signals";
+  case FieldType::element: return "the name of an element";
+  case FieldType::elements: return "a list of names of elements";
+  case FieldType::texts: return "a list of strings";
+  case FieldType::file: return "the name of a file";
+  case FieldType::quantity: return number_expectation("*");
   }
   return "a value";
 }
 
-std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object,
-                                    const TableReading& reading,
+std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object, const TableReading& reading,
                                     std::vector<Diagnostic>& problems) {
   std::vector<GivenField> given;
   std::vector<std::string> misspelt;
   std::vector<std::pair<const Node*, const Field*>> later; // whose units others give
   for (const Node& child : table.children) {
     const Field* field = fields.find(child.key);
-    if (field && hangs_on_others(*field))
-      later.emplace_back(&child, field);
-    else if (field)
-      given.push_back(read_field(child, fields, *field, object, reading, problems));
-    else if (std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) ==
-             reading.known_keys.end())
+    if (field && hangs_on_others(*field)) later.emplace_back(&child, field);
+    else if (field) given.push_back(read_field(child, fields, *field, object, reading, problems));
+    else if (std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) == reading.known_keys.end())
       misspelt.push_back(report_unknown(child, fields, reading, problems));
   }
   for (const auto& [child, field] : later) given.push_back(read_field(*child, fields, *field, object, reading, problems));

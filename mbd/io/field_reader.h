@@ -2,8 +2,8 @@
 // missing keys. Ranges and references are left to validate().
 #pragma once
 
-#include "mbd/model/fields.h"
 #include "mbd/io/toml_text.h"
+#include "mbd/model/fields.h"
 
 #include <functional>
 
@@ -19,18 +19,17 @@ struct GivenField {
 };
 
 struct TableReading {
-  std::string subject;                 ///< what messages call the object: "body 'tank'"
-  std::vector<std::string> known_keys; ///< read by the caller: "name", "kind"
-  std::function<bool(const Field&)>
-      is_excused; ///< required fields that may be missing all the same
+  std::string subject;                          ///< what messages call the object: "body 'tank'"
+  std::vector<std::string> known_keys;          ///< read by the caller: "name", "kind"
+  std::function<bool(const Field&)> is_excused; ///< required fields that may be missing all the same
   /// Makes a marker of an inline table { body, point | at, angle } and returns its name.
   std::function<std::string(const Node& table, const Field& field)> add_marker;
   ParametersReader* parameters = nullptr; ///< gives formulas their values; null where there are none
 };
 
 /// Sets the members of `object` that `table` gives; returns what it found. Problems are appended.
-std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object,
-                                    const TableReading& reading, std::vector<Diagnostic>& problems);
+std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object, const TableReading& reading,
+                                    std::vector<Diagnostic>& problems);
 
 /// What a value of the field looks like: "a number or a string with a unit like 'kg'".
 [[nodiscard]] std::string expected_text(const Field& field);

@@ -8,8 +8,8 @@
 namespace steplap {
 
 struct InputFile {
-  std::string path;       ///< as it was named, relative to the folder of the process
-  std::string sha256;     ///< of what it held
+  std::string path;   ///< as it was named, relative to the folder of the process
+  std::string sha256; ///< of what it held
   std::size_t bytes = 0;
   bool is_record = false; ///< a table of numbers; else a document
 

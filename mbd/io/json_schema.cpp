@@ -20,8 +20,7 @@ using Json = nlohmann::ordered_json;
 // nothing fits.
 Json quantity(const Field& field, const std::string& unit, const char* number = "number") {
   Json schema{{"type", {number, "string"}}};
-  if (std::isfinite(field.minimum))
-    schema[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
+  if (std::isfinite(field.minimum)) schema[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
   if (std::isfinite(field.maximum)) schema["maximum"] = field.maximum;
   schema["pattern"] = unit.empty() ? "^\\s*=" : "^\\s*([-+]?[0-9.]|=)"; // a formula of parameters, a number with its unit
   return schema;
@@ -30,50 +29,31 @@ Json quantity(const Field& field, const std::string& unit, const char* number = 
 // No key but those of `properties`. An editor marks the key itself where the value it has cannot be; of "false" it marks the whole table.
 void close(Json& schema) { schema["additionalProperties"] = {{"const", "a field that this table has"}}; }
 
-Json list_of(Json items) {
-  return {{"type", "array"}, {"items", std::move(items)}};
-}
+Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
 
 Json point(const Field& field) {
   const std::string& unit_y = field.unit2.empty() ? field.unit : field.unit2;
-  return {{"type", "array"},
-          {"prefixItems", {quantity(field, field.unit), quantity(field, unit_y)}},
-          {"minItems", 2},
-          {"maxItems", 2}};
+  return {{"type", "array"}, {"prefixItems", {quantity(field, field.unit), quantity(field, unit_y)}}, {"minItems", 2}, {"maxItems", 2}};
 }
 
-Json text() {
-  return {{"type", "string"}};
-}
+Json text() { return {{"type", "string"}}; }
 
 Json value_schema(const Field& field) {
   switch (field.type) {
-  case FieldType::number:
-    return quantity(field, field.unit);
-  case FieldType::quantity:
-    return quantity(field, "*");
-  case FieldType::integer:
-    return quantity(field, "", "integer");
-  case FieldType::boolean:
-    return {{"type", "boolean"}};
-  case FieldType::choice:
-    return {{"enum", field.choices}};
-  case FieldType::vec2:
-    return point(field);
-  case FieldType::numbers:
-    return list_of(quantity(field, field.unit));
-  case FieldType::points:
-    return list_of(point(field));
-  case FieldType::rings:
-    return list_of(list_of(point(field)));
+  case FieldType::number: return quantity(field, field.unit);
+  case FieldType::quantity: return quantity(field, "*");
+  case FieldType::integer: return quantity(field, "", "integer");
+  case FieldType::boolean: return {{"type", "boolean"}};
+  case FieldType::choice: return {{"enum", field.choices}};
+  case FieldType::vec2: return point(field);
+  case FieldType::numbers: return list_of(quantity(field, field.unit));
+  case FieldType::points: return list_of(point(field));
+  case FieldType::rings: return list_of(list_of(point(field)));
   case FieldType::signals:
   case FieldType::elements:
-  case FieldType::texts:
-    return list_of(text());
-  case FieldType::marker:
-    return {{"anyOf", {text(), {{"$ref", "#/$defs/inline_marker"}}}}};
-  default:
-    return text();
+  case FieldType::texts: return list_of(text());
+  case FieldType::marker: return {{"anyOf", {text(), {{"$ref", "#/$defs/inline_marker"}}}}};
+  default: return text();
   }
 }
 
@@ -91,8 +71,7 @@ Json field_schema(const Described& kind, const Field& field) {
 
 Json object_schema(const Described& kind) {
   Json properties = Json::object();
-  for (const Field& field : kind.fields->fields())
-    properties[field.name] = field_schema(kind, field);
+  for (const Field& field : kind.fields->fields()) properties[field.name] = field_schema(kind, field);
   Json schema{{"type", "object"}, {"description", kind.doc}, {"properties", std::move(properties)}};
   close(schema);
   return schema;
@@ -117,8 +96,7 @@ Json entry_schema(const Described& kind, bool has_kind) {
   if (!properties.contains("name")) properties["name"] = text();
   if (has_kind) properties["kind"] = {{"const", kind.name}};
   if (kind.role == "element")
-    for (const Field& field : common_fields().fields->fields())
-      properties[field.name] = field_schema(common_fields(), field);
+    for (const Field& field : common_fields().fields->fields()) properties[field.name] = field_schema(common_fields(), field);
   properties["remove"] = {{"type", "boolean"}, {"description", "takes the inherited entry out"}};
   add_merging(properties);
   schema["required"] = Json::array({"name"});
@@ -131,12 +109,14 @@ Json parameter_value() { return {{"type", {"number", "string"}}, {"pattern", "^\
 void add_writing_out(Json& properties, const std::string& array) {
   const auto& repeated = repeated_arrays();
   if (std::find(repeated.begin(), repeated.end(), array) == repeated.end()) return;
-  properties["repeat"] = {{"type", "integer"},
-                          {"minimum", 0},
-                          {"maximum", k_most_entries},
-                          {"description", "so many entries, with the index i from 0 in formulas, \"= i * '0.6 m'\", and in names, \"sleeper {i+1}\""}};
+  properties["repeat"] = {
+      {"type", "integer"},
+      {"minimum", 0},
+      {"maximum", k_most_entries},
+      {"description", "so many entries, with the index i from 0 in formulas, \"= i * '0.6 m'\", and in names, \"sleeper {i+1}\""}};
   if (array == "part")
-    properties["parameters"] = {{"type", "object"}, {"description", "values that the [parameters] of its file get"}, {"additionalProperties", parameter_value()}};
+    properties["parameters"] = {
+        {"type", "object"}, {"description", "values that the [parameters] of its file get"}, {"additionalProperties", parameter_value()}};
 }
 
 Json inline_marker_schema(const Described& marker) {
@@ -149,7 +129,8 @@ Json parameters_schema() {
   const Json value = parameter_value();
   Json full = value; // or a table
   full["type"].push_back("object");
-  full["properties"] = {{"value", value}, {"range", {{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}}, {"meaning", text()}};
+  full["properties"] = {
+      {"value", value}, {"range", {{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}}, {"meaning", text()}};
   close(full);
   return {{"type", "object"},
           {"description", "numbers with a name, for formulas in fields: \"= 2*wall + bore\""},
@@ -161,7 +142,8 @@ std::string meanings(const std::vector<std::pair<std::string, std::string>>& doc
   std::string text;
   for (std::size_t i = 0; i < docs.size(); ++i) {
     const auto same = [&docs, i](const auto& other) { return other.second == docs[i].second; };
-    if (std::find_if(docs.begin(), docs.begin() + static_cast<std::ptrdiff_t>(i), same) != docs.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+    if (std::find_if(docs.begin(), docs.begin() + static_cast<std::ptrdiff_t>(i), same) != docs.begin() + static_cast<std::ptrdiff_t>(i))
+      continue;
     std::string kinds;
     for (const auto& other : docs)
       if (same(other)) kinds += (kinds.empty() ? "" : ", ") + other.first;
@@ -176,9 +158,9 @@ std::string meanings(const std::vector<std::pair<std::string, std::string>>& doc
 Json entries_of_kinds(const std::string& role, const Json& definitions) {
   const std::string prefix = role + "_";
   std::vector<std::string> kinds;
-  std::vector<std::string> order; // of the fields
+  std::vector<std::string> order;                                               // of the fields
   std::map<std::string, std::vector<std::pair<std::string, std::string>>> docs; // field: kind and meaning
-  std::map<std::string, Json> values; // field: what it may be, of any kind
+  std::map<std::string, Json> values;                                           // field: what it may be, of any kind
   for (const auto& [name, definition] : definitions.items()) {
     if (!name.starts_with(prefix)) continue;
     kinds.push_back(name.substr(prefix.size()));
@@ -201,7 +183,9 @@ Json entries_of_kinds(const std::string& role, const Json& definitions) {
   Json schema{{"properties", std::move(known)}}; // of an entry without a kind, which is laid over another file's
   close(schema);
   for (auto kind = kinds.rbegin(); kind != kinds.rend(); ++kind)
-    schema = {{"if", {{"properties", {{"kind", {{"const", *kind}}}}}, {"required", Json::array({"kind"})}}}, {"then", {{"$ref", "#/$defs/" + prefix + *kind}}}, {"else", std::move(schema)}};
+    schema = {{"if", {{"properties", {{"kind", {{"const", *kind}}}}}, {"required", Json::array({"kind"})}}},
+              {"then", {{"$ref", "#/$defs/" + prefix + *kind}}},
+              {"else", std::move(schema)}};
   schema["type"] = "object";
   schema["required"] = Json::array({"name"});
   schema["properties"] = std::move(offered);
@@ -211,16 +195,13 @@ Json entries_of_kinds(const std::string& role, const Json& definitions) {
 } // namespace
 
 std::string json_schema(const Catalogue& catalogue) {
-  Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-            {"title", "steplap model"}};
+  Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "steplap model"}};
   Json properties = Json::object(), definitions = Json::object();
-  properties["extends"] = {{"type", "string"},
-                           {"description", "model file that this one is laid over"}};
+  properties["extends"] = {{"type", "string"}, {"description", "model file that this one is laid over"}};
   properties["parameters"] = parameters_schema();
   for (const Described& kind : describe(catalogue)) {
     if (kind.role == "model") {
-      for (const Field& f : kind.fields->fields())
-        properties[f.name] = field_schema(kind, f);
+      for (const Field& f : kind.fields->fields()) properties[f.name] = field_schema(kind, f);
     } else if (kind.role == "settings") {
       properties[kind.name] = object_schema(kind);
       add_merging(properties[kind.name]["properties"]);

@@ -157,13 +157,14 @@ std::vector<KindChannel> channels_of_kind(const Catalogue& catalogue, const Elem
   std::vector<KindChannel> list;
   if (!kind.compile) return list;
   if (!kind.example.empty()) {
-    const std::unique_ptr<System> system = compile(parse_model(k_scene + kind.example, "example.toml", catalogue)); // it is ours: no error is borne
+    const std::unique_ptr<System> system =
+        compile(parse_model(k_scene + kind.example, "example.toml", catalogue)); // it is ours: no error is borne
     for (std::size_t e = 0; e < system->element_names.size(); ++e)
       if (system->element_kinds[e] == kind.name) enter_all(*system, system->element_names[e], list);
     return sorted(std::move(list));
   }
-  const std::string head = std::string(k_scene) + k_signal + "[[element]]\nname = \"e\"\nkind = \"" + kind.name + "\"\n" + required_fields(kind) +
-                           (kind.fields.find("b") && !is_required(kind, "b") ? "b = \"b\"\n" : "");
+  const std::string head = std::string(k_scene) + k_signal + "[[element]]\nname = \"e\"\nkind = \"" + kind.name + "\"\n" +
+                           required_fields(kind) + (kind.fields.find("b") && !is_required(kind, "b") ? "b = \"b\"\n" : "");
   for (const std::string& choice : choices_of(kind))
     for (const std::string& extra : extras_of(kind)) try_scene(head + choice + extra, catalogue, kind.name, list);
   return sorted(std::move(list));

@@ -22,8 +22,7 @@ std::string take_segment(std::string& path) {
 
 class Override {
 public:
-  Override(Document& document, const std::string& assignment, const TopLevelNames& names)
-      : document_(document), names_(names) {
+  Override(Document& document, const std::string& assignment, const TopLevelNames& names) : document_(document), names_(names) {
     const std::size_t equals = assignment.find('=');
     file_ = &document.sources->emplace_back(Document::Source{"override " + assignment, ""}).file;
     path_ = assignment.substr(0, equals);
@@ -42,16 +41,12 @@ public:
     std::vector<std::string> known = names_.keys;
     known.insert(known.end(), names_.tables.begin(), names_.tables.end());
     known.insert(known.end(), names_.arrays.begin(), names_.arrays.end());
-    if (contains(names_.tables, top))
-      complain("name a key of '" + top + "', as in " + top + ".key=value");
-    else
-      complain("a model has no '" + top + "'" + did_you_mean(top, known));
+    if (contains(names_.tables, top)) complain("name a key of '" + top + "', as in " + top + ".key=value");
+    else complain("a model has no '" + top + "'" + did_you_mean(top, known));
   }
 
 private:
-  void complain(const std::string& message) {
-    document_.problems.push_back({Location{*file_, 0, 0}, message});
-  }
+  void complain(const std::string& message) { document_.problems.push_back({Location{*file_, 0, 0}, message}); }
 
   Node parse_value(const std::string& text) const {
     try {
@@ -69,8 +64,7 @@ private:
   // Without lines and columns, which mean nothing on a command line.
   static Node stripped(Node node) {
     node.line = node.column = node.key_line = node.key_column = 0;
-    for (Node& child : node.children)
-      child = stripped(std::move(child));
+    for (Node& child : node.children) child = stripped(std::move(child));
     return node;
   }
 
@@ -113,15 +107,12 @@ private:
         const std::string name = entry_name(entry);
         known.push_back(name);
         const bool leads = path_.rfind(name + ".", 0) == 0;
-        if (leads && !name.empty() && (!best || name.size() > entry_name(*best).size()))
-          best = &entry;
+        if (leads && !name.empty() && (!best || name.size() > entry_name(*best).size())) best = &entry;
       }
     if (!best) {
       const std::string wanted = path_.substr(0, path_.rfind('.'));
-      if (contains(known, path_))
-        return complain("name a key of " + array_name + " '" + path_ + "'");
-      return complain("there is no " + array_name + " '" + wanted + "'" +
-                      did_you_mean(wanted, known));
+      if (contains(known, path_)) return complain("name a key of " + array_name + " '" + path_ + "'");
+      return complain("there is no " + array_name + " '" + wanted + "'" + did_you_mean(wanted, known));
     }
     path_ = path_.substr(entry_name(*best).size() + 1);
     set_below(*best, take_segment(path_));

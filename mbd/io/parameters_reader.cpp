@@ -47,8 +47,7 @@ public:
     for (const Node& child : root.children) {
       if (child.is_array_of_tables())
         for (const Node& entry : child.children) in_entry(entry, child.key);
-      else
-        in_value(child, child.key, child.key, "");
+      else in_value(child, child.key, child.key, "");
     }
   }
 
@@ -57,7 +56,8 @@ private:
     const std::string name = entry_name(entry);
     const Node* const kind = entry.find("kind");
     const std::string alike = array + " " + (kind ? kind->text() : "") + " ";
-    for (const Node& child : entry.children) in_value(child, array + "." + name + "." + child.key, alike + child.key, array == "element" ? name + "." + child.key : "");
+    for (const Node& child : entry.children)
+      in_value(child, array + "." + name + "." + child.key, alike + child.key, array == "element" ? name + "." + child.key : "");
   }
 
   // `marker`: what the reader calls the marker that an inline table stands for, "" where none can stand.
@@ -65,9 +65,11 @@ private:
     if (node.is_table()) {
       const std::string own = entry_name(node);
       const std::string base = marker.empty() ? path : "marker." + (own.empty() ? marker : own);
-      for (const Node& child : node.children) in_value(child, base + "." + child.key, (marker.empty() ? alike : "marker") + "." + child.key, "");
+      for (const Node& child : node.children)
+        in_value(child, base + "." + child.key, (marker.empty() ? alike : "marker") + "." + child.key, "");
     } else if (node.type == Node::Type::array) {
-      for (std::size_t i = 0; i < node.children.size(); ++i) in_value(node.children[i], path + "." + std::to_string(i), alike + "." + std::to_string(i), "");
+      for (std::size_t i = 0; i < node.children.size(); ++i)
+        in_value(node.children[i], path + "." + std::to_string(i), alike + "." + std::to_string(i), "");
     } else {
       visit_(node, path, alike);
     }
@@ -128,7 +130,8 @@ void ParametersReader::read_entry(const Node& entry) {
   const std::size_t before = problems_.size();
   turns_.push_back(Turns::none);
   if (!is_name(entry.key))
-    add(entry.where_key(), "a parameter's name has letters, digits and _, does not begin with a digit, and is neither 'pi' nor 't'; got '" + entry.key + "'");
+    add(entry.where_key(),
+        "a parameter's name has letters, digits and _, does not begin with a digit, and is neither 'pi' nor 't'; got '" + entry.key + "'");
   if (entry.is_table()) {
     const Node* given = entry.find("value");
     if (given) {
@@ -140,8 +143,11 @@ void ParametersReader::read_entry(const Node& entry) {
     for (const Node& child : entry.children) {
       if (child.key == "value" || child.key == "range") continue;
       if (child.key == "meaning" && child.type == Node::Type::text) parameter.meaning = child.text();
-      else if (child.key == "meaning") add(child.where(), "'meaning' of parameter '" + entry.key + "': expected a string, got " + child.type_name());
-      else add(child.where_key(), "unknown key '" + child.key + "' in parameter '" + entry.key + "'" + did_you_mean(child.key, {"value", "range", "meaning"}));
+      else if (child.key == "meaning")
+        add(child.where(), "'meaning' of parameter '" + entry.key + "': expected a string, got " + child.type_name());
+      else
+        add(child.where_key(),
+            "unknown key '" + child.key + "' in parameter '" + entry.key + "'" + did_you_mean(child.key, {"value", "range", "meaning"}));
     }
     if (const Node* range = entry.find("range"); range && problems_.size() == before) read_range(*range, parameter);
   } else {
@@ -164,7 +170,8 @@ void ParametersReader::read_value(const Node& node, Parameter& parameter, double
     if (!std::isfinite(value)) complain("must be finite");
     return;
   }
-  if (node.type != Node::Type::text) return complain(std::string("expected a number, a text such as \"12 mm\" or a formula such as \"= 2*wall\", got ") + node.type_name());
+  if (node.type != Node::Type::text)
+    return complain(std::string("expected a number, a text such as \"12 mm\" or a formula such as \"= 2*wall\", got ") + node.type_name());
   if (is_formula(node)) {
     parameter.text = "=" + without_sign(node);
     return;
@@ -178,13 +185,16 @@ void ParametersReader::read_value(const Node& node, Parameter& parameter, double
   parameter.powers = *powers;
   if (*powers != std::array<double, 3>{0.0, 0.0, -1.0}) return;
   if (contains(parameter.text, "Hz") || contains(parameter.text, "hertz")) turns_.back() = Turns::turns;
-  else if (contains(parameter.text, "rad") || contains(parameter.text, "rpm") || contains(parameter.text, "rev") || contains(parameter.text, "deg"))
+  else if (contains(parameter.text, "rad") || contains(parameter.text, "rpm") || contains(parameter.text, "rev") ||
+           contains(parameter.text, "deg"))
     turns_.back() = Turns::radians;
 }
 
 // Ends in the unit of the value, checked when that is known: check_ranges().
 void ParametersReader::read_range(const Node& range, Parameter& parameter) {
-  const auto complain = [&](const Node& at, const std::string& message) { add(at.where(), "'range' of parameter '" + parameter.name + "': " + message); };
+  const auto complain = [&](const Node& at, const std::string& message) {
+    add(at.where(), "'range' of parameter '" + parameter.name + "': " + message);
+  };
   if (range.type != Node::Type::array || range.children.size() != 2) return complain(range, "expected [least, most]");
   std::optional<double>* const ends[] = {&parameter.least, &parameter.most};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -199,7 +209,8 @@ void ParametersReader::read_range(const Node& range, Parameter& parameter) {
     if (problems_.size() != before) return;
     if (is_formula(end)) return complain(end, "its ends are numbers, not formulas");
     const bool is_given_as_formula = parameter.text.starts_with('=');
-    if (!is_given_as_formula && read.powers != parameter.powers) return complain(end, "'" + read.text + "' is " + said(read.powers) + ", the parameter " + said(parameter.powers));
+    if (!is_given_as_formula && read.powers != parameter.powers)
+      return complain(end, "'" + read.text + "' is " + said(read.powers) + ", the parameter " + said(parameter.powers));
     *ends[i] = value;
   }
   if (*parameter.least > *parameter.most) complain(range, "begins above its end");
@@ -277,7 +288,8 @@ std::string ParametersReader::turns_problem(const ParameterFormula& formula, con
     if (turns_[k] == Turns::none || turns_[k] == wanted) continue;
     const Parameter& parameter = parameters_.entries[k];
     return "parameter '" + parameter.name + "' counts " + (wanted == Turns::turns ? "radians" : "turns") + " a second, but the field " +
-           (wanted == Turns::turns ? "turns, 'Hz'" : "radians, 'rad/s'") + ": write the parameter in 1/s, and 2*pi in the formula where it belongs";
+           (wanted == Turns::turns ? "turns, 'Hz'" : "radians, 'rad/s'") +
+           ": write the parameter in 1/s, and 2*pi in the formula where it belongs";
   }
   return "";
 }
@@ -298,7 +310,8 @@ Quantity ParametersReader::value(const Node& node, const std::string& unit) {
     if (std::string problem = turns_problem(formula, unit); !problem.empty()) return {0.0, std::move(problem)};
     const std::optional<UnitDimension> wanted = dimension_of(unit);
     if (unit != "*" && wanted && wanted->powers != powers)
-      return {0.0, "the formula gives " + said(powers) + ", but " + (unit.empty() ? "a number without a unit" : "a unit like '" + unit + "'") + " is needed"};
+      return {0.0, "the formula gives " + said(powers) + ", but " +
+                       (unit.empty() ? "a number without a unit" : "a unit like '" + unit + "'") + " is needed"};
     if (unit != "*" && !wanted) { // one that formulas do not know
       const Quantity converted = parse_quantity(number_text(found.value) + " " + found.use.unit, unit);
       if (!converted.problem.empty()) return converted;

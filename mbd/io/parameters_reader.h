@@ -51,7 +51,7 @@ private:
   Parameters parameters_;
   std::unordered_map<std::string, std::size_t> by_name_; ///< of the entries
   enum class Turns { none, turns, radians };
-  std::vector<Turns> turns_;     ///< what an entry in 1/s counts, as its unit is written
+  std::vector<Turns> turns_; ///< what an entry in 1/s counts, as its unit is written
   std::vector<bool> is_wrong_, is_resolved_;
   std::unordered_map<const Node*, Found> found_;
   bool is_excused_ = false;

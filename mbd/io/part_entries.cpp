@@ -100,7 +100,8 @@ bool PartEntries::are_of_model_alone(const std::string& array) const {
 }
 
 bool PartEntries::are_known(const std::string& array) const {
-  return array == "body" || array == "marker" || array == "signal" || array == "element" || (tables_.count(array) > 0 && !are_of_model_alone(array));
+  return array == "body" || array == "marker" || array == "signal" || array == "element" ||
+         (tables_.count(array) > 0 && !are_of_model_alone(array));
 }
 
 std::vector<std::string> PartEntries::arrays() const {
@@ -125,7 +126,8 @@ Node PartEntries::made(const std::string& array, const Node& entry, const Node& 
   else if (array == "marker") put_marker(result, part, is_whole);
   else if (is_presentation(array)) put_presentation(array, result, part, is_whole);
   else if (const auto table = tables_.find(array); table != tables_.end()) put_fields(result, *table->second, part, is_whole);
-  else if (const KindFacts* const facts = kind_of(array == "element" ? elements_ : signals_, entry)) put_fields(result, *facts, part, is_whole);
+  else if (const KindFacts* const facts = kind_of(array == "element" ? elements_ : signals_, entry))
+    put_fields(result, *facts, part, is_whole);
   return result; // of a kind that is not known its reader says so
 }
 
@@ -216,7 +218,8 @@ void PartEntries::put_fields(Node& entry, const KindFacts& facts, const PartPlac
   }
 }
 
-void PartEntries::put_field(Node& child, const Field& field, const KindFacts& facts, bool is_in_ground, const std::string& subject, const PartPlacement& part) {
+void PartEntries::put_field(Node& child, const Field& field, const KindFacts& facts, bool is_in_ground, const std::string& subject,
+                            const PartPlacement& part) {
   switch (field.type) {
   case FieldType::body:
   case FieldType::signal:
@@ -241,7 +244,8 @@ void PartEntries::put_field(Node& child, const Field& field, const KindFacts& fa
   if (treatment == PartTreatment::place) part.frame.place_points(child);
   if (treatment == PartTreatment::direction) part.frame.turn_vector(child, field.unit);
   if (treatment == PartTreatment::fixed_axis && part.frame.is_turned())
-    problems_.push_back({child.where(), "'" + field.name + "' of '" + subject + "' acts along an axis of the ground and cannot turn with its part, which has an 'angle': " +
+    problems_.push_back({child.where(), "'" + field.name + "' of '" + subject +
+                                            "' acts along an axis of the ground and cannot turn with its part, which has an 'angle': " +
                                             "give it frame = \"body\", and its marker the axes"});
 }
 

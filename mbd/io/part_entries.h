@@ -18,7 +18,8 @@ struct PartPlacement {
 };
 
 /// The formula with the names of a part's entries as the model has them; those for which `stays` is true stay as they are.
-[[nodiscard]] std::string with_prefixed_names(const std::string& formula, const std::string& prefix, bool (*stays)(const std::string& name) = nullptr);
+[[nodiscard]] std::string with_prefixed_names(const std::string& formula, const std::string& prefix,
+                                              bool (*stays)(const std::string& name) = nullptr);
 /// The same for all formulas in a node.
 void prefix_formulas(Node& node, const std::string& prefix);
 
@@ -50,7 +51,8 @@ private:
   void put_marker(Node& marker, const PartPlacement& part, bool is_whole = true) const;
   void put_reference(Node& node, const PartPlacement& part) const;
   void put_fields(Node& entry, const KindFacts& facts, const PartPlacement& part, bool is_whole);
-  void put_field(Node& child, const Field& field, const KindFacts& facts, bool is_in_ground, const std::string& subject, const PartPlacement& part);
+  void put_field(Node& child, const Field& field, const KindFacts& facts, bool is_in_ground, const std::string& subject,
+                 const PartPlacement& part);
   void put_presentation(const std::string& array, Node& entry, const PartPlacement& part, bool is_whole) const;
 
   std::vector<Diagnostic>& problems_;

@@ -24,7 +24,9 @@ std::string operand(const PlacedNumber& number, const std::string& unit) {
 }
 
 // The first operand of a sum needs no brackets: sums are made from the left.
-std::string summand(const PlacedNumber& number, const std::string& unit) { return number.is_number() ? operand(number, unit) : number.formula; }
+std::string summand(const PlacedNumber& number, const std::string& unit) {
+  return number.is_number() ? operand(number, unit) : number.formula;
+}
 
 PlacedNumber sum(const PlacedNumber& a, const PlacedNumber& b, const std::string& unit) {
   if (a.is_number() && b.is_number()) return {a.value + b.value, ""};
@@ -44,7 +46,8 @@ std::optional<double> value_without_operands(const Node& node, const std::string
   try {
     const Formula formula(node.text().substr(node.text().find('=') + 1), "", {});
     const std::optional<UnitDimension> wanted = dimension_of(unit);
-    const bool is_constant = formula.names().empty() && std::none_of(formula.tree().begin(), formula.tree().end(), [](const FormulaNode& n) { return n.op == FormulaOp::time; });
+    const bool is_constant = formula.names().empty() && std::none_of(formula.tree().begin(), formula.tree().end(),
+                                                                     [](const FormulaNode& n) { return n.op == FormulaOp::time; });
     if (!is_constant || !wanted || formula.dimension({}).powers != wanted->powers) return std::nullopt;
     std::vector<double> nodes(formula.tree().size());
     const double value = value_of(formula.tree(), nullptr, 0.0, nodes.data());
@@ -81,7 +84,9 @@ std::optional<PlacedNumber> placed_number(const Node& node, const std::string& u
 }
 
 PartFrame::PartFrame(const PartFrame& outer, const PlacedNumber& x, const PlacedNumber& y, const PlacedNumber& angle)
-    : x_(outer.placed(x, y, false)), y_(outer.placed(x, y, true)), angle_(is_zero(angle) ? outer.angle_ : is_zero(outer.angle_) ? angle : sum(outer.angle_, angle, "")) {
+    : x_(outer.placed(x, y, false)), y_(outer.placed(x, y, true)), angle_(is_zero(angle)          ? outer.angle_
+                                                                          : is_zero(outer.angle_) ? angle
+                                                                                                  : sum(outer.angle_, angle, "")) {
   is_turned_ = !is_zero(angle_);
   is_placed_ = is_turned_ || !is_zero(x_) || !is_zero(y_);
   if (!is_turned_) return;

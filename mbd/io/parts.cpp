@@ -4,10 +4,10 @@
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/part_entries.h"
 #include "mbd/io/presentation.h"
-#include "mbd/model/formula_fields.h"
 #include "mbd/io/repetition.h"
 #include "mbd/io/standalone_text.h"
 #include "mbd/io/units.h"
+#include "mbd/model/formula_fields.h"
 
 #include <algorithm>
 #include <cctype>
@@ -62,7 +62,8 @@ std::vector<Overlay> taken_overlays(Node& root) {
 
 class PartWriter {
 public:
-  PartWriter(Document& document, const Catalogue& catalogue) : document_(document), problems_(document.problems), entries_(catalogue, problems_) {}
+  PartWriter(Document& document, const Catalogue& catalogue)
+      : document_(document), problems_(document.problems), entries_(catalogue, problems_) {}
 
   void write_out() {
     write_out_repetitions(document_.root, made_, problems_);
@@ -80,7 +81,8 @@ public:
 
 private:
   void add(const Location& where, std::string message) {
-    if (reported_.insert(where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column) + message).second) problems_.push_back({where, std::move(message)});
+    if (reported_.insert(where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column) + message).second)
+      problems_.push_back({where, std::move(message)});
   }
 
   void add_too_many(const Node& at) {
@@ -132,12 +134,12 @@ private:
   Document& document_;
   std::vector<Diagnostic>& problems_;
   PartEntries entries_;
-  std::map<std::string, std::unique_ptr<PartFile>> files_; // by identity; null: it could not be read
+  std::map<std::string, std::unique_ptr<PartFile>> files_;  // by identity; null: it could not be read
   std::unordered_map<std::string, std::string> identities_; // of files by their names: asking the system takes long
-  std::vector<std::string> files_on_the_way_;              // identities, from the model's to that of the part being written
-  std::vector<Node> added_;                                // arrays of the parts' entries, and their [parameters]
-  std::unordered_map<std::string, std::size_t> made_at_;   // "body wagon 2.box": its index in the array of added_
-  std::unordered_set<std::string> removed_;                // of these, by upper files
+  std::vector<std::string> files_on_the_way_;               // identities, from the model's to that of the part being written
+  std::vector<Node> added_;                                 // arrays of the parts' entries, and their [parameters]
+  std::unordered_map<std::string, std::size_t> made_at_;    // "body wagon 2.box": its index in the array of added_
+  std::unordered_set<std::string> removed_;                 // of these, by upper files
   std::unordered_set<std::string> reported_;
   std::size_t made_ = 0;
   bool is_too_many_ = false;
@@ -149,7 +151,9 @@ void PartWriter::take_parts(const Node& parts, const PartPlacement& outer) {
     if (!has_usable_name(part)) continue;
     const auto [first, is_new] = seen.emplace(entry_name(part), part.where());
     if (is_new) take(part, outer);
-    else add(part.find("name")->where(), "a part named '" + entry_name(part) + "' exists already (line " + std::to_string(first->second.line) + "): choose another name");
+    else
+      add(part.find("name")->where(),
+          "a part named '" + entry_name(part) + "' exists already (line " + std::to_string(first->second.line) + "): choose another name");
   }
 }
 
@@ -159,8 +163,10 @@ bool PartWriter::has_usable_name(const Node& part) {
   if (!name) add(part.where(), "a part needs 'name' (unique name)");
   else if (name->text().empty()) add(name->where(), "'name' of a part: expected a name");
   else if (name->text().find_first_of("{}[]*?'\"=\n") != std::string::npos || name->text() == "ground")
-    add(name->where(), "'" + name->text() + "' is no name of a part: names have no brackets, braces, quotes, * ? or =, since formulas and patterns hold them, and 'ground' "
-                       "is taken");
+    add(name->where(),
+        "'" + name->text() +
+            "' is no name of a part: names have no brackets, braces, quotes, * ? or =, since formulas and patterns hold them, and 'ground' "
+            "is taken");
   const FieldTable& fields = PartEntry::fields();
   for (const Node& child : part.children) {
     if (fields.find(child.key) || child.key == "parameters") continue;
@@ -178,7 +184,8 @@ std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char
   Node own = *given;
   prefix_formulas(own, outer.prefix);
   const std::optional<PlacedNumber> number = placed_number(own, unit);
-  if (number && !number->is_number()) document_.part_places.push_back({own, unit, std::string("'") + key + "' of part '" + outer.prefix + entry_name(part) + "'"});
+  if (number && !number->is_number())
+    document_.part_places.push_back({own, unit, std::string("'") + key + "' of part '" + outer.prefix + entry_name(part) + "'"});
   if (number) return number;
   const std::string subject = std::string("'") + key + "' of part '" + entry_name(part) + "': ";
   const Quantity quantity = given->type == Node::Type::text ? parse_quantity(given->text(), unit) : Quantity{};
@@ -207,7 +214,9 @@ const PartFile* PartWriter::file_of(const Node& part) {
   const std::string subject = "part '" + entry_name(part) + "'";
   if (!file || file->text().empty()) {
     if (!file) add(part.where(), subject + " needs 'file' (the model file that it takes)");
-    else add(file->where(), "'file' of " + subject + ": expected the name of a model file, got " + (file->type == Node::Type::text ? "an empty string" : file->type_name()));
+    else
+      add(file->where(), "'file' of " + subject + ": expected the name of a model file, got " +
+                             (file->type == Node::Type::text ? "an empty string" : file->type_name()));
     return nullptr;
   }
   const std::string path = std::filesystem::path(path_named_by(*file, file->text())).lexically_normal().string();
@@ -230,7 +239,8 @@ const PartFile* PartWriter::file_of(const Node& part) {
 }
 
 void PartWriter::take(const Node& part, const PartPlacement& outer) {
-  const auto x = place_value(part, "x", "m", outer), y = place_value(part, "y", "m", outer), angle = place_value(part, "angle", "rad", outer);
+  const auto x = place_value(part, "x", "m", outer), y = place_value(part, "y", "m", outer),
+             angle = place_value(part, "angle", "rad", outer);
   const PartFile* const file = file_of(part);
   if (!x || !y || !angle || !file || made_ > k_most_entries) return;
   PartPlacement place;
@@ -249,7 +259,8 @@ void PartWriter::write(const PartFile& file, const PartPlacement& place) {
   const Node& root = file.root;
   entries_.note_placing_joints(root, place);
   for (const Node& child : root.children) {
-    const bool is_of_file = child.key == "part" || child.key == "parameters" || child.key == "simulation" || child.key == "output" || ModelHeader::fields().find(child.key);
+    const bool is_of_file = child.key == "part" || child.key == "parameters" || child.key == "simulation" || child.key == "output" ||
+                            ModelHeader::fields().find(child.key);
     if (is_of_file || (child.type == Node::Type::array && child.children.empty())) continue;
     if (entries_.are_known(child.key) && child.is_array_of_tables()) write_array(child, root, place);
     else refuse_array(child);
@@ -282,16 +293,19 @@ void PartWriter::refuse_overlay(const Overlay& overlay, const std::string& name)
     if (made.starts_with(overlay.array + " ")) known.push_back(made.substr(overlay.array.size() + 1));
   std::sort(known.begin(), known.end());
   const Node* const at = overlay.entry.find("name");
-  add(at->where(), "a name with the name of a part before a point is that of something in the part, but there is no " +
-                       overlay.array + " '" + name + "'" + did_you_mean(name, known));
+  add(at->where(), "a name with the name of a part before a point is that of something in the part, but there is no " + overlay.array +
+                       " '" + name + "'" + did_you_mean(name, known));
 }
 
 void PartWriter::refuse_array(const Node& array) {
-  if (entries_.are_known(array.key)) return add(array.where_key(), "'" + array.key + "' must be an array of tables, each begun by [[" + array.key + "]], not " + array.type_name());
+  if (entries_.are_known(array.key))
+    return add(array.where_key(),
+               "'" + array.key + "' must be an array of tables, each begun by [[" + array.key + "]], not " + array.type_name());
   if (entries_.are_of_model_alone(array.key)) {
     const Node& first = array.is_array_of_tables() ? array.children.front() : array;
-    return add(first.where(), "[[" + array.key + "]] is about a model as a whole and cannot stand in the file of a part: write it into the model, "
-                              "with the names that things of the part have there");
+    return add(first.where(), "[[" + array.key +
+                                  "]] is about a model as a whole and cannot stand in the file of a part: write it into the model, "
+                                  "with the names that things of the part have there");
   }
   std::vector<std::string> known = entries_.arrays();
   for (const char* name : {"part", "parameters", "simulation", "output", "title", "source", "gravity"}) known.emplace_back(name);
@@ -332,7 +346,8 @@ void PartWriter::append(Node array) {
     if (removed_.empty() || removed_.count(array.key + " " + entry_name(entry)) == 0) own->children.push_back(std::move(entry));
 }
 
-void PartWriter::refuse_unknown_parameters(const Node& given, const std::vector<std::string>& known, const Node& part, const PartPlacement& place) {
+void PartWriter::refuse_unknown_parameters(const Node& given, const std::vector<std::string>& known, const Node& part,
+                                           const PartPlacement& place) {
   for (const Node& child : given.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
     std::string hint = did_you_mean(child.key, known);
@@ -348,7 +363,8 @@ void PartWriter::write_parameters(const Node& root, const Node& part, const Part
   const Node* const own = root.find("parameters");
   const Node* const given = part.find("parameters");
   const std::string subject = "part '" + entry_name(part) + "'";
-  if (given && !given->is_table()) return add(given->where(), "'parameters' of " + subject + " must be a table, as in { load = \"3 t\" }, not " + given->type_name());
+  if (given && !given->is_table())
+    return add(given->where(), "'parameters' of " + subject + " must be a table, as in { load = \"3 t\" }, not " + given->type_name());
   std::vector<std::string> known;
   if (own)
     for (const Node& parameter : own->children) known.push_back(parameter.key);
@@ -371,7 +387,8 @@ void PartWriter::check_given(const Node& own, const Node& given, const Node& par
   const Node* const usual = own.is_table() ? own.find("value") : &own;
   const std::string subject = "parameter '" + own.key + "' of part '" + entry_name(part) + "'";
   if (given.is_table() || given.type == Node::Type::array || given.type == Node::Type::boolean)
-    return add(given.where(), subject + ": expected a number, a text such as \"12 mm\" or a formula such as \"= 2*wall\", got " + given.type_name());
+    return add(given.where(),
+               subject + ": expected a number, a text such as \"12 mm\" or a formula such as \"= 2*wall\", got " + given.type_name());
   if (!usual || is_formula(*usual) || is_formula(given)) return;
   const auto powers = [](const Node& node) {
     return node.type == Node::Type::text ? powers_in(node.text()) : std::optional(std::array<double, 3>{});
@@ -383,7 +400,8 @@ void PartWriter::check_given(const Node& own, const Node& given, const Node& par
     return node.type == Node::Type::text ? "'" + node.text() + "'" : unit.empty() ? std::string("a number without a unit") : unit;
   };
   const std::string unit = unit_text(*wanted);
-  add(given.where(), subject + " is " + shown(given, *has) + ", but " + (unit.empty() ? "has no unit there" : "has a unit like '" + unit + "' there, " + shown(*usual, *wanted)));
+  add(given.where(), subject + " is " + shown(given, *has) + ", but " +
+                         (unit.empty() ? "has no unit there" : "has a unit like '" + unit + "' there, " + shown(*usual, *wanted)));
 }
 
 Node PartWriter::parameter_of(const Node& own, const Node* given, const PartPlacement& outer, const PartPlacement& place) {
@@ -455,7 +473,10 @@ const FieldTable& PartEntry::fields() {
     f.add("x", &PartEntry::x).in("m").doc("where the origin of the file's ground lies");
     f.add("y", &PartEntry::y).in("m").doc("likewise");
     f.add("angle", &PartEntry::angle).in("rad").doc("by which the file's axes are turned, counter-clockwise");
-    f.add("repeat", &PartEntry::repeat).not_negative().at_most(static_cast<double>(k_most_entries)).doc("how often, with the index i from 0 in formulas and in names");
+    f.add("repeat", &PartEntry::repeat)
+        .not_negative()
+        .at_most(static_cast<double>(k_most_entries))
+        .doc("how often, with the index i from 0 in formulas and in names");
     return f;
   }();
   return table;
@@ -475,7 +496,9 @@ PartTreatment part_treatment(const FieldTable& kind, const Field& field) {
 bool can_stand_in_part(const TableKind& kind) {
   if (&kind == &channel_kind() || &kind == &plot_kind() || &kind == &acceptance_kind()) return true;
   const auto& fields = kind.fields.fields();
-  const auto belongs_there = [](const Field& field) { return field.type == FieldType::body || field.name == "frame" || is_formula_field(field); };
+  const auto belongs_there = [](const Field& field) {
+    return field.type == FieldType::body || field.name == "frame" || is_formula_field(field);
+  };
   return std::any_of(fields.begin(), fields.end(), belongs_there);
 }
 

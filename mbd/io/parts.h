@@ -24,9 +24,9 @@ namespace steplap {
 
 /// [[part]]: a sub-assembly.
 struct PartEntry {
-  std::string name, file;             ///< unique name; path of the file
+  std::string name, file;               ///< unique name; path of the file
   double x = 0.0, y = 0.0, angle = 0.0; ///< of its frame, m, rad
-  long repeat = 1;                    ///< how many
+  long repeat = 1;                      ///< how many
 
   /// Its fields as a model file has them, besides `parameters`, a table.
   [[nodiscard]] static const FieldTable& fields();

@@ -1,8 +1,8 @@
 #include "mbd/io/presentation.h"
 
 #include "mbd/base/event_kind.h"
-#include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
+#include "mbd/io/units.h"
 #include "mbd/simulation/trajectory.h"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ void check_channel_name(const DefinedChannel& channel) {
   const std::string& name = channel.name;
   const bool has_control = std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
   if (!name.empty() && !has_control && name.find_first_of("{}") == std::string::npos && name.back() != ']') return;
-  throw ModelError(channel.place("name"), "channel: a 'name' has letters and no line breaks, no braces, no ']' at its end (there stands the unit)");
+  throw ModelError(channel.place("name"),
+                   "channel: a 'name' has letters and no line breaks, no braces, no ']' at its end (there stands the unit)");
 }
 
 // A limit of a criterion: its field, as given, as read.
@@ -39,15 +40,13 @@ void check_criterion(const Criterion& c) {
   if (c.channel.empty() == c.event.empty()) fail("event", "needs either 'channel' or 'event'");
   if (!c.event.empty()) {
     for (const Limit& limit : k_limits)
-      if (!(c.*limit.text).empty())
-        fail(limit.field, "'at_least', 'at_most' and 'within' are for channels, not for events");
+      if (!(c.*limit.text).empty()) fail(limit.field, "'at_least', 'at_most' and 'within' are for channels, not for events");
     return;
   }
   if (!c.element.empty()) fail("element", "'element' goes with 'event'; a channel's name holds its element");
   const bool is_bounded = !c.at_least_text.empty() || !c.at_most_text.empty();
   if (!is_bounded && c.within_text.empty()) fail("", "needs a limit: 'at_least', 'at_most' or 'within'");
-  if (is_bounded && !c.within_text.empty())
-    fail("within", "'within' bounds both sides: leave out 'at_least' and 'at_most'");
+  if (is_bounded && !c.within_text.empty()) fail("within", "'within' bounds both sides: leave out 'at_least' and 'at_most'");
 }
 
 // A bare number is in the channel's unit.
@@ -107,15 +106,13 @@ public:
       : model_(model), written_(system, model.output.channels), all_(system, {}), system_(system) {}
 
   std::vector<std::string> run() {
-    for (const Plot& plot : model_.plots)
-      check_plot(plot);
+    for (const Plot& plot : model_.plots) check_plot(plot);
     // A plot of what is not written is none; that its channels exist is checked all the same.
     std::erase_if(model_.plots, [this](const Plot& plot) {
       if (!is_written(plot)) left_out_.push_back(plot.name);
       return !is_written(plot);
     });
-    for (Criterion& criterion : model_.criteria)
-      check_criterion_on(criterion);
+    for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
     return std::move(left_out_);
   }
@@ -141,10 +138,8 @@ private:
     auto channels = matches(pattern);
     if (!channels.empty()) return channels;
     std::vector<std::string> known;
-    for (const Channel* channel : all_.channels())
-      known.push_back(channel->name);
-    problems_.push_back({where, subject + ": no channel matches '" + pattern + "'" +
-                                          did_you_mean(pattern, known)});
+    for (const Channel* channel : all_.channels()) known.push_back(channel->name);
+    problems_.push_back({where, subject + ": no channel matches '" + pattern + "'" + did_you_mean(pattern, known)});
     return channels;
   }
 
@@ -160,8 +155,8 @@ private:
         for (const Channel* channel : found(place_of(plot, list), subject, pattern)) {
           if (!first) first = channel;
           if (channel->unit == first->unit) continue;
-          problems_.push_back({place_of(plot, list), subject + ": '" + first->name + "' is in '" + first->unit + "', '" +
-                                               channel->name + "' in '" + channel->unit + "': plot them apart"});
+          problems_.push_back({place_of(plot, list), subject + ": '" + first->name + "' is in '" + first->unit + "', '" + channel->name +
+                                                         "' in '" + channel->unit + "': plot them apart"});
           return;
         }
   }
@@ -173,8 +168,7 @@ private:
   void check_criterion_on(Criterion& c) {
     if (!c.channel.empty()) return check_limits(c);
     const auto& names = system_.element_names;
-    if (!c.element.empty() &&
-        std::none_of(names.begin(), names.end(), [&](const std::string& n) { return matches_pattern(n, c.element); }))
+    if (!c.element.empty() && std::none_of(names.begin(), names.end(), [&](const std::string& n) { return matches_pattern(n, c.element); }))
       return complain(c, "element", "no element matches '" + c.element + "'" + did_you_mean(c.element, names));
     check_event(c);
   }
@@ -185,8 +179,8 @@ private:
     const std::vector<std::string> words = words_of(kinds);
     const std::string whose = c.element.empty() ? "of the model" : "of '" + c.element + "'";
     if (words.empty()) return complain(c, "event", "nothing " + whose + " has events");
-    complain(c, "event", "no event " + whose + " is called '" + c.event + "'" + did_you_mean(c.event, words) +
-                             "; there are " + list_of(words));
+    complain(c, "event",
+             "no event " + whose + " is called '" + c.event + "'" + did_you_mean(c.event, words) + "; there are " + list_of(words));
   }
 
   void check_limits(Criterion& c) {
@@ -198,8 +192,9 @@ private:
         return complain(c, "channel", "'" + channel->name + "' passes through infinity and has no extremes: limit another channel");
     for (const Channel* channel : channels)
       if (channel->unit != first.unit)
-        return complain(c, "channel", "'" + first.name + "' is in '" + first.unit + "', '" + channel->name + "' in '" +
-                                          channel->unit + "': limit them apart");
+        return complain(c, "channel",
+                        "'" + first.name + "' is in '" + first.unit + "', '" + channel->name + "' in '" + channel->unit +
+                            "': limit them apart");
     for (const Limit& limit : k_limits) {
       const std::string& text = c.*limit.text;
       if (text.empty()) continue;
@@ -228,8 +223,9 @@ const TableKind& channel_kind() {
     k.name = "channel";
     k.doc = "A channel that is a formula of others: written, plotted, limited and estimated like them. `docs/reference/channels.md` tells "
             "what formulas may hold.";
-    k.fields.add("expression", &T::expression).required().doc(
-        "the formula; names with spaces in braces, numbers with units in quotes: \"abs({front foot.force}) / '12 kN'\"");
+    k.fields.add("expression", &T::expression)
+        .required()
+        .doc("the formula; names with spaces in braces, numbers with units in quotes: \"abs({front foot.force}) / '12 kN'\"");
     k.fields.add("unit", &T::unit).doc("unit of its values, of the formula's dimension; SI if not given");
     k.fields.add("meaning", &T::meaning).doc("what it is, for lists and reports; the formula if not given");
     k.fields.add("sign", &T::sign).doc("when it is positive");
@@ -291,8 +287,6 @@ const TableKind& acceptance_kind() {
   return kind;
 }
 
-std::vector<std::string> check_presentation(Model& model, const System& system) {
-  return PresentationCheck(model, system).run();
-}
+std::vector<std::string> check_presentation(Model& model, const System& system) { return PresentationCheck(model, system).run(); }
 
 } // namespace steplap

@@ -46,7 +46,9 @@ std::string problem_with(const struct ::stat& status, const std::string& path) {
 
 } // namespace
 
-bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0" || path == k_standard_input; }
+bool is_standard_input(const std::string& path) {
+  return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0" || path == k_standard_input;
+}
 
 std::string shown_input(const std::string& path) { return is_standard_input(path) ? k_standard_input : path; }
 

@@ -1,15 +1,15 @@
 #include "mbd/io/reader.h"
 
-#include "mbd/io/standalone_text.h"
-#include "mbd/io/text_reader.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/parts.h"
 #include "mbd/io/signal_units.h"
+#include "mbd/io/standalone_text.h"
+#include "mbd/io/text_reader.h"
+#include "mbd/io/toml_writer.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/field_units.h"
-#include "mbd/io/toml_writer.h"
 
 #include <algorithm>
 #include <map>
@@ -26,14 +26,15 @@ TopLevelNames top_level_names(const Catalogue& catalogue) {
   names.keys = ModelHeader::fields().names();
   names.tables = {"simulation", "output", "parameters"};
   names.arrays = {"part", "body", "marker", "signal", "element"};
-  for (const TableKind* kind : catalogue.tables)
-    names.arrays.push_back(kind->name);
+  for (const TableKind* kind : catalogue.tables) names.arrays.push_back(kind->name);
   return names;
 }
 
 // Lays overrides over the document, and writes parts and repetitions out: behind those that are of parts or say how often.
 void settle(Document& document, const std::vector<std::string>& overrides, const TopLevelNames& names, const Catalogue& catalogue) {
-  const auto is_of_part = [](const std::string& change) { return change.starts_with("part.") || change.substr(0, change.find('=')).ends_with(".repeat"); };
+  const auto is_of_part = [](const std::string& change) {
+    return change.starts_with("part.") || change.substr(0, change.find('=')).ends_with(".repeat");
+  };
   for (const std::string& change : overrides)
     if (is_of_part(change)) apply_override(document, change, names);
   write_out_parts(document, catalogue);
@@ -47,8 +48,7 @@ Field named_field(const std::string& name) {
   return field;
 }
 
-template <class Kind>
-const Kind* find_kind(const std::vector<const Kind*>& kinds, const std::string& name) {
+template <class Kind> const Kind* find_kind(const std::vector<const Kind*>& kinds, const std::string& name) {
   for (const Kind* kind : kinds)
     if (kind->name == name) return kind;
   return nullptr;
@@ -76,8 +76,7 @@ public:
     parameters_.emplace(document_.root, problems_);
     check_part_places();
     read_header();
-    read_settings("simulation", Section::simulation, SimulationSettings::fields(),
-                  model_.simulation);
+    read_settings("simulation", Section::simulation, SimulationSettings::fields(), model_.simulation);
     read_settings("output", Section::output, OutputSettings::fields(), model_.output);
     read_bodies();
     read_markers();
@@ -93,18 +92,13 @@ public:
   }
 
 private:
-  void add(const Location& where, std::string message) {
-    problems_.push_back({where, std::move(message)});
-  }
+  void add(const Location& where, std::string message) { problems_.push_back({where, std::move(message)}); }
 
-  std::vector<std::vector<GivenField>>& given(Section section) {
-    return given_[static_cast<std::size_t>(section)];
-  }
+  std::vector<std::vector<GivenField>>& given(Section section) { return given_[static_cast<std::size_t>(section)]; }
 
   void check_part_places();
   void read_header();
-  template <class T>
-  void read_settings(const std::string& name, Section section, const FieldTable& fields, T& target);
+  template <class T> void read_settings(const std::string& name, Section section, const FieldTable& fields, T& target);
   const Node* array_named(const std::string& name);
   void excuse_empty_scene();
   void read_bodies();
@@ -114,16 +108,13 @@ private:
   void read_tables();
   void check_signal_units();
   std::string read_name(const Node& entry, const std::string& noun, std::vector<GivenField>& given);
-  template <class Kind>
-  const Kind* read_kind(const Node& entry, const std::string& noun,
-                        const std::vector<const Kind*>& kinds);
+  template <class Kind> const Kind* read_kind(const Node& entry, const std::string& noun, const std::vector<const Kind*>& kinds);
   TableReading reading(std::string subject, std::string owner = "");
   std::string add_inline_marker(const Node& table, const Field& field, const std::string& owner);
   void complete_model();
   void report_missing_masses(bool is_certain);
   std::optional<Location> locate(Section section, std::size_t index, const std::string& field);
-  std::optional<Location> place_of(const std::vector<GivenField>& fields, const std::string& name,
-                                   const Location& object) const;
+  std::optional<Location> place_of(const std::vector<GivenField>& fields, const std::string& name, const Location& object) const;
   const Location& where_of(Section section, std::size_t index) const;
   void finish();
 
@@ -134,7 +125,7 @@ private:
   std::vector<Diagnostic> problems_;
   std::optional<ParametersReader> parameters_;
   std::vector<std::vector<GivenField>> given_[7]; // by section and index
-  std::vector<TableSource> tables_; // of model_.tables
+  std::vector<TableSource> tables_;               // of model_.tables
   // Entries of unknown kind: said once, references to them are not errors of their own.
   std::unordered_set<std::string> unread_signals_, unread_elements_;
 };
@@ -166,22 +157,17 @@ void Reader::read_header() {
   TableReading r = reading("the model");
   r.known_keys = names_.tables;
   r.known_keys.insert(r.known_keys.end(), names_.arrays.begin(), names_.arrays.end());
-  given(Section::header) = {
-      read_fields(document_.root, ModelHeader::fields(), &model_.header, r, problems_)};
+  given(Section::header) = {read_fields(document_.root, ModelHeader::fields(), &model_.header, r, problems_)};
 }
 
-template <class T>
-void Reader::read_settings(const std::string& name, Section section, const FieldTable& fields,
-                           T& target) {
+template <class T> void Reader::read_settings(const std::string& name, Section section, const FieldTable& fields, T& target) {
   target.where = model_.header.where;
   given(section).resize(1);
   const Node* table = document_.root.find(name);
   if (!table) return;
   if (!table->is_table()) {
-    for (const Field& field : fields.fields())
-      given(section)[0].push_back({&field, nullptr, false});
-    return add(table->where_key(),
-               "'" + name + "' must be a table, [" + name + "], not " + table->type_name());
+    for (const Field& field : fields.fields()) given(section)[0].push_back({&field, nullptr, false});
+    return add(table->where_key(), "'" + name + "' must be a table, [" + name + "], not " + table->type_name());
   }
   target.where = table->where();
   given(section)[0] = read_fields(*table, fields, &target, reading("[" + name + "]"), problems_);
@@ -199,8 +185,7 @@ const Node* Reader::array_named(const std::string& name) {
   if (!array || array->is_array_of_tables()) return array;
   if (array->type == Node::Type::array && array->children.empty()) return nullptr;
   excuse_empty_scene();
-  add(array->where_key(), "'" + name + "' must be an array of tables, each begun by [[" + name +
-                              "]], not " + array->type_name());
+  add(array->where_key(), "'" + name + "' must be an array of tables, each begun by [[" + name + "]], not " + array->type_name());
   return nullptr;
 }
 
@@ -233,8 +218,7 @@ void Reader::read_markers() {
   }
 }
 
-std::string Reader::add_inline_marker(const Node& table, const Field& field,
-                                      const std::string& owner) {
+std::string Reader::add_inline_marker(const Node& table, const Field& field, const std::string& owner) {
   Marker marker;
   marker.where = table.where();
   TableReading r = reading(subject_text("marker", owner + "." + field.name));
@@ -246,26 +230,20 @@ std::string Reader::add_inline_marker(const Node& table, const Field& field,
   return marker.name;
 }
 
-std::string Reader::read_name(const Node& entry, const std::string& noun,
-                              std::vector<GivenField>& fields) {
+std::string Reader::read_name(const Node& entry, const std::string& noun, std::vector<GivenField>& fields) {
   static const Field name_field = named_field("name");
   const Node* name = entry.find("name");
   if (name && name->type == Node::Type::text) {
     fields.push_back({&name_field, name, true});
     return name->text();
   }
-  if (name)
-    add(name->where(),
-        "'name' of " + subject_text(noun, "") + ": expected a string, got " + name->type_name());
-  else
-    add(entry.where(), subject_text(noun, "") + " needs 'name' (unique name)");
+  if (name) add(name->where(), "'name' of " + subject_text(noun, "") + ": expected a string, got " + name->type_name());
+  else add(entry.where(), subject_text(noun, "") + " needs 'name' (unique name)");
   fields.push_back({&name_field, name, false});
   return "";
 }
 
-template <class Kind>
-const Kind* Reader::read_kind(const Node& entry, const std::string& noun,
-                              const std::vector<const Kind*>& kinds) {
+template <class Kind> const Kind* Reader::read_kind(const Node& entry, const std::string& noun, const std::vector<const Kind*>& kinds) {
   std::vector<std::string> known;
   std::string list;
   for (const Kind* kind : kinds) {
@@ -354,7 +332,8 @@ void Reader::read_tables() {
       r.known_keys = {"name"};
       const auto read = read_fields(entry, kind->fields, table.get(), r, problems_);
       source.given.insert(source.given.end(), read.begin(), read.end());
-      source.is_usable = problems_.size() == before && std::all_of(read.begin(), read.end(), [](const GivenField& g) { return g.is_usable; });
+      source.is_usable =
+          problems_.size() == before && std::all_of(read.begin(), read.end(), [](const GivenField& g) { return g.is_usable; });
       if (auto* object = dynamic_cast<TableObject*>(table.get()))
         for (const GivenField& field : source.given)
           if (field.node) object->places[field.field->name] = field.node->where();
@@ -368,8 +347,7 @@ void Reader::check_signal_units() {
   SignalUnits units(*parameters_);
   for (std::size_t i = 0; i < model_.signals.size(); ++i)
     units.enter(model_.signals[i].definition->name, model_.signals[i].kind->name, given(Section::signal)[i]);
-  const auto check = [&](const std::vector<GivenField>& fields, const FieldTable& table, const void* object,
-                         const std::string& subject) {
+  const auto check = [&](const std::vector<GivenField>& fields, const FieldTable& table, const void* object, const std::string& subject) {
     for (const GivenField& field : fields) {
       if (!field.node || !field.is_usable || field.field->type != FieldType::signal) continue;
       const std::string unit = unit_in(table, *field.field, object);
@@ -380,8 +358,7 @@ void Reader::check_signal_units() {
   };
   for (std::size_t i = 0; i < model_.elements.size(); ++i) {
     const ElementEntry& entry = model_.elements[i];
-    check(given(Section::element)[i], entry.kind->fields, entry.element.get(),
-          subject_text(entry.kind->name, entry.element->name));
+    check(given(Section::element)[i], entry.kind->fields, entry.element.get(), subject_text(entry.kind->name, entry.element->name));
   }
   for (std::size_t i = 0; i < model_.tables.size(); ++i) {
     const TableEntry& entry = model_.tables[i];
@@ -397,9 +374,7 @@ void Reader::complete_model() {
       if (field.field->name == name && field.node) return field.node->where();
     return std::nullopt;
   };
-  places.locate = [this](Section section, std::size_t index, const std::string& field) {
-    return locate(section, index, field);
-  };
+  places.locate = [this](Section section, std::size_t index, const std::string& field) { return locate(section, index, field); };
   places.locate_in_table = [this](std::size_t table, const std::string& field) {
     return place_of(tables_[table].given, field, model_.tables[table].table->where);
   };
@@ -419,17 +394,14 @@ void Reader::report_missing_masses(bool is_certain) {
       const Body& body = model_.bodies[i];
       if (!is_mass(field) || is_excused(body, field) || std::get<double>(field.get(&body)) != 0.0) continue;
       std::vector<GivenField>& given_fields = given(Section::body)[i];
-      if (std::any_of(given_fields.begin(), given_fields.end(),
-                      [&](const GivenField& g) { return g.field->name == field.name; }))
-        continue;
+      if (std::any_of(given_fields.begin(), given_fields.end(), [&](const GivenField& g) { return g.field->name == field.name; })) continue;
       given_fields.push_back({&field, nullptr, false});
       if (is_certain) add(body.where, missing_field_message(field, subject_text("body", body.name)));
     }
 }
 
 // The place of a field; of the whole object, if the file does not give the field.
-std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields,
-                                         const std::string& name, const Location& object) const {
+std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields, const std::string& name, const Location& object) const {
   for (const GivenField& given : fields) {
     if (given.field->name != name) continue;
     const auto is_unread_signal = [this](const Node& node) { return unread_signals_.count(node.text()) > 0; };
@@ -446,26 +418,18 @@ std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields,
 
 const Location& Reader::where_of(Section section, std::size_t index) const {
   switch (section) {
-  case Section::header:
-    break;
-  case Section::simulation:
-    return model_.simulation.where;
-  case Section::output:
-    return model_.output.where;
-  case Section::body:
-    return model_.bodies[index].where;
-  case Section::marker:
-    return model_.markers[index].where;
-  case Section::signal:
-    return model_.signals[index].definition->where;
-  case Section::element:
-    return model_.elements[index].element->where;
+  case Section::header: break;
+  case Section::simulation: return model_.simulation.where;
+  case Section::output: return model_.output.where;
+  case Section::body: return model_.bodies[index].where;
+  case Section::marker: return model_.markers[index].where;
+  case Section::signal: return model_.signals[index].definition->where;
+  case Section::element: return model_.elements[index].element->where;
   }
   return model_.header.where;
 }
 
-std::optional<Location> Reader::locate(Section section, std::size_t index,
-                                       const std::string& field) {
+std::optional<Location> Reader::locate(Section section, std::size_t index, const std::string& field) {
   const auto& objects = given(section);
   static const std::vector<GivenField> none;
   return place_of(index < objects.size() ? objects[index] : none, field, where_of(section, index));
@@ -475,22 +439,17 @@ std::optional<Location> Reader::locate(Section section, std::size_t index,
 void Reader::finish() {
   constexpr std::size_t k_most_reported = 50;
   const auto found =
-      validate(model_, [this](Section section, std::size_t index, const std::string& field) {
-        return locate(section, index, field);
-      });
+      validate(model_, [this](Section section, std::size_t index, const std::string& field) { return locate(section, index, field); });
   problems_.insert(problems_.end(), found.begin(), found.end());
   if (problems_.empty()) return;
   name_parts(problems_, document_);
   std::map<std::string, std::size_t> order;
-  for (const Document::Source& source : *document_.sources)
-    order.emplace(source.file, order.size());
+  for (const Document::Source& source : *document_.sources) order.emplace(source.file, order.size());
   const auto key = [&](const Diagnostic& d) {
     const auto file = order.find(d.where.file);
-    return std::tuple(file == order.end() ? order.size() : file->second, d.where.line,
-                      d.where.column);
+    return std::tuple(file == order.end() ? order.size() : file->second, d.where.line, d.where.column);
   };
-  std::stable_sort(problems_.begin(), problems_.end(),
-                   [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
+  std::stable_sort(problems_.begin(), problems_.end(), [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
   if (problems_.size() > k_most_reported) {
     const std::size_t rest = problems_.size() - k_most_reported;
     problems_.resize(k_most_reported);
@@ -501,8 +460,7 @@ void Reader::finish() {
 
 } // namespace
 
-Model read_model(const std::string& path, const Catalogue& catalogue,
-                 const std::vector<std::string>& overrides, std::string* text) {
+Model read_model(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides, std::string* text) {
   return Reader(load_document(path), catalogue).read(overrides, text).second;
 }
 
@@ -510,21 +468,19 @@ Model read_given_model(const std::string& path, const Catalogue& catalogue, cons
   return Reader(load_document(path), catalogue).read(overrides).first;
 }
 
-std::string effective_model_text(const std::string& path, const Catalogue& catalogue,
-                                 const std::vector<std::string>& overrides) {
+std::string effective_model_text(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides) {
   Document document = load_document(path);
   settle(document, overrides, top_level_names(catalogue), catalogue);
   if (!document.problems.empty()) throw ModelError(std::move(document.problems));
   return write_toml(document.root);
 }
 
-Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
-                  const std::vector<std::string>& overrides) {
+Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue, const std::vector<std::string>& overrides) {
   return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides).second;
 }
 
-Model parse_model_text(std::string text, const std::string& file_name, const Catalogue& catalogue, const std::vector<std::string>& overrides,
-                       std::string& standalone) {
+Model parse_model_text(std::string text, const std::string& file_name, const Catalogue& catalogue,
+                       const std::vector<std::string>& overrides, std::string& standalone) {
   return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides, &standalone).second;
 }
 

@@ -1,8 +1,8 @@
 #include "mbd/io/record_signal.h"
 
+#include "mbd/base/number_text.h"
 #include "mbd/io/csv.h"
 #include "mbd/io/units.h"
-#include "mbd/base/number_text.h"
 
 namespace steplap {
 
@@ -20,26 +20,21 @@ struct Record : SignalDefinition {
   std::string sha256;
 };
 
-double unit_factor(const Record& record, const std::string& key, const std::string& unit,
-                   const std::string& wanted) {
+double unit_factor(const Record& record, const std::string& key, const std::string& unit, const std::string& wanted) {
   if (unit.empty()) return 1.0;
-  const Quantity zero = parse_quantity("0 " + unit, wanted),
-                 one = parse_quantity("1 " + unit, wanted);
-  if (!one.problem.empty())
-    throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + one.problem);
+  const Quantity zero = parse_quantity("0 " + unit, wanted), one = parse_quantity("1 " + unit, wanted);
+  if (!one.problem.empty()) throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + one.problem);
   if (zero.value != 0.0)
-    throw ModelError(record.where, "'" + key + "' of record '" + record.name +
-                                       "' must be a unit with its zero at zero, got '" + unit +
-                                       "'");
+    throw ModelError(record.where,
+                     "'" + key + "' of record '" + record.name + "' must be a unit with its zero at zero, got '" + unit + "'");
   return one.value;
 }
 
 void check_ascending(const CsvTable& table, const std::vector<double>& times) {
   for (std::size_t i = 1; i < times.size(); ++i)
     if (!(times[i] > times[i - 1]))
-      throw ModelError({table.file, table.lines[i], 1},
-                       "time " + number_text(times[i]) + " does not come after " +
-                           number_text(times[i - 1]) + " of the row before: times must ascend");
+      throw ModelError({table.file, table.lines[i], 1}, "time " + number_text(times[i]) + " does not come after " +
+                                                            number_text(times[i - 1]) + " of the row before: times must ascend");
 }
 
 Signal build_record(const SignalDefinition& definition) {
@@ -54,9 +49,7 @@ Signal build_record(const SignalDefinition& definition) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     pieces[i].start = times[i] * time_scale + record.offset;
     pieces[i].c[0] = values[i] * scale;
-    if (i > 0)
-      pieces[i - 1].c[1] =
-          (pieces[i].c[0] - pieces[i - 1].c[0]) / (pieces[i].start - pieces[i - 1].start);
+    if (i > 0) pieces[i - 1].c[1] = (pieces[i].c[0] - pieces[i - 1].c[0]) / (pieces[i].start - pieces[i - 1].start);
   }
   if (record.after == "zero") pieces.back().c[0] = 0.0;
   return Signal(std::move(pieces));
@@ -73,24 +66,15 @@ const SignalKind& record_signal_kind() {
                  make_held<SignalDefinition, Record>,
                  copy_held<SignalDefinition, Record>,
                  build_record};
-    k.fields.add("file", &Record::file)
-        .as(FieldType::file)
-        .required()
-        .doc("CSV file, relative to the model file");
-    k.fields.add("time_column", &Record::time_column)
-        .doc("name of the column of times, or its number from \"1\"");
-    k.fields.add("column", &Record::column)
-        .doc("name of the column of values, or its number from \"1\"");
+    k.fields.add("file", &Record::file).as(FieldType::file).required().doc("CSV file, relative to the model file");
+    k.fields.add("time_column", &Record::time_column).doc("name of the column of times, or its number from \"1\"");
+    k.fields.add("column", &Record::column).doc("name of the column of values, or its number from \"1\"");
     k.fields.add("time_unit", &Record::time_unit).doc("unit of the times");
-    k.fields.add("unit", &Record::unit)
-        .doc("unit of the values, such as \"gravity\" or \"km/h\"; SI if not given");
+    k.fields.add("unit", &Record::unit).doc("unit of the values, such as \"gravity\" or \"km/h\"; SI if not given");
     k.fields.add("scale", &Record::scale).doc("factor on the values; -1 turns the sign");
     k.fields.add("offset", &Record::offset).in("s").doc("added to the times");
-    k.fields.add("after", &Record::after)
-        .one_of({"zero", "hold"})
-        .doc("value after the last row: 0, or the last one kept");
-    k.fields.add("sha256", &Record::sha256)
-        .doc("SHA-256 of the file, as sha256sum prints it: another content is refused. Results give it");
+    k.fields.add("after", &Record::after).one_of({"zero", "hold"}).doc("value after the last row: 0, or the last one kept");
+    k.fields.add("sha256", &Record::sha256).doc("SHA-256 of the file, as sha256sum prints it: another content is refused. Results give it");
     return k;
   }();
   return kind;

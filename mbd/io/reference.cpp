@@ -1,9 +1,9 @@
 #include "mbd/io/reference.h"
 
 #include "mbd/base/event_kind.h"
+#include "mbd/base/number_text.h"
 #include "mbd/io/described.h"
 #include "mbd/io/kind_channels.h"
-#include "mbd/base/number_text.h"
 #include "mbd/model/field_units.h"
 
 #include <algorithm>
@@ -44,26 +44,22 @@ std::string heading(const Described& kind) {
 ReferenceRows rows_of(const Described& kind) {
   ReferenceRows rows{{"field", "type", "unit", "default", "range", "meaning"}};
   for (const Field& f : kind.fields->fields())
-    rows.push_back(
-        {f.name, type_text(f), unit_text(f), default_text(kind, f), range_text(f), f.doc});
+    rows.push_back({f.name, type_text(f), unit_text(f), default_text(kind, f), range_text(f), f.doc});
   return rows;
 }
 
 std::string escaped(std::string cell) {
-  for (std::size_t i = cell.find('|'); i != std::string::npos; i = cell.find('|', i + 2))
-    cell.insert(i, "\\");
+  for (std::size_t i = cell.find('|'); i != std::string::npos; i = cell.find('|', i + 2)) cell.insert(i, "\\");
   return cell;
 }
 
 std::string markdown(const ReferenceRows& rows) {
   std::string text;
   for (const std::vector<std::string>& row : rows) {
-    for (const std::string& cell : row)
-      text += "| " + escaped(cell) + " ";
+    for (const std::string& cell : row) text += "| " + escaped(cell) + " ";
     text += "|\n";
     if (&row != &rows.front()) continue;
-    for (std::size_t i = 0; i < row.size(); ++i)
-      text += "|---";
+    for (std::size_t i = 0; i < row.size(); ++i) text += "|---";
     text += "|\n";
   }
   return text;
@@ -79,9 +75,7 @@ std::vector<KindChannel> channels_of(const Catalogue& catalogue, const Described
   return element ? channels_of_kind(catalogue, *element) : std::vector<KindChannel>{};
 }
 
-std::string owner_of(const Described& kind) {
-  return kind.name == "output" ? "whole." : "NAME.";
-}
+std::string owner_of(const Described& kind) { return kind.name == "output" ? "whole." : "NAME."; }
 
 ReferenceRows rows_of(const std::string& owner, const std::vector<KindChannel>& channels) {
   ReferenceRows rows{{"channel", "unit", "made", "sign", "meaning"}};
@@ -104,8 +98,7 @@ std::string events_markdown() {
 
 ReferenceRows kinds_rows(const Catalogue& catalogue) {
   ReferenceRows rows{{"role", "kind", "what it is"}};
-  for (const Described& kind : describe(catalogue))
-    rows.push_back({kind.role, kind.name, kind.doc});
+  for (const Described& kind : describe(catalogue)) rows.push_back({kind.role, kind.name, kind.doc});
   return rows;
 }
 
@@ -122,10 +115,10 @@ KindReference kind_reference(const Catalogue& catalogue, const std::string& name
 }
 
 std::string reference_markdown(const Catalogue& catalogue) {
-  std::string text =
-      "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
-      "may carry a unit, as in \"47 t\". Signals, elements, channels, plots, criteria and cores have a unique `name` besides.\n\nBelow the fields of a kind stand the channels of its elements (docs/reference/channels.md): what a run "
-      "writes always, and what it writes if `also` of `[output]` asks for it.\n";
+  std::string text = "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
+                     "may carry a unit, as in \"47 t\". Signals, elements, channels, plots, criteria and cores have a unique `name` "
+                     "besides.\n\nBelow the fields of a kind stand the channels of its elements (docs/reference/channels.md): what a run "
+                     "writes always, and what it writes if `also` of `[output]` asks for it.\n";
   for (const Described& kind : describe(catalogue)) {
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));
     if (const std::vector<KindChannel> channels = channels_of(catalogue, kind); !channels.empty())

@@ -53,7 +53,8 @@ private:
   [[nodiscard]] std::string with_numbered_names(std::string text) const {
     for (std::size_t close = text.find('}'); close != std::string::npos; close = text.find('}', close)) {
       const std::size_t open = text.rfind('{', close);
-      const std::optional<std::string> number = open == std::string::npos ? std::nullopt : index_number(text.substr(open + 1, close - open - 1));
+      const std::optional<std::string> number =
+          open == std::string::npos ? std::nullopt : index_number(text.substr(open + 1, close - open - 1));
       if (!number) {
         ++close;
         continue;
@@ -68,7 +69,8 @@ private:
   [[nodiscard]] std::optional<std::string> index_number(const std::string& inside) const {
     try {
       const Formula formula(inside, "", {});
-      if (std::any_of(formula.names().begin(), formula.names().end(), [](const std::string& name) { return name != k_index; })) return std::nullopt;
+      if (std::any_of(formula.names().begin(), formula.names().end(), [](const std::string& name) { return name != k_index; }))
+        return std::nullopt;
       const std::vector<double> operands(formula.names().size(), static_cast<double>(index_));
       std::vector<double> nodes(formula.tree().size());
       const double value = value_of(formula.tree(), operands.data(), 0.0, nodes.data());
@@ -85,7 +87,8 @@ private:
     for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', done)) {
       const std::size_t close = text.find('}', open);
       if (close == std::string::npos) {
-        problems_.push_back({where, "'" + text + "' lacks a '}': what stands in braces in a repeated entry is made of its index, as in \"link {i+1}\""});
+        problems_.push_back(
+            {where, "'" + text + "' lacks a '}': what stands in braces in a repeated entry is made of its index, as in \"link {i+1}\""});
         return text;
       }
       result += text.substr(done, open - done) + number(text.substr(open + 1, close - open - 1), where);
@@ -99,7 +102,8 @@ private:
     try {
       const Formula formula(inside, subject, where);
       for (const std::string& name : formula.names())
-        if (name != k_index) throw ModelError(where, subject + ": in a name only the index i and numbers make a number, not '" + name + "'");
+        if (name != k_index)
+          throw ModelError(where, subject + ": in a name only the index i and numbers make a number, not '" + name + "'");
       const std::vector<double> operands(formula.names().size(), static_cast<double>(index_));
       std::vector<double> nodes(formula.tree().size());
       const double value = value_of(formula.tree(), operands.data(), 0.0, nodes.data());
@@ -124,12 +128,14 @@ std::optional<long> repeats(const Node& repeat, const std::string& subject, std:
     return std::nullopt;
   };
   if (repeat.type == Node::Type::text && is_formula(repeat))
-    return fail("a formula cannot say how many there are, since parameters may change while a model is in use: write a number, which may be overridden for one run");
+    return fail("a formula cannot say how many there are, since parameters may change while a model is in use: write a number, which may "
+                "be overridden for one run");
   if (repeat.type != Node::Type::integer) return fail(std::string("expected a whole number, got ") + repeat.type_name());
   const long count = std::get<long>(repeat.scalar);
   if (count < 0) return fail("expected a whole number, 0 or larger, got " + std::to_string(count));
   if (static_cast<std::size_t>(count) > k_most_entries)
-    return fail(std::to_string(count) + " repetitions are more than the " + std::to_string(k_most_entries) + " entries that a model may have: is a digit too many?");
+    return fail(std::to_string(count) + " repetitions are more than the " + std::to_string(k_most_entries) +
+                " entries that a model may have: is a digit too many?");
   return count;
 }
 
@@ -156,7 +162,8 @@ void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic
       const std::optional<long> count = repeats(*repeat, subject, problems);
       if (!count) continue;
       if (made + static_cast<std::size_t>(*count) > k_most_entries) {
-        problems.push_back({repeat->where(), "'repeat' of " + subject + ": with it the model has more than " + std::to_string(k_most_entries) + " entries"});
+        problems.push_back({repeat->where(),
+                            "'repeat' of " + subject + ": with it the model has more than " + std::to_string(k_most_entries) + " entries"});
         continue;
       }
       made += static_cast<std::size_t>(*count);

@@ -9,9 +9,7 @@ namespace {
 
 constexpr int k_deepest = 100; // of signals made of others; what leads back to itself is said elsewhere
 
-bool has_unit(const std::string& text) {
-  return text.find_first_not_of("0123456789.+-eE \t\r\n") != std::string::npos;
-}
+bool has_unit(const std::string& text) { return text.find_first_not_of("0123456789.+-eE \t\r\n") != std::string::npos; }
 
 std::string problem_of_text(const Node& node, const std::string& text, const std::string& unit) {
   if (!has_unit(text)) return "";
@@ -29,9 +27,7 @@ std::string own_unit(const std::string& kind, const std::vector<GivenField>& giv
   return "";
 }
 
-bool is_factor(const GivenField& given) {
-  return given.field->name == "factor" || given.field->name == "factors";
-}
+bool is_factor(const GivenField& given) { return given.field->name == "factor" || given.field->name == "factors"; }
 
 } // namespace
 
@@ -48,9 +44,7 @@ void SignalUnits::enter(const std::string& signal, const std::string& kind, cons
   signals_[signal] = {kind, &given};
 }
 
-std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const {
-  return misfit(signal, unit, 0);
-}
+std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const { return misfit(signal, unit, 0); }
 
 std::string SignalUnits::misfit(const std::string& signal, const std::string& unit, int depth) const {
   const auto found = signals_.find(signal);

@@ -24,8 +24,7 @@ template <class Root, class Visit> void visit_named_files(Root& root, const Cata
                                    [&](const SignalKind* k) { return kind_name && k->name == kind_name->text(); });
     if (kind == catalogue.signals.end()) continue;
     for (const Field& field : (*kind)->fields.fields())
-      if (auto* const name = entry.find(field.name); field.type == FieldType::file && name && !name->text().empty())
-        visit(entry, *name);
+      if (auto* const name = entry.find(field.name); field.type == FieldType::file && name && !name->text().empty()) visit(entry, *name);
   }
 }
 

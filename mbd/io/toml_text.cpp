@@ -15,9 +15,7 @@ const Node* Node::find(const std::string& child_key) const {
   return nullptr;
 }
 
-Node* Node::find(const std::string& child_key) {
-  return const_cast<Node*>(static_cast<const Node*>(this)->find(child_key));
-}
+Node* Node::find(const std::string& child_key) { return const_cast<Node*>(static_cast<const Node*>(this)->find(child_key)); }
 
 void Node::erase(const std::string& child_key) {
   std::erase_if(children, [&](const Node& child) { return child.key == child_key; });
@@ -28,46 +26,29 @@ bool Node::is_array_of_tables() const {
          std::all_of(children.begin(), children.end(), [](const Node& n) { return n.is_table(); });
 }
 
-std::string Node::text() const {
-  return type == Type::text ? std::get<std::string>(scalar) : "";
-}
+std::string Node::text() const { return type == Type::text ? std::get<std::string>(scalar) : ""; }
 
-Location Node::where() const {
-  return {file ? *file : "", line, column};
-}
+Location Node::where() const { return {file ? *file : "", line, column}; }
 
-Location Node::where_key() const {
-  return key_line > 0 ? Location{file ? *file : "", key_line, key_column} : where();
-}
+Location Node::where_key() const { return key_line > 0 ? Location{file ? *file : "", key_line, key_column} : where(); }
 
 const char* Node::type_name() const {
   switch (type) {
-  case Type::boolean:
-    return std::get<bool>(scalar) ? "true" : "false";
-  case Type::integer:
-    return "an integer";
-  case Type::number:
-    return "a number";
-  case Type::text:
-    return "a string";
-  case Type::date:
-    return "a date or time";
-  case Type::array:
-    return is_array_of_tables() ? "an array of tables" : "an array";
-  case Type::table:
-    break;
+  case Type::boolean: return std::get<bool>(scalar) ? "true" : "false";
+  case Type::integer: return "an integer";
+  case Type::number: return "a number";
+  case Type::text: return "a string";
+  case Type::date: return "a date or time";
+  case Type::array: return is_array_of_tables() ? "an array of tables" : "an array";
+  case Type::table: break;
   }
   return "a table";
 }
 
 namespace {
 
-int line_of(const toml::source_region& region) {
-  return static_cast<int>(region.begin.line);
-}
-int column_of(const toml::source_region& region) {
-  return static_cast<int>(region.begin.column);
-}
+int line_of(const toml::source_region& region) { return static_cast<int>(region.begin.line); }
+int column_of(const toml::source_region& region) { return static_cast<int>(region.begin.column); }
 
 Node from_toml(const toml::node& source, const std::string* file);
 
@@ -80,9 +61,8 @@ void add_members(const toml::table& table, Node& node) {
     child.key_column = column_of(key.source());
     node.children.push_back(std::move(child));
   }
-  std::stable_sort(node.children.begin(), node.children.end(), [](const Node& a, const Node& b) {
-    return std::pair(a.key_line, a.key_column) < std::pair(b.key_line, b.key_column);
-  });
+  std::stable_sort(node.children.begin(), node.children.end(),
+                   [](const Node& a, const Node& b) { return std::pair(a.key_line, a.key_column) < std::pair(b.key_line, b.key_column); });
 }
 
 void set_scalar(const toml::node& source, Node& node) {
@@ -113,8 +93,7 @@ Node from_toml(const toml::node& source, const std::string* file) {
   } else if (const toml::array* array = source.as_array()) {
     node.type = Node::Type::array;
     node.children.reserve(array->size());
-    for (const toml::node& item : *array)
-      node.children.push_back(from_toml(item, file));
+    for (const toml::node& item : *array) node.children.push_back(from_toml(item, file));
   } else {
     set_scalar(source, node);
   }
@@ -223,7 +202,8 @@ std::string number_hint(std::string_view line, int column) {
   double value = 0.0;
   const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
   const auto unit = rest.find_first_not_of(" \t", static_cast<std::size_t>(end - rest.data()));
-  if (status == std::errc() && unit != std::string_view::npos && is_letter(rest[unit])) return ": a number with a unit stands in quotes, as in \"0.5 kg\"";
+  if (status == std::errc() && unit != std::string_view::npos && is_letter(rest[unit]))
+    return ": a number with a unit stands in quotes, as in \"0.5 kg\"";
   return "";
 }
 
@@ -236,7 +216,8 @@ Node parse_toml(const std::string& text, const std::string* file) {
   } catch (const toml::parse_error& error) {
     const toml::source_region& region = error.source();
     throw ModelError(Location{*file, line_of(region), column_of(region)},
-                     "not valid TOML: " + std::string(error.description()) + number_hint(line_at(text, line_of(region)), column_of(region)));
+                     "not valid TOML: " + std::string(error.description()) +
+                         number_hint(line_at(text, line_of(region)), column_of(region)));
   }
 }
 

@@ -46,30 +46,22 @@ std::string float_text(double value) {
 std::string value_text(const Node& node) {
   std::string text;
   switch (node.type) {
-  case Node::Type::boolean:
-    return std::get<bool>(node.scalar) ? "true" : "false";
-  case Node::Type::integer:
-    return std::to_string(std::get<long>(node.scalar));
-  case Node::Type::number:
-    return float_text(std::get<double>(node.scalar));
+  case Node::Type::boolean: return std::get<bool>(node.scalar) ? "true" : "false";
+  case Node::Type::integer: return std::to_string(std::get<long>(node.scalar));
+  case Node::Type::number: return float_text(std::get<double>(node.scalar));
   case Node::Type::text:
-  case Node::Type::date:
-    return quoted(node.text());
+  case Node::Type::date: return quoted(node.text());
   case Node::Type::array:
-    for (const Node& child : node.children)
-      text += (text.empty() ? "" : ", ") + value_text(child);
+    for (const Node& child : node.children) text += (text.empty() ? "" : ", ") + value_text(child);
     return "[" + text + "]";
-  case Node::Type::table:
-    break;
+  case Node::Type::table: break;
   }
-  for (const Node& child : node.children)
-    text += (text.empty() ? " " : ", ") + key_text(child.key) + " = " + value_text(child);
+  for (const Node& child : node.children) text += (text.empty() ? " " : ", ") + key_text(child.key) + " = " + value_text(child);
   return "{" + text + " }";
 }
 
 void write_values(const Node& table, std::string& text) {
-  for (const Node& child : table.children)
-    text += key_text(child.key) + " = " + value_text(child) + "\n";
+  for (const Node& child : table.children) text += key_text(child.key) + " = " + value_text(child) + "\n";
 }
 
 } // namespace
@@ -77,8 +69,7 @@ void write_values(const Node& table, std::string& text) {
 std::string write_toml(const Node& root) {
   std::string text;
   for (const Node& child : root.children)
-    if (!child.is_table() && !child.is_array_of_tables())
-      text += key_text(child.key) + " = " + value_text(child) + "\n";
+    if (!child.is_table() && !child.is_array_of_tables()) text += key_text(child.key) + " = " + value_text(child) + "\n";
   for (const Node& child : root.children) {
     if (!child.is_table()) continue;
     text += "\n[" + key_text(child.key) + "]\n";

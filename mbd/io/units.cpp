@@ -47,41 +47,30 @@ ut_status visit_basic(const ut_unit* unit, void* out) {
   form.product.reset(ut_clone(unit));
   const char* name = ut_get_name(unit, UT_ASCII);
   const std::string text = name ? name : "?";
-  if (text == "radian")
-    form.radian_power = 1;
-  else
-    form.powers[text] = 1;
+  if (text == "radian") form.radian_power = 1;
+  else form.powers[text] = 1;
   return UT_SUCCESS;
 }
 
-ut_status visit_product(const ut_unit*, int count, const ut_unit* const* units, const int* powers,
-                        void* out) {
+ut_status visit_product(const ut_unit*, int count, const ut_unit* const* units, const int* powers, void* out) {
   auto& form = *static_cast<BaseForm*>(out);
   for (int i = 0; i < count; ++i) {
     if (powers[i] == 0) continue;
     const UnitPtr power(ut_raise(units[i], powers[i]));
-    form.product.reset(form.product ? ut_multiply(form.product.get(), power.get())
-                                    : ut_clone(power.get()));
+    form.product.reset(form.product ? ut_multiply(form.product.get(), power.get()) : ut_clone(power.get()));
     const char* name = ut_get_name(units[i], UT_ASCII);
     const std::string text = name ? name : "?";
-    if (text == "radian")
-      form.radian_power = powers[i];
-    else
-      form.powers[text] = powers[i];
+    if (text == "radian") form.radian_power = powers[i];
+    else form.powers[text] = powers[i];
   }
   return UT_SUCCESS;
 }
 
 ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, double, void* out);
-ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void*) {
-  return UT_BAD_ARG;
-}
-ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void*) {
-  return UT_BAD_ARG;
-}
+ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void*) { return UT_BAD_ARG; }
+ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void*) { return UT_BAD_ARG; }
 
-const ut_visitor k_visitor{visit_basic, visit_product, visit_galilean, visit_timestamp,
-                           visit_logarithmic};
+const ut_visitor k_visitor{visit_basic, visit_product, visit_galilean, visit_timestamp, visit_logarithmic};
 
 ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, double, void* out) {
   return ut_accept_visitor(underlying, &k_visitor, out);
@@ -93,7 +82,7 @@ struct SpokenUnit {
   const char* meaning;
   bool takes_prefix; ///< "kNm"
 };
-constexpr SpokenUnit k_spoken_units[] = {{"deg", "degree", false}, {"rev", "2 PI radian", false}, {"mph", "mile/hour", false},
+constexpr SpokenUnit k_spoken_units[] = {{"deg", "degree", false},     {"rev", "2 PI radian", false}, {"mph", "mile/hour", false},
                                          {"Nm", "newton metre", true}, {"Ns", "newton second", true}, {"Nms", "newton metre second", true}};
 
 class UnitSystem {
@@ -133,38 +122,30 @@ private:
   std::unordered_map<std::string, Conversion> cache_;
 };
 
-bool names_hertz(const std::string& unit) {
-  return unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos;
-}
+bool names_hertz(const std::string& unit) { return unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos; }
 
-Conversion failed(std::string problem) {
-  return {nullptr, 1.0, std::move(problem)};
-}
+Conversion failed(std::string problem) { return {nullptr, 1.0, std::move(problem)}; }
 
 Conversion UnitSystem::make_conversion(const std::string& given, const std::string& wanted) const {
   if (given == "g" && (wanted == "*" || wanted == "m/s^2"))
     return failed("is in grams: write 'gravity' for the acceleration, or 'kg' for a mass");
   const UnitPtr from = parse(given);
   BaseForm form;
-  if (!from || ut_accept_visitor(from.get(), &k_visitor, &form) != UT_SUCCESS)
-    return failed(unknown_unit(given, wanted));
+  if (!from || ut_accept_visitor(from.get(), &k_visitor, &form) != UT_SUCCESS) return failed(unknown_unit(given, wanted));
   if (!form.product) form.product.reset(ut_get_dimensionless_unit_one(system_.get()));
-  if (wanted == "*")
-    return {ConverterPtr(ut_get_converter(from.get(), form.product.get())), 1.0, ""};
+  if (wanted == "*") return {ConverterPtr(ut_get_converter(from.get(), form.product.get())), 1.0, ""};
   const UnitPtr to(ut_parse(system_.get(), wanted.c_str(), UT_UTF8));
   BaseForm target;
   if (!to || ut_accept_visitor(to.get(), &k_visitor, &target) != UT_SUCCESS)
     return failed("a field is kept in the unknown unit '" + wanted + "'");
   if (form.powers != target.powers)
-    return failed(wanted.empty()
-                      ? "has the unit '" + given + "', but the value has no dimension"
-                      : "has the unit '" + given + "', but a unit like '" + wanted + "' is needed");
+    return failed(wanted.empty() ? "has the unit '" + given + "', but the value has no dimension"
+                                 : "has the unit '" + given + "', but a unit like '" + wanted + "' is needed");
   if (target.radian_power != 0 && form.radian_power == 0 && names_hertz(given))
     return failed("is a frequency, but an angular velocity is needed: write 'rad/s', or 'rpm' for "
                   "turns per minute");
   const bool turns = wanted == "Hz" && form.radian_power == 1;
-  return {ConverterPtr(ut_get_converter(from.get(), to.get())),
-          turns ? 0.5 / std::numbers::pi : 1.0, ""};
+  return {ConverterPtr(ut_get_converter(from.get(), to.get())), turns ? 0.5 / std::numbers::pi : 1.0, ""};
 }
 
 // Names the unit, and the product that was probably meant ("Nm": "N m").
@@ -199,9 +180,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-std::string example(const std::string& unit) {
-  return unit.empty() || unit == "*" ? "'0.5'" : "'0.5 " + unit + "'";
-}
+std::string example(const std::string& unit) { return unit.empty() || unit == "*" ? "'0.5'" : "'0.5 " + unit + "'"; }
 
 // Reading UDUNITS' database takes longer than the rest of a start: what nearly all model files are written in stands
 // here, to the bit what the database makes of it (a test compares them).
@@ -210,15 +189,38 @@ struct UsualUnit {
   const char* wanted;
   double factor;
 };
-constexpr UsualUnit k_usual_units[] = {
-    {"mm", "m", 0.001},        {"m", "m", 1.0},           {"cm", "m", 0.01},        {"t", "kg", 1000.0},
-    {"kg", "kg", 1.0},         {"s", "s", 1.0},           {"ms", "s", 0.001},       {"km/h", "m/s", 1000.0 / 3600.0},
-    {"m/s", "m/s", 1.0},       {"gravity", "m/s^2", 9.80665}, {"N", "N", 1.0},      {"kN", "N", 1000.0},
-    {"MN", "N", 1e6},          {"N/m", "N/m", 1.0},       {"kN/m", "N/m", 1000.0},  {"MN/m", "N/m", 1e6},
-    {"GN/m", "N/m", 1e9},      {"N s/m", "N s/m", 1.0},   {"kN s/m", "N s/m", 1000.0}, {"MPa", "Pa", 1e6},
-    {"kPa", "Pa", 1000.0},     {"Pa", "Pa", 1.0},         {"rad/s", "rad/s", 1.0},  {"Hz", "Hz", 1.0},
-    {"gravity", "*", 9.80665}, {"m/s^2", "*", 1.0},       {"m/s", "*", 1.0},        {"km/h", "*", 1000.0 / 3600.0},
-    {"mm", "*", 0.001},        {"m", "*", 1.0},           {"kN", "*", 1000.0},      {"N", "*", 1.0}};
+constexpr UsualUnit k_usual_units[] = {{"mm", "m", 0.001},
+                                       {"m", "m", 1.0},
+                                       {"cm", "m", 0.01},
+                                       {"t", "kg", 1000.0},
+                                       {"kg", "kg", 1.0},
+                                       {"s", "s", 1.0},
+                                       {"ms", "s", 0.001},
+                                       {"km/h", "m/s", 1000.0 / 3600.0},
+                                       {"m/s", "m/s", 1.0},
+                                       {"gravity", "m/s^2", 9.80665},
+                                       {"N", "N", 1.0},
+                                       {"kN", "N", 1000.0},
+                                       {"MN", "N", 1e6},
+                                       {"N/m", "N/m", 1.0},
+                                       {"kN/m", "N/m", 1000.0},
+                                       {"MN/m", "N/m", 1e6},
+                                       {"GN/m", "N/m", 1e9},
+                                       {"N s/m", "N s/m", 1.0},
+                                       {"kN s/m", "N s/m", 1000.0},
+                                       {"MPa", "Pa", 1e6},
+                                       {"kPa", "Pa", 1000.0},
+                                       {"Pa", "Pa", 1.0},
+                                       {"rad/s", "rad/s", 1.0},
+                                       {"Hz", "Hz", 1.0},
+                                       {"gravity", "*", 9.80665},
+                                       {"m/s^2", "*", 1.0},
+                                       {"m/s", "*", 1.0},
+                                       {"km/h", "*", 1000.0 / 3600.0},
+                                       {"mm", "*", 0.001},
+                                       {"m", "*", 1.0},
+                                       {"kN", "*", 1000.0},
+                                       {"N", "*", 1.0}};
 
 const UsualUnit* find_usual(const std::string& given, const std::string& wanted) {
   for (const UsualUnit& usual : k_usual_units)
@@ -228,8 +230,7 @@ const UsualUnit* find_usual(const std::string& given, const std::string& wanted)
 
 Quantity without_unit(double value, const std::string& text, const std::string& unit) {
   if (unit.empty() || unit == "*") return {value, ""};
-  return {0.0, "'" + text + "' names no unit: write " + text + " without quotes for " + unit +
-                   ", or add a unit"};
+  return {0.0, "'" + text + "' names no unit: write " + text + " without quotes for " + unit + ", or add a unit"};
 }
 
 } // namespace
@@ -275,10 +276,8 @@ Quantity parse_quantity(const std::string& original, const std::string& unit, Un
   const char* end = text.c_str() + text.size();
   double number = 0.0;
   const auto [rest, status] = std::from_chars(begin, end, number);
-  if (status != std::errc())
-    return {0.0, "'" + text + "' is not a number with a unit, such as " + example(unit)};
-  if (rest != end && *rest == ',')
-    return {0.0, "'" + text + "': the decimal sign is a point, as in " + example(unit)};
+  if (status != std::errc()) return {0.0, "'" + text + "' is not a number with a unit, such as " + example(unit)};
+  if (rest != end && *rest == ',') return {0.0, "'" + text + "': the decimal sign is a point, as in " + example(unit)};
   if (!std::isfinite(number)) return {0.0, "'" + text + "' is not finite"};
   const std::string given = trimmed(std::string(rest, end));
   if (given.empty()) return without_unit(number, text, unit);

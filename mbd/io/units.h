@@ -25,8 +25,7 @@ enum class UnitSource { usual_first, database };
 /// dimensionless); "*" takes any unit and gives the value in SI base units. Angles count as
 /// dimensionless, except that "rad/s" or "rpm" for a unit of "Hz" is divided by 2π, and "Hz" for an
 /// angular velocity is refused. Throws ModelError if the unit database is missing. Thread-safe.
-[[nodiscard]] Quantity parse_quantity(const std::string& text, const std::string& unit,
-                                      UnitSource source = UnitSource::usual_first);
+[[nodiscard]] Quantity parse_quantity(const std::string& text, const std::string& unit, UnitSource source = UnitSource::usual_first);
 
 /// Powers of kg, m and s in the unit of "number unit"; nothing where the text is no such quantity, or has a unit with other base
 /// units in it. Throws ModelError if the unit database is missing. Thread-safe.

@@ -32,12 +32,10 @@ DoubleDouble arc_of(double a, double b) {
   const double k = static_cast<double>(static_cast<int>(8.0 * a / b + 0.5));
   const DoubleDouble kb = two_product(k, b), ka = two_product(k, a);
   const DoubleDouble above = two_sum(8.0 * a, -kb.hi), below = two_sum(8.0 * b, ka.hi);
-  const DoubleDouble u =
-      DoubleDouble{above.hi, above.lo - kb.lo} / DoubleDouble{below.hi, below.lo + ka.lo};
+  const DoubleDouble u = DoubleDouble{above.hi, above.lo - kb.lo} / DoubleDouble{below.hi, below.lo + ka.lo};
   const double z = u.hi * u.hi, z2 = z * z;
   const double p = (-1.0 / 3 + z * (1.0 / 5)) +
-                   z2 * ((-1.0 / 7 + z * (1.0 / 9)) +
-                         z2 * ((-1.0 / 11 + z * (1.0 / 13)) + z2 * (-1.0 / 15 + z * (1.0 / 17))));
+                   z2 * ((-1.0 / 7 + z * (1.0 / 9)) + z2 * ((-1.0 / 11 + z * (1.0 / 13)) + z2 * (-1.0 / 15 + z * (1.0 / 17))));
   const DoubleDouble& at = k_arc[static_cast<int>(k)];
   const DoubleDouble sum = two_sum(at.hi, u.hi);
   return {sum.hi, sum.lo + (at.lo + (u.lo * (1.0 - z) + u.hi * z * p))};
@@ -71,8 +69,7 @@ double first_quadrant(double y, double x, bool is_left) {
 
 // A coordinate is zero or infinite.
 double along_axes(double y, double x, bool is_left) {
-  if (std::isinf(x) && std::isinf(y))
-    return is_left ? 3.0 * (k_half_pi.hi / 2.0) : k_half_pi.hi / 2.0;
+  if (std::isinf(x) && std::isinf(y)) return is_left ? 3.0 * (k_half_pi.hi / 2.0) : k_half_pi.hi / 2.0;
   if (y == 0.0 || std::isinf(x)) return is_left ? k_pi.hi : 0.0;
   return k_half_pi.hi;
 }
@@ -83,8 +80,7 @@ double atan2(double y, double x) {
   if (std::isnan(x) || std::isnan(y)) return x + y;
   const double ax = std::abs(x), ay = std::abs(y);
   const bool is_axis = ax == 0.0 || ay == 0.0 || std::isinf(x) || std::isinf(y);
-  const double angle =
-      is_axis ? along_axes(ay, ax, std::signbit(x)) : first_quadrant(ay, ax, std::signbit(x));
+  const double angle = is_axis ? along_axes(ay, ax, std::signbit(x)) : first_quadrant(ay, ax, std::signbit(x));
   return std::copysign(angle, y);
 }
 
@@ -102,8 +98,7 @@ double hypot(double x, double y) {
   const DoubleDouble square = quick_two_sum(a.hi, b.hi);
   const double root = std::sqrt(square.hi);
   const DoubleDouble back = two_product(root, root);
-  return (root + ((square.hi - back.hi) - back.lo + (square.lo + (a.lo + b.lo))) / (2.0 * root)) /
-         scale;
+  return (root + ((square.hi - back.hi) - back.lo + (square.lo + (a.lo + b.lo))) / (2.0 * root)) / scale;
 }
 
 } // namespace steplap::portable

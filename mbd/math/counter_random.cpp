@@ -10,9 +10,8 @@ PhiloxBlock philox(PhiloxBlock counter, std::array<std::uint32_t, 2> key) {
 }
 
 double counter_uniform(std::uint64_t seed, std::uint32_t stream, std::uint64_t sample, std::uint32_t index) {
-  const PhiloxBlock block =
-      philox({static_cast<std::uint32_t>(sample), static_cast<std::uint32_t>(sample >> 32), index / 2, stream},
-             {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
+  const PhiloxBlock block = philox({static_cast<std::uint32_t>(sample), static_cast<std::uint32_t>(sample >> 32), index / 2, stream},
+                                   {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
   const std::uint64_t bits = index % 2 ? (std::uint64_t{block[2]} << 32 | block[3]) : (std::uint64_t{block[0]} << 32 | block[1]);
   return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
 }

@@ -53,12 +53,8 @@ template <int N> struct Dual {
     const auto [s, c] = portable::sin_cos(a.v);
     return {c, -s * a.d};
   }
-  friend Dual atan2(const Dual& y, const Dual& x) {
-    return {portable::atan2(y.v, x.v), (x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v)};
-  }
-  friend Dual pow(const Dual& a, double n) {
-    return {portable::pow(a.v, n), n * portable::pow(a.v, n - 1.0) * a.d};
-  }
+  friend Dual atan2(const Dual& y, const Dual& x) { return {portable::atan2(y.v, x.v), (x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v)}; }
+  friend Dual pow(const Dual& a, double n) { return {portable::pow(a.v, n), n * portable::pow(a.v, n - 1.0) * a.d}; }
   friend Dual abs(const Dual& a) { return a.v < 0.0 ? -a : a; }
 };
 

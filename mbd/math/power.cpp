@@ -44,13 +44,11 @@ constexpr DoubleDouble twice_atanh(const DoubleDouble& s) {
 
 constexpr std::array<LogEntry, 128> make_logs() {
   std::array<LogEntry, 128> table;
-  for (int i = 1; i < 127;
-       ++i) { // at both ends the reciprocal is 1, so that nothing cancels next to x = 1
+  for (int i = 1; i < 127; ++i) { // at both ends the reciprocal is 1, so that nothing cancels next to x = 1
     const double middle = (1.0 + (i + 0.5) / 128) * (i < k_first_halved ? 1.0 : 0.5);
     const int n = static_cast<int>(512.0 / middle + 0.5);
     table[i].inverse = n / 512.0;
-    const DoubleDouble log =
-        twice_atanh(DoubleDouble{512.0 - n, 0.0} / DoubleDouble{512.0 + n, 0.0});
+    const DoubleDouble log = twice_atanh(DoubleDouble{512.0 - n, 0.0} / DoubleDouble{512.0 + n, 0.0});
     constexpr double round = 0x1.8p52 * k_grid;
     const double on_grid = (log.hi + round) - round;
     table[i].log = {on_grid, (log.hi - on_grid) + log.lo};
@@ -97,20 +95,16 @@ DoubleDouble log_of(double x) {
   const auto i = static_cast<int>(bits >> 45 & 127);
   const bool is_halved = i >= k_first_halved;
   e += is_halved;
-  const double z = std::bit_cast<double>((bits & 0xfffffffffffff) |
-                                         (is_halved ? 0x3fe0000000000000 : 0x3ff0000000000000));
+  const double z = std::bit_cast<double>((bits & 0xfffffffffffff) | (is_halved ? 0x3fe0000000000000 : 0x3ff0000000000000));
   const double z_high = without_last<36>(z);
   const LogEntry& t = k_logs[i];
   const double h = z_high * t.inverse - 1.0, l = (z - z_high) * t.inverse;
   const double y = h + l, y2 = y * y;
-  const double cubic = (1.0 / 3 - y * (1.0 / 4)) +
-                       y2 * ((1.0 / 5 - y * (1.0 / 6)) +
-                             y2 * ((1.0 / 7 - y * (1.0 / 8)) + y2 * (1.0 / 9 - y * (1.0 / 10))));
+  const double cubic =
+      (1.0 / 3 - y * (1.0 / 4)) + y2 * ((1.0 / 5 - y * (1.0 / 6)) + y2 * ((1.0 / 7 - y * (1.0 / 8)) + y2 * (1.0 / 9 - y * (1.0 / 10))));
   const double exact = (e * k_ln2_on_grid.hi + t.log.hi) + h;
-  const DoubleDouble first = quick_two_sum(exact, -0.5 * h * h),
-                     second = quick_two_sum(first.hi, l);
-  const double small = ((first.lo + second.lo) + (e * k_ln2_on_grid.lo + t.log.lo)) +
-                       (y * y2 * cubic - l * (h + 0.5 * l));
+  const DoubleDouble first = quick_two_sum(exact, -0.5 * h * h), second = quick_two_sum(first.hi, l);
+  const double small = ((first.lo + second.lo) + (e * k_ln2_on_grid.lo + t.log.lo)) + (y * y2 * cubic - l * (h + 0.5 * l));
   return quick_two_sum(second.hi, small);
 }
 
@@ -121,18 +115,14 @@ double exp_of(double hi, double lo) {
   if (hi < -746.0) return 0.0;
   constexpr double round = 0x1.8p52;
   const double k = (hi * (64.0 / k_ln2.hi) + round) - round;
-  const DoubleDouble r =
-      two_sum(hi - k * (k_ln2_times_17_bits.hi / 64), lo - k * (k_ln2_times_17_bits.lo / 64));
+  const DoubleDouble r = two_sum(hi - k * (k_ln2_times_17_bits.hi / 64), lo - k * (k_ln2_times_17_bits.lo / 64));
   const double y = r.hi, y2 = y * y;
-  const double growth = y + (r.lo + y2 * ((0.5 + y * (1.0 / 6)) +
-                                          y2 * ((1.0 / 24 + y * (1.0 / 120)) + y2 * (1.0 / 720))));
+  const double growth = y + (r.lo + y2 * ((0.5 + y * (1.0 / 6)) + y2 * ((1.0 / 24 + y * (1.0 / 120)) + y2 * (1.0 / 720))));
   const auto n = static_cast<int>(k);
   const DoubleDouble& power = k_powers[n & 63];
   const double value = power.hi + (power.lo + power.hi * growth);
   const int e = n >> 6, half = e / 2;
-  const auto two_to = [](int i) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + i) << 52);
-  };
+  const auto two_to = [](int i) { return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + i) << 52); };
   return value * two_to(half) * two_to(e - half);
 }
 
@@ -144,12 +134,8 @@ double positive_power(double x, double y) {
   return exp_of(y_high * log_high, (y - y_high) * log_high + y * log_low);
 }
 
-bool is_integer(double y) {
-  return std::floor(y) == y;
-}
-bool is_odd(double y) {
-  return std::abs(y) < 0x1p53 && is_integer(y) && !is_integer(0.5 * y);
-}
+bool is_integer(double y) { return std::floor(y) == y; }
+bool is_odd(double y) { return std::abs(y) < 0x1p53 && is_integer(y) && !is_integer(0.5 * y); }
 
 // x is zero or infinite, y a finite number other than zero or infinite.
 double power_of_extreme(double x, double y) {

@@ -26,8 +26,8 @@ private:
 
   static constexpr int k_capacity = 14;
   int n_ = 0;
-  std::array<double, k_capacity> x_{}, c_{};    ///< nodes, Newton's divided differences
-  std::array<double, k_capacity> last_{};       ///< differences that end at the last node
+  std::array<double, k_capacity> x_{}, c_{}; ///< nodes, Newton's divided differences
+  std::array<double, k_capacity> last_{};    ///< differences that end at the last node
 };
 
 } // namespace steplap

@@ -31,12 +31,10 @@ Remainder reduce(double x) {
 
 // 2/π = 0.101000101…b behind 64 zeros, 1344 bits.
 constexpr std::uint64_t k_two_over_pi_bits[22] = {
-    0x0000000000000000, 0xa2f9836e4e441529, 0xfc2757d1f534ddc0, 0xdb6295993c439041,
-    0xfe5163abdebbc561, 0xb7246e3a424dd2e0, 0x06492eea09d1921c, 0xfe1deb1cb129a73e,
-    0xe88235f52ebb4484, 0xe99c7026b45f7e41, 0x3991d639835339f4, 0x9c845f8bbdf9283b,
-    0x1ff897ffde05980f, 0xef2f118b5a0a6d1f, 0x6d367ecf27cb09b7, 0x4f463f669e5fea2d,
-    0x7527bac7ebe5f17b, 0x3d0739f78a5292ea, 0x6bfb5fb11f8d5d08, 0x56033046fc7b6bab,
-    0xf0cfbc209af4361d, 0xa9e391615ee61b08};
+    0x0000000000000000, 0xa2f9836e4e441529, 0xfc2757d1f534ddc0, 0xdb6295993c439041, 0xfe5163abdebbc561, 0xb7246e3a424dd2e0,
+    0x06492eea09d1921c, 0xfe1deb1cb129a73e, 0xe88235f52ebb4484, 0xe99c7026b45f7e41, 0x3991d639835339f4, 0x9c845f8bbdf9283b,
+    0x1ff897ffde05980f, 0xef2f118b5a0a6d1f, 0x6d367ecf27cb09b7, 0x4f463f669e5fea2d, 0x7527bac7ebe5f17b, 0x3d0739f78a5292ea,
+    0x6bfb5fb11f8d5d08, 0x56033046fc7b6bab, 0xf0cfbc209af4361d, 0xa9e391615ee61b08};
 
 // 64 of these bits from the one of the given number on.
 std::uint64_t bits_from(int first) {
@@ -50,8 +48,7 @@ DoubleDouble fraction_of(Wide f) {
   const int zeros = std::countl_zero(static_cast<std::uint64_t>(f >> 64));
   const Wide aligned = f << zeros;
   const auto high = static_cast<double>(static_cast<std::uint64_t>(aligned >> 75));
-  const auto low =
-      static_cast<double>(static_cast<std::uint64_t>(aligned >> 22) & 0x1fffffffffffff);
+  const auto low = static_cast<double>(static_cast<std::uint64_t>(aligned >> 22) & 0x1fffffffffffff);
   return {std::ldexp(high, -53 - zeros), std::ldexp(low, -106 - zeros)};
 }
 
@@ -83,11 +80,7 @@ SinCos series(double hi, double lo) {
   return {of.sin, of.cos};
 }
 
-Remainder remainder_of(double x) {
-  return std::abs(x) < k_far ? reduce(x)
-         : std::isfinite(x)  ? reduce_far(x)
-                             : Remainder{x - x, 0.0, 0};
-}
+Remainder remainder_of(double x) { return std::abs(x) < k_far ? reduce(x) : std::isfinite(x) ? reduce_far(x) : Remainder{x - x, 0.0, 0}; }
 
 } // namespace
 
@@ -102,11 +95,7 @@ SinCos sin_cos(double x) {
   return {r.quarter & 2 ? -s : s, (r.quarter + 1) & 2 ? -c : c};
 }
 
-double sin(double x) {
-  return sin_cos(x).sin;
-}
-double cos(double x) {
-  return sin_cos(x).cos;
-}
+double sin(double x) { return sin_cos(x).sin; }
+double cos(double x) { return sin_cos(x).cos; }
 
 } // namespace steplap::portable

@@ -25,8 +25,10 @@ std::string trimmed(const std::string& text) {
 }
 
 [[noreturn]] void fail(const std::string& text) {
-  throw std::invalid_argument("'" + text + "' is nothing that an action does: write \"release NAME\", \"hold NAME\", \"set NAME.field = value\", \"arm ACTION\", "
-                              "\"disarm ACTION\" or \"stop\"");
+  throw std::invalid_argument(
+      "'" + text +
+      "' is nothing that an action does: write \"release NAME\", \"hold NAME\", \"set NAME.field = value\", \"arm ACTION\", "
+      "\"disarm ACTION\" or \"stop\"");
 }
 
 } // namespace

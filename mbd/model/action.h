@@ -27,8 +27,8 @@ enum class ActionVerb { release, hold, set, arm, disarm, stop };
 /// A step as it is written: "release hook", "set brake.holds = 20 N m", "arm alarm", "stop".
 struct ActionStepText {
   ActionVerb verb = ActionVerb::stop; ///< what it does
-  std::string name;         ///< of an element, or of an action to be armed or disarmed; "" of stop
-  std::string field, value; ///< of set
+  std::string name;                   ///< of an element, or of an action to be armed or disarmed; "" of stop
+  std::string field, value;           ///< of set
 };
 
 /// Throws std::invalid_argument that says what a step may be.

@@ -13,6 +13,8 @@ struct BodyBuilder : TableObject {
 };
 
 /// Null where a table adds no bodies.
-[[nodiscard]] inline const BodyBuilder* body_builder(const TableEntry& entry) { return dynamic_cast<const BodyBuilder*>(entry.table.get()); }
+[[nodiscard]] inline const BodyBuilder* body_builder(const TableEntry& entry) {
+  return dynamic_cast<const BodyBuilder*>(entry.table.get());
+}
 
 } // namespace steplap

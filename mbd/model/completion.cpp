@@ -58,13 +58,13 @@ bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, 
   const std::size_t before = problems.size();
   if (!known.emplace(entry.kind, entry.table->name).second) {
     const auto* const object = dynamic_cast<const TableObject*>(entry.table.get());
-    problems.push_back({object ? object->place("name") : entry.table->where, entry.kind->name + " named '" + entry.table->name + "' exists already: choose another name"});
+    problems.push_back({object ? object->place("name") : entry.table->where,
+                        entry.kind->name + " named '" + entry.table->name + "' exists already: choose another name"});
   }
   FieldChecker(model, problems)
-      .check(entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name),
-             [&](const std::string& field) {
-               return places.locate_in_table ? places.locate_in_table(table, field) : std::optional(entry.table->where);
-             });
+      .check(entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name), [&](const std::string& field) {
+        return places.locate_in_table ? places.locate_in_table(table, field) : std::optional(entry.table->where);
+      });
   return problems.size() == before && (!places.is_table_usable || places.is_table_usable(table));
 }
 
@@ -126,8 +126,7 @@ bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& 
   add_body_markers(model);
   const std::vector<std::size_t> at_centres = unplaced_markers(model);
   place_at_centres(model, at_centres);
-  place_by_joints(model, places.given ? places.given : given_in_model(model),
-                  places.locate ? places.locate : own_places(model), problems);
+  place_by_joints(model, places.given ? places.given : given_in_model(model), places.locate ? places.locate : own_places(model), problems);
   const bool is_every_table_applied = apply_tables(model, false, places, problems);
   place_at_centres(model, at_centres); // tables may have moved a centre of gravity
   model.is_completed = true;

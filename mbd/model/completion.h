@@ -12,8 +12,8 @@ namespace steplap {
 
 /// Where the fields of a model that is being completed stand in its file, and which of them were given.
 struct ModelPlaces {
-  FieldLocator locate;   ///< empty: every message points at the object's own place
-  GivenBodyField given;  ///< empty: a field is given that Body::given says, or that differs from its default
+  FieldLocator locate;  ///< empty: every message points at the object's own place
+  GivenBodyField given; ///< empty: a field is given that Body::given says, or that differs from its default
   /// Of the index-th entry of Model::tables; nullopt: its error is reported already.
   std::function<std::optional<Location>(std::size_t table, const std::string& field)> locate_in_table;
   std::function<bool(std::size_t table)> is_table_usable; ///< false: it could not be read; empty: all are

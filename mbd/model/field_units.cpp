@@ -14,15 +14,12 @@ std::string choice_of(const FieldTable& table, const char* name, const void* obj
 
 } // namespace
 
-bool hangs_on_others(const Field& field) {
-  return field.unit.find('|') != std::string::npos;
-}
+bool hangs_on_others(const Field& field) { return field.unit.find('|') != std::string::npos; }
 
 std::string unit_in(const FieldTable& table, const Field& field, const void* object) {
   const std::size_t bar = field.unit.find('|');
   if (bar == std::string::npos) return field.unit;
-  std::string unit =
-      choice_of(table, "coordinate", object) == "angle" ? field.unit.substr(0, bar) : field.unit.substr(bar + 1);
+  std::string unit = choice_of(table, "coordinate", object) == "angle" ? field.unit.substr(0, bar) : field.unit.substr(bar + 1);
   const std::string as = choice_of(table, "as", object);
   if (as == "velocity") unit += "/s";
   if (as == "acceleration") unit += "/s^2";

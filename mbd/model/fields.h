@@ -41,22 +41,23 @@ enum class FieldType {
 };
 
 /// What a field holds, after reading: units removed, inline markers replaced by a marker's name.
-using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vector<double>,
-                                std::vector<Vec2>, std::vector<std::vector<Vec2>>, std::vector<std::string>>;
+using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vector<double>, std::vector<Vec2>,
+                                std::vector<std::vector<Vec2>>, std::vector<std::string>>;
 
 /// One field of a kind of thing: what a file may give, and where in the struct it goes.
 struct Field {
-  std::string name; ///< as written in a model file
+  std::string name;                   ///< as written in a model file
   FieldType type = FieldType::number; ///< what it holds
-  std::string unit;  ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless; "N m|N": by other fields (field_units.h)
-  std::string unit2; ///< second unit of a list of points
-  std::string doc;   ///< one line
-  bool is_required = false; ///< a file has to give it
+  std::string unit;                   ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless; "N m|N": by other fields (field_units.h)
+  std::string unit2;                  ///< second unit of a list of points
+  std::string doc;                    ///< one line
+  bool is_required = false;           ///< a file has to give it
   double minimum = -std::numeric_limits<double>::infinity(); ///< of each number, in `unit`
-  double maximum = std::numeric_limits<double>::infinity(); ///< of each number, in `unit`
-  bool is_minimum_excluded = false; ///< the value has to be larger than `minimum`
-  std::vector<std::string> choices; ///< of a field of type choice
-  std::function<void(void* object, const FieldValue&)> set; ///< writes the value into the struct; throws std::bad_variant_access for another type
+  double maximum = std::numeric_limits<double>::infinity();  ///< of each number, in `unit`
+  bool is_minimum_excluded = false;                          ///< the value has to be larger than `minimum`
+  std::vector<std::string> choices;                          ///< of a field of type choice
+  std::function<void(void* object, const FieldValue&)>
+      set;                                           ///< writes the value into the struct; throws std::bad_variant_access for another type
   std::function<FieldValue(const void* object)> get; ///< reads it; text "" for an optional field that is not given
 };
 

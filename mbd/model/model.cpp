@@ -15,8 +15,7 @@ const FieldTable& Body::fields() {
     f.add("name", &Body::name).required().doc("unique name; 'ground' is taken");
     f.add("label", &Body::label).doc("what reports call it");
     f.add("mass", &Body::mass).in("kg").positive().required().doc("mass");
-    f.add("inertia", &Body::inertia).in("kg m^2").positive().required().doc(
-        "moment of inertia about the centre of gravity");
+    f.add("inertia", &Body::inertia).in("kg m^2").positive().required().doc("moment of inertia about the centre of gravity");
     f.add("position", &Body::position).in("m").doc("origin of the body's frame in the reference pose");
     f.add("angle", &Body::angle).in("rad").doc("angle of the body's frame, counter-clockwise");
     f.add("cg", &Body::cg).in("m").doc("centre of gravity in the body's frame");
@@ -49,17 +48,23 @@ const FieldTable& SimulationSettings::fields() {
     f.add("end", &T::end).in("s").positive().doc("end of the run; it starts at t = 0");
     f.add("integrator", &T::integrator).one_of(method_names()).doc("integration method");
     f.add("step", &T::step).in("s").positive().doc("step size of the fixed-step methods, rk4 and moreau");
-    f.add("tolerance", &T::tolerance).at_least(1e-14).at_most(0.1).doc(
-        "relative tolerance of the adaptive methods, for each step; 1e-8 if not given");
-    f.add("coordinates", &T::coordinates).one_of({"automatic", "joint", "absolute"}).doc(
-        "what describes small mechanisms with pins, and with \"joint\" those that hang on a free body, too: the angles that these "
-        "leave, or each body's place and angle; the motion is the same");
-    f.add("initial", &T::initial).one_of({"as_given", "equilibrium"}).doc(
-        "start from the poses in the file or from static equilibrium");
+    f.add("tolerance", &T::tolerance)
+        .at_least(1e-14)
+        .at_most(0.1)
+        .doc("relative tolerance of the adaptive methods, for each step; 1e-8 if not given");
+    f.add("coordinates", &T::coordinates)
+        .one_of({"automatic", "joint", "absolute"})
+        .doc("what describes small mechanisms with pins, and with \"joint\" those that hang on a free body, too: the angles that these "
+             "leave, or each body's place and angle; the motion is the same");
+    f.add("initial", &T::initial).one_of({"as_given", "equilibrium"}).doc("start from the poses in the file or from static equilibrium");
     f.add("velocity", &T::velocity).in("m/s").doc("added to the initial velocity of every body");
-    f.add("projection_tolerance", &T::projection_tolerance).positive().at_most(1e-6).doc(
-        "largest constraint residual left after a step, m or rad");
-    f.add("max_events", &T::max_events).at_least(1).doc("events after which a run is given up; kinks of tables are let pass up to ten times as many, and a million at least");
+    f.add("projection_tolerance", &T::projection_tolerance)
+        .positive()
+        .at_most(1e-6)
+        .doc("largest constraint residual left after a step, m or rad");
+    f.add("max_events", &T::max_events)
+        .at_least(1)
+        .doc("events after which a run is given up; kinks of tables are let pass up to ten times as many, and a million at least");
     return f;
   }();
   return table;
@@ -69,16 +74,18 @@ const FieldTable& OutputSettings::fields() {
   static const FieldTable table = [] {
     FieldTable f;
     f.add("step", &OutputSettings::step).in("s").positive().doc("time between two rows of the trajectory");
-    f.add("channels", &OutputSettings::channels).doc(
-        "channels to write, patterns with * and ?; all if not given");
-    f.add("also", &OutputSettings::also).doc(
-        "channels that are made on request only (`steplap channels MODEL` lists them), patterns with * and ?: motion of markers, "
-        "angle and power of joints, energies");
-    f.add("most_numbers", &OutputSettings::most_numbers).positive().doc(
-        "a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of disk while it runs and "
-        "some 20 of trajectory.csv; 1e8 if not given");
-    f.add("seen_from", &OutputSettings::seen_from).as(FieldType::body).doc(
-        "body that drawings stand still with, or 'ground'; chosen by the drawing if not given");
+    f.add("channels", &OutputSettings::channels).doc("channels to write, patterns with * and ?; all if not given");
+    f.add("also", &OutputSettings::also)
+        .doc("channels that are made on request only (`steplap channels MODEL` lists them), patterns with * and ?: motion of markers, "
+             "angle and power of joints, energies");
+    f.add("most_numbers", &OutputSettings::most_numbers)
+        .positive()
+        .doc("a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of disk while it runs "
+             "and "
+             "some 20 of trajectory.csv; 1e8 if not given");
+    f.add("seen_from", &OutputSettings::seen_from)
+        .as(FieldType::body)
+        .doc("body that drawings stand still with, or 'ground'; chosen by the drawing if not given");
     return f;
   }();
   return table;

@@ -219,7 +219,8 @@ struct TableKind {
   FieldTable fields;                                                ///< of the struct that its tables are
   std::shared_ptr<Element> (*create)() = nullptr;                   ///< a new table with the kind's defaults; set by holds()
   std::shared_ptr<Element> (*copy)(const Element& table) = nullptr; ///< set by holds()
-  void (*apply)(const Element& table, Model& model) = nullptr;      ///< adds elements, gives bodies what they lack, or adds what is shown and judged, and changes nothing else; throws ModelError
+  void (*apply)(const Element& table, Model& model) =
+      nullptr; ///< adds elements, gives bodies what they lack, or adds what is shown and judged, and changes nothing else; throws ModelError
   /// Does apply() look at bodies' masses and inertias, at plain numbers of elements? If not, they can be changed afterwards.
   bool reads_masses = true, reads_elements = true;
 

@@ -14,9 +14,7 @@ namespace steplap {
 
 namespace {
 
-[[noreturn]] void complain(const std::string& path, const std::string& message) {
-  throw ModelError(Location{path, 0, 0}, message);
-}
+[[noreturn]] void complain(const std::string& path, const std::string& message) { throw ModelError(Location{path, 0, 0}, message); }
 
 // A field of an object of the model, and which part of it.
 struct Target {
@@ -41,8 +39,7 @@ template <class Visit> void visit_entries(const Model& model, const std::string&
   if (array == "marker")
     for (const Marker& marker : model.markers) visit(Candidate{&marker.name, &Marker::fields(), &marker, nullptr});
   if (array == "signal")
-    for (const SignalEntry& e : model.signals)
-      visit(Candidate{&e.definition->name, &e.kind->fields, e.definition.get(), nullptr});
+    for (const SignalEntry& e : model.signals) visit(Candidate{&e.definition->name, &e.kind->fields, e.definition.get(), nullptr});
   if (array == "element")
     for (const ElementEntry& e : model.elements)
       visit(Candidate{&e.element->name, &e.kind->fields, e.element.get(), &Element::common_fields()});
@@ -126,7 +123,7 @@ double* component_of(FieldValue& value, const std::vector<std::size_t>& items) {
 
 // What kind of value a field holds, in words.
 const char* text_of(const FieldValue& value) {
-  static constexpr const char* k_texts[] = {"a number",          "an integer",       "true or false",     "a text",         "a point",
+  static constexpr const char* k_texts[] = {"a number",          "an integer",       "true or false",   "a text",         "a point",
                                             "a list of numbers", "a list of points", "a list of rings", "a list of texts"};
   return k_texts[value.index()];
 }
@@ -183,8 +180,7 @@ FieldValue value_for_field(const Model& model, const ParameterUse& use) {
 void set_parameter(Model& model, std::size_t index, const std::string& path, const FieldValue& value) {
   Parameters& parameters = model.parameters;
   const Parameter& parameter = parameters.entries[index];
-  if (parameter.formula)
-    complain(path, "the parameter follows from others, '" + parameter.text + "': set those");
+  if (parameter.formula) complain(path, "the parameter follows from others, '" + parameter.text + "': set those");
   const double* const number = std::get_if<double>(&value);
   const long* const whole = std::get_if<long>(&value);
   if (!number && !whole) complain(path, std::string("a parameter is a number, not ") + text_of(value));
@@ -218,8 +214,7 @@ void set_value(Model& model, const std::string& path, const FieldValue& value) {
     wanted = std::move(whole);
   }
   const bool is_type = wanted.index() == index_of(target.field->type);
-  if (!is_type)
-    complain(path, "'" + target.field->name + "' of " + target.subject + " does not take " + text_of(wanted));
+  if (!is_type) complain(path, "'" + target.field->name + "' of " + target.subject + " does not take " + text_of(wanted));
   std::string problem = range_problem(*target.field, wanted);
   if (!problem.empty()) complain(path, "'" + target.field->name + "' of " + target.subject + " " + problem);
   target.field->set(const_cast<void*>(target.object), wanted); // an object of `model`, which is not const

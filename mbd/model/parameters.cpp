@@ -23,9 +23,8 @@ std::optional<std::size_t> Parameters::find(const std::string& name) const {
 }
 
 bool Parameters::needs(const ParameterFormula& formula, std::size_t parameter) const {
-  return std::any_of(formula.of.begin(), formula.of.end(), [&](std::size_t k) {
-    return k == parameter || (entries[k].formula && needs(*entries[k].formula, parameter));
-  });
+  return std::any_of(formula.of.begin(), formula.of.end(),
+                     [&](std::size_t k) { return k == parameter || (entries[k].formula && needs(*entries[k].formula, parameter)); });
 }
 
 std::string problem_with(const Parameter& parameter, double value) {

@@ -24,8 +24,8 @@ namespace steplap {
 
 /// A formula of parameters.
 struct ParameterFormula {
-  Formula formula;               ///< its names() are parameters
-  std::vector<std::size_t> of;   ///< these parameters, as indices into Parameters::entries, in the order of names()
+  Formula formula;             ///< its names() are parameters
+  std::vector<std::size_t> of; ///< these parameters, as indices into Parameters::entries, in the order of names()
 
   /// In SI, from the values of all parameters. Not-a-number where there is no finite value.
   [[nodiscard]] double value(const std::vector<double>& values) const;

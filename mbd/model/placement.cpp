@@ -34,8 +34,8 @@ Vec2 turning(double spin, const Vec2& lever) { return {-spin * lever.y(), spin *
 
 Frame seen_on(const Frame& base, const RelativePose& p) {
   const Vec2 reach = rotated(p.shift, base.angle);
-  return {base.place + reach, base.angle + p.angle,
-          base.velocity + turning(base.spin, reach) + rotated(p.velocity, base.angle), base.spin + p.spin};
+  return {base.place + reach, base.angle + p.angle, base.velocity + turning(base.spin, reach) + rotated(p.velocity, base.angle),
+          base.spin + p.spin};
 }
 
 // The base from which `frame` is seen at p.
@@ -51,8 +51,7 @@ Frame seen_from(const Frame& frame, const RelativePose& p) {
 
 class Placement {
 public:
-  Placement(Model& model, const GivenBodyField& given, const FieldLocator& locate,
-            std::vector<Diagnostic>& problems)
+  Placement(Model& model, const GivenBodyField& given, const FieldLocator& locate, std::vector<Diagnostic>& problems)
       : model_(model), given_(given), locate_(locate), problems_(problems), placed_by_(model.bodies.size()),
         is_placed_(model.bodies.size(), 0), is_adrift_(is_placed_), edges_of_(model.bodies.size()) {}
 
@@ -83,8 +82,7 @@ private:
 
   void find_edges();
   void add_edge(std::size_t element, const PlacingElement& joint, const RelativePose& pose,
-                const std::unordered_map<std::string, const Marker*>& markers,
-                const std::unordered_map<std::string, std::size_t>& bodies);
+                const std::unordered_map<std::string, const Marker*>& markers, const std::unordered_map<std::string, std::size_t>& bodies);
   [[nodiscard]] bool is_known(std::size_t body) const { return body == k_nobody || is_placed_[body]; }
   void follow(std::size_t e);
   void place(Edge& edge, int side);
@@ -116,9 +114,8 @@ void Placement::find_edges() {
       placing.emplace_back(i, *pose);
     } else if (const char* idle = joint->idle_field()) {
       if (const auto where = locate_(Section::element, i, idle))
-        problems_.push_back({*where, "'" + std::string(idle) + "' of " +
-                                         subject_text(model_.elements[i].kind->name, joint->name) + " goes with '" +
-                                         joint->placing_field() + "': give that too, or leave it out"});
+        problems_.push_back({*where, "'" + std::string(idle) + "' of " + subject_text(model_.elements[i].kind->name, joint->name) +
+                                         " goes with '" + joint->placing_field() + "': give that too, or leave it out"});
     }
   }
   if (placing.empty()) return;
@@ -200,9 +197,9 @@ void Placement::put_body(std::size_t index, const Marker& marker, const Frame& f
 void Placement::refuse_velocity(const Edge& edge, std::size_t body) {
   for (const char* field : {"velocity", "angular_velocity"})
     if (const auto where = given_(body, field))
-      problems_.push_back({*where, "'" + std::string(field) + "' of body '" + model_.bodies[body].name + "': " +
-                                       edge.text() + " places the body and gives its velocity as well: leave '" +
-                                       field + "' out, or give the joint's rate there"});
+      problems_.push_back({*where, "'" + std::string(field) + "' of body '" + model_.bodies[body].name + "': " + edge.text() +
+                                       " places the body and gives its velocity as well: leave '" + field +
+                                       "' out, or give the joint's rate there"});
 }
 
 std::string Placement::how_placed(std::size_t body, const Location& from) const {
@@ -222,8 +219,8 @@ void Placement::report_leftovers() {
     if (edge.is_used) continue;
     if (is_known(edge.body[0]) && is_known(edge.body[1])) {
       const Location& from = edge.joint->where;
-      complain(edge, "both its bodies are placed already: " + how_placed(edge.body[0], from) + ", " +
-                         how_placed(edge.body[1], from) + "; leave '" + edge.joint->placing_field() +
+      complain(edge, "both its bodies are placed already: " + how_placed(edge.body[0], from) + ", " + how_placed(edge.body[1], from) +
+                         "; leave '" + edge.joint->placing_field() +
                          "' out here (assembly closes loops), or what places one of the two there");
     } else if (!has_unresolved_ && !is_adrift_[edge.body[0]]) {
       complain(edge, "nothing says where '" + model_.bodies[edge.body[1]].name +
@@ -252,8 +249,7 @@ void Placement::mark_adrift(std::size_t body) {
 
 } // namespace
 
-void place_by_joints(Model& model, const GivenBodyField& given, const FieldLocator& locate,
-                     std::vector<Diagnostic>& problems) {
+void place_by_joints(Model& model, const GivenBodyField& given, const FieldLocator& locate, std::vector<Diagnostic>& problems) {
   Placement(model, given, locate, problems).run();
 }
 

@@ -34,7 +34,6 @@ using GivenBodyField = std::function<std::optional<Location>(std::size_t body, c
 
 /// Sets pose and velocity of every body that joints place. Markers need their places. Adds what is
 /// contradictory, said twice or never said to `problems`; `locate` as in validate().
-void place_by_joints(Model& model, const GivenBodyField& given, const FieldLocator& locate,
-                     std::vector<Diagnostic>& problems);
+void place_by_joints(Model& model, const GivenBodyField& given, const FieldLocator& locate, std::vector<Diagnostic>& problems);
 
 } // namespace steplap

@@ -38,23 +38,20 @@ Signal build_random(const SignalDefinition& definition) {
       fail("'frequencies' must be greater than 0 and ascend, got " + (i > 0 ? number_text(f[i - 1]) + " and then " : "") +
            number_text(f[i]));
     if (!(random.densities[i] > 0.0))
-      fail("'densities' must be greater than 0, got " + number_text(random.densities[i]) +
-           "; end the table where the vibration ends");
+      fail("'densities' must be greater than 0, got " + number_text(random.densities[i]) + "; end the table where the vibration ends");
   }
   if (!(f.back() <= k_widest_band * f.front()))
     fail("the last of 'frequencies' is more than " + number_text(k_widest_band) + " times the first");
   constexpr double k_usual = 0.1; // of the duration
   const double rise = random.rise.value_or(k_usual * random.duration), fall = random.fall.value_or(k_usual * random.duration);
   if (rise + fall > random.duration)
-    fail("'rise' and 'fall' take " + number_text(rise + fall) + " s, more than 'duration', " + number_text(random.duration) +
-         " s");
+    fail("'rise' and 'fall' take " + number_text(rise + fall) + " s, more than 'duration', " + number_text(random.duration) + " s");
   std::vector<Signal::Harmonic> waves = waves_of({f, random.densities}, {.relative_width = k_band,
                                                                          .least_width = 1.0 / random.duration,
                                                                          .is_gaussian = true,
                                                                          .seed = static_cast<std::uint64_t>(random.seed),
                                                                          .stream = k_stream});
-  for (Signal::Harmonic& wave : waves)
-    wave.amplitude *= random.factor;
+  for (Signal::Harmonic& wave : waves) wave.amplitude *= random.factor;
   return enveloped(waves, {.start = random.start, .rise = rise, .hold = random.duration - rise - fall, .fall = fall});
 }
 
@@ -75,10 +72,7 @@ const SignalKind& random_kind() {
     f.add("factor", &Random::factor).in("*").positive().doc("on the values: \"1 gravity\" where densities are in g^2/Hz");
     f.add("start", &Random::start).in("s").doc("time at which the vibration begins");
     f.add("duration", &Random::duration).in("s").positive().required().doc("of all of it, with rise and fall");
-    f.add("rise", &Random::rise)
-        .in("s")
-        .not_negative()
-        .doc("until it is stationary, as half a wave; a tenth of the duration if not given");
+    f.add("rise", &Random::rise).in("s").not_negative().doc("until it is stationary, as half a wave; a tenth of the duration if not given");
     f.add("fall", &Random::fall).in("s").not_negative().doc("at the end; a tenth of the duration if not given");
     f.add("seed", &Random::seed).not_negative().doc("chooses the vibration");
     return k;

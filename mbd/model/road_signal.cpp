@@ -54,16 +54,14 @@ Signal build_road(const SignalDefinition& definition) {
   if (road.road_class.has_value() == road.roughness.has_value())
     fail(road.roughness ? "give 'class' or 'roughness', not both" : "needs 'class', \"A\" to \"H\", or 'roughness'");
   if (!(road.from < road.to))
-    fail("the band from " + number_text(road.from) + "/m to " + number_text(road.to) +
-         "/m is empty: 'from' must be less than 'to'");
+    fail("the band from " + number_text(road.from) + "/m to " + number_text(road.to) + "/m is empty: 'from' must be less than 'to'");
   if (!(road.to <= k_widest_band * road.from)) fail("'to' is more than " + number_text(k_widest_band) + " times 'from'");
   const double roughness = road.roughness ? *road.roughness : roughness_of(*road.road_class);
   const auto density = [&](double n) { return roughness * portable::pow(n / road.reference, -road.exponent); };
   std::vector<Signal::Harmonic> waves =
       waves_of({{road.from, road.to}, {density(road.from), density(road.to)}},
                {.relative_width = k_band, .seed = static_cast<std::uint64_t>(road.seed), .stream = k_stream});
-  for (Signal::Harmonic& wave : waves)
-    wave.frequency *= road.speed;
+  for (Signal::Harmonic& wave : waves) wave.frequency *= road.speed;
   return enveloped(waves, {.start = road.start, .rise = road.run_in / road.speed, .hold = {}});
 }
 

@@ -39,11 +39,9 @@ struct Sea : SignalDefinition {
 // J_n(x) by its power series: for x up to 1.6 its terms fall from the first one on.
 double bessel(int n, double x) {
   double term = 1.0;
-  for (int k = 1; k <= n; ++k)
-    term *= 0.5 * x / k;
+  for (int k = 1; k <= n; ++k) term *= 0.5 * x / k;
   double sum = term;
-  for (int k = 1; k < 40; ++k)
-    sum += term *= -0.25 * x * x / (k * (n + k));
+  for (int k = 1; k < 40; ++k) sum += term *= -0.25 * x * x / (k * (n + k));
   return sum;
 }
 
@@ -53,9 +51,7 @@ Signal sines(std::vector<Signal::Harmonic> waves, double offset = 0.0) {
   piece.harmonics = std::move(waves);
   return Signal({piece});
 }
-Signal::Harmonic sine(double amplitude, double frequency, double phase = 0.0) {
-  return {amplitude, frequency, phase - 0.5 * k_pi};
-}
+Signal::Harmonic sine(double amplitude, double frequency, double phase = 0.0) { return {amplitude, frequency, phase - 0.5 * k_pi}; }
 
 // sin θ for `first` = 1, cos θ for `first` = 0.
 Signal of_angle(double angle, double omega, int first) {
@@ -72,12 +68,10 @@ Signal whole_sea(const Sea& sea, double angle, double omega, double heave_omega)
   if (sea.component == "angle") return sines({sine(angle, omega)});
   if (sea.component == "height") return sines({sine(-sea.heave / (heave_omega * heave_omega), heave_omega, sea.heave_phase)});
   const bool is_x = sea.component == "x";
-  const double faster = angle * omega * omega, lever = is_x ? sea.place.y() : -sea.place.x(),
-               arm = is_x ? sea.place.x() : sea.place.y();
+  const double faster = angle * omega * omega, lever = is_x ? sea.place.y() : -sea.place.x(), arm = is_x ? sea.place.x() : sea.place.y();
   const double swing = 0.5 * arm * angle * faster; // of θ̇² times the other lever: its mean
   const Signal turning = sines({sine(lever * faster, omega), {-swing, 2.0 * omega, 0.0}}, -swing);
-  const Signal weight = sines({sine(sea.heave, heave_omega, sea.heave_phase)}, sea.gravity),
-               tilt = of_angle(angle, omega, is_x ? 1 : 0);
+  const Signal weight = sines({sine(sea.heave, heave_omega, sea.heave_phase)}, sea.gravity), tilt = of_angle(angle, omega, is_x ? 1 : 0);
   const Signal felt = product_of({&weight, &tilt}), one = Signal::constant(1.0);
   return sum_of({&turning, &felt, &one}, {1.0, 1.0, is_x ? 0.0 : -sea.gravity});
 }
@@ -115,11 +109,7 @@ const SignalKind& sea_kind() {
         .doc("angle of the vessel (rad), height of its axis (m), or acceleration along x or y of the deck (m/s^2); y without "
              "gravity at rest");
     f.add("motion", &Sea::motion).one_of({"roll", "pitch"}).doc("chooses the default of angle");
-    f.add("angle", &Sea::angle)
-        .in("rad")
-        .positive()
-        .at_most(1.05)
-        .doc("amplitude; 20 deg of roll, 12.5 deg of pitch if not given");
+    f.add("angle", &Sea::angle).in("rad").positive().at_most(1.05).doc("amplitude; 20 deg of roll, 12.5 deg of pitch if not given");
     f.add("period", &Sea::period).in("s").positive().doc("of roll or pitch; 10 s if not given");
     f.add("heave", &Sea::heave).in("m/s^2").not_negative().doc("amplitude of the axis's vertical acceleration");
     f.add("heave_period", &Sea::heave_period).in("s").positive().doc("that of roll or pitch if not given");

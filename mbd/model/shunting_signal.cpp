@@ -19,12 +19,12 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_step = 0.02;        // rad
+constexpr double k_step = 0.02; // rad
 constexpr int k_steps_per_piece = 2;
 constexpr int k_most_steps = 1000000;
 constexpr int k_halvings = 60;
 constexpr double k_agrees = 1e-7;
-constexpr double k_buffers = 2.0;      // at an end of a wagon; and ends that meet
+constexpr double k_buffers = 2.0; // at an end of a wagon; and ends that meet
 
 struct Shunting : SignalDefinition {
   double mass = 0.0, other_mass = 0.0;   // kg
@@ -80,7 +80,8 @@ private:
   [[noreturn]] void fail(const std::string& what) const { throw ModelError(given_.where, "shunting '" + given_.name + "': " + what); }
   [[noreturn]] void fail_at_end(const Node& now) const {
     const double left = 0.5 * reduced_ * (k_buffers * now.rate) * (k_buffers * now.rate);
-    fail("the buffers reach the end of their 'buffer' curve and " + rounded_text(left, 4) + " J are left: give the 'stop_stiffness' of what is behind them, or points up to their full travel");
+    fail("the buffers reach the end of their 'buffer' curve and " + rounded_text(left, 4) +
+         " J are left: give the 'stop_stiffness' of what is behind them, or points up to their full travel");
   }
 
   void check_curve(const std::vector<Vec2>& curve, const char* key) const {
@@ -95,7 +96,8 @@ private:
   }
   static double on_curve(const std::vector<Vec2>& curve, double s) {
     for (std::size_t i = 1; i < curve.size(); ++i)
-      if (s <= curve[i].x()) return curve[i - 1].y() + (curve[i].y() - curve[i - 1].y()) * (s - curve[i - 1].x()) / (curve[i].x() - curve[i - 1].x());
+      if (s <= curve[i].x())
+        return curve[i - 1].y() + (curve[i].y() - curve[i - 1].y()) * (s - curve[i - 1].x()) / (curve[i].x() - curve[i - 1].x());
     return curve.back().y();
   }
   void check() const {
@@ -113,7 +115,8 @@ private:
   [[nodiscard]] std::vector<Part> parts_of(const std::vector<Vec2>& curve) const {
     std::vector<Part> parts;
     for (std::size_t i = 1; i < curve.size(); ++i)
-      parts.push_back({curve[i - 1].x(), curve[i].x(), curve[i - 1].y(), (curve[i].y() - curve[i - 1].y()) / (curve[i].x() - curve[i - 1].x())});
+      parts.push_back(
+          {curve[i - 1].x(), curve[i].x(), curve[i - 1].y(), (curve[i].y() - curve[i - 1].y()) / (curve[i].x() - curve[i - 1].x())});
     const Vec2 &last = given_.buffer.back(), &before = given_.buffer[given_.buffer.size() - 2];
     const double slope = (last.y() - before.y()) / (last.x() - before.x()); // of both curves beyond: what they part with stays what it is
     if (given_.stop_stiffness) parts.push_back({curve.back().x(), 1e30, curve.back().y(), slope + *given_.stop_stiffness});
@@ -121,7 +124,9 @@ private:
   }
 
   // Of one buffer.
-  [[nodiscard]] double force(const Part& part, const Node& n) const { return part.force + part.slope * (n.s - part.from) + given_.damping * n.rate; }
+  [[nodiscard]] double force(const Part& part, const Node& n) const {
+    return part.force + part.slope * (n.s - part.from) + given_.damping * n.rate;
+  }
   // ṡ̇ = −F/(2 μ), with F = 2 f: the wagons close by two travels.
   [[nodiscard]] double second_rate(const Part& part, const Node& n) const { return -force(part, n) / reduced_; }
 
@@ -144,8 +149,8 @@ private:
   }
 
   void follow(const Part& part, bool is_loading, Node& now) {
-    const double omega = std::max({std::sqrt(std::abs(part.slope) / reduced_), given_.damping / reduced_,
-                                   closing_ / (k_buffers * given_.buffer.back().x())});
+    const double omega = std::max(
+        {std::sqrt(std::abs(part.slope) / reduced_), given_.damping / reduced_, closing_ / (k_buffers * given_.buffer.back().x())});
     const double h = k_step / omega;
     Node begin = now;
     for (int i = 1;; ++i) {
@@ -188,7 +193,8 @@ private:
   void hold_against_motion(const Signal& signal, const Node& end) const {
     const double before = closing_, after = k_buffers * end.rate; // after: negative, they part
     const double energy = 0.5 * reduced_ * before * before, taken = energy - 0.5 * reduced_ * after * after;
-    if (!(std::abs(2.0 * k_buffers * end.work - taken) <= k_agrees * energy)) fail("its energy is not found to 1e-7: are its curves in N and m?");
+    if (!(std::abs(2.0 * k_buffers * end.work - taken) <= k_agrees * energy))
+      fail("its energy is not found to 1e-7: are its curves in N and m?");
     const double change = reduced_ / given_.mass * (before - after);
     const double found = std::abs(signal.mean(given_.start, given_.start + end.t)) * end.t;
     if (!(std::abs(found - change) <= k_agrees * change)) fail("its momentum is not found to 1e-7: are its curves in N and m?");
@@ -205,18 +211,27 @@ private:
 const SignalKind& shunting_kind() {
   static const SignalKind kind = [] {
     SignalKind k{"shunting",
-                 "Acceleration of a wagon, a point mass with all that it carries, that meets another buffer to buffer: two buffers at each end, all alike. "
+                 "Acceleration of a wagon, a point mass with all that it carries, that meets another buffer to buffer: two buffers at each "
+                 "end, all alike. "
                  "It is slowed where it runs into one ahead (speed > other_speed), and pushed where one runs into it from behind.",
-                 {}, make_held<SignalDefinition, Shunting>, copy_held<SignalDefinition, Shunting>,
+                 {},
+                 make_held<SignalDefinition, Shunting>,
+                 copy_held<SignalDefinition, Shunting>,
                  [](const SignalDefinition& d) { return Meeting(static_cast<const Shunting&>(d)).pulse(); }};
     k.fields.add("mass", &Shunting::mass).in("kg").positive().required().doc("of the wagon with all that it carries");
     k.fields.add("other_mass", &Shunting::other_mass).in("kg").positive().required().doc("of the other wagon, or of a group of wagons");
     k.fields.add("speed", &Shunting::speed).in("m/s").required().doc("of the wagon, along x, before they meet");
     k.fields.add("other_speed", &Shunting::other_speed).in("m/s").doc("of the other one");
-    k.fields.add("buffer", &Shunting::buffer).in("m", "N").required().doc("[travel, force] of one buffer that is pressed in, straight between them; the first at travel 0");
+    k.fields.add("buffer", &Shunting::buffer)
+        .in("m", "N")
+        .required()
+        .doc("[travel, force] of one buffer that is pressed in, straight between them; the first at travel 0");
     k.fields.add("unloading", &Shunting::unloading).in("m", "N").doc("the same while it comes out again; as pressed in if not given");
     k.fields.add("damping", &Shunting::damping).in("N s/m").not_negative().doc("of one buffer, beside its curves");
-    k.fields.add("stop_stiffness", &Shunting::stop_stiffness).in("N/m").positive().doc("of what is behind one buffer, beyond its last point; elastic, added to the last slope of 'buffer'");
+    k.fields.add("stop_stiffness", &Shunting::stop_stiffness)
+        .in("N/m")
+        .positive()
+        .doc("of what is behind one buffer, beyond its last point; elastic, added to the last slope of 'buffer'");
     k.fields.add("start", &Shunting::start).in("s").not_negative().doc("time at which they touch");
     return k;
   }();

@@ -26,17 +26,13 @@ double sine_minus_argument(double x) {
   const double y = x * x;
   // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
   return x * y *
-         (-1.0 / 6 +
-          y * (1.0 / 120 +
-               y * (-1.0 / 5040 +
-                    y * (1.0 / 362880 +
-                         y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
+         (-1.0 / 6 + y * (1.0 / 120 +
+                          y * (-1.0 / 5040 + y * (1.0 / 362880 + y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
 }
 
 // With x = ωτ, s and c of x/2: cos(x+φ) = cos φ cos x − sin φ sin x, and
 // ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)]; `lag`: sin x − x.
-template <bool has_integrals>
-void add_harmonic(const Signal::Harmonic& h, double s, double c, double lag, PieceJet& jet) {
+template <bool has_integrals> void add_harmonic(const Signal::Harmonic& h, double s, double c, double lag, PieceJet& jet) {
   const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
   const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
   const double slope = -h.amplitude * (h.sin_phase * cosine + h.cos_phase * sine);
@@ -62,8 +58,7 @@ template <bool has_integrals> void add_block(const Signal::Harmonic* h, double t
   sin_cos_of_block(half, s, c);
   if constexpr (has_integrals) {
     sin_cos_of_block(x, lag, unused);
-    for (std::size_t i = 0; i < k_block; ++i)
-      lag[i] = std::abs(x[i]) > k_small_angle ? lag[i] - x[i] : sine_minus_argument(x[i]);
+    for (std::size_t i = 0; i < k_block; ++i) lag[i] = std::abs(x[i]) > k_small_angle ? lag[i] - x[i] : sine_minus_argument(x[i]);
   }
   for (std::size_t i = 0; i < k_block; ++i) add_harmonic<has_integrals>(h[i], s[i], c[i], lag[i], jet);
 }
@@ -84,8 +79,7 @@ void add_polynomial(const double* c, double tau, PieceJet& jet) {
   jet.rate = c[1] + tau * (2.0 * c[2] + tau * 3.0 * c[3]);
   jet.second_rate = 2.0 * c[2] + 6.0 * c[3] * tau;
   jet.integral = tau * (c[0] + tau * (c[1] / 2 + tau * (c[2] / 3 + tau * (c[3] / 4))));
-  jet.double_integral =
-      tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
+  jet.double_integral = tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
 }
 
 // ∫₀¹ uⁿ e^{ixu} du of two neighbouring n.
@@ -162,20 +156,16 @@ PieceJet evaluate(const Signal::Piece& piece, double tau, bool has_integrals = t
   }
   if (has_integrals) add_harmonics<true>(piece.harmonics, tau, jet);
   else add_harmonics<false>(piece.harmonics, tau, jet);
-  for (const Signal::Modulated& m : piece.modulated)
-    add_modulated(m, tau, has_integrals, jet);
+  for (const Signal::Modulated& m : piece.modulated) add_modulated(m, tau, has_integrals, jet);
   return jet;
 }
 
 // A bound of the piece's terms up to τ: the scale of its rounding.
 double magnitude(const Signal::Piece& piece, double tau) {
   double sum = 0.0;
-  for (int i = 3; i >= 0; --i)
-    sum = sum * tau + std::abs(piece.c[i]);
-  for (const Signal::Harmonic& h : piece.harmonics)
-    sum += std::abs(h.amplitude);
-  for (const Signal::Modulated& m : piece.modulated)
-    sum += std::abs(m.amplitude) * power(tau, m.power);
+  for (int i = 3; i >= 0; --i) sum = sum * tau + std::abs(piece.c[i]);
+  for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude);
+  for (const Signal::Modulated& m : piece.modulated) sum += std::abs(m.amplitude) * power(tau, m.power);
   return sum;
 }
 
@@ -189,8 +179,7 @@ template <class F> double gauss_mean(double a, double b, double fastest, const F
   const double h = (b - a) / count;
   double sum = 0.0;
   for (int i = 0; i < count; ++i)
-    for (int k = 0; k < 2; ++k)
-      sum += k_weight[k] * (f(a + (i + k_place[k]) * h) + f(a + (i + 1.0 - k_place[k]) * h));
+    for (int k = 0; k < 2; ++k) sum += k_weight[k] * (f(a + (i + k_place[k]) * h) + f(a + (i + 1.0 - k_place[k]) * h));
   return sum / count;
 }
 
@@ -231,21 +220,16 @@ double mean_of(const Signal::Piece& piece, double a, double b) {
 
 bool is_finite(const Signal::Piece& piece) {
   double sum = piece.start;
-  for (const double c : piece.c)
-    sum += c;
-  for (const Signal::Harmonic& h : piece.harmonics)
-    sum += h.amplitude + h.frequency + h.phase;
-  for (const Signal::Modulated& m : piece.modulated)
-    sum += m.amplitude + m.frequency + m.phase;
+  for (const double c : piece.c) sum += c;
+  for (const Signal::Harmonic& h : piece.harmonics) sum += h.amplitude + h.frequency + h.phase;
+  for (const Signal::Modulated& m : piece.modulated) sum += m.amplitude + m.frequency + m.phase;
   return std::isfinite(sum);
 }
 
 void check(const std::vector<Signal::Piece>& pieces) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    if (!is_finite(pieces[k]))
-      throw std::invalid_argument("a piece of a signal holds a number that is not finite");
-    if (k > 0 && !(pieces[k].start > pieces[k - 1].start))
-      throw std::invalid_argument("pieces of a signal must start at ascending times");
+    if (!is_finite(pieces[k])) throw std::invalid_argument("a piece of a signal holds a number that is not finite");
+    if (k > 0 && !(pieces[k].start > pieces[k - 1].start)) throw std::invalid_argument("pieces of a signal must start at ascending times");
     for (const Signal::Harmonic& h : pieces[k].harmonics)
       if (h.frequency == 0.0) throw std::invalid_argument("a harmonic of frequency zero");
   }
@@ -272,14 +256,11 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
   }
   accumulate_integrals();
   if (!is_constant())
-    for (const Piece& piece : pieces_)
-      breakpoints_.push_back(piece.start);
+    for (const Piece& piece : pieces_) breakpoints_.push_back(piece.start);
   value_at_zero_ = value(0.0);
 }
 
-Signal Signal::constant(double value) {
-  return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}, {}}});
-}
+Signal Signal::constant(double value) { return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}, {}}}); }
 
 // The integrals at the starts, forwards and backwards from the piece that holds t = 0, so that
 // pieces long before t = 0 cost those after it no digits.
@@ -306,8 +287,7 @@ void Signal::accumulate_integrals() {
     const double length = pieces_[k].start - last.start;
     const PieceJet jet = evaluate(last, length);
     pieces_[k].integral = last.integral + jet.integral;
-    pieces_[k].double_integral =
-        last.double_integral + last.integral * length + jet.double_integral;
+    pieces_[k].double_integral = last.double_integral + last.integral * length + jet.double_integral;
   }
 }
 
@@ -318,8 +298,7 @@ const Signal::Piece* Signal::piece_at(double t) const {
       if (!(t < pieces_[k].start)) return &pieces_[k];
     return nullptr;
   }
-  const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t,
-                                      [](double time, const Piece& p) { return time < p.start; });
+  const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t, [](double time, const Piece& p) { return time < p.start; });
   return after == pieces_.begin() ? nullptr : &*(after - 1);
 }
 
@@ -352,8 +331,7 @@ SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
 SignalJet Signal::drive(double t, DriveLevel level) const {
   const Piece* piece = piece_at(t);
   const bool is_usual = piece && piece->is_level && piece->modulated.empty() && piece->harmonics.size() < k_block;
-  if (is_usual && level == DriveLevel::acceleration)
-    return driven_by_acceleration(*piece, t - piece->start);
+  if (is_usual && level == DriveLevel::acceleration) return driven_by_acceleration(*piece, t - piece->start);
   PieceJet jet;
   if (piece) {
     const double tau = t - piece->start;
@@ -366,12 +344,9 @@ SignalJet Signal::drive(double t, DriveLevel level) const {
     jet.double_integral = p.double_integral + p.integral * (t - p.start);
   }
   switch (level) {
-  case DriveLevel::position:
-    return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
-  case DriveLevel::velocity:
-    return {jet.integral, jet.value, jet.rate};
-  case DriveLevel::acceleration:
-    break;
+  case DriveLevel::position: return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
+  case DriveLevel::velocity: return {jet.integral, jet.value, jet.rate};
+  case DriveLevel::acceleration: break;
   }
   return {jet.double_integral, jet.integral, jet.value};
 }
@@ -401,8 +376,7 @@ double Signal::fastest_at(double t) const {
   for (const Modulated& m : piece->modulated) {
     if (m.amplitude == 0.0) continue;
     fastest = std::max(fastest, std::abs(m.frequency));
-    if (m.power > k_tame_power && !is_last)
-      fastest = std::max(fastest, m.power * std::numbers::pi / ((piece + 1)->start - piece->start));
+    if (m.power > k_tame_power && !is_last) fastest = std::max(fastest, m.power * std::numbers::pi / ((piece + 1)->start - piece->start));
   }
   return fastest;
 }
@@ -410,8 +384,8 @@ double Signal::fastest_at(double t) const {
 bool Signal::is_constant() const {
   if (pieces_.empty()) return true;
   const Piece& p = pieces_.front();
-  return pieces_.size() == 1 && p.start <= 0.0 && p.harmonics.empty() && p.modulated.empty() && p.c[1] == 0.0 &&
-         p.c[2] == 0.0 && p.c[3] == 0.0;
+  return pieces_.size() == 1 && p.start <= 0.0 && p.harmonics.empty() && p.modulated.empty() && p.c[1] == 0.0 && p.c[2] == 0.0 &&
+         p.c[3] == 0.0;
 }
 
 namespace {

@@ -121,9 +121,9 @@ template <class Base, class T> std::shared_ptr<Base> copy_held(const Base& objec
 
 /// Kinds that are made of other signals name them in fields of the types signal and signals.
 struct SignalKind {
-  std::string name; ///< as written in a model file: "haversine"
-  std::string doc; ///< a few sentences: its formula
-  FieldTable fields; ///< of the struct that its definitions are
+  std::string name;                                        ///< as written in a model file: "haversine"
+  std::string doc;                                         ///< a few sentences: its formula
+  FieldTable fields;                                       ///< of the struct that its definitions are
   std::shared_ptr<SignalDefinition> (*create)() = nullptr; ///< a new definition with the kind's defaults; set by holds()
   std::shared_ptr<SignalDefinition> (*copy)(const SignalDefinition& definition) = nullptr; ///< set by holds()
   /// Throws ModelError (at definition.where) for values that make no signal.

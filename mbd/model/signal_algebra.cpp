@@ -14,8 +14,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_same_time = 16.0 * k_epsilon;      // of the time: "start + duration" against the same number given
-constexpr double k_same_frequency = 4.0 * k_epsilon;  // of the larger: their difference is rounding
+constexpr double k_same_time = 16.0 * k_epsilon;     // of the time: "start + duration" against the same number given
+constexpr double k_same_frequency = 4.0 * k_epsilon; // of the larger: their difference is rounding
 
 // A piece, open for algebra: a polynomial of any degree, and waves A τⁿ cos(ωτ + φ) with ω > 0.
 struct Terms {
@@ -33,8 +33,7 @@ struct Terms {
     if (frequency == 0.0) return add_power(power, amplitude * portable::cos(phase));
     const double sign = frequency < 0.0 ? -1.0 : 1.0;
     waves.push_back({power, amplitude, sign * frequency, sign * phase});
-    if (waves.size() > k_most_terms)
-      throw std::invalid_argument("has pieces of more than " + std::to_string(k_most_terms) + " harmonics");
+    if (waves.size() > k_most_terms) throw std::invalid_argument("has pieces of more than " + std::to_string(k_most_terms) + " harmonics");
   }
   void add(const Terms& other, double factor) {
     for (int n = 0; n <= k_most_power; ++n) add_power(n, factor * other.polynomial[n]);
@@ -69,10 +68,7 @@ Terms terms_of(const Signal::Piece& piece, double start) {
   for (const Signal::Harmonic& h : piece.harmonics) terms.add_wave(0, h.amplitude, h.frequency, h.phase + h.frequency * d);
   for (const Signal::Modulated& m : piece.modulated) {
     if (m.frequency == 0.0) add_power(m.power, m.amplitude * portable::cos(m.phase));
-    else
-      expand(m.power, d, [&](int k, double c) {
-        terms.add_wave(k, c * m.amplitude, m.frequency, m.phase + m.frequency * d);
-      });
+    else expand(m.power, d, [&](int k, double c) { terms.add_wave(k, c * m.amplitude, m.frequency, m.phase + m.frequency * d); });
   }
   return terms;
 }
@@ -102,10 +98,8 @@ Terms product(const Terms& a, const Terms& b) {
   Terms result;
   for (int i = 0; i <= k_most_power; ++i) {
     for (int j = 0; j <= k_most_power; ++j) result.add_power(i + j, a.polynomial[i] * b.polynomial[j]);
-    for (const Signal::Modulated& w : b.waves)
-      result.add_wave(w.power + i, a.polynomial[i] * w.amplitude, w.frequency, w.phase);
-    for (const Signal::Modulated& w : a.waves)
-      result.add_wave(w.power + i, b.polynomial[i] * w.amplitude, w.frequency, w.phase);
+    for (const Signal::Modulated& w : b.waves) result.add_wave(w.power + i, a.polynomial[i] * w.amplitude, w.frequency, w.phase);
+    for (const Signal::Modulated& w : a.waves) result.add_wave(w.power + i, b.polynomial[i] * w.amplitude, w.frequency, w.phase);
   }
   for (const Signal::Modulated& v : a.waves)
     for (const Signal::Modulated& w : b.waves) multiply_waves(v, w, result);
@@ -166,9 +160,7 @@ Signal sum_of(const std::vector<const Signal*>& parts, const std::vector<double>
 }
 
 Signal product_of(const std::vector<const Signal*>& parts) {
-  return combined(parts, [](std::size_t k, Terms part, Terms& whole) {
-    whole = k == 0 ? std::move(part) : product(whole, part);
-  });
+  return combined(parts, [](std::size_t k, Terms part, Terms& whole) { whole = k == 0 ? std::move(part) : product(whole, part); });
 }
 
 Signal delayed(const Signal& signal, double delay, double factor) {

@@ -19,23 +19,22 @@ struct Scaled : SignalDefinition {
   std::string signal;
   double factor = 1.0;
   double offset = 0.0;
-  double delay = 0.0; // s
+  double delay = 0.0;                  // s
   std::optional<double> behind, speed; // m, m/s
 };
 
 using Parts = std::vector<const Signal*>;
 
 void check_any(const Parts& parts, const SignalDefinition& definition, const std::string& kind) {
-  if (parts.empty())
-    throw ModelError(definition.where, kind + " '" + definition.name + "': 'signals' names none: give at least one");
+  if (parts.empty()) throw ModelError(definition.where, kind + " '" + definition.name + "': 'signals' names none: give at least one");
 }
 
 Signal build_sum(const SignalDefinition& definition, const Parts& parts) {
   const auto& sum = static_cast<const Sum&>(definition);
   check_any(parts, sum, "sum");
   if (!sum.factors.empty() && sum.factors.size() != parts.size())
-    throw ModelError(sum.where, "sum '" + sum.name + "': 'factors' must be as many as 'signals', " +
-                                    std::to_string(parts.size()) + ", got " + std::to_string(sum.factors.size()));
+    throw ModelError(sum.where, "sum '" + sum.name + "': 'factors' must be as many as 'signals', " + std::to_string(parts.size()) +
+                                    ", got " + std::to_string(sum.factors.size()));
   return sum_of(parts, sum.factors.empty() ? std::vector<double>(parts.size(), 1.0) : sum.factors);
 }
 
@@ -47,15 +46,16 @@ Signal build_product(const SignalDefinition& definition, const Parts& parts) {
 Signal build_scaled(const SignalDefinition& definition, const Parts& parts) {
   const auto& scaled = static_cast<const Scaled&>(definition);
   if (scaled.behind && !scaled.speed)
-    throw ModelError(scaled.where, "scaled '" + scaled.name + "': 'behind' needs a speed: give 'speed', or a 'signal' that has one, as a road has");
+    throw ModelError(scaled.where,
+                     "scaled '" + scaled.name + "': 'behind' needs a speed: give 'speed', or a 'signal' that has one, as a road has");
   const double delay = scaled.delay + (scaled.behind ? *scaled.behind / *scaled.speed : 0.0);
   if (scaled.offset == 0.0) return delayed(*parts.at(0), delay, scaled.factor);
   const Signal later = delayed(*parts.at(0), delay), one = Signal::constant(1.0);
   return sum_of({&later, &one}, {scaled.factor, scaled.offset});
 }
 
-template <class T> SignalKind kind_of(const std::string& name, const std::string& doc,
-                                      Signal (*combine)(const SignalDefinition&, const Parts&)) {
+template <class T>
+SignalKind kind_of(const std::string& name, const std::string& doc, Signal (*combine)(const SignalDefinition&, const Parts&)) {
   SignalKind kind;
   kind.name = name;
   kind.doc = doc;
@@ -90,15 +90,14 @@ const SignalKind& product_kind() {
 
 const SignalKind& scaled_kind() {
   static const SignalKind kind = [] {
-    SignalKind k = kind_of<Scaled>(
-        "scaled", "Another signal at another scale: offset + factor signal(t - delay).", build_scaled);
+    SignalKind k = kind_of<Scaled>("scaled", "Another signal at another scale: offset + factor signal(t - delay).", build_scaled);
     k.fields.add("signal", &Scaled::signal).as(FieldType::signal).required().doc("signal that is scaled");
     k.fields.add("factor", &Scaled::factor).in("*").doc("factor on its values; -1 turns the sign");
     k.fields.add("offset", &Scaled::offset).in("*").doc("added to its values, from t = 0 on");
-    k.fields.add("delay", &Scaled::delay)
-        .in("s")
-        .doc("by which it comes later (negative: earlier); a constant begins at t = delay");
-    k.fields.add("behind", &Scaled::behind).in("m").doc("way by which it comes later, at its speed: from the first axle on a road to this one");
+    k.fields.add("delay", &Scaled::delay).in("s").doc("by which it comes later (negative: earlier); a constant begins at t = delay");
+    k.fields.add("behind", &Scaled::behind)
+        .in("m")
+        .doc("way by which it comes later, at its speed: from the first axle on a road to this one");
     k.fields.add("speed", &Scaled::speed).in("m/s").positive().doc("at which that way is made; that of the signal if not given");
     return k;
   }();

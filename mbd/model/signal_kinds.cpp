@@ -34,9 +34,7 @@ FieldTable pulse_fields() {
   return f;
 }
 
-template <class T> const T& as(const SignalDefinition& definition) {
-  return static_cast<const T&>(definition);
-}
+template <class T> const T& as(const SignalDefinition& definition) { return static_cast<const T&>(definition); }
 
 Piece polynomial(double start, double c0, double c1 = 0.0) {
   Piece piece;
@@ -52,9 +50,7 @@ Signal polygon(const std::vector<Vec2>& corners) {
   std::vector<Piece> pieces;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
     const double length = corners[k + 1].x() - corners[k].x();
-    if (length > 0.0)
-      pieces.push_back(polynomial(corners[k].x(), corners[k].y(),
-                                  (corners[k + 1].y() - corners[k].y()) / length));
+    if (length > 0.0) pieces.push_back(polynomial(corners[k].x(), corners[k].y(), (corners[k + 1].y() - corners[k].y()) / length));
   }
   pieces.push_back(polynomial(corners.back().x(), 0.0));
   return Signal(std::move(pieces));
@@ -66,7 +62,9 @@ struct Constant : SignalDefinition {
 
 const SignalKind& constant_kind() {
   static const SignalKind kind = [] {
-    SignalKind k{"constant", "The same value at all times.", {}, make_held<SignalDefinition, Constant>, copy_held<SignalDefinition, Constant>, nullptr};
+    SignalKind k{
+        "constant", "The same value at all times.", {}, make_held<SignalDefinition, Constant>, copy_held<SignalDefinition, Constant>,
+        nullptr};
     k.fields.add("value", &Constant::value).in("*").required().doc("the value");
     k.build = [](const SignalDefinition& d) { return Signal::constant(as<Constant>(d).value); };
     return k;
@@ -75,40 +73,47 @@ const SignalKind& constant_kind() {
 }
 
 const SignalKind& haversine_kind() {
-  static const SignalKind kind{
-      "haversine",
-      "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
-      "peak duration / 2.",
-      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
-        const Pulse& p = as<Pulse>(d);
-        Piece piece = polynomial(p.start, 0.5 * p.peak);
-        piece.harmonics.push_back({-0.5 * p.peak, 2.0 * k_pi / p.duration, 0.0});
-        return Signal({piece, polynomial(p.start + p.duration, 0.0)});
-      }};
+  static const SignalKind kind{"haversine",
+                               "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
+                               "peak duration / 2.",
+                               pulse_fields(),
+                               make_held<SignalDefinition, Pulse>,
+                               copy_held<SignalDefinition, Pulse>,
+                               [](const SignalDefinition& d) {
+                                 const Pulse& p = as<Pulse>(d);
+                                 Piece piece = polynomial(p.start, 0.5 * p.peak);
+                                 piece.harmonics.push_back({-0.5 * p.peak, 2.0 * k_pi / p.duration, 0.0});
+                                 return Signal({piece, polynomial(p.start + p.duration, 0.0)});
+                               }};
   return kind;
 }
 
 const SignalKind& half_sine_kind() {
-  static const SignalKind kind{
-      "half_sine",
-      "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
-      "duration.",
-      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
-        const Pulse& p = as<Pulse>(d);
-        Piece piece = polynomial(p.start, 0.0);
-        piece.harmonics.push_back({p.peak, k_pi / p.duration, -0.5 * k_pi});
-        return Signal({piece, polynomial(p.start + p.duration, 0.0)});
-      }};
+  static const SignalKind kind{"half_sine",
+                               "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
+                               "duration.",
+                               pulse_fields(),
+                               make_held<SignalDefinition, Pulse>,
+                               copy_held<SignalDefinition, Pulse>,
+                               [](const SignalDefinition& d) {
+                                 const Pulse& p = as<Pulse>(d);
+                                 Piece piece = polynomial(p.start, 0.0);
+                                 piece.harmonics.push_back({p.peak, k_pi / p.duration, -0.5 * k_pi});
+                                 return Signal({piece, polynomial(p.start + p.duration, 0.0)});
+                               }};
   return kind;
 }
 
 const SignalKind& rectangle_kind() {
-  static const SignalKind kind{
-      "rectangle", "The value peak for the whole duration; its integral is peak duration.",
-      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
-        const Pulse& p = as<Pulse>(d);
-        return Signal({polynomial(p.start, p.peak), polynomial(p.start + p.duration, 0.0)});
-      }};
+  static const SignalKind kind{"rectangle",
+                               "The value peak for the whole duration; its integral is peak duration.",
+                               pulse_fields(),
+                               make_held<SignalDefinition, Pulse>,
+                               copy_held<SignalDefinition, Pulse>,
+                               [](const SignalDefinition& d) {
+                                 const Pulse& p = as<Pulse>(d);
+                                 return Signal({polynomial(p.start, p.peak), polynomial(p.start + p.duration, 0.0)});
+                               }};
   return kind;
 }
 
@@ -130,11 +135,11 @@ const SignalKind& triangle_kind() {
   static const SignalKind kind = [] {
     SignalKind k{"triangle",
                  "Linear up to the peak and down again; its integral is peak duration / 2.",
-                 pulse_fields(), make_held<SignalDefinition, Triangle>, copy_held<SignalDefinition, Triangle>, build_triangle};
-    k.fields.add("rise", &Triangle::rise)
-        .in("s")
-        .not_negative()
-        .doc("time from start to peak; half the duration if not given");
+                 pulse_fields(),
+                 make_held<SignalDefinition, Triangle>,
+                 copy_held<SignalDefinition, Triangle>,
+                 build_triangle};
+    k.fields.add("rise", &Triangle::rise).in("s").not_negative().doc("time from start to peak; half the duration if not given");
     return k;
   }();
   return kind;
@@ -164,12 +169,11 @@ const SignalKind& trapezoid_kind() {
     SignalKind k{"trapezoid",
                  "Linear rise, constant peak, linear fall; its integral is peak "
                  "(duration - rise / 2 - fall / 2).",
-                 pulse_fields(), make_held<SignalDefinition, Trapezoid>, copy_held<SignalDefinition, Trapezoid>, build_trapezoid};
-    k.fields.add("rise", &Trapezoid::rise)
-        .in("s")
-        .not_negative()
-        .required()
-        .doc("time from start to the peak value");
+                 pulse_fields(),
+                 make_held<SignalDefinition, Trapezoid>,
+                 copy_held<SignalDefinition, Trapezoid>,
+                 build_trapezoid};
+    k.fields.add("rise", &Trapezoid::rise).in("s").not_negative().required().doc("time from start to the peak value");
     k.fields.add("fall", &Trapezoid::fall)
         .in("s")
         .not_negative()
@@ -189,18 +193,14 @@ struct Harmonics : SignalDefinition {
 
 Signal build_harmonics(const SignalDefinition& definition) {
   const Harmonics& h = as<Harmonics>(definition);
-  const auto fail = [&](const std::string& what) {
-    throw ModelError(h.where, "harmonics '" + h.name + "': " + what);
-  };
+  const auto fail = [&](const std::string& what) { throw ModelError(h.where, "harmonics '" + h.name + "': " + what); };
   const std::size_t count = h.amplitudes.size();
   if (h.frequencies.size() != count || (!h.phases.empty() && h.phases.size() != count))
     fail("'amplitudes', 'frequencies' and 'phases' must be of equal length");
   Piece piece = polynomial(h.start, h.offset);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!(h.frequencies[i] > 0.0))
-      fail("frequencies must be greater than 0; use 'offset' for a constant");
-    piece.harmonics.push_back(
-        {h.amplitudes[i], 2.0 * k_pi * h.frequencies[i], h.phases.empty() ? 0.0 : h.phases[i]});
+    if (!(h.frequencies[i] > 0.0)) fail("frequencies must be greater than 0; use 'offset' for a constant");
+    piece.harmonics.push_back({h.amplitudes[i], 2.0 * k_pi * h.frequencies[i], h.phases.empty() ? 0.0 : h.phases[i]});
   }
   std::vector<Piece> pieces{piece};
   if (h.duration) pieces.push_back(polynomial(h.start + *h.duration, 0.0));
@@ -213,22 +213,15 @@ const SignalKind& harmonics_kind() {
                  "offset + sum of amplitude cos(2 pi frequency (t - start) + phase), zero before "
                  "start; a phase of -90 deg makes a sine.",
                  {},
-                 make_held<SignalDefinition, Harmonics>, copy_held<SignalDefinition, Harmonics>,
+                 make_held<SignalDefinition, Harmonics>,
+                 copy_held<SignalDefinition, Harmonics>,
                  build_harmonics};
     k.fields.add("offset", &Harmonics::offset).in("*").doc("constant added to the harmonics");
     k.fields.add("amplitudes", &Harmonics::amplitudes).in("*").required().doc("one per harmonic");
-    k.fields.add("frequencies", &Harmonics::frequencies)
-        .in("Hz")
-        .required()
-        .doc("cycles per second, one per harmonic");
-    k.fields.add("phases", &Harmonics::phases)
-        .in("rad")
-        .doc("one per harmonic; all 0 if not given");
+    k.fields.add("frequencies", &Harmonics::frequencies).in("Hz").required().doc("cycles per second, one per harmonic");
+    k.fields.add("phases", &Harmonics::phases).in("rad").doc("one per harmonic; all 0 if not given");
     k.fields.add("start", &Harmonics::start).in("s").doc("time at which the signal begins");
-    k.fields.add("duration", &Harmonics::duration)
-        .in("s")
-        .positive()
-        .doc("zero again after this time; endless if not given");
+    k.fields.add("duration", &Harmonics::duration).in("s").positive().doc("zero again after this time; endless if not given");
     return k;
   }();
   return kind;
@@ -238,10 +231,8 @@ const SignalKind& harmonics_kind() {
 
 const std::vector<const SignalKind*>& signal_kinds() {
   static const std::vector<const SignalKind*> kinds{
-      &constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
-      &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
-      &sum_kind(),       &product_kind(),   &scaled_kind(),
-      &road_kind(),      &random_kind(),    &sea_kind()};
+      &constant_kind(), &haversine_kind(), &half_sine_kind(), &triangle_kind(), &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
+      &sum_kind(),      &product_kind(),   &scaled_kind(),    &road_kind(),     &random_kind(),    &sea_kind()};
   return kinds;
 }
 

@@ -12,10 +12,8 @@ std::vector<std::string> parts_of(const FieldTable& fields, const void* object) 
   for (const Field& field : fields.fields()) {
     if (field.type != FieldType::signal && field.type != FieldType::signals) continue;
     const FieldValue value = field.get(object);
-    if (const auto* list = std::get_if<std::vector<std::string>>(&value))
-      names.insert(names.end(), list->begin(), list->end());
-    else if (const auto& name = std::get<std::string>(value); !name.empty())
-      names.push_back(name);
+    if (const auto* list = std::get_if<std::vector<std::string>>(&value)) names.insert(names.end(), list->begin(), list->end());
+    else if (const auto& name = std::get<std::string>(value); !name.empty()) names.push_back(name);
   }
   return names;
 }
@@ -44,9 +42,9 @@ template <class Items> std::shared_ptr<const SignalDefinition> completed(const I
   const FieldValue value = field->get(entry.definition.get());
   const double* const given = std::get_if<double>(&value);
   if (given && *given != *speed)
-    throw ModelError(entry.definition->where, subject_text(entry.kind->name, entry.definition->name) + ": 'speed' is " + number_text(*given) +
-                                                  " m/s, but that of its signal '" + parts.front() + "' is " + number_text(*speed) +
-                                                  " m/s: leave it out");
+    throw ModelError(entry.definition->where, subject_text(entry.kind->name, entry.definition->name) + ": 'speed' is " +
+                                                  number_text(*given) + " m/s, but that of its signal '" + parts.front() + "' is " +
+                                                  number_text(*speed) + " m/s: leave it out");
   if (given) return entry.definition;
   const auto copy = entry.kind->copy(*entry.definition);
   field->set(copy.get(), *speed);
@@ -69,8 +67,7 @@ void SignalNetwork::fail_in_a_circle(const Item& item) const {
     if (is_inside) circle += " -> '" + link->entry->definition->name + "'";
     is_inside = is_inside || link == &item;
   }
-  throw ModelError(definition.where, "signal '" + definition.name + "' is made of itself: " + circle + " -> '" +
-                                         definition.name + "'");
+  throw ModelError(definition.where, "signal '" + definition.name + "' is made of itself: " + circle + " -> '" + definition.name + "'");
 }
 
 const Signal* SignalNetwork::build(const std::string& name) {

@@ -14,9 +14,7 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_flat = 1e-5; // of an exponent: terms left out of its series are below 1e-15
 
-double log_of(double x) {
-  return portable::log10(x) * std::numbers::ln10;
-}
+double log_of(double x) { return portable::log10(x) * std::numbers::ln10; }
 
 // S(f) = value (f / from)^exponent between two points.
 struct PowerLaw {
@@ -46,8 +44,7 @@ Signal::Piece level(double start, double value) {
 // The waves, τ later than they are given.
 std::vector<Signal::Harmonic> later(const std::vector<Signal::Harmonic>& waves, double tau) {
   std::vector<Signal::Harmonic> result = waves;
-  for (Signal::Harmonic& h : result)
-    h.phase += h.frequency * tau;
+  for (Signal::Harmonic& h : result) h.phase += h.frequency * tau;
   return result;
 }
 
@@ -59,10 +56,8 @@ Signal::Piece ramp(double start, double length, double sign, const std::vector<S
     piece.harmonics.push_back({0.5 * h.amplitude, h.frequency, h.phase});
     for (const double side : {turn, -turn}) {
       const double frequency = h.frequency + side, amplitude = 0.25 * sign * h.amplitude;
-      if (frequency != 0.0)
-        piece.harmonics.push_back({amplitude, frequency, h.phase});
-      else
-        piece.c[0] += amplitude * portable::cos(h.phase);
+      if (frequency != 0.0) piece.harmonics.push_back({amplitude, frequency, h.phase});
+      else piece.c[0] += amplitude * portable::cos(h.phase);
     }
   }
   return piece;
@@ -80,9 +75,7 @@ std::vector<Signal::Harmonic> waves_of(const SpectralDensity& density, const Wav
     for (double a = begin; a < end;) {
       const double width = std::max(rules.relative_width * a, rules.least_width);
       const double b = a + (1.0 + k_sliver) * width < end ? a + width : end;
-      const auto drawn = [&, index = waves.size()](std::uint32_t which) {
-        return counter_uniform(rules.seed, rules.stream, index, which);
-      };
+      const auto drawn = [&, index = waves.size()](std::uint32_t which) { return counter_uniform(rules.seed, rules.stream, index, which); };
       const double size = rules.is_gaussian ? std::sqrt(-2.0 * log_of(drawn(2))) : std::numbers::sqrt2;
       waves.push_back({size * std::sqrt(law.integral(a, b)), 2.0 * k_pi * law.quantile(a, b, drawn(0)), 2.0 * k_pi * drawn(1)});
       a = b;

@@ -1,7 +1,7 @@
 #include "mbd/model/validate.h"
 
-#include "mbd/base/shown_text.h"
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/model/field_units.h"
 #include "mbd/model/method.h"
 #include "mbd/model/signal_network.h"
@@ -29,23 +29,18 @@ std::string missing_field_message(const Field& field, const std::string& subject
   return text + ")";
 }
 
-bool is_excused(const Body& body, const Field& field) {
-  return body.fixed && (field.name == "mass" || field.name == "inertia");
-}
+bool is_excused(const Body& body, const Field& field) { return body.fixed && (field.name == "mass" || field.name == "inertia"); }
 
 namespace {
 
 std::string place_text(const Location& first, const Location& second) {
   if (first.line == 0) return "";
   std::string text = " (line " + std::to_string(first.line);
-  if (first.file != second.file)
-    text += " of " + std::filesystem::path(first.file).filename().string();
+  if (first.file != second.file) text += " of " + std::filesystem::path(first.file).filename().string();
   return text + ")";
 }
 
-std::string of(const Field& field, const std::string& subject) {
-  return "'" + field.name + "' of " + subject;
-}
+std::string of(const Field& field, const std::string& subject) { return "'" + field.name + "' of " + subject; }
 
 std::string with_unit(double value, const std::string& unit) {
   const bool is_known = !unit.empty() && unit != "*" && unit.find('|') == std::string::npos;
@@ -54,15 +49,11 @@ std::string with_unit(double value, const std::string& unit) {
 
 std::string reference_noun(FieldType type) {
   switch (type) {
-  case FieldType::body:
-    return "body";
-  case FieldType::marker:
-    return "marker or body";
+  case FieldType::body: return "body";
+  case FieldType::marker: return "marker or body";
   case FieldType::signal:
-  case FieldType::signals:
-    return "signal";
-  default:
-    return "element";
+  case FieldType::signals: return "signal";
+  default: return "element";
   }
 }
 
@@ -74,14 +65,10 @@ bool is_absent(const FieldValue& value) {
 
 std::string number_problem(const Field& field, double value) {
   std::string need;
-  if (!std::isfinite(value))
-    need = "finite";
-  else if (field.is_minimum_excluded && !(value > field.minimum))
-    need = "greater than " + with_unit(field.minimum, field.unit);
-  else if (value < field.minimum)
-    need = "at least " + with_unit(field.minimum, field.unit);
-  else if (value > field.maximum)
-    need = "at most " + with_unit(field.maximum, field.unit);
+  if (!std::isfinite(value)) need = "finite";
+  else if (field.is_minimum_excluded && !(value > field.minimum)) need = "greater than " + with_unit(field.minimum, field.unit);
+  else if (value < field.minimum) need = "at least " + with_unit(field.minimum, field.unit);
+  else if (value > field.maximum) need = "at most " + with_unit(field.maximum, field.unit);
   return need.empty() ? "" : "must be " + need + ", got " + number_text(value);
 }
 
@@ -121,28 +108,20 @@ std::string range_problem(const Field& field, const FieldValue& value) {
   }
 }
 
-FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems)
-    : problems_(problems) {
+FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems) : problems_(problems) {
   bodies_.insert("ground");
-  for (const Body& body : model.bodies)
-    bodies_.insert(body.name);
-  for (const Marker& marker : model.markers)
-    markers_.insert(marker.name);
-  for (const SignalEntry& entry : model.signals)
-    signals_.insert(entry.definition->name);
-  for (const ElementEntry& entry : model.elements)
-    elements_.insert(entry.element->name);
+  for (const Body& body : model.bodies) bodies_.insert(body.name);
+  for (const Marker& marker : model.markers) markers_.insert(marker.name);
+  for (const SignalEntry& entry : model.signals) signals_.insert(entry.definition->name);
+  for (const ElementEntry& entry : model.elements) elements_.insert(entry.element->name);
 }
 
-void FieldChecker::check(const FieldTable& table, const void* object, const std::string& subject,
-                         const Locate& locate) {
+void FieldChecker::check(const FieldTable& table, const void* object, const std::string& subject, const Locate& locate) {
   for (const Field& field : table.fields())
-    if (const std::optional<Location> where = locate(field.name))
-      check_field(field, field.get(object), subject, *where);
+    if (const std::optional<Location> where = locate(field.name)) check_field(field, field.get(object), subject, *where);
 }
 
-void FieldChecker::check_field(const Field& field, const FieldValue& value,
-                               const std::string& subject, const Location& where) {
+void FieldChecker::check_field(const Field& field, const FieldValue& value, const std::string& subject, const Location& where) {
   if (is_absent(value)) {
     if (field.is_required && field.name != "name") // names have a check of their own
       problems_.push_back({where, missing_field_message(field, subject)});
@@ -154,46 +133,35 @@ void FieldChecker::check_field(const Field& field, const FieldValue& value,
   case FieldType::body:
   case FieldType::marker:
   case FieldType::signal:
-  case FieldType::element:
-    check_reference(field, std::get<std::string>(value), subject, where);
-    break;
+  case FieldType::element: check_reference(field, std::get<std::string>(value), subject, where); break;
   case FieldType::signals:
   case FieldType::elements:
-    for (const std::string& name : std::get<std::vector<std::string>>(value))
-      check_reference(field, name, subject, where);
+    for (const std::string& name : std::get<std::vector<std::string>>(value)) check_reference(field, name, subject, where);
     break;
-  default:
-    break;
+  default: break;
   }
 }
 
-void FieldChecker::check_reference(const Field& field, const std::string& name,
-                                   const std::string& subject, const Location& where) {
+void FieldChecker::check_reference(const Field& field, const std::string& name, const std::string& subject, const Location& where) {
   if (refers(field.type, name)) return;
-  problems_.push_back({where, of(field, subject) + ": there is no " + reference_noun(field.type) +
-                                  " '" + name + "'" + suggestion(field.type, name)});
+  problems_.push_back(
+      {where, of(field, subject) + ": there is no " + reference_noun(field.type) + " '" + name + "'" + suggestion(field.type, name)});
 }
 
 bool FieldChecker::refers(FieldType type, const std::string& name) const {
   switch (type) {
-  case FieldType::body:
-    return bodies_.count(name) > 0;
-  case FieldType::marker:
-    return markers_.count(name) > 0 || bodies_.count(name) > 0;
+  case FieldType::body: return bodies_.count(name) > 0;
+  case FieldType::marker: return markers_.count(name) > 0 || bodies_.count(name) > 0;
   case FieldType::signal:
-  case FieldType::signals:
-    return signals_.count(name) > 0;
-  default:
-    return elements_.count(name) > 0;
+  case FieldType::signals: return signals_.count(name) > 0;
+  default: return elements_.count(name) > 0;
   }
 }
 
 std::string FieldChecker::suggestion(FieldType type, const std::string& name) {
   if (--suggestions_left_ < 0) return "";
   std::vector<std::string> known;
-  const auto take = [&](const Names& names) {
-    known.insert(known.end(), names.begin(), names.end());
-  };
+  const auto take = [&](const Names& names) { known.insert(known.end(), names.begin(), names.end()); };
   if (type == FieldType::marker) take(markers_);
   if (type == FieldType::marker || type == FieldType::body) take(bodies_);
   if (type == FieldType::signal || type == FieldType::signals) take(signals_);
@@ -207,19 +175,15 @@ namespace {
 // One run over a model.
 class Validation {
 public:
-  Validation(const Model& model, const FieldLocator& locate)
-      : model_(model), locate_(locate), checker_(model, problems_) {}
+  Validation(const Model& model, const FieldLocator& locate) : model_(model), locate_(locate), checker_(model, problems_) {}
 
   std::vector<Diagnostic> run() {
     if (model_.bodies.empty())
       if (const auto where = locate(Section::header, 0, "body", model_.header.where))
         add(*where, "the model has no body: add at least one [[body]]");
-    check_table(Section::header, 0, ModelHeader::fields(), &model_.header, "the model",
-                model_.header.where);
-    check_table(Section::simulation, 0, SimulationSettings::fields(), &model_.simulation,
-                "[simulation]", model_.simulation.where);
-    check_table(Section::output, 0, OutputSettings::fields(), &model_.output, "[output]",
-                model_.output.where);
+    check_table(Section::header, 0, ModelHeader::fields(), &model_.header, "the model", model_.header.where);
+    check_table(Section::simulation, 0, SimulationSettings::fields(), &model_.simulation, "[simulation]", model_.simulation.where);
+    check_table(Section::output, 0, OutputSettings::fields(), &model_.output, "[output]", model_.output.where);
     check_settings();
     check_bodies();
     check_markers();
@@ -229,26 +193,21 @@ public:
   }
 
 private:
-  void add(const Location& where, std::string message) {
-    problems_.push_back({where, std::move(message)});
-  }
+  void add(const Location& where, std::string message) { problems_.push_back({where, std::move(message)}); }
 
-  std::optional<Location> locate(Section section, std::size_t index, const std::string& field,
-                                 const Location& fallback) const {
+  std::optional<Location> locate(Section section, std::size_t index, const std::string& field, const Location& fallback) const {
     return locate_ ? locate_(section, index, field) : fallback;
   }
 
-  void check_table(Section section, std::size_t index, const FieldTable& table, const void* object,
-                   const std::string& subject, const Location& where) {
-    checker_.check(table, object, subject,
-                   [&](const std::string& field) { return locate(section, index, field, where); });
+  void check_table(Section section, std::size_t index, const FieldTable& table, const void* object, const std::string& subject,
+                   const Location& where) {
+    checker_.check(table, object, subject, [&](const std::string& field) { return locate(section, index, field, where); });
   }
 
   using Seen = std::unordered_map<std::string, Location>;
 
   // Names: there, and not used twice.
-  void check_name(Section section, std::size_t index, const std::string& noun,
-                  const std::string& name, const Location& where, Seen& seen) {
+  void check_name(Section section, std::size_t index, const std::string& noun, const std::string& name, const Location& where, Seen& seen) {
     const std::optional<Location> place = locate(section, index, "name", where);
     if (!place) return;
     if (name.empty()) {
@@ -259,8 +218,8 @@ private:
       add(*place, subject_text(noun, "") + " '" + name + "': the name must not hold control characters");
     const auto [first, is_new] = seen.emplace(name, *place);
     if (!is_new)
-      add(*place, subject_text(noun, "") + " named '" + name + "' exists already" +
-                      place_text(first->second, *place) + ": choose another name");
+      add(*place,
+          subject_text(noun, "") + " named '" + name + "' exists already" + place_text(first->second, *place) + ": choose another name");
   }
 
   void check_settings();
@@ -287,21 +246,16 @@ void Validation::check_settings() {
   // the integrator alone can be changed.
   if (has_fixed_step(s.integrator) && !s.step)
     complain(Section::simulation, "step",
-             "[simulation] needs 'step' for the fixed-step integrator '" + s.integrator +
-                 "', for example step = 1e-4");
+             "[simulation] needs 'step' for the fixed-step integrator '" + s.integrator + "', for example step = 1e-4");
   const std::string end = "'end' of [simulation], " + number_text(s.end) + " s";
   if (s.step && *s.step > s.end && s.end > 0.0)
-    complain(Section::simulation, "step",
-             "'step' of [simulation], " + number_text(*s.step) + " s, is larger than " + end);
+    complain(Section::simulation, "step", "'step' of [simulation], " + number_text(*s.step) + " s, is larger than " + end);
   if (s.step && has_fixed_step(s.integrator) && s.end / *s.step > k_most_steps)
     complain(Section::simulation, "step",
-             "'step' of [simulation], " + number_text(*s.step) + " s, takes " + number_text(s.end / *s.step) +
-                 " steps to " + end + ": choose a larger one; more than " + number_text(k_most_steps) +
-                 " steps are not begun");
+             "'step' of [simulation], " + number_text(*s.step) + " s, takes " + number_text(s.end / *s.step) + " steps to " + end +
+                 ": choose a larger one; more than " + number_text(k_most_steps) + " steps are not begun");
   if (model_.output.step > s.end && s.end > 0.0)
-    complain(Section::output, "step",
-             "'step' of [output], " + number_text(model_.output.step) + " s, is larger than " +
-                 end);
+    complain(Section::output, "step", "'step' of [output], " + number_text(model_.output.step) + " s, is larger than " + end);
 }
 
 void Validation::check_bodies() {
@@ -312,13 +266,11 @@ void Validation::check_bodies() {
     if (body.name == "ground")
       if (const auto where = locate(Section::body, i, "name", body.where))
         add(*where, "the name 'ground' is taken by the ground: choose another name");
-    checker_.check(Body::fields(), &body, subject_text("body", body.name),
-                   [&](const std::string& name) -> std::optional<Location> {
-                     const Field& field = *Body::fields().find(name);
-                     if (is_excused(body, field) && std::get<double>(field.get(&body)) == 0.0)
-                       return std::nullopt;
-                     return locate(Section::body, i, name, body.where);
-                   });
+    checker_.check(Body::fields(), &body, subject_text("body", body.name), [&](const std::string& name) -> std::optional<Location> {
+      const Field& field = *Body::fields().find(name);
+      if (is_excused(body, field) && std::get<double>(field.get(&body)) == 0.0) return std::nullopt;
+      return locate(Section::body, i, name, body.where);
+    });
   }
 }
 
@@ -363,8 +315,7 @@ void Validation::check_signals() {
     const SignalDefinition& signal = *entry.definition;
     check_name(Section::signal, i, "signal", signal.name, signal.where, seen);
     const std::size_t before = problems_.size();
-    check_table(Section::signal, i, entry.kind->fields, &signal,
-                subject_text(entry.kind->name, signal.name), signal.where);
+    check_table(Section::signal, i, entry.kind->fields, &signal, subject_text(entry.kind->name, signal.name), signal.where);
     if (problems_.size() != before || !is_readable(i)) network.exclude(signal.name);
   }
   for (const SignalEntry& entry : model_.signals) check_signal_value(network, entry.definition->name);
@@ -377,15 +328,12 @@ void Validation::check_elements() {
     const Element& element = *entry.element;
     check_name(Section::element, i, "element", element.name, element.where, seen);
     for (const FieldTable* table : {&entry.kind->fields, &Element::common_fields()})
-      check_table(Section::element, i, *table, &element,
-                  subject_text(entry.kind->name, element.name), element.where);
+      check_table(Section::element, i, *table, &element, subject_text(entry.kind->name, element.name), element.where);
   }
 }
 
 } // namespace
 
-std::vector<Diagnostic> validate(const Model& model, const FieldLocator& locate) {
-  return Validation(model, locate).run();
-}
+std::vector<Diagnostic> validate(const Model& model, const FieldLocator& locate) { return Validation(model, locate).run(); }
 
 } // namespace steplap

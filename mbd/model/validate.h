@@ -15,8 +15,7 @@ enum class Section { header, simulation, output, body, marker, signal, element }
 
 /// Where a field of the index-th object of a section stands; nullopt: its error is reported
 /// already.
-using FieldLocator =
-    std::function<std::optional<Location>(Section, std::size_t index, const std::string& field)>;
+using FieldLocator = std::function<std::optional<Location>(Section, std::size_t index, const std::string& field)>;
 
 /// All that is wrong with the model, empty if it can be compiled. Without `locate` every message
 /// points at the object's own place.
@@ -32,18 +31,15 @@ public:
   FieldChecker(const Model& model, std::vector<Diagnostic>& problems);
 
   /// `subject` is what messages call the object: "body 'tank'".
-  void check(const FieldTable& table, const void* object, const std::string& subject,
-             const Locate& locate);
+  void check(const FieldTable& table, const void* object, const std::string& subject, const Locate& locate);
   /// True for "ground", too.
   [[nodiscard]] bool is_body(const std::string& name) const { return bodies_.count(name) > 0; }
 
 private:
   using Names = std::unordered_set<std::string>;
 
-  void check_field(const Field& field, const FieldValue& value, const std::string& subject,
-                   const Location& where);
-  void check_reference(const Field& field, const std::string& name, const std::string& subject,
-                       const Location& where);
+  void check_field(const Field& field, const FieldValue& value, const std::string& subject, const Location& where);
+  void check_reference(const Field& field, const std::string& name, const std::string& subject, const Location& where);
   [[nodiscard]] bool refers(FieldType type, const std::string& name) const;
   [[nodiscard]] std::string suggestion(FieldType type, const std::string& name);
 

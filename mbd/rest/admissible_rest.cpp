@@ -12,9 +12,9 @@ namespace steplap {
 namespace {
 
 constexpr double k_rank = 1e-9;
-constexpr double k_balance = 1e-7;   // of the forces: what may be left of their balance
-constexpr double k_give = 4.0;       // contacts give way by the load's scale over their stiffness, or so many times it
-constexpr double k_settled = 1e-12;  // of the same: of the last change of the pose
+constexpr double k_balance = 1e-7;  // of the forces: what may be left of their balance
+constexpr double k_give = 4.0;      // contacts give way by the load's scale over their stiffness, or so many times it
+constexpr double k_settled = 1e-12; // of the same: of the last change of the pose
 constexpr double k_most_usage = 64.0;
 constexpr int k_rounds = 10, k_halvings = 40, k_projections = 12;
 
@@ -33,8 +33,7 @@ public:
     VecX value = c.a * z_ + c.b;
     t_ = value.maxCoeff() + 1.0;
     for (double sharp = 1.0; sharp < 1e11; sharp *= 8.0)
-      for (int i = 0; i < 40 && newton(c, sharp); ++i) {
-      }
+      for (int i = 0; i < 40 && newton(c, sharp); ++i) {}
     return (c.a * z_ + c.b).maxCoeff();
   }
   [[nodiscard]] const VecX& point() const { return z_; }
@@ -104,8 +103,7 @@ private:
   void split_rows() {
     hard_.clear();
     bounded_.clear();
-    for (int r = 0; r < static_cast<int>(statics_.rows().size()); ++r)
-      (is_bounded(statics_.rows()[r]) ? bounded_ : hard_).push_back(r);
+    for (int r = 0; r < static_cast<int>(statics_.rows().size()); ++r) (is_bounded(statics_.rows()[r]) ? bounded_ : hard_).push_back(r);
   }
 
   // Motions that the joints leave free, and the balance along them as A x = right for x = (κ η, w).
@@ -176,8 +174,7 @@ private:
       normals.push_back(by);
       forces.push_back(before);
     }
-    if (give_ == 0.0 && softest > 0.0)
-      give_ = k_give * std::max(pressed, statics_.force().cwiseAbs().maxCoeff()) / softest;
+    if (give_ == 0.0 && softest > 0.0) give_ = k_give * std::max(pressed, statics_.force().cwiseAbs().maxCoeff()) / softest;
     normal_ = VecX::Map(forces.data(), static_cast<Eigen::Index>(forces.size()));
     normal_by_ = MatX(normal_.size(), unknowns);
     for (Eigen::Index i = 0; i < normal_.size(); ++i) normal_by_.row(i) = normals[static_cast<std::size_t>(i)].transpose();
@@ -235,8 +232,7 @@ private:
     }
     usage_ = high;
     at_ += force_scale_ * (ways_ * best);
-    for (std::size_t i = 0; i < bounded_.size(); ++i)
-      lambda_[bounded_[i]] = at_[free_.cols() + static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < bounded_.size(); ++i) lambda_[bounded_[i]] = at_[free_.cols() + static_cast<Eigen::Index>(i)];
     return true;
   }
 

@@ -24,7 +24,6 @@ struct AdmissibleRest {
 
 /// About `state`, a pose in which forces balance with friction stuck. `scale` per coordinate (Descent::scale): metres
 /// for radians; `length`: of the scene. Nothing where the forces cannot balance, or only in a pose far off.
-[[nodiscard]] std::optional<AdmissibleRest> admissible_rest(const System& system, const State& state, const VecX& scale,
-                                                            double length);
+[[nodiscard]] std::optional<AdmissibleRest> admissible_rest(const System& system, const State& state, const VecX& scale, double length);
 
 } // namespace steplap

@@ -1,8 +1,8 @@
 #include "mbd/rest/assembly.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/base/shown_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,8 +85,8 @@ private:
   }
 
   // A projected step that does not lead away; halved until it does not.
-  bool step(const std::vector<double>& y, const std::vector<double>& allowed, const std::deque<double>& last,
-            double length, std::vector<double>& next) const {
+  bool step(const std::vector<double>& y, const std::vector<double>& allowed, const std::deque<double>& last, double length,
+            std::vector<double>& next) const {
     constexpr int k_max_halvings = 40;
     constexpr double k_decrease = 1e-4;
     const double limit = *std::max_element(last.begin(), last.end());
@@ -104,8 +104,8 @@ private:
     return false;
   }
 
-  [[nodiscard]] double next_length(const std::vector<double>& y, const std::vector<double>& next,
-                                   const std::vector<double>& before, const std::vector<double>& now) const {
+  [[nodiscard]] double next_length(const std::vector<double>& y, const std::vector<double>& next, const std::vector<double>& before,
+                                   const std::vector<double>& now) const {
     constexpr double k_shortest = 1e-3, k_longest = 10.0;
     std::vector<double> moved(n_), changed(n_);
     for (int i = 0; i < n_; ++i) {
@@ -173,7 +173,8 @@ void require_finite(const Model& model, const System& system, const State& state
     throw ModelError(body ? body->where : Location{}, "body '" + name + "' cannot be placed" + remedy);
   }
   for (const RowSpec& row : system.rows)
-    if (row.memory >= 0 && (!is_finite(state.memory[static_cast<std::size_t>(row.memory)]) || !is_finite(state.memory[static_cast<std::size_t>(row.memory) + 1])))
+    if (row.memory >= 0 && (!is_finite(state.memory[static_cast<std::size_t>(row.memory)]) ||
+                            !is_finite(state.memory[static_cast<std::size_t>(row.memory) + 1])))
       throw ModelError(model.elements[static_cast<std::size_t>(row.element)].element->where,
                        "'" + system.element_names[static_cast<std::size_t>(row.element)] + "' has no length or angle" + remedy);
   if (!std::all_of(state.memory.begin(), state.memory.end(), is_finite) || !std::all_of(state.inner.begin(), state.inner.end(), is_finite))
@@ -203,9 +204,10 @@ State assemble(const Model& model, const System& system) {
     const ElementEntry& entry = model.elements[failure.element];
     throw ModelError(entry.element->where,
                      entry.kind->name + " '" + entry.element->name + "' cannot be assembled: " +
-                         (std::isfinite(failure.residual) ? "with the other joints met it stays " + rounded_text(std::abs(failure.residual)) +
-                                                                (failure.is_angle ? " rad" : " m") + " off; move the bodies or change the joints"
-                                                          : std::string("distances are beyond what numbers hold; move bodies and markers nearer to each other")));
+                         (std::isfinite(failure.residual)
+                              ? "with the other joints met it stays " + rounded_text(std::abs(failure.residual)) +
+                                    (failure.is_angle ? " rad" : " m") + " off; move the bodies or change the joints"
+                              : std::string("distances are beyond what numbers hold; move bodies and markers nearer to each other")));
   }
   dynamics.unpack(state.t, y.data(), state);
   require_finite(model, system, state);
@@ -232,14 +234,11 @@ std::vector<AssemblyMove> assembly_moves(const State& given, const State& assemb
     move.body = static_cast<int>(i / 3);
     move.shift = portable::hypot(change(given.q, assembled.q, 0), change(given.q, assembled.q, 1));
     move.turn = change(given.q, assembled.q, 2);
-    move.velocity =
-        portable::hypot(change(given.v, assembled.v, 0), change(given.v, assembled.v, 1));
+    move.velocity = portable::hypot(change(given.v, assembled.v, 0), change(given.v, assembled.v, 1));
     move.angular_velocity = change(given.v, assembled.v, 2);
-    if (std::max({move.shift, std::abs(move.turn), move.velocity, std::abs(move.angular_velocity)}) > threshold)
-      moves.push_back(move);
+    if (std::max({move.shift, std::abs(move.turn), move.velocity, std::abs(move.angular_velocity)}) > threshold) moves.push_back(move);
   }
-  std::stable_sort(moves.begin(), moves.end(),
-                   [](const AssemblyMove& x, const AssemblyMove& y) { return x.shift > y.shift; });
+  std::stable_sort(moves.begin(), moves.end(), [](const AssemblyMove& x, const AssemblyMove& y) { return x.shift > y.shift; });
   return moves;
 }
 

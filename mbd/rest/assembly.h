@@ -21,12 +21,11 @@ namespace steplap {
 /// How far a body was moved to meet the joints: position, angle, velocity, angular velocity.
 struct AssemblyMove {
   int body = 0;
-  double shift = 0.0, turn = 0.0;            ///< m, rad
+  double shift = 0.0, turn = 0.0;                ///< m, rad
   double velocity = 0.0, angular_velocity = 0.0; ///< m/s, rad/s
 };
 
 /// Bodies of which anything changed by more than `threshold` between two states, the one shifted most first.
-[[nodiscard]] std::vector<AssemblyMove> assembly_moves(const State& given, const State& assembled,
-                                                       double threshold = 1e-9);
+[[nodiscard]] std::vector<AssemblyMove> assembly_moves(const State& given, const State& assembled, double threshold = 1e-9);
 
 } // namespace steplap

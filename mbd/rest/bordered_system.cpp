@@ -63,8 +63,7 @@ void BorderedSystem::find_order(const Sparse& a, const std::vector<SparseRow>& r
 }
 
 // f(place, place, value) of each entry of the upper triangle, in an order that hangs on the pattern alone.
-template <class F>
-void BorderedSystem::for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const {
+template <class F> void BorderedSystem::for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const {
   const auto put = [&](int i, int j, double value) {
     const int p = place_[i], q = place_[j];
     if (p <= q) f(p, q, value);

@@ -70,12 +70,12 @@ private:
   template <class F> void for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const;
 
   Eigen::Index n_ = 0, m_ = 0;
-  std::vector<int> place_;      ///< of each coordinate, then of each row
-  Sparse whole_;                ///< upper triangle, in that order
+  std::vector<int> place_;       ///< of each coordinate, then of each row
+  Sparse whole_;                 ///< upper triangle, in that order
   std::vector<double> diagonal_; ///< of coordinates, without σ D
-  std::vector<int> slot_;       ///< of each diagonal entry in whole_
-  std::vector<int> pattern_;    ///< of A and the rows that the order was made for
-  std::vector<int> entry_slot_; ///< in whole_, of each entry in turn
+  std::vector<int> slot_;        ///< of each diagonal entry in whole_
+  std::vector<int> pattern_;     ///< of A and the rows that the order was made for
+  std::vector<int> entry_slot_;  ///< in whole_, of each entry in turn
   VecX shift_by_;
   double delta_ = 0.0;
   int negative_ = 0;

@@ -22,8 +22,8 @@ double room_of(const GapBounds& bounds) { return std::max(bounds.gap, k_look * b
 // How far they go at most.
 double way_of(const GapBounds& bounds, const VecX& displacement) {
   const auto of = [&displacement](int body, int k) { return body == k_ground ? 0.0 : displacement[3 * body - 3 + k]; };
-  return portable::hypot(of(bounds.a, 0) - of(bounds.b, 0), of(bounds.a, 1) - of(bounds.b, 1)) + std::abs(of(bounds.a, 2)) * bounds.reach_a +
-         std::abs(of(bounds.b, 2)) * bounds.reach_b;
+  return portable::hypot(of(bounds.a, 0) - of(bounds.b, 0), of(bounds.a, 1) - of(bounds.b, 1)) +
+         std::abs(of(bounds.a, 2)) * bounds.reach_a + std::abs(of(bounds.b, 2)) * bounds.reach_b;
 }
 
 } // namespace

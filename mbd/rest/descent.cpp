@@ -1,8 +1,8 @@
 #include "mbd/rest/descent.h"
 
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/rest/finite_forces.h"
 #include "mbd/rest/landing.h"
-#include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,11 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // of the trust region: of the scene's length; rad
 // rad: poses half a turn apart are not to be taken for each other
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
-constexpr double k_balanced = 1e-11;  // Newton steps below this share of the length are the pose's rounding
+constexpr double k_balanced = 1e-11; // Newton steps below this share of the length are the pose's rounding
 constexpr double k_nearly_balanced = 1e-8;
-constexpr double k_nudge = 1e-3;      // of the length, rad
+constexpr double k_nudge = 1e-3;         // of the length, rad
 constexpr double k_turned_against = 0.5; // of the work along the tangent
-constexpr double k_far = 1e4;         // lengths of the scene
+constexpr double k_far = 1e4;            // lengths of the scene
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_looks = 1000; // along a step
 constexpr int k_most_halved_looks = 40;
@@ -76,8 +76,7 @@ void Descent::linearise() {
 
 double Descent::step_size(const VecX& step) const {
   double size = 0.0;
-  for (int i = 0; i < n_; ++i)
-    size = std::max(size, i % 3 < 2 ? std::abs(step[i]) / radius_ : std::abs(step[i]) * scale_[i] / turn_);
+  for (int i = 0; i < n_; ++i) size = std::max(size, i % 3 < 2 ? std::abs(step[i]) / radius_ : std::abs(step[i]) * scale_[i] / turn_);
   return size;
 }
 
@@ -111,9 +110,7 @@ bool Descent::move_to(const std::vector<double>& from, const VecX& step) {
 }
 
 // Work against the step's tangent at its end.
-double Descent::slope_along(const VecX& step) const {
-  return -landscape_->along_rows(step).dot(scale_.cwiseProduct(statics_.force()));
-}
+double Descent::slope_along(const VecX& step) const { return -landscape_->along_rows(step).dot(scale_.cwiseProduct(statics_.force())); }
 
 // A step that bends away from a stiff contact's or spring's way is brought back to it; the slope there.
 double Descent::correct(const VecX& step, const std::vector<double>& from, double slope) {

@@ -18,9 +18,9 @@
 namespace steplap {
 
 enum class DescentEnd {
-  rest,     ///< forces balance, and nothing runs away at a nudge
+  rest,      ///< forces balance, and nothing runs away at a nudge
   runs_away, ///< some body moves on without end
-  no_way    ///< no step leads further, though forces do not balance
+  no_way     ///< no step leads further, though forces do not balance
 };
 
 class Descent {
@@ -84,13 +84,13 @@ private:
   bool is_sparse_ = false;
   double length_ = 1.0, reach_ = 1.0; ///< of the scene, and the largest coordinate
   double radius_ = 0.0, turn_ = 0.0;  ///< trust region: m, rad
-  VecX scale_;  ///< per coordinate: 1, or one over the body's radius
-  VecX mass_;   ///< of the scaled coordinates
+  VecX scale_;                        ///< per coordinate: 1, or one over the body's radius
+  VecX mass_;                         ///< of the scaled coordinates
   std::unique_ptr<Landscape> landscape_;
   std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
   double residual_ = 0.0;
-  std::vector<Hold> hold_; ///< per friction element
+  std::vector<Hold> hold_;     ///< per friction element
   std::vector<char> left_out_; ///< per row of friction: it depends on others that hold, and is not asked for
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;

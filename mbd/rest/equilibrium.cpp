@@ -1,11 +1,11 @@
 #include "mbd/rest/equilibrium.h"
 
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/events/blow.h"
 #include "mbd/rest/admissible_rest.h"
 #include "mbd/rest/indifference.h"
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/settling.h"
-#include "mbd/dynamics/dynamics.h"
-#include "mbd/events/blow.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 
@@ -21,14 +21,14 @@ namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
 constexpr double k_least_used = 1e-9;       // less is rounding
-constexpr double k_flowed = 1e-12; // of the scene's length: what an elastic joint has slid in the search is rounding
+constexpr double k_flowed = 1e-12;          // of the scene's length: what an elastic joint has slid in the search is rounding
 constexpr int k_most_flows = 200;
-constexpr double k_pushes = 1e3;     // tensions of a rope that are rounding: forces of a rest are known to some 1e-9 m/s²
-constexpr double k_on_rows = 1e-12;  // m, rad
+constexpr double k_pushes = 1e3;               // tensions of a rope that are rounding: forces of a rest are known to some 1e-9 m/s²
+constexpr double k_on_rows = 1e-12;            // m, rad
 constexpr std::size_t k_most_rope_changes = 8; // for each rope
 constexpr double k_short = 0.999;
-constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
-constexpr double k_tipped = 0.75; // rad
+constexpr int k_most_slips = 12;   // of one friction element, on the way to where it holds
+constexpr double k_tipped = 0.75;  // rad
 constexpr int k_most_shared = 150; // coordinates up to which it is asked for all ways in which friction could share a load
 // Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
 constexpr double k_stands = 1e-2;
@@ -45,8 +45,8 @@ struct Slip {
   double used = 0.0; ///< when it first gave way
   double from = 0.0; ///< its row's value then
   int times = 0;
-  bool is_least = false;   ///< `used` is the least of all ways to share the load
-  bool is_new = true;      ///< it has just begun
+  bool is_least = false;  ///< `used` is the least of all ways to share the load
+  bool is_new = true;     ///< it has just begun
   bool gives_way = false; ///< nothing but its friction resisted it
 };
 
@@ -97,7 +97,8 @@ private:
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     start_drives(system_, state_);
     const Settling settling = settle_in_time(system_, with_drives_held());
-    if (!settling.is_tried) throw ElementFailure(std::string(none.what()) + "; the scene is too large to be let go and damped", none.elements());
+    if (!settling.is_tried)
+      throw ElementFailure(std::string(none.what()) + "; the scene is too large to be let go and damped", none.elements());
     const std::string tried = std::string(none.what()) + "; let go and strongly damped, it does not come to rest either (" +
                               std::to_string(settling.steps) + " time steps)";
     if (!settling.rest) throw ElementFailure(tried, none.elements());
@@ -192,7 +193,8 @@ private:
     const double ratio = square > 0.0 ? along / square : 0.0;
     const double rest = ratio > 0.0 && ratio < 1.0 ? k_short * ratio / (1.0 - ratio) : 0.0;
     if (++flows_ > k_most_flows || ratio >= 1.0 || rest * most > length_)
-      throw NumericalFailure("no static equilibrium found: an elastic joint slides on and on, since nothing beside it bears what it lets go");
+      throw NumericalFailure(
+          "no static equilibrium found: an elastic joint slides on and on, since nothing beside it bears what it lets go");
     last_flow_ = rest > 0.0 ? std::vector<double>() : flow;
     for (std::size_t i = 0; i < flow.size(); ++i) state_.inner[i] += rest * flow[i];
     return true;
@@ -254,8 +256,8 @@ private:
   // Inextensible ropes are taut where the search found them taut, and slack else: at rest none may push, and none may be
   // longer than it is. True if one changes.
   bool change_ropes() {
-    const auto worst = std::max_element(pushing_.begin(), pushing_.end(),
-                                        [](const Overload& a, const Overload& b) { return a.wrench[0] < b.wrench[0]; });
+    const auto worst =
+        std::max_element(pushing_.begin(), pushing_.end(), [](const Overload& a, const Overload& b) { return a.wrench[0] < b.wrench[0]; });
     if (worst != pushing_.end()) {
       state_.friction[worst->friction].phase = FrictionPhase::slip;
       return count_rope(worst->friction);
@@ -264,7 +266,9 @@ private:
     place_bodies(state_.q, state_.v, motion);
     for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
       const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
-      if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length) continue;
+      if (!rope || state_.friction[f].phase == FrictionPhase::stick ||
+          rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length)
+        continue;
       state_.friction[f].phase = FrictionPhase::stick;
       try {
         put_on_rows();
@@ -278,7 +282,8 @@ private:
   }
   bool count_rope(int f) {
     if (++rope_changes_ <= k_most_rope_changes * system_.frictions.size()) return true;
-    throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided", {name_of(f)});
+    throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided",
+                         {name_of(f)});
   }
   // What runs away may hang on ropes that were slack where it began: once more with those taut that it has run beyond.
   bool tighten_long() {
@@ -364,8 +369,8 @@ private:
 
   // What is overloaded most slides, with what shares its load.
   void let_go() {
-    const auto worst = std::max_element(overloads_.begin(), overloads_.end(),
-                                        [](const Overload& a, const Overload& b) { return a.used < b.used; });
+    const auto worst =
+        std::max_element(overloads_.begin(), overloads_.end(), [](const Overload& a, const Overload& b) { return a.used < b.used; });
     for (const Overload& overload : overloads_) {
       if (overload.used < worst->used) continue;
       const int f = overload.friction;
@@ -391,8 +396,7 @@ private:
 
   void check_slides() const {
     for (const Slip& slip : slips_)
-      if (slip.gives_way && is_of_contacts(slip.friction) &&
-          std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
+      if (slip.gives_way && is_of_contacts(slip.friction) && std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
         fail_sliding(slip);
   }
 
@@ -415,15 +419,14 @@ private:
     const std::string unit = part.coordinate == 2 ? " N m" : " N";
     // An unstable rest is one: what there is none of is a rest that stays.
     std::string text = "no static equilibrium: ";
-    if (!result_.left.empty())
-      text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
+    if (!result_.left.empty()) text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
     if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
     if (end == DescentEnd::runs_away)
-      text += part_text(system_, part) + " goes on without end: nothing holds it against the " +
-              rounded(descent.driving_force()) + unit + " that drive it";
+      text += part_text(system_, part) + " goes on without end: nothing holds it against the " + rounded(descent.driving_force()) + unit +
+              " that drive it";
     else
-      text += "none was found; forces do not balance on " + part_text(system_, part) + " (" +
-              rounded(descent.residual()) + " m/s² are left after " + std::to_string(descent.iterations()) + " steps)";
+      text += "none was found; forces do not balance on " + part_text(system_, part) + " (" + rounded(descent.residual()) +
+              " m/s² are left after " + std::to_string(descent.iterations()) + " steps)";
     std::vector<std::string> names;
     if (!slips_.empty()) names.push_back(name_of(slips_.front().friction));
     names.push_back(system_.bodies[part.body].name);
@@ -480,18 +483,18 @@ private:
   const System& system_;
   const RestAlgebra algebra_;
   const LoadHistory history_;
-  int flows_ = 0;                  ///< of elastic joints, in the search
-  std::vector<double> last_flow_;  ///< per inner state
+  int flows_ = 0;                 ///< of elastic joints, in the search
+  std::vector<double> last_flow_; ///< per inner state
   const State& start_;
   State state_;
   double length_ = 0.0;
-  int yielding_ = 0; ///< directions in which nothing resists at the last rest
+  int yielding_ = 0;         ///< directions in which nothing resists at the last rest
   double least_usage_ = 0.0; ///< of friction over all ways to share the load, where that was asked
   bool was_shared_anew_ = false;
   bool is_too_large_ = false; ///< for other ways to share a load
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
-  std::vector<Overload> pushing_;  ///< taut ropes that would have to push
+  std::vector<Overload> pushing_; ///< taut ropes that would have to push
   std::size_t rope_changes_ = 0;
   Equilibrium result_;
 };
@@ -507,19 +510,18 @@ std::string part_text(const System& system, const MotionPart& part) {
 std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
   std::vector<std::string> remarks;
   if (found.hangs_on_way && found.is_settled)
-    remarks.push_back("friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
-                      "need not be the nearest, and which one hangs on the way to it");
+    remarks.push_back(
+        "friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
+        "need not be the nearest, and which one hangs on the way to it");
   else if (found.hangs_on_way)
     remarks.push_back("friction holds it where it slid to: this rest is one of many, need not be the nearest, and "
                       "which one hangs on the way to it");
-  for (const MotionPart& nudge : found.left)
-    remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
+  for (const MotionPart& nudge : found.left) remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
   for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));
   if (found.more_indifferent > 0)
     remarks.push_back("indifferent: so it is in " + std::to_string(found.more_indifferent) + " more directions");
   if (found.turned != 0.0)
-    remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " +
-                      rounded(found.turned * 180.0 / std::numbers::pi) +
+    remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " + rounded(found.turned * 180.0 / std::numbers::pi) +
                       "° on the way to this rest: it does not stand as given");
   for (const int f : found.slid)
     remarks.push_back("'" + system.element_names[system.frictions[f].element] +

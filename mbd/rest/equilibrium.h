@@ -46,8 +46,7 @@ struct Equilibrium {
 
 /// From `start`'s pose. Throws NumericalFailure if there is no equilibrium, saying what would move where and why.
 /// `algebra`: for tests that hold one against the other.
-[[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start,
-                                           RestAlgebra algebra = RestAlgebra::by_size);
+[[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra = RestAlgebra::by_size);
 
 /// "'bob' along -x", "'bob' turning clockwise".
 [[nodiscard]] std::string part_text(const System& system, const MotionPart& part);

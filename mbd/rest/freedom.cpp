@@ -118,7 +118,8 @@ private:
             f(i < rows_.size() ? i : static_cast<std::size_t>(parts_[i - rows_.size()].of), whole_[i], side, c);
     };
     for_entries([&](std::size_t r, const SchurRow& row, int side, int c) { response[3 * row.body[side] + c] += row.wj[side][c] * x[r]; });
-    for_entries([&](std::size_t r, const SchurRow& row, int side, int c) { result[r] += row.j[side][c] * response[3 * row.body[side] + c]; });
+    for_entries(
+        [&](std::size_t r, const SchurRow& row, int side, int c) { result[r] += row.j[side][c] * response[3 * row.body[side] + c]; });
     return result;
   }
 

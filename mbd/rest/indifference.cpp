@@ -37,7 +37,8 @@ std::vector<std::string> indifference_texts(const System& system, const std::vec
     if (bodies.size() == 1)
       texts.push_back("indifferent: nothing holds " + part_text(system, *only) + " or against it; it rests wherever it is");
     else if (!bodies.empty())
-      texts.push_back("indifferent: nothing holds " + names_text(system, bodies) + " " + k_ways[coordinate] + ", either way; they rest wherever they are");
+      texts.push_back("indifferent: nothing holds " + names_text(system, bodies) + " " + k_ways[coordinate] +
+                      ", either way; they rest wherever they are");
   }
   return texts;
 }

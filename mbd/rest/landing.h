@@ -42,8 +42,8 @@ private:
 
   const System& system_;
   const Statics& statics_;
-  std::vector<int> parent_; ///< of bodies, by union and find; 0 is the ground, which joins nothing
-  std::vector<Pair> open_;  ///< contacts that may close
+  std::vector<int> parent_;      ///< of bodies, by union and find; 0 is the ground, which joins nothing
+  std::vector<Pair> open_;       ///< contacts that may close
   std::vector<char> is_carried_; ///< islands with a closed contact
   // Of each island: between which shares of the step its first contact closes, and the contacts that do.
   std::vector<double> low_, high_;

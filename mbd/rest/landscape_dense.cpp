@@ -25,8 +25,8 @@ public:
     stiffness_ = scene_.scale.asDiagonal() * statics.stiffness(lambda_) * scene_.scale.asDiagonal();
     VecX reactions = VecX::Zero(force_.size());
     if (!t.kept.empty()) reactions = t.held.cwiseAbs() * (t.held.transpose() * force_).cwiseAbs();
-    const VecX rounding = rounding_of(state, force_.cwiseAbs() + reactions,
-                                      [&](const VecX& place) { return VecX(stiffness_.cwiseAbs() * place); });
+    const VecX rounding =
+        rounding_of(state, force_.cwiseAbs() + reactions, [&](const VecX& place) { return VecX(stiffness_.cwiseAbs() * place); });
     force_ -= t.held * (t.held.transpose() * force_);
     shape_ = t.free;
     find_modes();
@@ -56,9 +56,7 @@ public:
     return false;
   }
 
-  bool is_skew() const override {
-    return (reduced_ - reduced_.transpose()).cwiseAbs().sum() > 1e-9 * reduced_.cwiseAbs().sum();
-  }
+  bool is_skew() const override { return (reduced_ - reduced_.transpose()).cwiseAbs().sum() > 1e-9 * reduced_.cwiseAbs().sum(); }
 
   double imbalance() const override { return share_.size() > 0 ? share_.cwiseAbs().maxCoeff() : 0.0; }
 
@@ -104,9 +102,7 @@ public:
     return static_cast<int>((eigenvalues(reduced_).real().array() <= rounding).count());
   }
 
-  VecX acceleration() override {
-    return share_.size() > 0 ? VecX(shape_ * share_) : VecX(VecX::Zero(force_.size()));
-  }
+  VecX acceleration() override { return share_.size() > 0 ? VecX(shape_ * share_) : VecX(VecX::Zero(force_.size())); }
 
   std::vector<MotionPart> indifferent(int& unnamed) override {
     unnamed = 0;
@@ -129,9 +125,7 @@ public:
 
   const VecX& row_size() const override { return end_.row_size; }
 
-  VecX along_rows(const VecX& vector) const override {
-    return vector - end_.held * (end_.held.transpose() * vector);
-  }
+  VecX along_rows(const VecX& vector) const override { return vector - end_.held * (end_.held.transpose() * vector); }
 
   // With the stiffness of the step's start.
   VecX stiff_imbalance(double& size) override {
@@ -192,8 +186,7 @@ MotionPart largest_part(const VecX& scaled) {
   return {static_cast<int>(at) / 3 + 1, static_cast<int>(at) % 3, scaled[at] < 0.0 ? -1.0 : 1.0};
 }
 
-VecX Landscape::rounding_of(const State& state, const VecX& sizes,
-                            const std::function<VecX(const VecX&)>& stiffness) const {
+VecX Landscape::rounding_of(const State& state, const VecX& sizes, const std::function<VecX(const VecX&)>& stiffness) const {
   VecX place(sizes.size());
   for (Eigen::Index i = 0; i < place.size(); ++i)
     place[i] = std::max(scene_.length, std::abs(state.q[static_cast<std::size_t>(i) + 3]) / scene_.scale[i]);

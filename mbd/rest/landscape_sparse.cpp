@@ -20,12 +20,12 @@ using Entry = Statics::Entry;
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // Of the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
-constexpr double k_small = 1e-11;     // of the scene's length: steps that are the pose's rounding
+constexpr double k_small = 1e-11; // of the scene's length: steps that are the pose's rounding
 constexpr int k_most_filters = 8;
 constexpr double k_well_inside = 0.5; // of the trust region's radius: a step that is long enough
 constexpr double k_close = 1.2;       // ratio of two σ that is not worth a factorisation
 constexpr int k_most_shifts = 60;
-constexpr int k_named = 24;           // directions
+constexpr int k_named = 24; // directions
 constexpr double k_skew = 1e-9;
 
 double largest(const VecX& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
@@ -49,10 +49,8 @@ public:
     find_stiffness(whole);
     VecX pull = VecX::Zero(n_);
     for (std::size_t r = 0; r < rows().size(); ++r)
-      for (int k = 0; k < rows()[r].count; ++k)
-        pull[rows()[r].at[k]] += std::abs(rows()[r].j[k] * reaction[static_cast<Eigen::Index>(r)]);
-    rounding_ = rounding_of(state, whole.cwiseAbs() + pull,
-                            [this](const VecX& place) { return VecX(size_ * (hat_.cwiseAbs() * place)); });
+      for (int k = 0; k < rows()[r].count; ++k) pull[rows()[r].at[k]] += std::abs(rows()[r].j[k] * reaction[static_cast<Eigen::Index>(r)]);
+    rounding_ = rounding_of(state, whole.cwiseAbs() + pull, [this](const VecX& place) { return VecX(size_ * (hat_.cwiseAbs() * place)); });
     steps_.set(hat_, rows(), inertia_);
     factored_ = std::numeric_limits<double>::quiet_NaN();
     is_newton_known_ = false;
@@ -238,8 +236,7 @@ private:
   void find_skew() {
     std::vector<Entry> entries;
     scene_.statics.stiffness(lambda_, entries, true);
-    for (Entry& e : entries)
-      e = Entry(e.row(), e.col(), -e.value() * scene_.scale[e.row()] * scene_.scale[e.col()] / size_);
+    for (Entry& e : entries) e = Entry(e.row(), e.col(), -e.value() * scene_.scale[e.row()] * scene_.scale[e.col()] / size_);
     whole_hat_.resize(static_cast<int>(n_), static_cast<int>(n_));
     whole_hat_.setFromTriplets(entries.begin(), entries.end());
     const Sparse turned = whole_hat_.transpose();
@@ -370,10 +367,10 @@ private:
   Sparse identity_;
   SparseRows held_;
   BorderedSystem onto_rows_, steps_;
-  Sparse hat_, whole_hat_; ///< −K over size_: its symmetric part without sliding, and the whole
+  Sparse hat_, whole_hat_;          ///< −K over size_: its symmetric part without sliding, and the whole
   double size_ = 1.0, loose_ = 0.0; ///< eigenvalues below loose_ (1/s²) are none
-  VecX inertia_;           ///< masses over size_
-  VecX rounding_;          ///< of the forces
+  VecX inertia_;                    ///< masses over size_
+  VecX rounding_;                   ///< of the forces
   bool is_skew_ = false;
   Eigen::SparseLU<Sparse> skew_factors_;
   double factored_ = 0.0, used_sigma_ = 0.0, last_sigma_ = 0.0;
@@ -383,8 +380,6 @@ private:
 
 } // namespace
 
-std::unique_ptr<Landscape> sparse_landscape(const Landscape::Scene& scene) {
-  return std::make_unique<SparseLandscape>(scene);
-}
+std::unique_ptr<Landscape> sparse_landscape(const Landscape::Scene& scene) { return std::make_unique<SparseLandscape>(scene); }
 
 } // namespace steplap

@@ -1,9 +1,9 @@
 #include "mbd/rest/settling.h"
 
-#include "mbd/rest/clearance.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
 #include "mbd/integrators/time_stepping.h"
+#include "mbd/rest/clearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +14,12 @@ namespace steplap {
 namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_first = 1e-4;   // of the scene's length: what the first step moves
+constexpr double k_first = 1e-4;              // of the scene's length: what the first step moves
 constexpr double k_move = 0.05, k_turn = 0.1; // of the length, rad: what a step moves at most
-constexpr double k_balanced = 1e-9; // of the accelerations at the start: what is left is for Newton's method
-constexpr double k_shortest = 1e-5; // of the longest step: time stepping takes less than a tenth of that for rounding
-constexpr double k_touch = 64.0;    // roundings of the largest coordinate
-constexpr double k_on_rows = 1e-12; // m, rad
+constexpr double k_balanced = 1e-9;           // of the accelerations at the start: what is left is for Newton's method
+constexpr double k_shortest = 1e-5;           // of the longest step: time stepping takes less than a tenth of that for rounding
+constexpr double k_touch = 64.0;              // roundings of the largest coordinate
+constexpr double k_on_rows = 1e-12;           // m, rad
 // Steps: each costs equations of all coordinates, and rows of friction squared.
 constexpr int k_most_steps = 4000, k_least_steps = 100;
 constexpr double k_most_work = 4e8;
@@ -94,17 +94,19 @@ private:
 
   [[nodiscard]] VecX way_to(const State& next) const {
     VecX way(scene_.scale.size());
-    for (Eigen::Index k = 0; k < way.size(); ++k) way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];
+    for (Eigen::Index k = 0; k < way.size(); ++k)
+      way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];
     return way;
   }
   // 1: as far as a step may move at most.
   [[nodiscard]] double size_of(const VecX& way) const {
     double size = 0.0;
-    for (Eigen::Index k = 0; k < way.size(); ++k)
-      size = std::max(size, std::abs(way[k]) / (k % 3 < 2 ? k_move * scene_.length : k_turn));
+    for (Eigen::Index k = 0; k < way.size(); ++k) size = std::max(size, std::abs(way[k]) / (k % 3 < 2 ? k_move * scene_.length : k_turn));
     return size;
   }
-  [[nodiscard]] double acceleration_of(const VecX& way, double h) const { return way.cwiseQuotient(scene_.scale).cwiseAbs().maxCoeff() / (h * h); }
+  [[nodiscard]] double acceleration_of(const VecX& way, double h) const {
+    return way.cwiseQuotient(scene_.scale).cwiseAbs().maxCoeff() / (h * h);
+  }
 
   // What the forces on a body would give it by itself, m/s², angles at their radius: what joints and friction hold is not seen
   // in accelerations.

@@ -19,7 +19,7 @@ namespace steplap {
 struct Settling {
   std::optional<State> rest; ///< nothing where the machine goes on, or the work was too much
   int steps = 0;
-  bool is_tried = true;      ///< false: too large a scene
+  bool is_tried = true; ///< false: too large a scene
 };
 
 /// From `start`, in which drives are held and nothing moves. The work is bounded by counted steps.

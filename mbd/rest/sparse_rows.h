@@ -2,9 +2,9 @@
 // from the rest.
 #pragma once
 
+#include "mbd/dynamics/schur.h"
 #include "mbd/rest/bordered_system.h"
 #include "mbd/rest/statics.h"
-#include "mbd/dynamics/schur.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // Where the run of a model begins: on its joints, and at rest under its loads if it asks for that.
 #pragma once
 
-#include "mbd/rest/equilibrium.h"
 #include "mbd/model/model.h"
+#include "mbd/rest/equilibrium.h"
 
 namespace steplap {
 

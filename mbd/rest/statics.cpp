@@ -128,7 +128,8 @@ void Statics::collect_rows(const State& state, const std::vector<char>& left_out
     if (state.friction[f].phase != FrictionPhase::stick) continue;
     const FrictionUnit& unit = system_.frictions[f];
     for (int r = 0; r < unit.friction->dimension(); ++r)
-      if (left_out.empty() || left_out[unit.row + r] == 0) rows_.push_back({unit.friction->rows(state.friction[f]) + r, -1, f, unit.row + r});
+      if (left_out.empty() || left_out[unit.row + r] == 0)
+        rows_.push_back({unit.friction->rows(state.friction[f]) + r, -1, f, unit.row + r});
   }
 }
 
@@ -190,8 +191,7 @@ void Statics::damping(std::vector<Entry>& d) const {
 }
 
 // Force w(N) along the row: w ∂²(measure) and what the normal forces change. w is linear in them.
-void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding,
-                                    std::vector<Entry>& k) const {
+void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<Entry>& k) const {
   const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
   double wrench[3], more[3];
   slip_wrench(f, wrench);

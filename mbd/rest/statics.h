@@ -18,9 +18,9 @@ namespace steplap {
 /// A row that holds: bilateral, or of friction that sticks.
 struct StaticRow {
   const RowSpec* spec = nullptr;
-  int row = -1;          ///< bilateral row, or −1
-  int friction = -1;     ///< friction element, or −1
-  int friction_row = 0;  ///< slot in Snapshot::friction_force
+  int row = -1;         ///< bilateral row, or −1
+  int friction = -1;    ///< friction element, or −1
+  int friction_row = 0; ///< slot in Snapshot::friction_force
 };
 
 class Statics {

@@ -29,8 +29,7 @@ std::vector<int> independent(const MatX& rows, Eigen::Index joints) {
   const MatX beyond = rows.rightCols(frictions) - held * (held.transpose() * rows.rightCols(frictions));
   const PivotedQr qr(beyond);
   const Eigen::Index most = std::min(frictions, n);
-  for (Eigen::Index i = 0; i < most && qr.length(i) > k_friction_rank; ++i)
-    kept.push_back(static_cast<int>(joints + qr.column(i)));
+  for (Eigen::Index i = 0; i < most && qr.length(i) > k_friction_rank; ++i) kept.push_back(static_cast<int>(joints + qr.column(i)));
   return kept;
 }
 
@@ -94,8 +93,7 @@ VecX multipliers_of(const Statics& statics, const VecX& scale, const Tangent& t)
   if (t.kept.empty()) return lambda;
   const VecX force = scale.cwiseProduct(statics.force());
   const VecX along = t.triangle.triangularView<Eigen::Upper>().solve(VecX(-(t.held.transpose() * force)));
-  for (std::size_t i = 0; i < t.kept.size(); ++i)
-    lambda[t.kept[i]] = along[static_cast<Eigen::Index>(i)] / t.row_size[t.kept[i]];
+  for (std::size_t i = 0; i < t.kept.size(); ++i) lambda[t.kept[i]] = along[static_cast<Eigen::Index>(i)] / t.row_size[t.kept[i]];
   return lambda;
 }
 

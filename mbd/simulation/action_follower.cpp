@@ -65,7 +65,8 @@ void add_channels(const ActionGroup& group, const System& first, System& system)
   const std::vector<Channel> added(system.channels.begin() + static_cast<std::ptrdiff_t>(own), system.channels.end());
   system.channels.resize(own);
   for (std::size_t i = own; i < first.channels.size(); ++i) {
-    const auto found = std::find_if(added.begin(), added.end(), [&](const Channel& channel) { return is_same(channel, first.channels[i]); });
+    const auto found =
+        std::find_if(added.begin(), added.end(), [&](const Channel& channel) { return is_same(channel, first.channels[i]); });
     Channel channel = found == added.end() ? first.channels[i] : *found;
     if (found == added.end()) channel.value = [](const Snapshot&) { return 0.0; };
     system.channels.push_back(std::move(channel));
@@ -136,7 +137,8 @@ void ActionFollower::guard_against_rings(std::size_t action, const RunLeg& leg) 
     names.push_back(group_.entries[*from].name);
     ring += "'" + names.back() + "', then ";
   }
-  throw ElementFailure("at t = " + rounded_text(leg.state().t, 12) + " s actions set each other off without end: " + ring + "'" + group_.entries[action].name +
+  throw ElementFailure("at t = " + rounded_text(leg.state().t, 12) + " s actions set each other off without end: " + ring + "'" +
+                           group_.entries[action].name +
                            "' again. Let one of them happen at another condition, so that there is a way between them",
                        names);
 }

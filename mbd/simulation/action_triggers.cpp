@@ -23,14 +23,16 @@ void ActionTriggers::spend(std::size_t action, bool is_once) {
   if (is_once) is_armed[action] = 0;
 }
 
-bool ActionTriggers::look(const ActionGroup& group, const System& system, const State& state, bool is_stepped, std::span<const Event> events) {
+bool ActionTriggers::look(const ActionGroup& group, const System& system, const State& state, bool is_stepped,
+                          std::span<const Event> events) {
   place_bodies(state.q, state.v, motion_);
   bool is_any = false;
   for (std::size_t i = 0; i < is_armed.size(); ++i) {
     const ActionTrigger& trigger = group.entries[i].trigger;
     if (trigger.element >= 0) {
       const std::string& name = system.element_names[static_cast<std::size_t>(trigger.element)];
-      const bool has_been = std::any_of(events.begin(), events.end(), [&](const Event& e) { return e.kind == trigger.event && e.element == name; });
+      const bool has_been =
+          std::any_of(events.begin(), events.end(), [&](const Event& e) { return e.kind == trigger.event && e.element == name; });
       if (is_armed[i] != 0 && has_been) has_event[i] = 1;
       is_due[i] = has_event[i];
     } else {

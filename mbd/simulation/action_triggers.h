@@ -15,10 +15,10 @@ namespace steplap {
 
 /// One flag per action of the model.
 struct ActionTriggers {
-  std::vector<char> is_armed;    ///< it waits for its condition
-  std::vector<char> is_spent;    ///< its condition is true, and has been since it last happened
-  std::vector<char> has_event;   ///< its event has been, and it has not happened yet
-  std::vector<char> is_due;      ///< as looked at last
+  std::vector<char> is_armed;  ///< it waits for its condition
+  std::vector<char> is_spent;  ///< its condition is true, and has been since it last happened
+  std::vector<char> has_event; ///< its event has been, and it has not happened yet
+  std::vector<char> is_due;    ///< as looked at last
 
   /// As the model says at the start.
   explicit ActionTriggers(const ActionGroup& group);

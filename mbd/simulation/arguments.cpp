@@ -26,7 +26,8 @@ void require_size(std::size_t size, std::size_t wanted, const std::string& what)
 
 void require_finite(const std::vector<double>& values, const std::string& what) {
   const auto bad = std::find_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); });
-  if (bad != values.end()) throw std::invalid_argument("number " + std::to_string(bad - values.begin()) + " of the state's " + what + " is not finite");
+  if (bad != values.end())
+    throw std::invalid_argument("number " + std::to_string(bad - values.begin()) + " of the state's " + what + " is not finite");
 }
 
 } // namespace

@@ -17,7 +17,8 @@ namespace {
 constexpr double k_fit = 1e-6;
 
 // Copies what each element of `from` remembers to its place in `to`, one after the other; `of_from`, `of_to`: its element, per place.
-template <class F> void carry(const std::vector<int>& of_from, const std::vector<int>& of_to, const std::vector<char>& goes_on, const F& copy) {
+template <class F>
+void carry(const std::vector<int>& of_from, const std::vector<int>& of_to, const std::vector<char>& goes_on, const F& copy) {
   std::vector<std::vector<std::size_t>> places(goes_on.size());
   for (std::size_t i = 0; i < of_from.size(); ++i) places[static_cast<std::size_t>(of_from[i])].push_back(i);
   std::vector<std::size_t> next(goes_on.size(), 0);
@@ -37,7 +38,8 @@ template <class Units> std::vector<int> elements_of(const Units& units) {
 std::vector<int> elements_of_inner(const System& system, int own_states) {
   std::vector<int> elements = system.inner_elements;
   if (const OwnStateGroup* const group = own_state_group(system))
-    for (int i = 0; i < own_states; ++i) elements[static_cast<std::size_t>(group->first_inner + i)] = static_cast<int>(system.element_names.size());
+    for (int i = 0; i < own_states; ++i)
+      elements[static_cast<std::size_t>(group->first_inner + i)] = static_cast<int>(system.element_names.size());
   return elements;
 }
 
@@ -53,11 +55,12 @@ double stored_energy(const System& system, const State& state) {
 [[noreturn]] void fail_to_close(const System& system, const State& state, const RowSpec& row, double off) {
   const std::string& name = system.element_names[static_cast<std::size_t>(row.element)];
   const bool is_angle = row.kind == MeasureKind::angle;
-  throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s '" + name + "' cannot close: its " + (is_angle ? "angle" : "markers") + " would have to move by " +
-                           rounded_text(std::abs(off), 4) + (is_angle ? " rad" : " m") + " at once. " +
-                           (row.drive ? "A drive that is read as a position begins where its signal is: read it as a velocity, or set it where the two meet"
-                                      : "Let it close where they meet, or take a weld, which holds the pose that it finds"),
-                       {name});
+  throw ElementFailure(
+      "at t = " + rounded_text(state.t, 12) + " s '" + name + "' cannot close: its " + (is_angle ? "angle" : "markers") +
+          " would have to move by " + rounded_text(std::abs(off), 4) + (is_angle ? " rad" : " m") + " at once. " +
+          (row.drive ? "A drive that is read as a position begins where its signal is: read it as a velocity, or set it where the two meet"
+                     : "Let it close where they meet, or take a weld, which holds the pose that it finds"),
+      {name});
 }
 
 // What an element remembers by rates of its own begins with a run.
@@ -68,7 +71,8 @@ void refuse_inner(const Changeover& change, const State& state) {
     const bool is_state = own && at >= own->first_inner && at < own->first_inner + static_cast<int>(own->entries.size());
     if (is_state || !change.closes(element)) continue;
     const std::string& name = change.to.element_names[static_cast<std::size_t>(element)];
-    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s '" + name + "' cannot begin to act: what it remembers (a slid distance, whether it has broken) begins with a run. " +
+    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s '" + name +
+                             "' cannot begin to act: what it remembers (a slid distance, whether it has broken) begins with a run. " +
                              "Let it act from the start, or take an element that remembers nothing",
                          {name});
   }
@@ -79,7 +83,8 @@ void place_rope(const Changeover& change, std::size_t f, const std::vector<Motio
   const std::string& name = change.to.element_names[static_cast<std::size_t>(change.to.frictions[f].element)];
   const double length = rope.measured(motion.data()).value;
   if (length > rope.length * (1.0 + OneSidedRow::k_too_long))
-    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s the ends of rope '" + name + "' are " + rounded_text(length - rope.length, 4) +
+    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s the ends of rope '" + name + "' are " +
+                             rounded_text(length - rope.length, 4) +
                              " m farther apart than its length lets them be: let it begin to act where they are nearer, or make it longer",
                          {name});
   state.friction[f].phase = length >= rope.length * (1.0 - OneSidedRow::k_at_length) ? FrictionPhase::stick : FrictionPhase::slip;
@@ -90,7 +95,8 @@ void place_rope(const Changeover& change, std::size_t f, const std::vector<Motio
 bool Changeover::closes_rows() const {
   const auto is_new = [this](int element) { return begins[static_cast<std::size_t>(element)] != 0; };
   return std::any_of(to.rows.begin(), to.rows.end(), [&](const RowSpec& row) { return is_new(row.element); }) ||
-         std::any_of(to.frictions.begin(), to.frictions.end(), [&](const FrictionUnit& unit) { return is_new(unit.element) && one_sided_row(*unit.friction); });
+         std::any_of(to.frictions.begin(), to.frictions.end(),
+                     [&](const FrictionUnit& unit) { return is_new(unit.element) && one_sided_row(*unit.friction); });
 }
 
 State carried(const Changeover& change, const State& state) {
@@ -102,14 +108,18 @@ State carried(const Changeover& change, const State& state) {
   next.work = state.work;
   std::vector<char> goes_on = change.acts;
   for (std::size_t i = 0; i < goes_on.size(); ++i) goes_on[i] = static_cast<char>(goes_on[i] != 0 && change.acted[i] != 0);
-  goes_on.push_back(1); // own states
+  goes_on.push_back(1);                                                               // own states
   for (FrictionState& friction : next.friction) friction.phase = FrictionPhase::free; // until it is found what presses
-  carry(elements_of(change.from.units), elements_of(change.to.units), goes_on, [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
-  carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on, [&](std::size_t a, std::size_t b) { next.friction[b] = state.friction[a]; });
-  carry(change.from.memory_elements, change.to.memory_elements, goes_on, [&](std::size_t a, std::size_t b) { next.memory[b] = state.memory[a]; });
+  carry(elements_of(change.from.units), elements_of(change.to.units), goes_on,
+        [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
+  carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on,
+        [&](std::size_t a, std::size_t b) { next.friction[b] = state.friction[a]; });
+  carry(change.from.memory_elements, change.to.memory_elements, goes_on,
+        [&](std::size_t a, std::size_t b) { next.memory[b] = state.memory[a]; });
   const OwnStateGroup *const had = own_state_group(change.from), *const has = own_state_group(change.to);
   const int own_states = had && has ? static_cast<int>(has->entries.size()) : 0;
-  carry(elements_of_inner(change.from, own_states), elements_of_inner(change.to, own_states), goes_on, [&](std::size_t a, std::size_t b) { next.inner[b] = state.inner[a]; });
+  carry(elements_of_inner(change.from, own_states), elements_of_inner(change.to, own_states), goes_on,
+        [&](std::size_t a, std::size_t b) { next.inner[b] = state.inner[a]; });
   return next;
 }
 
@@ -126,7 +136,8 @@ void place_what_closes(const Changeover& change, State& state) {
     if (std::abs(off) > fits) fail_to_close(change.to, state, row, off);
   }
   for (std::size_t f = 0; f < change.to.frictions.size(); ++f)
-    if (change.closes(change.to.frictions[f].element) && one_sided_row(*change.to.frictions[f].friction)) place_rope(change, f, motion, state);
+    if (change.closes(change.to.frictions[f].element) && one_sided_row(*change.to.frictions[f].friction))
+      place_rope(change, f, motion, state);
 }
 
 void book_stored_energy(const Changeover& change, const State& before, State& after) {

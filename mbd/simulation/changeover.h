@@ -15,13 +15,15 @@ namespace steplap {
 
 /// Two systems of one model, and what is different.
 struct Changeover {
-  const System& from; ///< of the leg before
-  const System& to;   ///< of the leg that begins
+  const System& from;            ///< of the leg before
+  const System& to;              ///< of the leg that begins
   std::vector<char> acted, acts; ///< per element: in `from`, in `to`
   std::vector<char> begins;      ///< it acts in `to`, and did not in `from` or is set otherwise
 
   /// It acts in `to` and did not in `from`.
-  [[nodiscard]] bool closes(int element) const { return acts[static_cast<std::size_t>(element)] != 0 && acted[static_cast<std::size_t>(element)] == 0; }
+  [[nodiscard]] bool closes(int element) const {
+    return acts[static_cast<std::size_t>(element)] != 0 && acted[static_cast<std::size_t>(element)] == 0;
+  }
   /// Some row or rope of `to` begins: velocities may have to jump.
   [[nodiscard]] bool closes_rows() const;
 };

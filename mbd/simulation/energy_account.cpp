@@ -37,7 +37,7 @@ Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
   Kinetic sum;
   for (int k = 0; k < layout.cluster_count(); ++k) {
     const Cluster& c = layout.clusters[k];
-    const double *const u = v + 3 * static_cast<std::ptrdiff_t>(k);
+    const double* const u = v + 3 * static_cast<std::ptrdiff_t>(k);
     sum.total += 0.5 * c.mass * (u[0] * u[0] + u[1] * u[1]) + 0.5 * c.inertia * u[2] * u[2];
     sum.of_floor += 0.5 * k_floor_rate * k_floor_rate * (2.0 * c.mass * size * size + c.inertia);
     sum.least += 0.5 * c.inertia * k_least_rate * k_least_rate;
@@ -114,8 +114,7 @@ void EnergyAccount::judge_step(const Dynamics& dynamics, double t, double made, 
                            " J turned over: its result is not to be trusted. Try a smaller tolerance or step, or another "
                            "integrator (rodas5p for stiff scenes)";
   const std::string step = "a step to t = " + number_text(t) + " s ";
-  if (given_back > std::abs(made))
-    throw NumericalFailure("in " + step + "friction or dampers gave back " + number_text(given_back) + rest);
+  if (given_back > std::abs(made)) throw NumericalFailure("in " + step + "friction or dampers gave back " + number_text(given_back) + rest);
   throw NumericalFailure(step + (made > 0.0 ? "made " : "lost ") + number_text(std::abs(made)) + rest);
 }
 

@@ -27,7 +27,8 @@ double ExtremeFinder::tolerance(std::size_t c) const {
   if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounding);
   const Kind& kind = kinds_[kind_[c]];
   const double range = ranges_[c].high.value - ranges_[c].low.value;
-  const double wanted = k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+  const double wanted =
+      k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
   return jitter_.empty() ? wanted : std::max(wanted, jitter_[c]);
 }
 
@@ -44,10 +45,11 @@ void ExtremeFinder::set_scales() {
   const double length = largest("m") > 0.0 ? largest("m") : 1.0;
   const double force = std::max(largest("N"), mass * system_.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0;
   const double v = std::sqrt(a * length);
-  const std::pair<const char*, double> scales[] = {{"m", length},      {"rad", 1.0},           {"m/s", v},
-                                                   {"rad/s", v / length}, {"m/s^2", a},         {"rad/s^2", a / length},
-                                                   {"N", force},       {"N m", force * length}, {"W", force * v},
-                                                   {"J", force * length}};
+  const std::pair<const char*, double> scales[] = {{"m", length},    {"rad", 1.0},
+                                                   {"m/s", v},       {"rad/s", v / length},
+                                                   {"m/s^2", a},     {"rad/s^2", a / length},
+                                                   {"N", force},     {"N m", force * length},
+                                                   {"W", force * v}, {"J", force * length}};
   for (const auto& [unit, scale] : scales)
     if (Kind* kind = kind_of(unit)) kind->scale = scale;
 }

@@ -25,7 +25,7 @@ constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
 constexpr int k_most_sections = 40;
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_golden = 0.3819660112501051;
-constexpr std::size_t k_trial = 50, k_least_use = 4; // places made before their use is asked for; one in so many has to be of use
+constexpr std::size_t k_trial = 50, k_least_use = 4;       // places made before their use is asked for; one in so many has to be of use
 constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // values of channels: 16 MB; of large scenes few places are kept
 
 // Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
@@ -98,8 +98,8 @@ public:
   }
 
 private:
-  std::vector<Place> places_; ///< those behind count_ are memory
-  std::size_t count_ = 0, made_ = 0, used_ = 0; ///< now; in the stretch, and how often one of them was of use
+  std::vector<Place> places_;                      ///< those behind count_ are memory
+  std::size_t count_ = 0, made_ = 0, used_ = 0;    ///< now; in the stretch, and how often one of them was of use
   std::unordered_map<double, std::size_t> number_; ///< by theta: a noisy channel has thousands of them
 };
 
@@ -136,7 +136,8 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     for (int top = 0; top < count; ++top) {
       const int middle = middles[top];
       const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
-      const double spread = spread_about(c, middle), highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
+      const double spread = spread_about(c, middle),
+                   highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
       if (!(highest + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
       find_top(
           NodePolynomial::theta(middle - 1), NodePolynomial::theta(middle + 1), [&](double theta) { return sign * value_at(theta); },

@@ -15,9 +15,7 @@ namespace steplap {
 namespace {
 
 // Of the loads' and drives' harmonics about t, s; infinite if there are none.
-double shortest_period(const System& system, double t) {
-  return 2.0 * std::numbers::pi / system.fastest_at(t);
-}
+double shortest_period(const System& system, double t) { return 2.0 * std::numbers::pi / system.fastest_at(t); }
 
 constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
@@ -28,13 +26,13 @@ constexpr double k_surprise = 3.0;
 constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr double k_within_reach = 0.25; // of a channel's range: what lies further from both extremes is left where it may not bend so much
-constexpr double k_bit_of_slack = 0.1; // by which a polynomial's top is found
+constexpr double k_bit_of_slack = 0.1;  // by which a polynomial's top is found
 constexpr double k_same_crossing = 1e-10; // of a stretch
 // So many channels are followed each for itself without asking whether what they do is rounding.
 constexpr std::size_t k_few = 8;
 constexpr int k_most_probes = 8;
-constexpr double k_hair = 1.25e-4; // of a stretch: smooth curves and kinks change by a hundredth of what nodes differ by
-constexpr double k_jitter = 0.25;  // of what its nodes differ by: what a few hair's breadths change by so much is rounding
+constexpr double k_hair = 1.25e-4;     // of a stretch: smooth curves and kinks change by a hundredth of what nodes differ by
+constexpr double k_jitter = 0.25;      // of what its nodes differ by: what a few hair's breadths change by so much is rounding
 constexpr double k_most_jitter = 1e-6; // of the largest value in the same unit: more is not rounding
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
 // stretches of a fixed-step method become longer and shorter.
@@ -45,9 +43,7 @@ bool is_mode(const Channel& channel) { return !channel.codes.empty(); }
 
 } // namespace
 
-const Extreme& ChannelRange::largest() const {
-  return std::abs(low.value) > std::abs(high.value) ? low : high;
-}
+const Extreme& ChannelRange::largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
 
 ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     : system_(system), count_(system.channels.size()), ranges_(count_), kind_(count_), screened_slot_(count_, -1),
@@ -254,8 +250,7 @@ void ExtremeFinder::state_at(double t, Integrator& integrator, Dynamics& dynamic
   }
   const double h = step_t_[i + 1] - step_t_[i];
   const double *y = &step_y_[stride_ * i], *k = &step_k_[stride_ * i];
-  hermite_dense(dynamics.coordinate_count(), dynamics.dimension(), (t - step_t_[i]) / h, h, y, y + stride_, k,
-                k + stride_, y_.data());
+  hermite_dense(dynamics.coordinate_count(), dynamics.dimension(), (t - step_t_[i]) / h, h, y, y + stride_, k, k + stride_, y_.data());
 }
 
 Snapshot ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dynamics) {
@@ -299,7 +294,8 @@ bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
 bool ExtremeFinder::suspect(double h) {
   open_.clear();
   const double *const first = node_[0].data(), *const end = node_[k_last].data(), *const before = before_.data();
-  const double h_last = h_last_, share = h / h_last, halves = 1.0 + h_last / h, square = h * h; // of the stretch before: used where there is one
+  const double h_last = h_last_, share = h / h_last, halves = 1.0 + h_last / h,
+               square = h * h; // of the stretch before: used where there is one
   for (const std::size_t c : tracked_) {
     const double a = first[c], b = end[c];
     Curve& curve = curve_[c];
@@ -336,7 +332,8 @@ static NodePolynomial through_nodes(const std::vector<std::vector<double>>& node
 }
 
 // At a node of the next level, by its weights.
-static double interpolated(const std::vector<std::vector<double>>& nodes, std::size_t c, int level, const NodePolynomial::Weights& weights) {
+static double interpolated(const std::vector<std::vector<double>>& nodes, std::size_t c, int level,
+                           const NodePolynomial::Weights& weights) {
   const int n = 1 << level, step = NodePolynomial::spacing(level);
   const std::vector<double>* row = nodes.data();
   double above = 0.0;

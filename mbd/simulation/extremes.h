@@ -131,7 +131,7 @@ private:
   [[nodiscard]] bool is_ruled_out(std::size_t c) const { return screened_slot_[c] >= 0 && !is_wanted_[screened_slot_[c]]; }
 
   const System& system_;
-  std::size_t count_;                ///< of channels
+  std::size_t count_; ///< of channels
   std::vector<ChannelRange> ranges_;
   std::vector<Kind> kinds_;
   std::vector<int> kind_;            ///< per channel
@@ -149,7 +149,7 @@ private:
   std::vector<std::size_t> open_; ///< channels still followed in this stretch
   std::vector<double> jitter_;    ///< per channel: what rounding was seen to change it by; empty as long as nobody had to ask
   std::vector<ValueBounds> bounds_, bounds_before_;
-  std::vector<char> is_wanted_;                  ///< per screened channel: it may be beyond its extremes at the last end
+  std::vector<char> is_wanted_; ///< per screened channel: it may be beyond its extremes at the last end
 
   int steps_ = 0, longest_ = 1;                  ///< steps in the stretch, and how many there may be
   std::vector<double> step_t_, step_y_, step_k_; ///< their beginnings
@@ -157,10 +157,10 @@ private:
   std::vector<double> y_, dy_, scratch_;
   bool is_begun_ = false;
   double slip_ = std::numeric_limits<double>::infinity(); ///< speed of the slowest slip that may turn at the last end, m/s
-  bool is_unsure_ = false;                    ///< that is less than it is known to
-  std::vector<Sure> sure_;                    ///< per channel; empty as long as that is all
-  bool is_singular_ = false;                  ///< what was looked at last lies beside a singular position of the joints
-  std::unique_ptr<FormulaExtremes> formulas_; ///< of channels that are formulas
+  bool is_unsure_ = false;                                ///< that is less than it is known to
+  std::vector<Sure> sure_;                                ///< per channel; empty as long as that is all
+  bool is_singular_ = false;                              ///< what was looked at last lies beside a singular position of the joints
+  std::unique_ptr<FormulaExtremes> formulas_;             ///< of channels that are formulas
 };
 
 } // namespace steplap

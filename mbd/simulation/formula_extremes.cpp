@@ -10,7 +10,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_surprise = 3.0, k_remembered = 0.5; // of bends, as in extremes.cpp
-constexpr long k_most_spans = 20000; // of one extreme in one stretch: a hundredth of a second
+constexpr long k_most_spans = 20000;                   // of one extreme in one stretch: a hundredth of a second
 constexpr long k_few_spans = 500;
 constexpr long k_run_spans = 4000000; // after which few are left for each
 constexpr int k_most_panels = 96;     // of a stretch
@@ -19,7 +19,7 @@ constexpr int k_run_panels = 20000;
 constexpr int k_deepest_panel = 40;
 constexpr int k_deepest_missing = 24; // halvings: a formula without a value for less than 1e-7 of a stretch only touches
 constexpr long k_missing_spans = 2000;
-constexpr double k_shortest = 0x1p-51; // of the stretch, or of the time: a span that rounding makes
+constexpr double k_shortest = 0x1p-51;    // of the stretch, or of the time: a span that rounding makes
 constexpr double k_same_crossing = 1e-10; // of a stretch
 
 constexpr double k_golden = 0.3819660112501051;
@@ -173,15 +173,15 @@ const FormulaExtremes::Whole& FormulaExtremes::enclose(const Sought& sought, con
   c[0] = 0.5 * (begin + end);
   c[1] = 0.5 * (end - begin);
   ++run_spans_;
-  return evaluate<EnclosingNumbers<OperandCurves::k_degree>>(sought.formula->tree(), leaf_.data(), Whole::of_polynomial(c, 4.0 * 0x1p-52 * std::abs(end)),
-                                                             node_.data());
+  return evaluate<EnclosingNumbers<OperandCurves::k_degree>>(sought.formula->tree(), leaf_.data(),
+                                                             Whole::of_polynomial(c, 4.0 * 0x1p-52 * std::abs(end)), node_.data());
 }
 
 const Enclosure<0>& FormulaExtremes::enclose_at(const Sought& sought, int panel, double theta) {
   for (std::size_t i = 0; i < sought.leaves.size(); ++i) leaf_at_[i] = curves_.at(panel, sought.leaves[i], theta);
   const double t = t_ + theta * h_;
-  return evaluate<EnclosingNumbers<0>>(sought.formula->tree(), leaf_at_.data(), Enclosure<0>::of_polynomial({t}, 4.0 * 0x1p-52 * std::abs(t)),
-                                       node_at_.data());
+  return evaluate<EnclosingNumbers<0>>(sought.formula->tree(), leaf_at_.data(),
+                                       Enclosure<0>::of_polynomial({t}, 4.0 * 0x1p-52 * std::abs(t)), node_at_.data());
 }
 
 // Of the motion itself; between the ends of time steps of the straight lines.
@@ -191,8 +191,7 @@ double FormulaExtremes::real_value(const Sought& sought, double theta, ExtremeSi
     thread_local std::vector<double> leaves, values;
     leaves.resize(sought.leaves.size());
     values.resize(std::max(values.size(), sought.formula->tree().size()));
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-      leaves[i] = (1.0 - theta) * first_[sought.leaves[i]] + theta * last_[sought.leaves[i]];
+    for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i] = (1.0 - theta) * first_[sought.leaves[i]] + theta * last_[sought.leaves[i]];
     value = value_of(sought.formula->tree(), leaves.data(), t_ + theta * h_, values.data());
   } else {
     value = sought.formula->value(site.look(theta));
@@ -248,7 +247,8 @@ double FormulaExtremes::gained(const Sought& sought, double promised, double rec
 bool FormulaExtremes::improve(const Sought& sought, int panel, ExtremeSite& site) {
   if (is_straight_ || curves_.panel(panel).depth >= k_deepest_panel) return false;
   if (curves_.panels() >= (run_panels_ < k_run_panels ? k_most_panels : k_few_panels)) return false;
-  if (std::none_of(sought.leaves.begin(), sought.leaves.end(), [&](std::size_t leaf) { return curves_.can_improve(panel, leaf); })) return false;
+  if (std::none_of(sought.leaves.begin(), sought.leaves.end(), [&](std::size_t leaf) { return curves_.can_improve(panel, leaf); }))
+    return false;
   curves_.halve(panel, [&site](double theta) { return site.look(theta); });
   run_panels_ += 2;
   return true;
@@ -334,7 +334,8 @@ void FormulaExtremes::check(Sought& sought, double sign, double theta, double pr
 void FormulaExtremes::seek_missing(const Sought& sought, ExtremeSite& site) {
   spans_.clear();
   spans_.push_back({0.0, 0.0, 0, 0, 0.0, 1.0});
-  for (long left = std::min(k_missing_spans, spans_left()); !spans_.empty() && left > 0 && !site.range(sought.channel).had_no_value; --left) {
+  for (long left = std::min(k_missing_spans, spans_left()); !spans_.empty() && left > 0 && !site.range(sought.channel).had_no_value;
+       --left) {
     const Span span = spans_.back();
     spans_.pop_back();
     const double middle = 0.5 * (span.begin + span.end);

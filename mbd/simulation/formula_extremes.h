@@ -106,7 +106,7 @@ private:
   double t_ = 0.0, h_ = 0.0, h_last_ = 0.0;
   bool is_straight_ = false, has_looked_ = false;
   std::vector<double> first_, last_, before_, first_rate_, last_rate_, curvature_, error_;
-  std::vector<Span> spans_;   ///< a heap
+  std::vector<Span> spans_; ///< a heap
   std::vector<Whole> leaf_, node_;
   std::vector<Enclosure<0>> leaf_at_, node_at_;
   long run_spans_ = 0; ///< looked at so far

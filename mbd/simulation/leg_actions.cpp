@@ -9,9 +9,10 @@
 namespace steplap {
 
 RunLeg::RunLeg(RunLeg& before, const Changeover& change)
-    : system_(change.to), options_(before.options_), state_(carried(change, before.state_)), dynamics_(change.to), handler_(change.to, dynamics_),
-      finder_(change.to, change.to.largest_dimension()), swallowed_(change.to), record_(before.record_), actions_(before.actions_), group_(action_group(change.to)),
-      y_(static_cast<std::size_t>(change.to.largest_dimension())), dy_(y_.size()) {
+    : system_(change.to), options_(before.options_), state_(carried(change, before.state_)), dynamics_(change.to),
+      handler_(change.to, dynamics_), finder_(change.to, change.to.largest_dimension()), swallowed_(change.to), record_(before.record_),
+      actions_(before.actions_), group_(action_group(change.to)), y_(static_cast<std::size_t>(change.to.largest_dimension())),
+      dy_(y_.size()) {
   options_.max_events -= before.statistics_.events;
   if (options_.end > system_.drives_end)
     throw NumericalFailure("a drive jumps at t = " + number_text(system_.drives_end) + " s, before the end of the run");
@@ -25,7 +26,8 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
   dynamics_.rates(state_.t, y_.data(), dy_.data());
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
-    if (change.begins[static_cast<std::size_t>(unit.element)] != 0) state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+    if (change.begins[static_cast<std::size_t>(unit.element)] != 0)
+      state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
   }
   book_stored_energy(change, before.state_, state_);
   handler_.take_over(state_, change.closes_rows(), record_->events);

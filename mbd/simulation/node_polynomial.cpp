@@ -13,7 +13,7 @@ namespace {
 constexpr int k_points = NodePolynomial::k_last + 1;
 // Cuts of a gap between points: at the top one or two are enough, halvings take 24 to be off by 4^-24 of what the coefficients differ by.
 constexpr int k_most_cuts = 24;
-constexpr int k_newton_steps = 4;       // towards the top: from a control point's place they leave rounding
+constexpr int k_newton_steps = 4;        // towards the top: from a control point's place they leave rounding
 constexpr double k_beside_an_end = 0.02; // of a part: cut nearer, one of the two would hardly be smaller
 
 using Coefficients = std::array<double, k_points>;
@@ -31,7 +31,8 @@ struct Tables {
       const int n = 1 << level;
       for (int k = 2; k <= n; ++k)
         for (int i = 0; 2 * i <= n; ++i)
-          bend[level][k][i] = (k == n ? 1.0 : 2.0) / n * (i == 0 ? 0.5 : 1.0) * portable::cos(std::numbers::pi * k * i / n) * k * k * (k * k - 1) * 4.0 / 3.0;
+          bend[level][k][i] = (k == n ? 1.0 : 2.0) / n * (i == 0 ? 0.5 : 1.0) * portable::cos(std::numbers::pi * k * i / n) * k * k *
+                              (k * k - 1) * 4.0 / 3.0;
     }
     for (int level = 1; level <= NodePolynomial::k_levels; ++level)
       for (int gap = 0; gap < 1 << level; ++gap)
@@ -67,7 +68,8 @@ constexpr auto k_weights = [] {
       NodePolynomial::Weights& weights = tables[level][gap];
       double sign = 1.0;
       for (int i = 0; i <= n; ++i) {
-        weights.of[i] = (i == 0 || i == n ? 0.5 : 1.0) * sign / (NodePolynomial::theta(gap * step + step / 2) - NodePolynomial::theta(i * step));
+        weights.of[i] =
+            (i == 0 || i == n ? 0.5 : 1.0) * sign / (NodePolynomial::theta(gap * step + step / 2) - NodePolynomial::theta(i * step));
         weights.sum += weights.of[i];
         sign = -sign;
       }

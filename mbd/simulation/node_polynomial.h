@@ -55,8 +55,9 @@ public:
   [[nodiscard]] std::optional<Top> top_above(double floor, double slack) const;
 
 private:
-  static constexpr std::array<double, k_last + 1> k_theta{0.0, 0.03806023374435662, 0.14644660940672624, 0.30865828381745512, 0.5,
-                                                          0.69134171618254488, 0.85355339059327376, 0.96193976625564338, 1.0};
+  static constexpr std::array<double, k_last + 1> k_theta{0.0, 0.03806023374435662, 0.14644660940672624, 0.30865828381745512,
+                                                          0.5, 0.69134171618254488, 0.85355339059327376, 0.96193976625564338,
+                                                          1.0};
   /// Nowhere is |p″| more.
   [[nodiscard]] double largest_bend() const;
 

@@ -18,13 +18,13 @@ constexpr double k_shift_rounding = 32.0 * k_ulp; // of the coefficients' sum, i
 constexpr double k_check = 0.6180339887498949;    // of a panel: far from all nodes
 constexpr double k_safety = 2.0;                  // no coefficients fall exactly as a geometric series
 constexpr double k_slowest_fall = 0.8;            // from one coefficient to the next: beyond, the series tells nothing
-constexpr double k_halved = 0.7; // an error that a half does not bring below this is not that of a polynomial
-constexpr double k_rough = 0.25; // an error beyond this share of what is seen: the hull says as much
+constexpr double k_halved = 0.7;                  // an error that a half does not bring below this is not that of a polynomial
+constexpr double k_rough = 0.25;                  // an error beyond this share of what is seen: the hull says as much
 
 struct Tables {
-  std::array<double, k_last + 1> node{};                                   // in s, rising
-  std::array<std::array<double, k_last + 1>, k_last + 1> transform{};      // values at nodes to Chebyshev coefficients
-  std::array<std::array<double, k_last + 1>, k_last + 1> powers{};         // of s in each Chebyshev polynomial
+  std::array<double, k_last + 1> node{};                              // in s, rising
+  std::array<std::array<double, k_last + 1>, k_last + 1> transform{}; // values at nodes to Chebyshev coefficients
+  std::array<std::array<double, k_last + 1>, k_last + 1> powers{};    // of s in each Chebyshev polynomial
 };
 
 // Made before main(): threads that run side by side find it made.
@@ -115,7 +115,8 @@ void OperandCurves::halve(int panel, const Look& look) {
   read(look(middle), middle_.data());
   read(look(whole.end), last_.data());
   for (const bool is_second : {false, true}) {
-    const int half = is_second ? add_panel(middle, whole.end, whole.depth + 1, panel) : add_panel(whole.begin, middle, whole.depth + 1, panel);
+    const int half =
+        is_second ? add_panel(middle, whole.end, whole.depth + 1, panel) : add_panel(whole.begin, middle, whole.depth + 1, panel);
     sample(half, look, is_second ? middle_.data() : first_.data(), is_second ? last_.data() : middle_.data());
     for (std::size_t i = 0; i < leaves_.size(); ++i) fit(half, i, panel, check_[i]);
   }

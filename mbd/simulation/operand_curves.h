@@ -59,7 +59,9 @@ public:
   /// Panels there are, halved ones among them.
   [[nodiscard]] int panels() const { return static_cast<int>(panels_.size()); }
   /// Of an operand over a panel.
-  [[nodiscard]] const Curve& curve(int panel, std::size_t leaf) const { return curves_[static_cast<std::size_t>(panel) * leaves_.size() + leaf]; }
+  [[nodiscard]] const Curve& curve(int panel, std::size_t leaf) const {
+    return curves_[static_cast<std::size_t>(panel) * leaves_.size() + leaf];
+  }
   /// Would halves of the panel be known better?
   [[nodiscard]] bool can_improve(int panel, std::size_t leaf) const;
 

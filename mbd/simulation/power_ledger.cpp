@@ -10,12 +10,8 @@ namespace {
 constexpr int k_most = 7;
 using Basis = std::array<std::array<double, k_most>, k_most>; // coefficients of each node's polynomial, 1 there and 0 at the others
 
-constexpr std::array<double, 7> k_seven = {0.0,
-                                           0.5 - 0.5 * 0.83022389627856693,
-                                           0.5 - 0.5 * 0.46884879347071421,
-                                           0.5,
-                                           0.5 + 0.5 * 0.46884879347071421,
-                                           0.5 + 0.5 * 0.83022389627856693,
+constexpr std::array<double, 7> k_seven = {0.0, 0.5 - 0.5 * 0.83022389627856693, 0.5 - 0.5 * 0.46884879347071421,
+                                           0.5, 0.5 + 0.5 * 0.46884879347071421, 0.5 + 0.5 * 0.83022389627856693,
                                            1.0};
 constexpr std::array<double, 3> k_three = {0.0, 0.5, 1.0};
 
@@ -61,7 +57,8 @@ PowerLedger::PowerLedger(const System& system, int max_dimension)
     piece.base.resize(count_);
     piece.coefficient.resize(count_ * k_nodes);
   }
-  has_stored_ = std::any_of(system.integrands.begin(), system.integrands.end(), [](const Integrand& i) { return static_cast<bool>(i.stored); });
+  has_stored_ =
+      std::any_of(system.integrands.begin(), system.integrands.end(), [](const Integrand& i) { return static_cast<bool>(i.stored); });
 }
 
 PowerLedger::Piece& PowerLedger::next_piece(double t0, double h) {

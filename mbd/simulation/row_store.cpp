@@ -74,9 +74,12 @@ const double* RowStore::find(std::size_t block) const {
     const std::size_t bytes = read_.size() * sizeof(double);
     std::size_t done = 0;
     while (done < bytes) {
-      const ::ssize_t count = ::pread(file_, reinterpret_cast<char*>(read_.data()) + done, bytes - done, static_cast<::off_t>(block * bytes + done));
+      const ::ssize_t count =
+          ::pread(file_, reinterpret_cast<char*>(read_.data()) + done, bytes - done, static_cast<::off_t>(block * bytes + done));
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) throw NumericalFailure(std::string("rows of the trajectory cannot be read back from disk: ") + std::strerror(count < 0 ? errno : EIO));
+      if (count <= 0)
+        throw NumericalFailure(std::string("rows of the trajectory cannot be read back from disk: ") +
+                               std::strerror(count < 0 ? errno : EIO));
       done += static_cast<std::size_t>(count);
     }
     cache_ = read_.data();
@@ -97,7 +100,8 @@ void RowStore::write_block(std::size_t block, const std::vector<double>& values)
   const std::size_t bytes = values.size() * sizeof(double);
   std::size_t done = 0;
   while (done < bytes) {
-    const ::ssize_t count = ::pwrite(file_, reinterpret_cast<const char*>(values.data()) + done, bytes - done, static_cast<::off_t>(block * bytes + done));
+    const ::ssize_t count =
+        ::pwrite(file_, reinterpret_cast<const char*>(values.data()) + done, bytes - done, static_cast<::off_t>(block * bytes + done));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) fail(count < 0 ? errno : ENOSPC, spill_folder());
     done += static_cast<std::size_t>(count);

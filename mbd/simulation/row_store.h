@@ -49,7 +49,7 @@ private:
   std::size_t full_ = 0;                    ///< how many are full
   int file_ = -1;
   bool has_failed_ = false;
-  mutable std::vector<double> read_;        ///< the block last read from the file
+  mutable std::vector<double> read_; ///< the block last read from the file
   mutable std::size_t cached_ = ~std::size_t{0};
   mutable const double* cache_ = nullptr;
 };

@@ -1,15 +1,15 @@
 #include "mbd/simulation/run_leg.h"
 
+#include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/integrators/explicit_pair.h"
+#include "mbd/model/method.h"
 #include "mbd/simulation/arguments.h"
 #include "mbd/simulation/check_sticking.h"
-#include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/own_states.h"
 #include "mbd/system/slip_scratch.h"
-#include "mbd/base/number_text.h"
-#include "mbd/integrators/explicit_pair.h"
-#include "mbd/model/method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,8 @@ constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an
 
 RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions options, ActionTriggers* actions)
     : system_(system), options_(checked(std::move(options), initial.t)), state_(checked(initial, system)), dynamics_(system),
-      handler_(system, dynamics_), finder_(system, system.largest_dimension()), swallowed_(system), record_(std::make_shared<RunRecord>()), actions_(actions),
-      group_(action_group(system)), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
+      handler_(system, dynamics_), finder_(system, system.largest_dimension()), swallowed_(system), record_(std::make_shared<RunRecord>()),
+      actions_(actions), group_(action_group(system)), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   if (options_.end > system.drives_end)
     throw NumericalFailure("a drive jumps at t = " + number_text(system.drives_end) + " s, before the end of the run");
   refuse_time_stepping();
@@ -97,9 +97,10 @@ void RunLeg::refuse_time_stepping() const {
                            "' becomes taut or slack: choose another integrator, auto for one, or give the rope a stiffness");
   const auto is_own_state = [](const ForceGroup* group) { return dynamic_cast<const OwnStateGroup*>(group) != nullptr; };
   if (std::all_of(system_.inner_groups.begin(), system_.inner_groups.end(), is_own_state)) return;
-  throw NumericalFailure("'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
-                         "' remembers (the slid distance of an elastic joint, how far a tyre's tread is bent, whether a tie has broken): choose another "
-                         "integrator, auto for one");
+  throw NumericalFailure(
+      "'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
+      "' remembers (the slid distance of an elastic joint, how far a tyre's tread is bent, whether a tie has broken): choose another "
+      "integrator, auto for one");
 }
 
 // Where something begins to move otherwise, or a law to change: no method steps over that.
@@ -162,8 +163,8 @@ void RunLeg::check_finite() {
 
 void RunLeg::fail_infinite(double t) const {
   std::ostringstream message;
-  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name()
-          << "' does not bear steps of " << integrator_->h() << " s here";
+  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name() << "' does not bear steps of " << integrator_->h()
+          << " s here";
   if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
   if (!record_->events.empty()) message << ". The last event was of '" << record_->events.back().element << "'";
   if (record_->events.empty()) throw NumericalFailure(message.str());
@@ -178,9 +179,9 @@ void RunLeg::check_holding(double t, const std::vector<double>& watch) const {
     const double left = watch[system_.frictions[f].watch];
     if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
     throw ElementFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
-                           "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
-                           ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
-                           "another integrator",
+                             "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
+                             ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
+                             "another integrator",
                          {system_.element_names[system_.frictions[f].element]});
   }
 }
@@ -268,19 +269,18 @@ void RunLeg::guard_against_crawl() {
   const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_looks);
   if (!(needed > k_most_steps)) return;
   std::ostringstream message;
-  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed
-          << " s; the rest would take " << needed << " steps. Something is far stiffer or faster than the run is long: '"
-          << integrator_->name() << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
+  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed << " s; the rest would take " << needed
+          << " steps. Something is far stiffer or faster than the run is long: '" << integrator_->name()
+          << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
   throw NumericalFailure(message.str());
 }
 
 // The force of a joint that slides is none where its sheets have parted: the step went on past that kink.
 bool RunLeg::are_joints(const std::vector<int>& slots) const {
   return std::all_of(slots.begin(), slots.end(), [this](int slot) {
-    return std::any_of(system_.frictions.begin(), system_.frictions.end(),
-                       [slot](const FrictionUnit& unit) {
-                         return slot >= unit.watch && slot < unit.watch + k_friction_watches && unit.friction->dimension() > 1;
-                       });
+    return std::any_of(system_.frictions.begin(), system_.frictions.end(), [slot](const FrictionUnit& unit) {
+      return slot >= unit.watch && slot < unit.watch + k_friction_watches && unit.friction->dimension() > 1;
+    });
   });
 }
 
@@ -288,10 +288,11 @@ bool RunLeg::are_joints(const std::vector<int>& slots) const {
 static void guard_against_kinks(long kinks, long max_events, double t, const std::string& element) {
   const long most = std::max(k_least_kinks, k_kinks_per_event * std::min(max_events, std::numeric_limits<long>::max() / k_kinks_per_event));
   if (kinks <= most) return;
-  throw ElementFailure("more than " + std::to_string(most) + " kinks of characteristics by t = " + number_text(t) + " s, the last one of '" + element +
-                         "'. Thin out its table, end the run earlier, or raise simulation.max_events: " + std::to_string(k_kinks_per_event) +
-                         " kinks are let pass for each event",
-                       {element});
+  throw ElementFailure(
+      "more than " + std::to_string(most) + " kinks of characteristics by t = " + number_text(t) + " s, the last one of '" + element +
+          "'. Thin out its table, end the run earlier, or raise simulation.max_events: " + std::to_string(k_kinks_per_event) +
+          " kinks are let pass for each event",
+      {element});
 }
 
 void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before) {
@@ -314,7 +315,8 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
   const auto first_new = record_->events.begin() + static_cast<std::ptrdiff_t>(known);
   if (first_new != record_->events.end() && std::all_of(first_new, record_->events.end(), is_at_kink))
     guard_against_kinks(++kinks_, options_.max_events, t, std::string(record_->events.back().element));
-  if (method(options_.integrator).may_step_over_storms && !actions_ && system_.inner_count() == 0 && !first_one_sided_row(system_) && handler_.stop_reason().empty()) {
+  if (method(options_.integrator).may_step_over_storms && !actions_ && system_.inner_count() == 0 && !first_one_sided_row(system_) &&
+      handler_.stop_reason().empty()) {
     const double window = storm_window();
     for (std::size_t i = known; i < record_->events.size(); ++i) {
       if (is_kink(record_->events[i].kind) || !storm_.note(t, record_->events[i].element, window)) continue;
@@ -435,8 +437,8 @@ bool RunLeg::pass_step() {
   }
   check_finite();
   const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
-  const bool is_withdrawn = finder_.is_step_withdrawn() ||
-                            !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data());
+  const bool is_withdrawn =
+      finder_.is_step_withdrawn() || !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data());
   if (is_withdrawn) {
     integrator_->begin_step(dynamics_, limit);
     return false;
@@ -483,7 +485,8 @@ void RunLeg::end_run() {
   const double t = integrator_->t0();
   std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
   const bool is_sampled = options_.output_step > 0.0;
-  const double last = record_->trajectory->size() > 0 ? record_->trajectory->time(record_->trajectory->size() - 1) : -std::numeric_limits<double>::infinity();
+  const double last = record_->trajectory->size() > 0 ? record_->trajectory->time(record_->trajectory->size() - 1)
+                                                      : -std::numeric_limits<double>::infinity();
   if (is_sampled && t > last + k_output_slack * options_.output_step) record_sample(t);
   finish_extremes();
 }
@@ -500,7 +503,8 @@ void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
   constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // times that were meant to be the same
   const std::vector<double>& times = system_.breakpoints;
-  for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1; ++next)
+  for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;
+       ++next)
     if (*(next + 1) - *next > k_rounding * *(next + 1)) statistics_.passed_pulse = *next;
 }
 

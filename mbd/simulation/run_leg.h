@@ -45,7 +45,7 @@ public:
   [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
 
   [[nodiscard]] const System& system() const { return system_; } ///< that it is computed in
-  [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
+  [[nodiscard]] const State& state() const { return state_; }    ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
   [[nodiscard]] RunRecord& record() const { return *record_; } ///< of the whole run so far

@@ -37,18 +37,18 @@ struct SimulationOptions {
 /// What a run took and how exact it was.
 struct RunStatistics {
   long steps = 0, rejections = 0, evaluations = 0, events = 0; ///< steps that counted, tries refused, evaluations of all forces, events
-  long coded_stages = 0;               ///< evaluations made by machine code
-  long storms = 0;                     ///< stretches that time stepping went over
-  double max_position_residual = 0.0;  ///< before projection, m or rad
-  double max_velocity_residual = 0.0; ///< the same of velocities, m/s or rad/s
-  double energy_residual = 0.0;        ///< largest |E + dissipated − work − E₀| met, J
-  double energy_exchanged = 0.0;       ///< largest change of kinetic energy, work, dissipation met at any step, J
-  double energy_scale = 0.0;           ///< what the residual is measured against (EnergyAccount::scale), J
-  double energy_worst_step = 0.0;      ///< largest energy a step made or lost, of what its tolerance lets it
-  double energy_rounding = 0.0;        ///< below this a residual is rounding of the energies, J
-  double dissipated = 0.0, work = 0.0; ///< J
-  std::optional<double> passed_pulse;  ///< s: where time stepping passed over a part of a load that is far shorter than its step
-  double cpu_seconds = 0.0;            ///< of this thread, samples included
+  long coded_stages = 0;                                       ///< evaluations made by machine code
+  long storms = 0;                                             ///< stretches that time stepping went over
+  double max_position_residual = 0.0;                          ///< before projection, m or rad
+  double max_velocity_residual = 0.0;                          ///< the same of velocities, m/s or rad/s
+  double energy_residual = 0.0;                                ///< largest |E + dissipated − work − E₀| met, J
+  double energy_exchanged = 0.0;                               ///< largest change of kinetic energy, work, dissipation met at any step, J
+  double energy_scale = 0.0;                                   ///< what the residual is measured against (EnergyAccount::scale), J
+  double energy_worst_step = 0.0;                              ///< largest energy a step made or lost, of what its tolerance lets it
+  double energy_rounding = 0.0;                                ///< below this a residual is rounding of the energies, J
+  double dissipated = 0.0, work = 0.0;                         ///< J
+  std::optional<double> passed_pulse; ///< s: where time stepping passed over a part of a load that is far shorter than its step
+  double cpu_seconds = 0.0;           ///< of this thread, samples included
 };
 
 /// What a run leaves behind. Channels in it belong to the system, which has to outlive it.

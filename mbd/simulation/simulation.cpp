@@ -21,8 +21,7 @@ SimulationOptions options_of(const Model& model) {
   options.settings.step = s.step.value_or(0.0);
   options.settings.tolerance = s.tolerance.value_or(1e-8);
   options.settings.projection_tolerance = s.projection_tolerance;
-  if (s.coordinates != "automatic")
-    options.coordinates = s.coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
+  if (s.coordinates != "automatic") options.coordinates = s.coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
   options.output_step = model.output.step;
   options.channels = model.output.channels;
   options.has_extremes = true;
@@ -30,7 +29,8 @@ SimulationOptions options_of(const Model& model) {
   return options;
 }
 
-Simulation::Simulation(const System& system, const State& initial, SimulationOptions options) : cpu_start_(thread_cpu_seconds()), system_(system) {
+Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
+    : cpu_start_(thread_cpu_seconds()), system_(system) {
   if (action_group(system)) actions_ = std::make_unique<ActionFollower>(system);
   leg_ = std::make_unique<RunLeg>(system, initial, std::move(options), actions_ ? &actions_->triggers() : nullptr);
   if (!actions_) return;
@@ -41,8 +41,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
 Simulation::~Simulation() = default;
 
 void Simulation::run() {
-  while (advance()) {
-  }
+  while (advance()) {}
 }
 
 bool Simulation::advance() {

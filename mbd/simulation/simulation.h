@@ -54,7 +54,6 @@ private:
 };
 
 /// Compiled, started (from equilibrium if `model` says so) and run to the end.
-[[nodiscard]] RunResult simulate(const System& system, const State& initial,
-                                 const SimulationOptions& options);
+[[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options);
 
 } // namespace steplap

@@ -42,7 +42,7 @@ public:
 
 private:
   std::vector<const Channel*> channels_;
-  std::vector<std::size_t> places_;     ///< of them in System::channels
+  std::vector<std::size_t> places_;   ///< of them in System::channels
   std::unique_ptr<RowStore> rows_;    ///< time, then the channels
   mutable std::vector<double> times_; ///< as far as they were asked for
 };

@@ -32,7 +32,8 @@ bool is_slip_ending(const State& state) {
 void ExtremeFinder::look_at_slips(const Integrator& integrator, Dynamics& dynamics, bool is_new) {
   const double before = slip_;
   slip_ = std::numeric_limits<double>::infinity();
-  if (integrator.is_adaptive() && dynamics.slip_scales(y_.data())) slip_ = *std::min_element(y_.begin(), y_.begin() + dynamics.coordinate_count());
+  if (integrator.is_adaptive() && dynamics.slip_scales(y_.data()))
+    slip_ = *std::min_element(y_.begin(), y_.begin() + dynamics.coordinate_count());
   const bool is_known = slip_ >= k_unsure * integrator.rate_accuracy(dynamics) && !is_slip_ending(dynamics.state());
   is_unsure_ = !is_known && (is_unsure_ || (!is_new && slip_ <= before));
   if (!is_unsure_ || !sure_.empty()) return;

@@ -15,7 +15,8 @@ public:
 };
 
 /// Zero of friction that acts at places of its own, such as feet.
-[[nodiscard]] inline double rate_error(const FrictionElement& friction, const Evaluation& e, const FrictionState& from, const FrictionState& to) {
+[[nodiscard]] inline double rate_error(const FrictionElement& friction, const Evaluation& e, const FrictionState& from,
+                                       const FrictionState& to) {
   const auto* const approximate = dynamic_cast<const ApproximatePlace*>(&friction);
   return approximate ? approximate->rate_error(e, from, to) : 0.0;
 }

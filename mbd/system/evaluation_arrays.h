@@ -13,10 +13,10 @@ namespace steplap {
 
 /// Watch values begin as holding (1), their rates as unknown (NaN), all else at zero.
 struct EvaluationArrays {
-  std::vector<BodyForce> force;           ///< per slot (LinkTable)
-  std::vector<double> contact_force;      ///< per contact
-  std::vector<double> watch, watch_rate;  ///< per watch slot
-  std::vector<double> inner_rate;         ///< per inner state
+  std::vector<BodyForce> force;          ///< per slot (LinkTable)
+  std::vector<double> contact_force;     ///< per contact
+  std::vector<double> watch, watch_rate; ///< per watch slot
+  std::vector<double> inner_rate;        ///< per inner state
 
   explicit EvaluationArrays(const System& system)
       : force(static_cast<std::size_t>(system.links.slot_count())), contact_force(static_cast<std::size_t>(system.contact_count), 0.0),

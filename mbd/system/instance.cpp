@@ -38,7 +38,8 @@ bool is_in_range(const ElementEntry& entry) {
 
 bool is_in_range(const Body& body) {
   const std::vector<Field>& fields = Body::fields().fields();
-  return std::all_of(fields.begin(), fields.end(), [&](const Field& field) { return is_excused(body, field) || is_in_range(field, &body); });
+  return std::all_of(fields.begin(), fields.end(),
+                     [&](const Field& field) { return is_excused(body, field) || is_in_range(field, &body); });
 }
 
 } // namespace
@@ -92,7 +93,8 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
     static_cast<void>(number_of(given_, path)); // it is there, and a number
     redone_ = std::max(redone_, redone_for(path));
   }
-  const bool is_any_builder = std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
+  const bool is_any_builder =
+      std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
   if (redone_ == Redone::tables && is_any_builder) redone_ = Redone::all; // bodies and markers would have to be made anew, too
   if (redone_ == Redone::tables) note_tables();
 }
@@ -110,7 +112,8 @@ bool Variants::is_set_by(const std::string& path, const std::string& head) const
 void Variants::note_tables() {
   const std::size_t count = given_.elements.size();
   for (std::size_t i = 0; i < count; ++i)
-    if (!is_same(given_.elements[i].kind->fields, given_.elements[i].element.get(), completed_.elements[i].element.get())) redone_ = Redone::all;
+    if (!is_same(given_.elements[i].kind->fields, given_.elements[i].element.get(), completed_.elements[i].element.get()))
+      redone_ = Redone::all;
   Model without = given_;
   without.tables.clear();
   std::vector<Diagnostic> problems; // none, as completed() has told
@@ -123,7 +126,8 @@ void Variants::note_tables() {
     const TableEntry& entry = given_.tables[i];
     entry.kind->apply(*entry.table, without);
     if (count_others() == before) applied_.push_back(i);
-    else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); })) redone_ = Redone::all;
+    else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); }))
+      redone_ = Redone::all;
   }
   for (std::size_t i = 0; i < completed_.markers.size(); ++i) // those that stand for bodies are behind the given ones
     if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);

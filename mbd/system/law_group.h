@@ -40,8 +40,7 @@ inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) {
 
 /// Appends the derivatives of force(value, rate), which acts along the measure; returns the force.
 template <class Measure, class Force>
-Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluation& e, const Force& force,
-                           std::vector<PairJacobian>& out) {
+Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluation& e, const Force& force, std::vector<PairJacobian>& out) {
   const auto m = measure.template at<false, Dual<12>>(seeded(e.motion[a], 0), seeded(e.motion[b], 3));
   const Dual<12> f = force(m.value, m.rate);
   const Pair<Dual<12>> d = f * m.direction;
@@ -59,8 +58,7 @@ Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluatio
 }
 
 /// ForceGroup::is_surely_positive by a law; false of those that do not say.
-template <class Law>
-[[nodiscard]] bool is_surely_positive(const Law& law, UnitMode mode, int slot, double value, double rounding) {
+template <class Law> [[nodiscard]] bool is_surely_positive(const Law& law, UnitMode mode, int slot, double value, double rounding) {
   if constexpr (requires { law.is_surely_positive(mode, slot, value, rounding); })
     return law.is_surely_positive(mode, slot, value, rounding);
   return false;
@@ -106,9 +104,7 @@ public:
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries) {
-      const auto law = [&](const Dual<12>& value, const Dual<12>& rate) {
-        return entry.law.force(value, rate, mode_of(entry, e));
-      };
+      const auto law = [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode_of(entry, e)); };
       const Dual<12> f = add_pair_jacobian(entry.a, entry.b, entry.measure, e, law, out);
       if constexpr (Law::k_is_contact) {
         out.back().contact = entry.contact;
@@ -192,8 +188,7 @@ private:
       entry.law.watch(m.value, m.rate, mode_of(entry, e), S(k_met) + value_rounding(m, a, b), S(k_met) + rate_rounding(m, a, b),
                       e.watch + entry.watch, e.watch_rate + entry.watch);
     } else if constexpr (Law::k_watches > 0) {
-      entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
-                      e.watch_rate + entry.watch);
+      entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch, e.watch_rate + entry.watch);
     }
     if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
     return (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;

@@ -33,9 +33,7 @@ public:
   [[nodiscard]] int slot_count() const { return body_count_ + size(); }
 
 private:
-  static std::uint64_t key(int a, int b) {
-    return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
-  }
+  static std::uint64_t key(int a, int b) { return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b); }
   int body_count_ = 0;
   std::vector<Link> links_;
   std::unordered_map<std::uint64_t, int> index_;

@@ -16,9 +16,9 @@ namespace steplap {
 
 template <class S> struct MeasureValue {
   S value{0}, rate{0}, bias{0};
-  Pair<S> direction;          ///< of the force on a, ground axes
-  Pair<S> lever_a, lever_b;   ///< from each centre of gravity to the point of application
-  S couple{0};                ///< on a; its opposite on b
+  Pair<S> direction;        ///< of the force on a, ground axes
+  Pair<S> lever_a, lever_b; ///< from each centre of gravity to the point of application
+  S couple{0};              ///< on a; its opposite on b
 };
 
 /// e·(p_A − p_B) with e fixed in b: force e at p_A.
@@ -27,8 +27,7 @@ template <class S> struct MeasureValue {
 /// term is a constant of b's frame.
 struct AxisMeasure {
   Vec2 point_a, point_b, axis; ///< in the frames of a, b, b
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a);
     const Pair<S> e = to_ground(b, axis);
@@ -41,8 +40,7 @@ struct AxisMeasure {
     m.rate = dot(e, velocity);
     if constexpr (WithBias) { // relative acceleration in b's turning frame, accelerations zero
       m.bias = -(a.omega * a.omega * dot(e, ra));
-      if constexpr (!k_is_origin<B>)
-        m.bias += b.omega * b.omega * dot(e, reach) - S(2) * b.omega * cross(velocity, e);
+      if constexpr (!k_is_origin<B>) m.bias += b.omega * b.omega * dot(e, reach) - S(2) * b.omega * cross(velocity, e);
     }
     return m;
   }
@@ -59,12 +57,10 @@ template <int K, class S> struct CoordinateValue {
 template <int K> struct CoordinateMeasure {
   Vec2 point_a, point_b;
   [[nodiscard]] AxisMeasure along_axis() const { return {point_a, point_b, Vec2::Unit(K)}; }
-  template <bool WithBias, class S>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  template <bool WithBias, class S> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
     return along_axis().template at<WithBias, S>(a, b);
   }
-  template <bool WithBias, class S>
-  STEPLAP_INLINE CoordinateValue<K, S> at(const Motion<S>& a, Origin) const {
+  template <bool WithBias, class S> STEPLAP_INLINE CoordinateValue<K, S> at(const Motion<S>& a, Origin) const {
     static_assert(!WithBias, "rows take AxisMeasure");
     CoordinateValue<K, S> m;
     m.lever_a = to_ground(a, point_a);
@@ -84,8 +80,7 @@ template <class F> void with_cheapest(const AxisMeasure& m, F&& f) {
 /// |p_A − p_B|; undefined at zero length (the rate then is not finite, and the caller says so).
 struct DistanceMeasure {
   Vec2 point_a, point_b;
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     using std::sqrt;
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
@@ -106,8 +101,7 @@ struct DistanceMeasure {
 
 /// θ_A − θ_B.
 struct AngleMeasure {
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     MeasureValue<S> m;
     m.value = relative_angle(a, b);
     m.rate = relative_spin(a, b);
@@ -122,8 +116,7 @@ struct GapMeasure {
   Vec2 point_a, point_b, normal; ///< in the frames of a, b, b
   Vec2 axis = Vec2::Zero();      ///< in the frame of a, if is_axis_in_a
   bool is_axis_in_a = false;
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     // n through p_A and n through the tip act along the same line: the plain gap is an axis measure.
     if (!is_axis_in_a) return AxisMeasure{point_a, point_b, normal}.at<WithBias, S>(a, b);
     MeasureValue<S> m;
@@ -159,10 +152,8 @@ struct SlideMeasure {
   Vec2 point_a, point_b, normal;
   Vec2 axis = Vec2::Zero();
   bool is_axis_in_a = false;
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
-    if (!is_axis_in_a)
-      return AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias, S>(a, b);
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    if (!is_axis_in_a) return AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias, S>(a, b);
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
     const Pair<S> n = to_ground(b, normal), shaft = to_ground(a, axis);
@@ -195,10 +186,8 @@ struct SlideMeasure {
 struct RollLineMeasure {
   Vec2 point_a, point_b, normal; ///< in the frames of a, b, b
   double radius = 0.0;
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
-    MeasureValue<S> m =
-        AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias, S>(a, b);
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    MeasureValue<S> m = AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias, S>(a, b);
     m.value += S(radius) * relative_angle(a, b);
     m.rate += S(radius) * relative_spin(a, b);
     m.couple = S(radius);
@@ -214,8 +203,7 @@ struct RollLineMeasure {
 struct RollRoundMeasure {
   Vec2 point_a, point_b, start; ///< in the frames of a, b, b
   double radius_a = 0.0, radius_b = 0.0;
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     using portable::atan2;
     using std::sqrt;
     MeasureValue<S> m;
@@ -246,8 +234,7 @@ struct RollRoundMeasure {
 /// value is zero wherever the bodies are, and only velocities are held.
 struct SkateMeasure {
   Vec2 point_a, normal; ///< in the frame of a
-  template <bool WithBias, class S, class B>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+  template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), n = to_ground(a, normal);
     const Pair<S> reach = offset(a, b) + ra;

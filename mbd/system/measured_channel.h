@@ -15,8 +15,8 @@ namespace steplap {
 /// What a channel calls: `shown` gives its value, which is that of `measure` less `zero`, or its rate.
 struct MeasuredValue {
   std::function<double(const Snapshot&)> shown;
-  RowSpec measure;    ///< a measure of two bodies and no more
-  double zero = 0.0;  ///< in the measure's unit
+  RowSpec measure;   ///< a measure of two bodies and no more
+  double zero = 0.0; ///< in the measure's unit
   bool is_rate = false;
 
   double operator()(const Snapshot& snapshot) const { return shown(snapshot); }

@@ -31,8 +31,7 @@ template <class S> STEPLAP_INLINE void set_angle(Motion<S>& m, const std::type_i
     const S z2 = z * z;
     m.c = 1.0 - z * ((1.0 / 2.0 - z * (1.0 / 24.0)) +
                      z2 * ((1.0 / 720.0 - z * (1.0 / 40320.0)) + z2 * (1.0 / 3628800.0 - z * (1.0 / 479001600.0))));
-    m.s = theta - theta * z * ((1.0 / 6.0 - z * (1.0 / 120.0)) +
-                               z2 * ((1.0 / 5040.0 - z * (1.0 / 362880.0)) + z2 * (1.0 / 39916800.0)));
+    m.s = theta - theta * z * ((1.0 / 6.0 - z * (1.0 / 120.0)) + z2 * ((1.0 / 5040.0 - z * (1.0 / 362880.0)) + z2 * (1.0 / 39916800.0)));
   } else {
     find_sin_cos(theta, m.s, m.c);
   }
@@ -50,15 +49,15 @@ template <class S> struct Pair {
   S x{0}, y{0};
 
   /// A constant.
-  template <class T> requires(!std::is_same_v<S, T>) STEPLAP_INLINE operator Pair<T>() const { return {T(x), T(y)}; } // NOLINT
+  template <class T>
+    requires(!std::is_same_v<S, T>)
+  STEPLAP_INLINE operator Pair<T>() const {
+    return {T(x), T(y)};
+  } // NOLINT
 };
 
-template <class S> STEPLAP_INLINE Pair<S> operator+(const Pair<S>& a, const Pair<S>& b) {
-  return {a.x + b.x, a.y + b.y};
-}
-template <class S> STEPLAP_INLINE Pair<S> operator-(const Pair<S>& a, const Pair<S>& b) {
-  return {a.x - b.x, a.y - b.y};
-}
+template <class S> STEPLAP_INLINE Pair<S> operator+(const Pair<S>& a, const Pair<S>& b) { return {a.x + b.x, a.y + b.y}; }
+template <class S> STEPLAP_INLINE Pair<S> operator-(const Pair<S>& a, const Pair<S>& b) { return {a.x - b.x, a.y - b.y}; }
 template <class S> STEPLAP_INLINE Pair<S> operator*(const S& k, const Pair<S>& a) { return {k * a.x, k * a.y}; }
 template <class S> STEPLAP_INLINE S dot(const Pair<S>& a, const Pair<S>& b) { return a.x * b.x + a.y * b.y; }
 template <class S> STEPLAP_INLINE S cross(const Pair<S>& a, const Pair<S>& b) { return a.x * b.y - a.y * b.x; }
@@ -75,16 +74,10 @@ template <class S> STEPLAP_INLINE Pair<S> point_velocity(const Motion<S>& body, 
 }
 
 /// Vector from b's centre of gravity to a's.
-template <class S> STEPLAP_INLINE Pair<S> offset(const Motion<S>& a, const Motion<S>& b) {
-  return {a.x - b.x, a.y - b.y};
-}
+template <class S> STEPLAP_INLINE Pair<S> offset(const Motion<S>& a, const Motion<S>& b) { return {a.x - b.x, a.y - b.y}; }
 
-template <class S> STEPLAP_INLINE S relative_angle(const Motion<S>& a, const Motion<S>& b) {
-  return a.theta - b.theta;
-}
-template <class S> STEPLAP_INLINE S relative_spin(const Motion<S>& a, const Motion<S>& b) {
-  return a.omega - b.omega;
-}
+template <class S> STEPLAP_INLINE S relative_angle(const Motion<S>& a, const Motion<S>& b) { return a.theta - b.theta; }
+template <class S> STEPLAP_INLINE S relative_spin(const Motion<S>& a, const Motion<S>& b) { return a.omega - b.omega; }
 
 /// Stands for body b where a's motion is given as b sees it (link.h): what depends on b's own motion
 /// then costs nothing, and the compiler need not be trusted to find that out.

@@ -42,12 +42,13 @@ public:
   FormulaTree run() {
     const Formula formula(asked_.text, subject_, {});
     const Made whole = add(formula);
-    const bool is_zero = formula.tree().size() == 1 && formula.tree().front().op == FormulaOp::number && formula.tree().front().number == 0.0;
+    const bool is_zero =
+        formula.tree().size() == 1 && formula.tree().front().op == FormulaOp::number && formula.tree().front().number == 0.0;
     const auto wanted = dimension_of(asked_.unit);
     if (wanted && !is_zero && whole.powers != wanted->powers) {
       const std::string is = unit_text(whole.powers);
-      throw std::invalid_argument(subject_ + " has to be in '" + (asked_.unit.empty() ? "1" : asked_.unit) + "', and the formula has " + (is.empty() ? "no unit" : "the unit '" + is + "'") +
-                                  ": numbers with units stand in quotes, '12 N'");
+      throw std::invalid_argument(subject_ + " has to be in '" + (asked_.unit.empty() ? "1" : asked_.unit) + "', and the formula has " +
+                                  (is.empty() ? "no unit" : "the unit '" + is + "'") + ": numbers with units stand in quotes, '12 N'");
     }
     FormulaNode last;
     last.op = FormulaOp::finite;
@@ -154,8 +155,9 @@ private:
     for (const DefinedChannel& channel : model.channels)
       if (channel.name == name) return of_channel(channel);
     if (const Channel* const channel = RequestedChannels::made_channel(builder_, name)) return of_measure(*channel);
-    throw std::invalid_argument(subject_ + ": there is no '" + name + "'" + did_you_mean(name, all_names()) +
-                                "; a formula here may hold places, angles and velocities of bodies, markers and measures, states, parameters and t");
+    throw std::invalid_argument(
+        subject_ + ": there is no '" + name + "'" + did_you_mean(name, all_names()) +
+        "; a formula here may hold places, angles and velocities of bodies, markers and measures, states, parameters and t");
   }
 
   Made of_body(int body, int coordinate, const std::array<double, 3>& powers) {
@@ -177,7 +179,8 @@ private:
   Made of_measure(const Channel& channel) {
     const MeasuredValue* const measured = measured_by(channel);
     if (!measured)
-      throw std::invalid_argument(subject_ + ": '" + channel.name + "' is no place, angle or velocity that follows from the motion alone, so no force can hang on it; " +
+      throw std::invalid_argument(subject_ + ": '" + channel.name +
+                                  "' is no place, angle or velocity that follows from the motion alone, so no force can hang on it; " +
                                   "name the places or velocities that it comes from");
     MotionOperand operand;
     operand.kind = MotionOperand::Kind::measure;
@@ -293,7 +296,8 @@ std::vector<double> MotionFormula::gains(const Evaluation& e, const OwnCoordinat
   return gains;
 }
 
-std::array<MotionShare, 2> shares_of(const MotionOperand& operand, const Evaluation& e, const OwnCoordinate<Dual<12>>& own, int own_a, int own_b) {
+std::array<MotionShare, 2> shares_of(const MotionOperand& operand, const Evaluation& e, const OwnCoordinate<Dual<12>>& own, int own_a,
+                                     int own_b) {
   std::array<MotionShare, 2> shares;
   const auto take = [&shares](const Dual<12>& value, int a, int b) {
     for (int side = 0; side < 2; ++side) {

@@ -69,8 +69,7 @@ public:
 
 private:
   class Resolver;
-  template <class S, class AtTime>
-  void read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
+  template <class S, class AtTime> void read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
 
   std::vector<FormulaProgram> programs_; ///< one, if it is valid
   std::vector<MotionOperand> operands_;
@@ -83,7 +82,8 @@ struct MotionShare {
   Vec3 pose = Vec3::Zero(), velocity = Vec3::Zero();
 };
 /// Of an operand that is no state and no signal; `own`: the element's coordinate by poses and velocities of `own_a` and `own_b`.
-[[nodiscard]] std::array<MotionShare, 2> shares_of(const MotionOperand& operand, const Evaluation& e, const OwnCoordinate<Dual<12>>& own, int own_a, int own_b);
+[[nodiscard]] std::array<MotionShare, 2> shares_of(const MotionOperand& operand, const Evaluation& e, const OwnCoordinate<Dual<12>>& own,
+                                                   int own_a, int own_b);
 
 /// How a switch's quantity becomes a watch value.
 struct SwitchScale {
@@ -95,7 +95,8 @@ template <class S> void preset_quantities(int count, SwitchBits bits, S* quantit
   for (int s = 0; s < count; ++s) quantity[s] = S(((bits >> static_cast<unsigned>(s)) & 1U) != 0 ? 1.0 : -1.0);
 }
 /// After it: watch values that hold while they are ≥ 0.
-template <class S> void watch_switches(SwitchBits bits, const S* quantity, const std::vector<SwitchScale>& scales, S* watch, S* watch_rate) {
+template <class S>
+void watch_switches(SwitchBits bits, const S* quantity, const std::vector<SwitchScale>& scales, S* watch, S* watch_rate) {
   for (std::size_t s = 0; s < scales.size(); ++s) {
     const bool is_set = ((bits >> static_cast<unsigned>(s)) & 1U) != 0;
     watch[s] = S(scales[s].weight) * (is_set ? quantity[s] : -quantity[s]) + S(scales[s].slack);
@@ -103,7 +104,8 @@ template <class S> void watch_switches(SwitchBits bits, const S* quantity, const
   }
 }
 /// The bits after that of `slot` has changed: what did not count before is found anew.
-[[nodiscard]] SwitchBits next_bits(const MotionFormula& formula, SwitchBits bits, int slot, const Evaluation& e, const OwnCoordinate<double>& own);
+[[nodiscard]] SwitchBits next_bits(const MotionFormula& formula, SwitchBits bits, int slot, const Evaluation& e,
+                                   const OwnCoordinate<double>& own);
 /// Per switch, from where the motion is.
 [[nodiscard]] std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluation& e, const OwnCoordinate<double>& own);
 

@@ -21,8 +21,8 @@ namespace steplap {
 
 class OneSidedRow final : public FrictionElement {
 public:
-  static constexpr double k_at_length = 1e-9; ///< of its length: nearer than this it starts taut
-  static constexpr double k_too_long = 1e-6;  ///< of its length: what the digits of a file may be off by
+  static constexpr double k_at_length = 1e-9;  ///< of its length: nearer than this it starts taut
+  static constexpr double k_too_long = 1e-6;   ///< of its length: what the digits of a file may be off by
   static constexpr double k_least_part = 1e-6; ///< of its length: a straight part that is shorter has run onto its pulley
 
   RowSpec row;               ///< a distance, or the first of several; its memory holds what they may be at most
@@ -87,9 +87,7 @@ public:
     watch[0] = rest_tension - wrench[0];
     watch[1] = is_long() ? shortest_part(e.motion).length - k_least_part * length : 1.0;
   }
-  void watch_slip(const Evaluation&, const FrictionState&, const double*, double* watch) const override {
-    watch[0] = watch[1] = 1.0;
-  }
+  void watch_slip(const Evaluation&, const FrictionState&, const double*, double* watch) const override { watch[0] = watch[1] = 1.0; }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
     return state.phase == FrictionPhase::slip ? left(e.motion) + dead_band : 1.0;
   }

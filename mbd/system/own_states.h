@@ -46,8 +46,8 @@ public:
   struct Entry {
     MotionFormula rate;
     StatePlace place;
-    int unit = -1;  ///< index of its mode; -1: its rate has no switches
-    int watch = 0;  ///< index of its first watch value
+    int unit = -1; ///< index of its mode; -1: its rate has no switches
+    int watch = 0; ///< index of its first watch value
     std::vector<SwitchScale> switches = {};
   };
   std::vector<Entry> entries;

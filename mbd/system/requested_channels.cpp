@@ -65,7 +65,9 @@ bool wants_energies(const std::vector<std::string>* wanted) {
 }
 
 // States and actions.
-bool has_no_energy(const ForceGroup& group) { return dynamic_cast<const OwnStateGroup*>(&group) != nullptr || dynamic_cast<const ActionGroup*>(&group) != nullptr; }
+bool has_no_energy(const ForceGroup& group) {
+  return dynamic_cast<const OwnStateGroup*>(&group) != nullptr || dynamic_cast<const ActionGroup*>(&group) != nullptr;
+}
 
 std::string without_unit(const std::string& name) {
   if (name.empty() || name.back() != ']') return name;
@@ -145,8 +147,7 @@ void RequestedChannels::end_element() {
   const System& system = *builder_.system_;
   const std::string& name = system.element_names[builder_.element_];
   bool is_wanted = false;
-  for (const char* energy : k_energies)
-    is_wanted |= builder_.use_of(name, energy, true) != SystemBuilder::Use::none;
+  for (const char* energy : k_energies) is_wanted |= builder_.use_of(name, energy, true) != SystemBuilder::Use::none;
   if (!is_wanted) return;
   Share share;
   share.element = builder_.element_;
@@ -191,15 +192,15 @@ void RequestedChannels::add_inactive_share(const Share& share) {
   const auto none = [](const Snapshot&) { return 0.0; };
   if (share.dissipates) add_energy(share, "dissipated", "energy that it has turned into heat since the start", {none, {}});
   if (share.stores) make(true, builder_.system_->element_names[share.element], "stored", "J", "energy stored in it now", none);
-  if (share.works) add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"}, {none, {}});
+  if (share.works)
+    add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"}, {none, {}});
 }
 
 void RequestedChannels::add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand) {
   System& system = *builder_.system_;
   const int slot = static_cast<int>(system.integrands.size());
-  const Channel* const made = make(true, system.element_names[share.element], name, "J", text, [slot](const Snapshot& s) {
-    return s.integrals ? s.integrals->value(slot, s.t) : 0.0;
-  });
+  const Channel* const made = make(true, system.element_names[share.element], name, "J", text,
+                                   [slot](const Snapshot& s) { return s.integrals ? s.integrals->value(slot, s.t) : 0.0; });
   if (made) system.integrands.push_back(std::move(integrand));
 }
 
@@ -213,7 +214,8 @@ void RequestedChannels::add_share(const Share& share) {
     system.shares.push_back(builder_.group_types_[g].share(*share.groups[i], share.first[i], share.count[i]));
     const ForceGroup* const alone = system.shares.back().get();
     (share.does_work[i] ? workers : givers).push_back(alone);
-    if (std::find(system.inner_groups.begin(), system.inner_groups.end(), share.groups[i]) != system.inner_groups.end()) inner.push_back(alone);
+    if (std::find(system.inner_groups.begin(), system.inner_groups.end(), share.groups[i]) != system.inner_groups.end())
+      inner.push_back(alone);
   }
   std::vector<std::size_t> frictions, driven;
   for (std::size_t f = share.first_friction; f < share.friction_end; ++f)
@@ -248,8 +250,7 @@ void RequestedChannels::add_share(const Share& share) {
       };
     add_energy(share, "dissipated", "energy that it has turned into heat since the start", std::move(integrand));
   }
-  if (!givers.empty())
-    make(true, system.element_names[share.element], "stored", "J", "energy stored in it now", stored);
+  if (!givers.empty()) make(true, system.element_names[share.element], "stored", "J", "energy stored in it now", stored);
   if (!workers.empty() || !driven.empty()) {
     Integrand integrand;
     integrand.power = [self, workers, driven](const Snapshot& s) {
@@ -258,7 +259,8 @@ void RequestedChannels::add_share(const Share& share) {
       for (const std::size_t r : driven) power += s.row_force[r] * evaluate_row<false>(self->rows[r], s.motion).rate;
       return power;
     };
-    add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"}, std::move(integrand));
+    add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"},
+               std::move(integrand));
   }
 }
 
@@ -281,7 +283,8 @@ void RequestedChannels::add_markers() {
     if (builder_.body_index_.contains(marker.name)) continue; // a body's own channels tell it
     const CompiledMarker& compiled = builder_.marker_index_.at(marker.name);
     for (const Part& part : k_parts)
-      make(true, marker.name, part.name, part.unit, {part.meaning, part.axis == 0 ? "along x of the ground axes" : "along y of the ground axes"},
+      make(true, marker.name, part.name, part.unit,
+           {part.meaning, part.axis == 0 ? "along x of the ground axes" : "along y of the ground axes"},
            [body = compiled.body, point = compiled.point, level = part.level, axis = part.axis](const Snapshot& s) {
              const Motion<double>& m = s.motion[body];
              const Pair<double> r = to_ground(m, point);
@@ -310,8 +313,10 @@ void RequestedChannels::add_whole() {
     return sum;
   };
   make(true, k_whole, "kinetic", "J", "kinetic energy of all bodies", kinetic);
-  make(true, k_whole, "potential", "J", {"energy of weight and of what elements have stored", "zero of weight at the origin of the ground"}, potential);
-  make(true, k_whole, "dissipated", "J", "energy turned into heat since the start, by friction and dampers", [](const Snapshot& s) { return s.dissipated; });
+  make(true, k_whole, "potential", "J", {"energy of weight and of what elements have stored", "zero of weight at the origin of the ground"},
+       potential);
+  make(true, k_whole, "dissipated", "J", "energy turned into heat since the start, by friction and dampers",
+       [](const Snapshot& s) { return s.dissipated; });
   make(true, k_whole, "work", "J", {"work of loads, motors and drives since the start", "positive: given to the machine"},
        [](const Snapshot& s) { return s.work; });
   make(true, k_whole, "balance", "J", "kinetic + potential + dissipated - work: what changes of it is error of the computation",
@@ -331,7 +336,8 @@ const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::st
     throw ModelError(d.place("expression"), subject + ": there is no channel '" + name + "'" + did_you_mean(name, all_names()) +
                                                 "; names with other characters than letters, digits, _ and points stand in braces");
   const std::string unit = name.substr(bare.size() + 2, name.size() - bare.size() - 3);
-  if (found->unit != unit) throw ModelError(d.place("expression"), subject + ": '" + found->name + "' is in '" + found->unit + "', not in '" + unit + "'");
+  if (found->unit != unit)
+    throw ModelError(d.place("expression"), subject + ": '" + found->name + "' is in '" + found->unit + "', not in '" + unit + "'");
   return *found;
 }
 
@@ -347,7 +353,8 @@ std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& 
   if (!given) throw ModelError(d.place("unit"), subject + ": the unit '" + d.unit + "' is not known to formulas");
   if (given->powers != derived.powers) {
     const std::string is = unit_text(derived.powers);
-    throw ModelError(d.place("unit"), subject + ": the expression has " + (is.empty() ? "no unit" : "the unit " + is) + ", which is none of '" + d.unit + "'");
+    throw ModelError(d.place("unit"), subject + ": the expression has " + (is.empty() ? "no unit" : "the unit " + is) +
+                                          ", which is none of '" + d.unit + "'");
   }
   return {d.unit == "1" ? std::string() : d.unit, 1.0 / given->factor};
 }
@@ -432,7 +439,8 @@ void RequestedChannels::check_patterns() {
 
 // Of the channels named outright, which elements and bodies have not made.
 bool RequestedChannels::is_anything_missing() const {
-  return builder_.wanted_ && std::any_of(builder_.wanted_->begin(), builder_.wanted_->end(), [this](const std::string& name) { return !find(name); });
+  return builder_.wanted_ &&
+         std::any_of(builder_.wanted_->begin(), builder_.wanted_->end(), [this](const std::string& name) { return !find(name); });
 }
 
 void RequestedChannels::add() {

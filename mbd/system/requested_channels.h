@@ -75,8 +75,8 @@ private:
   std::vector<Share> shares_;
   std::vector<std::size_t> counts_; ///< of entries in groups, before the element
   std::size_t rows_ = 0, frictions_ = 0;
-  bool has_requests_;               ///< the model asks for something
-  bool wants_shares_;               ///< there may be energies of elements among it
+  bool has_requests_; ///< the model asks for something
+  bool wants_shares_; ///< there may be energies of elements among it
 };
 
 } // namespace steplap

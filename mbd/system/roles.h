@@ -41,14 +41,14 @@ enum class WatchKind : std::uint8_t { exact, place, rate };
 /// What a friction element remembers; anchors are in the state's memory (RowSpec::memory).
 struct FrictionState {
   FrictionPhase phase = FrictionPhase::stick;
-  std::int8_t sign = 0;             ///< direction of slip, for one-dimensional friction
-  std::uint32_t foot = 0;           ///< which of its places it acts at; or a set of places, by bits
+  std::int8_t sign = 0;   ///< direction of slip, for one-dimensional friction
+  std::uint32_t foot = 0; ///< which of its places it acts at; or a set of places, by bits
   bool has_slipped = false;
-  bool is_starting = false;         ///< slip has only begun: `direction` still shares in the slip law
-  std::uint8_t stage = 0;           ///< of a slip's start or end, as its element counts them
-  std::uint8_t left_out = 0;        ///< by bits, its rows that the equations left out while it stuck, since others hold them
-  double slid = 0.0;                ///< path length of finished slips (first row), m
-  double direction[3] = {0, 0, 0};  ///< of slip, as last looked at, for three-dimensional friction
+  bool is_starting = false;        ///< slip has only begun: `direction` still shares in the slip law
+  std::uint8_t stage = 0;          ///< of a slip's start or end, as its element counts them
+  std::uint8_t left_out = 0;       ///< by bits, its rows that the equations left out while it stuck, since others hold them
+  double slid = 0.0;               ///< path length of finished slips (first row), m
+  double direction[3] = {0, 0, 0}; ///< of slip, as last looked at, for three-dimensional friction
 };
 
 /// What an element keeps between evaluations to save work, never to change a result: one per thread.
@@ -69,8 +69,8 @@ template <class S> struct Evaluated {
   S work{0.0};                            ///< W, of loads and drives
   const UnitMode* mode = nullptr;         ///< per unit
   const FrictionState* friction = nullptr;
-  const S* inner = nullptr;               ///< inner states of force elements
-  S* inner_rate = nullptr;                ///< their rates: zero, unless an element says more
+  const S* inner = nullptr; ///< inner states of force elements
+  S* inner_rate = nullptr;  ///< their rates: zero, unless an element says more
 };
 
 /// What a signal is asked for: its value, or the rate at which a drive by it moves (DriveLevel::position).
@@ -98,7 +98,7 @@ struct Evaluation : Evaluated<double> {
   /// Signals that are forces (SignalUse) are taken by their means from here to t, for the impulse of a step of time
   /// stepping; where this is not before t (infinite) by their values at t.
   double mean_from = std::numeric_limits<double>::infinity();
-  const double* memory = nullptr;         ///< of the state: anchors of rows
+  const double* memory = nullptr;            ///< of the state: anchors of rows
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
 
   [[nodiscard]] double force_of(const Signal& signal) const { return mean_from < t ? signal.mean(mean_from, t) : signal.value(t); }
@@ -112,8 +112,7 @@ template <class S> STEPLAP_INLINE void apply_force(BodyForceOf<S>& link_force, c
   link_force.m += cross(m.lever_a, d) + f * m.couple;
 }
 
-template <class S, int K>
-STEPLAP_INLINE void apply_force(BodyForceOf<S>& link_force, const CoordinateValue<K, S>& m, const S& f) {
+template <class S, int K> STEPLAP_INLINE void apply_force(BodyForceOf<S>& link_force, const CoordinateValue<K, S>& m, const S& f) {
   (K == 0 ? link_force.fx : link_force.fy) += f;
   link_force.m += K == 0 ? -m.lever_a.y * f : m.lever_a.x * f;
 }
@@ -153,9 +152,7 @@ public:
 
   /// Modes, for groups whose elements are units. `slot` is the watch value that fell below zero.
   [[nodiscard]] virtual UnitMode initial_mode(int /*element*/, const Evaluation&) const { return 0; }
-  [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const {
-    return mode;
-  }
+  [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const { return mode; }
   /// Of a mode that has just begun: is this watch value positive, by more than rounding? Else nobody believes its sign before
   /// it was positive once.
   [[nodiscard]] virtual bool is_surely_positive(int /*element*/, UnitMode /*mode*/, int /*slot*/, const Evaluation&) const { return false; }
@@ -219,49 +216,38 @@ public:
   /// Can it bear any wrench at all (some contact closed, some area left)?
   [[nodiscard]] virtual bool is_loaded(const Evaluation& e, const FrictionState& state) const = 0;
   /// The wrench of the slip law for the relative velocity `rate` along its rows.
-  virtual void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
-                           double* wrench) const = 0;
+  virtual void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const = 0;
   /// Support function of the set it can bear while sticking: the largest power that an admissible wrench takes
   /// from `rate`.
   [[nodiscard]] virtual double support(const Evaluation& e, const FrictionState& state, const double* rate) const = 0;
   /// Share of its capacity that `wrench` uses, 1 at the bound; `normal`: the n with n·w ≤ share of w for every w,
   /// equal for `wrench`.
-  [[nodiscard]] virtual double gauge(const Evaluation& e, const FrictionState& state, const double* wrench,
-                                     double* normal) const {
+  [[nodiscard]] virtual double gauge(const Evaluation& e, const FrictionState& state, const double* wrench, double* normal) const {
     const double forward = 1.0, capacity = support(e, state, &forward); // of one dimension
     normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
     return normal[0] * wrench[0];
   }
   /// Watch values while sticking with `wrench`: admissible while both are ≥ 0. A rigid element judges by `wrench`, the time,
   /// what the state remembers and its scratch alone: motions, forces and modes may be others than at which it was found.
-  virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
-                           double* watch) const = 0;
+  virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench, double* watch) const = 0;
   /// At the onset of slip, when `wrench` has reached the bound: sets sign or direction.
   virtual void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const = 0;
   /// Sets sign or direction for a slip that is under way.
-  virtual void aim(FrictionState& state, const double* rate) const {
-    state.sign = rate[0] > 0.0 ? 1 : -1;
-  }
+  virtual void aim(FrictionState& state, const double* rate) const { state.sign = rate[0] > 0.0 ? 1 : -1; }
   /// Watch values while sliding at `rate`: its slip law is the one of `state` while both are ≥ 0.
-  virtual void watch_slip(const Evaluation&, const FrictionState& state, const double* rate,
-                          double* watch) const {
+  virtual void watch_slip(const Evaluation&, const FrictionState& state, const double* rate, double* watch) const {
     watch[0] = state.sign * rate[0];
     watch[1] = 1.0;
   }
   /// Can slip_scale() or decay_rate() say anything of a slip, whatever its rate?
   [[nodiscard]] virtual bool turns_with_slip(const FrictionState&) const { return true; }
   /// Of a slip at `rate`; infinite where the law does not turn with it.
-  [[nodiscard]] virtual SlipScale slip_scale(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
-    return {};
-  }
+  [[nodiscard]] virtual SlipScale slip_scale(const Evaluation&, const FrictionState&, const double* /*rate*/) const { return {}; }
   /// The fastest rate, 1/s, at which friction alone makes a change of `rate` decay (an upper bound).
-  [[nodiscard]] virtual double decay_rate(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
-    return 0.0;
-  }
+  [[nodiscard]] virtual double decay_rate(const Evaluation&, const FrictionState&, const double* /*rate*/) const { return 0.0; }
   /// After one of them fell below zero: true if the slip goes on, with `state` brought up to date;
   /// false if it is at rest, so that the mode problem must tell what comes next.
-  [[nodiscard]] virtual bool goes_on_slipping(const Evaluation&, FrictionState&, const double* /*rate*/,
-                                              int /*slot*/) const {
+  [[nodiscard]] virtual bool goes_on_slipping(const Evaluation&, FrictionState&, const double* /*rate*/, int /*slot*/) const {
     return false;
   }
   /// Watch value of the place it acts at (foot switch, coming apart): valid while ≥ 0.
@@ -275,8 +261,7 @@ public:
   [[nodiscard]] virtual bool stops_when_apart() const { return false; }
   /// min ½ wᵀA w + bᵀw over admissible w (A: dimension × dimension, row-major); `kinetic`: with the
   /// slip law's bounds instead of the static ones.
-  [[nodiscard]] virtual FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,
-                                                  const double* a, const double* b,
+  [[nodiscard]] virtual FrictionBlock solve_block(const Evaluation& e, const FrictionState& state, const double* a, const double* b,
                                                   bool kinetic) const = 0;
 };
 

@@ -10,13 +10,10 @@
 namespace steplap {
 
 /// `one`, `next`: the points that have met.
-[[nodiscard]] inline ElementFailure rope_has_run_in(double t, const std::string& rope, const std::string& one,
-                                                    const std::string& next) {
-  return {
-      "at t = " + rounded_text(t, 12) + " s '" + one + "' and '" + next + "' have met: nothing is left of rope '" +
-          rope +
-          "' between them, what it pulled has run onto its pulley. End the run before, or keep it away by a 'limit'",
-      {rope}};
+[[nodiscard]] inline ElementFailure rope_has_run_in(double t, const std::string& rope, const std::string& one, const std::string& next) {
+  return {"at t = " + rounded_text(t, 12) + " s '" + one + "' and '" + next + "' have met: nothing is left of rope '" + rope +
+              "' between them, what it pulled has run onto its pulley. End the run before, or keep it away by a 'limit'",
+          {rope}};
 }
 
 } // namespace steplap

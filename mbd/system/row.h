@@ -9,8 +9,8 @@
 // everything linear in a row, its gradient and second rate, is a sum over parts of two bodies each.
 #pragma once
 
-#include "mbd/system/measure.h"
 #include "mbd/model/signal.h"
+#include "mbd/system/measure.h"
 
 #include <cmath>
 #include <limits>
@@ -41,36 +41,27 @@ struct RowSpec {
 template <bool WithBias, class S, class B>
 [[gnu::noinline]] MeasureValue<S> evaluate_rare(const RowSpec& row, const Motion<S>& a, const B& b) {
   if (row.kind == MeasureKind::skate) return SkateMeasure{row.point_a, row.direction}.at<WithBias>(a, b);
-  if (row.kind == MeasureKind::roll_line)
-    return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
+  if (row.kind == MeasureKind::roll_line) return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
   return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
 }
 
 /// The row's measure of a against b: another body's motion, or Origin where a is seen from b.
-template <bool WithBias, class S, class B>
-STEPLAP_INLINE MeasureValue<S> evaluate_row(const RowSpec& row, const Motion<S>& a, const B& b) {
+template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> evaluate_row(const RowSpec& row, const Motion<S>& a, const B& b) {
   switch (row.kind) {
-  case MeasureKind::axis:
-    return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);
-  case MeasureKind::distance:
-    return DistanceMeasure{row.point_a, row.point_b}.at<WithBias>(a, b);
-  case MeasureKind::angle:
-    return AngleMeasure{}.at<WithBias>(a, b);
+  case MeasureKind::axis: return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);
+  case MeasureKind::distance: return DistanceMeasure{row.point_a, row.point_b}.at<WithBias>(a, b);
+  case MeasureKind::angle: return AngleMeasure{}.at<WithBias>(a, b);
   case MeasureKind::roll_line:
   case MeasureKind::roll_round:
-  case MeasureKind::skate:
-    return evaluate_rare<WithBias>(row, a, b);
-  case MeasureKind::slide:
-    break;
+  case MeasureKind::skate: return evaluate_rare<WithBias>(row, a, b);
+  case MeasureKind::slide: break;
   }
-  return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}
-      .at<WithBias>(a, b);
+  return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}.at<WithBias>(a, b);
 }
 
 /// The sum over the parts of a row: value, rate and bias. No one direction stands for all of them: it is not a number, for
 /// whoever would use it; gradients are those of each part.
-template <bool WithBias>
-[[gnu::noinline]] MeasureValue<double> evaluate_parts(const RowSpec& row, const Motion<double>* motion) {
+template <bool WithBias> [[gnu::noinline]] MeasureValue<double> evaluate_parts(const RowSpec& row, const Motion<double>* motion) {
   MeasureValue<double> sum;
   for (const RowSpec* part = &row; part; part = part->next) {
     const MeasureValue<double> m = evaluate_row<WithBias>(*part, motion[part->a], motion[part->b]);
@@ -82,9 +73,9 @@ template <bool WithBias>
   return sum;
 }
 
-template <bool WithBias>
-STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
-  if (row.next) [[unlikely]] return evaluate_parts<WithBias>(row, motion);
+template <bool WithBias> STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
+  if (row.next) [[unlikely]]
+    return evaluate_parts<WithBias>(row, motion);
   return evaluate_row<WithBias>(row, motion[row.a], motion[row.b]);
 }
 

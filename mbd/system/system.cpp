@@ -13,8 +13,7 @@
 
 namespace steplap {
 
-void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
-                  std::vector<Motion<double>>& motion) {
+void place_bodies(const std::vector<double>& q, const std::vector<double>& v, std::vector<Motion<double>>& motion) {
   motion.resize(q.size() / 3);
   for (std::size_t i = 0; i < motion.size(); ++i) {
     Motion<double>& m = motion[i];
@@ -67,8 +66,7 @@ State System::initial_state() const {
 
 double System::potential_energy(const Motion<double>* motion) const {
   double sum = 0.0;
-  for (std::size_t i = 1; i < bodies.size(); ++i)
-    sum -= bodies[i].mass * (gravity.x() * motion[i].x + gravity.y() * motion[i].y);
+  for (std::size_t i = 1; i < bodies.size(); ++i) sum -= bodies[i].mass * (gravity.x() * motion[i].x + gravity.y() * motion[i].y);
   for (const auto& group : groups) sum += group->potential(motion);
   return sum;
 }
@@ -130,8 +128,8 @@ void SystemBuilder::compile_bodies() {
     }
     body_index_[body.name] = system_->body_count();
     const Vec2 velocity = body.velocity + model_.simulation.velocity;
-    system_->bodies.push_back({body.name, body.mass, body.inertia, body.reference_pose(),
-                               Vec3(velocity.x(), velocity.y(), body.angular_velocity)});
+    system_->bodies.push_back(
+        {body.name, body.mass, body.inertia, body.reference_pose(), Vec3(velocity.x(), velocity.y(), body.angular_velocity)});
   }
   system_->scale = units_of(*system_, model_.simulation.end);
   State state = system_->initial_state();
@@ -139,8 +137,7 @@ void SystemBuilder::compile_bodies() {
 
   // A marker's point is measured from the centre of gravity; on a fixed body it becomes a point of
   // the ground, so that fixed bodies cost nothing.
-  const auto compiled = [&](const std::string& body_name, const std::optional<Vec2>& point,
-                            const std::optional<Vec2>& at, double angle) {
+  const auto compiled = [&](const std::string& body_name, const std::optional<Vec2>& point, const std::optional<Vec2>& at, double angle) {
     CompiledMarker marker;
     marker.body = body_index_.at(body_name);
     marker.angle = angle;
@@ -148,8 +145,7 @@ void SystemBuilder::compile_bodies() {
     const Body* body = found == by_name.end() ? nullptr : found->second;
     Vec2 ground_position = Vec2::Zero();
     if (at) ground_position = *at;
-    else if (body)
-      ground_position = body->position + rotated(point ? *point : body->cg, body->angle);
+    else if (body) ground_position = body->position + rotated(point ? *point : body->cg, body->angle);
     else if (point) ground_position = *point;
     if (marker.body == k_ground) {
       marker.point = ground_position;
@@ -164,10 +160,8 @@ void SystemBuilder::compile_bodies() {
     return marker;
   };
   marker_index_.reserve(body_index_.size() + model_.markers.size());
-  for (const auto& [name, index] : body_index_)
-    marker_index_[name] = compiled(name, std::nullopt, std::nullopt, 0.0);
-  for (const Marker& marker : model_.markers)
-    marker_index_[marker.name] = compiled(marker.body, marker.point, marker.at, marker.angle);
+  for (const auto& [name, index] : body_index_) marker_index_[name] = compiled(name, std::nullopt, std::nullopt, 0.0);
+  for (const Marker& marker : model_.markers) marker_index_[marker.name] = compiled(marker.body, marker.point, marker.at, marker.angle);
 }
 
 std::vector<char> acting_elements(const Model& model) {
@@ -289,7 +283,8 @@ void SystemBuilder::finish() {
   s.has_work = std::any_of(group_types_.begin(), group_types_.end(), [](const GroupType& type) { return type.does_work; }) ||
                std::any_of(s.rows.begin(), s.rows.end(), [](const RowSpec& row) { return row.drive != nullptr; });
   for (const Signal* signal : s.motion_signals_)
-    std::copy_if(signal->breakpoints().begin(), signal->breakpoints().end(), std::back_inserter(s.motion_breakpoints), [](double t) { return t > 0.0; });
+    std::copy_if(signal->breakpoints().begin(), signal->breakpoints().end(), std::back_inserter(s.motion_breakpoints),
+                 [](double t) { return t > 0.0; });
   for (std::vector<double>* const times : {&s.breakpoints, &s.motion_breakpoints}) {
     std::sort(times->begin(), times->end());
     times->erase(std::unique(times->begin(), times->end()), times->end());
@@ -304,7 +299,8 @@ void SystemBuilder::add_body_channels() {
     const char* sign;
     double Motion<double>::*member;
   };
-  static constexpr const char *k_x = "along x of the ground axes", *k_y = "along y of the ground axes", *k_turn = "positive counter-clockwise";
+  static constexpr const char *k_x = "along x of the ground axes", *k_y = "along y of the ground axes",
+                              *k_turn = "positive counter-clockwise";
   static constexpr Coordinate coordinates[] = {
       {"x", "m", "place of the centre of gravity", k_x, &Motion<double>::x},
       {"y", "m", "place of the centre of gravity", k_y, &Motion<double>::y},
@@ -312,17 +308,17 @@ void SystemBuilder::add_body_channels() {
       {"vx", "m/s", "velocity of the centre of gravity", k_x, &Motion<double>::vx},
       {"vy", "m/s", "velocity of the centre of gravity", k_y, &Motion<double>::vy},
       {"omega", "rad/s", "angular velocity", k_turn, &Motion<double>::omega}};
-  static constexpr Coordinate accelerations[] = {
-      {"ax", "m/s^2", "acceleration of the centre of gravity", k_x, nullptr},
-      {"ay", "m/s^2", "acceleration of the centre of gravity", k_y, nullptr},
-      {"alpha", "rad/s^2", "angular acceleration", k_turn, nullptr}};
+  static constexpr Coordinate accelerations[] = {{"ax", "m/s^2", "acceleration of the centre of gravity", k_x, nullptr},
+                                                 {"ay", "m/s^2", "acceleration of the centre of gravity", k_y, nullptr},
+                                                 {"alpha", "rad/s^2", "angular acceleration", k_turn, nullptr}};
   const auto enter = [this](const std::string& name, const Coordinate& c, std::function<double(const Snapshot&)> value) {
     enter_channel(use_of(name, c.name, false), name, c.name, c.unit, {c.meaning, c.sign}, std::move(value));
   };
   for (int i = 1; i < system_->body_count(); ++i) {
     const std::string& name = system_->bodies[i].name;
     for (const Coordinate& c : coordinates)
-      if (use_of(name, c.name, false) != Use::none) enter(name, c, [i, member = c.member](const Snapshot& s) { return s.motion[i].*member; });
+      if (use_of(name, c.name, false) != Use::none)
+        enter(name, c, [i, member = c.member](const Snapshot& s) { return s.motion[i].*member; });
     for (int k = 0; k < 3; ++k)
       if (use_of(name, accelerations[k].name, false) != Use::none)
         enter(name, accelerations[k], [i, k](const Snapshot& s) { return s.acceleration[3 * i + k]; });
@@ -331,15 +327,13 @@ void SystemBuilder::add_body_channels() {
 
 CompiledMarker SystemBuilder::marker(const std::string& name) const {
   const auto found = marker_index_.find(name);
-  if (found == marker_index_.end())
-    throw ModelError(model_.elements[element_].element->where, "unknown marker '" + name + "'");
+  if (found == marker_index_.end()) throw ModelError(model_.elements[element_].element->where, "unknown marker '" + name + "'");
   return found->second;
 }
 
 int SystemBuilder::body(const std::string& name) const {
   const auto found = body_index_.find(name);
-  if (found == body_index_.end())
-    throw ModelError(model_.elements[element_].element->where, "unknown body '" + name + "'");
+  if (found == body_index_.end()) throw ModelError(model_.elements[element_].element->where, "unknown body '" + name + "'");
   return found->second;
 }
 
@@ -369,9 +363,7 @@ Vec2 SystemBuilder::marker_position(const CompiledMarker& marker) const {
   return Vec2(m.x, m.y) + rotated(marker.point, m.theta);
 }
 
-Vec2 SystemBuilder::direction(const CompiledMarker& marker, const Vec2& local) const {
-  return rotated(local.normalized(), marker.angle);
-}
+Vec2 SystemBuilder::direction(const CompiledMarker& marker, const Vec2& local) const { return rotated(local.normalized(), marker.angle); }
 
 const ContactIndex* SystemBuilder::contact(const std::string& element) const {
   const auto found = contact_index_.find(element);
@@ -401,7 +393,8 @@ int SystemBuilder::add_inner(const ForceGroup& group, double start) {
   const auto cannot = [&](const Method& m) { return m.name == integrator && m.is_time_stepping; };
   const bool is_stepped = dynamic_cast<const OwnStateGroup*>(&group) != nullptr; // a differential equation, and no more
   if (is_first && !is_stepped && std::any_of(methods().begin(), methods().end(), cannot))
-    error("'" + integrator + "' does not follow what it remembers (the slid distance of an elastic joint, whether a tie has "
+    error("'" + integrator +
+          "' does not follow what it remembers (the slid distance of an elastic joint, whether a tie has "
           "broken): choose another 'integrator', auto for one");
   if (std::find(system_->inner_groups.begin(), system_->inner_groups.end(), &group) == system_->inner_groups.end())
     system_->inner_groups.push_back(&group);
@@ -468,8 +461,8 @@ SystemBuilder::Use SystemBuilder::use_of(std::string_view owner, std::string_vie
   return Use::none;
 }
 
-Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
-                                      std::function<double(const Snapshot&)> value) {
+Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::string_view name, std::string_view unit,
+                                      const ChannelText& text, std::function<double(const Snapshot&)> value) {
   std::string whole(owner);
   if (!whole.empty()) whole.append(1, '.');
   whole.append(name);
@@ -482,8 +475,7 @@ Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::stri
 
 void SystemBuilder::error(const std::string& message) {
   const Element& element = *model_.elements[element_].element;
-  errors_.push_back({element.where, model_.elements[element_].kind->name + " '" + element.name +
-                                        "': " + message});
+  errors_.push_back({element.where, model_.elements[element_].kind->name + " '" + element.name + "': " + message});
 }
 
 std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted) {

@@ -3,17 +3,17 @@
 #pragma once
 
 #include "mbd/model/model.h"
+#include "mbd/model/signal_network.h"
 #include "mbd/system/roles.h"
 #include "mbd/system/scene_units.h"
-#include "mbd/model/signal_network.h"
 
 #include <functional>
 #include <limits>
 #include <map>
-#include <typeinfo>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <typeinfo>
 #include <unordered_map>
 #include <vector>
 
@@ -138,7 +138,7 @@ public:
   Vec2 gravity = Vec2::Zero();                                 ///< m/s², ground axes
   SceneUnits scale;                                            ///< the scene's own length and times
   std::vector<BodyData> bodies;                                ///< the ground first
-  std::vector<std::string> element_names; ///< in the order of the model
+  std::vector<std::string> element_names;                      ///< in the order of the model
   std::vector<std::string> element_kinds;                      ///< of each element
   std::vector<std::unique_ptr<ForceGroup>> groups;             ///< one for each combination of measure and law
   std::vector<RowSpec> rows;                                   ///< bilateral and driven
@@ -189,8 +189,7 @@ private:
 };
 
 /// Fills per-body motions from q and v; `motion` has one entry per body.
-void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
-                  std::vector<Motion<double>>& motion);
+void place_bodies(const std::vector<double>& q, const std::vector<double>& v, std::vector<Motion<double>>& motion);
 
 /// Bases of driven rows, so that the drives begin at the pose and velocity of `state`: of all, or of those elements alone
 /// (by System::element_names) that `begins` marks.
@@ -378,8 +377,7 @@ template <class Group> void SystemBuilder::add_unit(Group& group, int watch_coun
   auto& entry = group.entries.back();
   entry.unit = static_cast<int>(system_->units.size());
   entry.watch = system_->watch_count;
-  system_->units.push_back({&group, static_cast<int>(group.entries.size()) - 1, entry.watch,
-                            watch_count, element_});
+  system_->units.push_back({&group, static_cast<int>(group.entries.size()) - 1, entry.watch, watch_count, element_});
   system_->watch_count += watch_count;
 }
 

@@ -21,7 +21,8 @@ using Kind = PlannedInstruction::Kind;
 constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
 constexpr int k_page = 4096;
 constexpr int k_mask_copies = 4;
-constexpr int k_masks_size = 2 * 8 * k_mask_copies; ///< bytes before the first instruction: −0 and the bits besides its sign; a line of the cache
+constexpr int k_masks_size =
+    2 * 8 * k_mask_copies; ///< bytes before the first instruction: −0 and the bits besides its sign; a line of the cache
 // What the frame begins with where functions are called: the arguments, and whether all is wanted.
 constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_wish = 24;
 constexpr int k_saved_size = 64;
@@ -55,10 +56,10 @@ struct InstructionNames {
 InstructionNames names_for(bool has_three_operands) {
   namespace I = x86::Inst;
   if (has_three_operands)
-    return {I::kIdVmovsd, I::kIdVmovapd, I::kIdVaddsd, I::kIdVsubsd, I::kIdVmulsd, I::kIdVdivsd,
-            I::kIdVsqrtsd, I::kIdVminsd, I::kIdVmaxsd, I::kIdVxorpd, I::kIdVandpd, I::kIdVucomisd};
-  return {I::kIdMovsd, I::kIdMovapd, I::kIdAddsd, I::kIdSubsd, I::kIdMulsd, I::kIdDivsd,
-          I::kIdSqrtsd, I::kIdMinsd, I::kIdMaxsd, I::kIdXorpd, I::kIdAndpd, I::kIdUcomisd};
+    return {I::kIdVmovsd,  I::kIdVmovapd, I::kIdVaddsd, I::kIdVsubsd, I::kIdVmulsd, I::kIdVdivsd,
+            I::kIdVsqrtsd, I::kIdVminsd,  I::kIdVmaxsd, I::kIdVxorpd, I::kIdVandpd, I::kIdVucomisd};
+  return {I::kIdMovsd,  I::kIdMovapd, I::kIdAddsd, I::kIdSubsd, I::kIdMulsd, I::kIdDivsd,
+          I::kIdSqrtsd, I::kIdMinsd,  I::kIdMaxsd, I::kIdXorpd, I::kIdAndpd, I::kIdUcomisd};
 }
 
 RegisterRules rules_for(InstructionSet instructions) {
@@ -195,10 +196,8 @@ private:
   void arithmetic(const PlannedInstruction& i) {
     const asmjit::InstId name = name_of(i.operation);
     if (i.operation == TapeOperation::square_root) {
-      if (has_avx_)
-        a_.emit(name, reg(i.destination), reg(i.first), reg(i.first));
-      else
-        a_.emit(name, reg(i.destination), reg(i.first));
+      if (has_avx_) a_.emit(name, reg(i.destination), reg(i.first), reg(i.first));
+      else a_.emit(name, reg(i.destination), reg(i.first));
     } else if (has_avx_) {
       a_.emit(name, reg(i.destination), reg(i.first), operand(i.second));
     } else {
@@ -209,10 +208,8 @@ private:
   // first is b, second a: where a < b, b is above.
   void condition(const PlannedInstruction& i) {
     a_.emit(names_.compare, reg(i.first), operand(i.second));
-    if (i.operation == TapeOperation::if_less)
-      a_.jbe(failed_); // a NaN among them counts as below
-    else
-      a_.ja(failed_);
+    if (i.operation == TapeOperation::if_less) a_.jbe(failed_); // a NaN among them counts as below
+    else a_.ja(failed_);
   }
 
   void call(const PlannedInstruction& i) {
@@ -270,19 +267,14 @@ void* executable_copy(const std::uint8_t* bytes, std::size_t size) {
 
 void sin_cos_of_block(const double* x, double* sines, double* cosines) {
   switch (k_best_instructions) {
-  case InstructionSet::avx512:
-    return sin_cos_of_eight(x, sines, cosines);
-  case InstructionSet::avx2:
-    return sin_cos_by<4, sin_cos_of_four>(x, sines, cosines);
-  case InstructionSet::sse2:
-    break;
+  case InstructionSet::avx512: return sin_cos_of_eight(x, sines, cosines);
+  case InstructionSet::avx2: return sin_cos_by<4, sin_cos_of_four>(x, sines, cosines);
+  case InstructionSet::sse2: break;
   }
   sin_cos_by<2, sin_cos_of_two>(x, sines, cosines);
 }
 
-bool MachineCode::is_available() {
-  return true;
-}
+bool MachineCode::is_available() { return true; }
 
 InstructionSet MachineCode::best_instructions() { return k_best_instructions; }
 
@@ -309,9 +301,7 @@ MachineCode::MachineCode(const Tape& tape, InstructionSet instructions) {
   run_ = reinterpret_cast<Run>(static_cast<std::uint8_t*>(memory_) + k_masks_size);
 }
 
-MachineCode::MachineCode(MachineCode&& other) noexcept {
-  *this = std::move(other);
-}
+MachineCode::MachineCode(MachineCode&& other) noexcept { *this = std::move(other); }
 
 MachineCode& MachineCode::operator=(MachineCode&& other) noexcept {
   std::swap(run_, other.run_);

@@ -6,12 +6,8 @@
 
 namespace steplap {
 
-bool MachineCode::is_available() {
-  return false;
-}
-InstructionSet MachineCode::best_instructions() {
-  return InstructionSet::sse2;
-}
+bool MachineCode::is_available() { return false; }
+InstructionSet MachineCode::best_instructions() { return InstructionSet::sse2; }
 
 void sin_cos_of_block(const double* x, double* sines, double* cosines) {
   for (int l = 0; l < 8; ++l) {

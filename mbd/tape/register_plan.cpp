@@ -16,12 +16,10 @@ using Kind = PlannedInstruction::Kind;
 constexpr std::int32_t k_never = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t k_none = -1;
 constexpr std::int64_t k_worth_of_store = 100; ///< steps that a value which needs no store may be used sooner and leaves all the same
-constexpr std::int32_t k_store_outputs = -1; ///< in the order: outputs known so far are stored
-constexpr std::int32_t k_leave = -2;         ///< in the order: usual outputs are stored
+constexpr std::int32_t k_store_outputs = -1;   ///< in the order: outputs known so far are stored
+constexpr std::int32_t k_leave = -2;           ///< in the order: usual outputs are stored
 
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 class Planner {
 public:
@@ -37,24 +35,21 @@ public:
     plan_.instructions.reserve(2 * order_.size());
     for (std::size_t p = 0; p < order_.size(); ++p) {
       busy_ = 0;
-      if (order_[p] == k_store_outputs)
-        store_outputs(p);
-      else if (order_[p] == k_leave)
-        plan(Kind::leave);
-      else
-        plan_step(p, tape_.steps[at(order_[p])]);
+      if (order_[p] == k_store_outputs) store_outputs(p);
+      else if (order_[p] == k_leave) plan(Kind::leave);
+      else plan_step(p, tape_.steps[at(order_[p])]);
     }
     plan_.call_slots = argument_slots_ + result_slots_;
     return std::move(plan_);
   }
 
 private:
-  struct alignas(32) Value { // so that its place is found by a shift
+  struct alignas(32) Value {     // so that its place is found by a shift
     std::int32_t next = k_never; ///< position of the next use
     std::int32_t position = -1;  ///< in the order
     std::int8_t reg = -1;
-    OperandPlace home;                  ///< where it lies in memory
-    std::int32_t output = k_none; ///< first of its outputs
+    OperandPlace home;             ///< where it lies in memory
+    std::int32_t output = k_none;  ///< first of its outputs
     std::int32_t partner = k_none; ///< the cosine of a sine, the sine of a cosine, of the same argument
   };
   struct Call {
@@ -85,8 +80,7 @@ private:
     std::size_t last = stores_;
     for (std::size_t p = stores_; p < order_.size(); ++p)
       if (order_[p] >= 0 && is_condition(tape_.steps[at(order_[p])].operation)) last = p;
-    for (std::size_t k = 0; k < tape_.usual_outputs; ++k)
-      last = std::max(last, at(std::max(values_[at(tape_.outputs[k])].position, 0)));
+    for (std::size_t k = 0; k < tape_.usual_outputs; ++k) last = std::max(last, at(std::max(values_[at(tape_.outputs[k])].position, 0)));
     order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(last) + 1, k_leave);
     for (std::size_t p = last + 2; p < order_.size(); ++p) ++values_[at(order_[p])].position;
   }
@@ -172,10 +166,8 @@ private:
       Value& b = values_[at(s.b)];
       a.next = next_[p].a;
       b.next = next_[p].b; // behind a's: they may be the same
-      if (is_condition(s.operation))
-        condition(s);
-      else
-        binary(p, s);
+      if (is_condition(s.operation)) condition(s);
+      else binary(p, s);
     } else {
       a.next = next_[p].a;
       unary(p, s);
@@ -278,10 +270,8 @@ private:
       const int r = free_register();
       load(r, v.home);
       // Kept where nothing has to leave for it.
-      if (rules_.has_three_operands && v.next != k_never && std::popcount(free_) > 2)
-        take(r, step);
-      else
-        free_ &= ~(1u << r), passing_ |= 1u << r;
+      if (rules_.has_three_operands && v.next != k_never && std::popcount(free_) > 2) take(r, step);
+      else free_ &= ~(1u << r), passing_ |= 1u << r;
       busy_ |= 1u << r;
       return r;
     }
@@ -422,10 +412,8 @@ private:
     v.next = next_[p].result;
     v.home = {OperandPlace::Kind::slot, slots[is_sine ? 0 : 1]};
     const OperandPlace other{OperandPlace::Kind::slot, slots[is_sine ? 1 : 0]};
-    if (v.partner != k_none && !is_idle(at(values_[at(v.partner)].position)))
-      values_[at(v.partner)].home = other;
-    else
-      free_slots_.push_back(other.index);
+    if (v.partner != k_none && !is_idle(at(values_[at(v.partner)].position))) values_[at(v.partner)].home = other;
+    else free_slots_.push_back(other.index);
     store_known(order_[p]);
   }
 
@@ -467,10 +455,8 @@ private:
       if (!is_before(tape_.outputs[k], p)) continue;
       Value& v = values_[at(tape_.outputs[k])];
       v.next = output_next_[k];
-      if (v.reg >= 0)
-        store_output(v, v.reg, static_cast<std::int32_t>(k));
-      else
-        copy_output(v, static_cast<std::int32_t>(k));
+      if (v.reg >= 0) store_output(v, v.reg, static_cast<std::int32_t>(k));
+      else copy_output(v, static_cast<std::int32_t>(k));
       free_register_of(v);
       free_slot_of(v);
     }
@@ -482,14 +468,14 @@ private:
   std::size_t stores_ = 0; ///< where outputs known so far are stored; later ones as soon as they are known
   std::vector<Value> values_;
   std::vector<NextUses> next_;
-  std::vector<std::int32_t> next_output_; ///< of the same value
-  std::vector<std::int32_t> output_next_; ///< next use of the value of an output behind `stores_`
-  std::vector<std::int32_t> call_of_;     ///< of an argument: its sine or cosine that has no partner
+  std::vector<std::int32_t> next_output_;        ///< of the same value
+  std::vector<std::int32_t> output_next_;        ///< next use of the value of an output behind `stores_`
+  std::vector<std::int32_t> call_of_;            ///< of an argument: its sine or cosine that has no partner
   std::unordered_map<std::int32_t, Call> calls_; ///< by their steps
   std::int32_t argument_slots_ = 0, result_slots_ = 0;
-  std::uint32_t free_;                    ///< registers
-  std::uint32_t busy_ = 0;                ///< operands of this step: must not leave
-  std::uint32_t passing_ = 0;             ///< loaded for this step only
+  std::uint32_t free_;        ///< registers
+  std::uint32_t busy_ = 0;    ///< operands of this step: must not leave
+  std::uint32_t passing_ = 0; ///< loaded for this step only
   std::int32_t owner_[32] = {};
   std::vector<std::int32_t> free_slots_;
   RegisterPlan plan_;

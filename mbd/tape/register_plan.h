@@ -32,16 +32,16 @@ struct OperandPlace {
 
 struct PlannedInstruction {
   enum class Kind : std::uint8_t {
-    load,      ///< destination = second
-    move,      ///< destination = second, another register
-    store,     ///< second = first
+    load,       ///< destination = second
+    move,       ///< destination = second, another register
+    store,      ///< second = first
     arithmetic, ///< destination = first operation second; maximum: first > second ? first : second, first being the tape's b;
                 ///< negate: first ^ second, sign_bits; absolute: first & second, value_bits; square_root: of first
-    condition, ///< first is the tape's b and second its a: a < b is b > a, whose jump is not taken with NaN
-    sin_cos,   ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
-    call,      ///< of the function whose address is the first argument; arguments begin at the call slot `second`, results at
-               ///< call slot `result_slot`; registers are lost
-    leave,     ///< the usual outputs are stored, and conditions looked at: here it ends if no more is wanted
+    condition,  ///< first is the tape's b and second its a: a < b is b > a, whose jump is not taken with NaN
+    sin_cos,    ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
+    call,       ///< of the function whose address is the first argument; arguments begin at the call slot `second`, results at
+                ///< call slot `result_slot`; registers are lost
+    leave,      ///< the usual outputs are stored, and conditions looked at: here it ends if no more is wanted
   };
   TapeOperation operation = TapeOperation::constant;
   Kind kind = Kind::load;
@@ -53,7 +53,7 @@ struct PlannedInstruction {
 /// What instructions can do.
 struct RegisterRules {
   int registers = 16;
-  bool has_three_operands = false;    ///< else the destination is the first operand's register
+  bool has_three_operands = false; ///< else the destination is the first operand's register
 };
 
 struct RegisterPlan {

@@ -3,8 +3,6 @@
 
 namespace steplap {
 
-void sin_cos_of_eight(const double* x, double* sines, double* cosines) {
-  sin_cos_of<8>(x, sines, cosines);
-}
+void sin_cos_of_eight(const double* x, double* sines, double* cosines) { sin_cos_of<8>(x, sines, cosines); }
 
 } // namespace steplap

@@ -10,8 +10,7 @@
 
 namespace steplap {
 
-template <int lanes>
-struct Pack {
+template <int lanes> struct Pack {
   using Doubles __attribute__((vector_size(8 * lanes))) = double;
   using Bits __attribute__((vector_size(8 * lanes))) = std::uint64_t;
 };
@@ -21,8 +20,7 @@ constexpr std::uint64_t k_far_bits = 0x412e848000000000;     // portable::k_far
 constexpr std::uint64_t k_quarter_bits = 0x3fe921fb54442d18; // π/4, up to which there is nothing to take away
 constexpr std::uint64_t k_tiny_bits = 0x3e30000000000000;    // 2⁻²⁸, below which sin x = x and cos x = 1
 
-template <int lanes>
-[[gnu::noinline]] inline void sin_cos_one_by_one(const double* x, double* sines, double* cosines) {
+template <int lanes> [[gnu::noinline]] inline void sin_cos_one_by_one(const double* x, double* sines, double* cosines) {
   for (int l = 0; l < lanes; ++l) {
     const portable::SinCos of = portable::sin_cos(x[l]);
     sines[l] = of.sin;
@@ -32,8 +30,7 @@ template <int lanes>
 
 /// As portable::sin_cos, whose branches are selections here, but for arguments that are far away or not finite: then each lane
 /// asks for its own. Taking zero times π/2 away leaves a number as it is, so that lanes need not agree on whether to do so.
-template <int lanes>
-inline void sin_cos_of(const double* x, double* sines, double* cosines) {
+template <int lanes> inline void sin_cos_of(const double* x, double* sines, double* cosines) {
   using Doubles = typename Pack<lanes>::Doubles;
   using Bits = typename Pack<lanes>::Bits;
   Doubles v;

@@ -3,8 +3,6 @@
 
 namespace steplap {
 
-void sin_cos_of_two(const double* x, double* sines, double* cosines) {
-  sin_cos_of<2>(x, sines, cosines);
-}
+void sin_cos_of_two(const double* x, double* sines, double* cosines) { sin_cos_of<2>(x, sines, cosines); }
 
 } // namespace steplap

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 extern "C" {
-extern std::FILE* __real_stderr; // NOLINT: the linker's name for the library's
+extern std::FILE* __real_stderr;                                          // NOLINT: the linker's name for the library's
 __attribute__((visibility("hidden"))) std::FILE* __wrap_stderr = nullptr; // NOLINT: the linker's name
 }
 

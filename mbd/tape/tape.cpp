@@ -43,13 +43,13 @@ public:
     if (s.operation == constant) return need(s.a >= 0 && (!has_constants_ || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
     if (s.operation == argument) return need(is_value_before(s.a, i) && (s.b == -1 || is_before(argument, s.b, i)), i);
     if (s.operation == call) return need(is_before(argument, s.a, i) && s.b > 0, i);
-    if (s.operation == result)
-      return need(is_before(call, s.a, i) && s.b >= 0 && s.b < tape_.steps[static_cast<std::size_t>(s.a)].b, i);
+    if (s.operation == result) return need(is_before(call, s.a, i) && s.b >= 0 && s.b < tape_.steps[static_cast<std::size_t>(s.a)].b, i);
     need(is_value_before(s.a, i) && (!takes_two(s.operation) || is_value_before(s.b, i)), i);
   }
 
   void output(std::size_t k) const {
-    if (!is_value_before(tape_.outputs[k], tape_.steps.size())) throw std::logic_error("tape: output " + std::to_string(k) + " is no value");
+    if (!is_value_before(tape_.outputs[k], tape_.steps.size()))
+      throw std::logic_error("tape: output " + std::to_string(k) + " is no value");
   }
 
 private:
@@ -78,8 +78,7 @@ struct Signed {
 /// open addresses.
 class Simplifier {
 public:
-  explicit Simplifier(const Tape& tape)
-      : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
+  explicit Simplifier(const Tape& tape) : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
     made_.reserve(tape.steps.size());
   }
 
@@ -186,7 +185,8 @@ private:
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
   if (s.operation == constant) return constants[s.a];
-  return result_of(s.operation, values[static_cast<std::size_t>(s.a)], takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0);
+  return result_of(s.operation, values[static_cast<std::size_t>(s.a)],
+                   takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0);
 }
 
 /// What the calls of a tape have found.
@@ -210,7 +210,8 @@ private:
 
 std::vector<std::int32_t> arguments_of(const Tape& tape, const TapeStep& call) {
   std::vector<std::int32_t> values;
-  for (std::int32_t i = call.a; i >= 0; i = tape.steps[static_cast<std::size_t>(i)].b) values.push_back(tape.steps[static_cast<std::size_t>(i)].a);
+  for (std::int32_t i = call.a; i >= 0; i = tape.steps[static_cast<std::size_t>(i)].b)
+    values.push_back(tape.steps[static_cast<std::size_t>(i)].a);
   std::reverse(values.begin(), values.end());
   return values;
 }

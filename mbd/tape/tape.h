@@ -38,20 +38,14 @@ enum class TapeOperation : std::uint32_t {
 /// arguments, but for what the objects that these refer to are told between runs of the tape.
 using TapeFunction = void (*)(const double* arguments, double* results);
 
-[[nodiscard]] constexpr bool is_condition(TapeOperation o) {
-  return o == TapeOperation::if_less || o == TapeOperation::if_not_less;
-}
-[[nodiscard]] constexpr bool is_given(TapeOperation o) {
-  return o == TapeOperation::input || o == TapeOperation::constant;
-}
+[[nodiscard]] constexpr bool is_condition(TapeOperation o) { return o == TapeOperation::if_less || o == TapeOperation::if_not_less; }
+[[nodiscard]] constexpr bool is_given(TapeOperation o) { return o == TapeOperation::input || o == TapeOperation::constant; }
 /// Something that other steps may take.
 [[nodiscard]] constexpr bool has_value(TapeOperation o) {
   return !is_condition(o) && o != TapeOperation::argument && o != TapeOperation::call;
 }
 /// a and b may change places: the same bits, but for which of two NaN it is.
-[[nodiscard]] constexpr bool is_commutative(TapeOperation o) {
-  return o == TapeOperation::add || o == TapeOperation::multiply;
-}
+[[nodiscard]] constexpr bool is_commutative(TapeOperation o) { return o == TapeOperation::add || o == TapeOperation::multiply; }
 [[nodiscard]] constexpr bool takes_two(TapeOperation o) {
   using enum TapeOperation;
   return is_commutative(o) || o == subtract || o == divide || o == minimum || o == maximum || is_condition(o);
@@ -71,7 +65,7 @@ struct TapeStep {
 
 struct Tape {
   std::vector<TapeStep> steps;
-  std::vector<double> constants;     ///< those of the sample that was traced; another has others in the same places
+  std::vector<double> constants; ///< those of the sample that was traced; another has others in the same places
   int input_count = 0;
   std::vector<std::int32_t> outputs; ///< the steps whose values are wanted
   std::size_t usual_outputs = 0;     ///< so many, the first ones, may be wanted alone (MachineCode::run); 0: all or none

@@ -54,9 +54,9 @@ bool Traced::finish(Tape* tape) {
   tape->input_count = from.input_count;
   tape->steps.assign(from.steps.data(), static_cast<const TapeStep*>(from.step)); // none, of a tape that is known
   const Tape* const known = from.known;
-  return !known || (from.difference == 0 && from.known_step == from.last_known && tape->steps.empty() &&
-                    tape->input_count == known->input_count && tape->outputs == known->outputs &&
-                    tape->usual_outputs == known->usual_outputs);
+  return !known ||
+         (from.difference == 0 && from.known_step == from.last_known && tape->steps.empty() && tape->input_count == known->input_count &&
+          tape->outputs == known->outputs && tape->usual_outputs == known->usual_outputs);
 }
 
 Traced Traced::input(double value) {

@@ -42,12 +42,14 @@ struct TapeWriter {
                     static_cast<std::uint32_t>(k.a ^ a) | static_cast<std::uint32_t>(k.b ^ b);
       return count++;
     }
-    if (step == last_step) [[unlikely]] grow(); // a known tape is at its end: what follows is written, and differs
+    if (step == last_step) [[unlikely]]
+      grow(); // a known tape is at its end: what follows is written, and differs
     *step++ = {operation, a, b};
     return count++;
   }
   std::int32_t put_constant(double value) {
-    if (constant == last_constant) [[unlikely]] grow();
+    if (constant == last_constant) [[unlikely]]
+      grow();
     *constant = value;
     return put(TapeOperation::constant, static_cast<std::int32_t>(constant++ - first_constant), 0);
   }
@@ -94,8 +96,12 @@ public:
   friend Traced sqrt(const Traced& a) { return made(TapeOperation::square_root, a, a, std::sqrt(a.value_)); }
   friend Traced abs(const Traced& a) { return made(TapeOperation::absolute, a, a, std::abs(a.value_)); }
   /// As std::min and std::max do it where both are equal, or one is no number.
-  friend Traced least_of(const Traced& a, const Traced& b) { return made(TapeOperation::minimum, b, a, b.value_ < a.value_ ? b.value_ : a.value_); }
-  friend Traced greatest_of(const Traced& a, const Traced& b) { return made(TapeOperation::maximum, a, b, a.value_ < b.value_ ? b.value_ : a.value_); }
+  friend Traced least_of(const Traced& a, const Traced& b) {
+    return made(TapeOperation::minimum, b, a, b.value_ < a.value_ ? b.value_ : a.value_);
+  }
+  friend Traced greatest_of(const Traced& a, const Traced& b) {
+    return made(TapeOperation::maximum, a, b, a.value_ < b.value_ ? b.value_ : a.value_);
+  }
   friend void find_sin_cos(const Traced& a, Traced& sine, Traced& cosine) {
     const portable::SinCos turn = portable::sin_cos(a.value_);
     sine = made(TapeOperation::sine, a, a, turn.sin);

@@ -1,9 +1,9 @@
 #include "mbd/trust/accuracy_study.h"
 
-#include "mbd/trust/global_error.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/math/portable_math.h"
+#include "mbd/trust/global_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_slope_ceiling = 1e-2; // larger errors have not begun to follow the tolerance
-constexpr double k_slope_floor =
-    10.0; // of the resolution: below, the reference's own error mixes in
+constexpr double k_slope_floor = 10.0;   // of the resolution: below, the reference's own error mixes in
 constexpr long k_steps_between_looks = 512;
 
 constexpr double k_cost_power = 0.2;  // of a tolerance, by which steps become more: order 5
@@ -28,14 +27,13 @@ struct OutOfTime : NumericalFailure {
 };
 
 // To the end, or to the limit of CPU time.
-RunResult run_within(const System& system, const State& initial, const SimulationOptions& options,
-                     double cpu_limit) {
+RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, double cpu_limit) {
   const double start = thread_cpu_seconds();
   Simulation simulation(system, initial, options);
   for (long steps = 0; simulation.advance(); ++steps)
     if (steps % k_steps_between_looks == 0 && thread_cpu_seconds() - start > cpu_limit)
-      throw OutOfTime("needs more than " + number_text(cpu_limit) + " s of CPU time; at t = " +
-                      rounded_text(simulation.state().t, 12) + " s by then");
+      throw OutOfTime("needs more than " + number_text(cpu_limit) + " s of CPU time; at t = " + rounded_text(simulation.state().t, 12) +
+                      " s by then");
   return std::move(simulation).result();
 }
 
@@ -51,8 +49,7 @@ double residual_part(const RunStatistics& s) {
 
 class Study {
 public:
-  Study(const System& system, const State& initial, const SimulationOptions& base,
-        const AccuracyOptions& options)
+  Study(const System& system, const State& initial, const SimulationOptions& base, const AccuracyOptions& options)
       : system_(system), initial_(initial), base_(base), options_(options) {}
 
   AccuracyStudy made() {
@@ -84,13 +81,11 @@ private:
     study_.resolution = compare_runs(system_, second, reference_, options_.is_event_counted);
     if (study_.is_resolved(ErrorKind::position)) return;
     const WorstError& worst = study_.resolution.of(ErrorKind::position);
-    throw NumericalFailure(
-        "no reference: " + options_.first_reference.text() + " and " +
-        options_.second_reference.text() + " differ by " + rounded_text(worst.value, 3) +
-        " of range in '" + worst.where + "' at t = " + rounded_text(worst.t, 12) + " s, more than " +
-        number_text(k_agreement) +
-        ": the motion magnifies rounding beyond what any run can tell. A shorter run or other "
-        "references may do.");
+    throw NumericalFailure("no reference: " + options_.first_reference.text() + " and " + options_.second_reference.text() + " differ by " +
+                           rounded_text(worst.value, 3) + " of range in '" + worst.where + "' at t = " + rounded_text(worst.t, 12) +
+                           " s, more than " + number_text(k_agreement) +
+                           ": the motion magnifies rounding beyond what any run can tell. A shorter run or other "
+                           "references may do.");
   }
 
   // Rungs of one method, from the coarsest on.
@@ -169,8 +164,7 @@ private:
     AccuracyEntry e;
     e.setting = setting;
     try {
-      const RunResult sampled =
-          run_within(system_, initial_, setting.applied_to(base_), limit);
+      const RunResult sampled = run_within(system_, initial_, setting.applied_to(base_), limit);
       e.error = compare_runs(system_, sampled, reference_, options_.is_event_counted);
       e.energy_residual = residual_part(sampled.statistics);
       e.constraint_residual = sampled.statistics.max_position_residual;
@@ -188,8 +182,7 @@ private:
   void measure_cost(AccuracyEntry& e) {
     for (int i = 0; i < std::max(1, options_.repeats); ++i) {
       const double start = thread_cpu_seconds();
-      const RunResult run = run_within(
-          system_, initial_, without_samples(e.setting.applied_to(base_)), options_.cpu_limit);
+      const RunResult run = run_within(system_, initial_, without_samples(e.setting.applied_to(base_)), options_.cpu_limit);
       const double spent = thread_cpu_seconds() - start;
       e.cpu_seconds = i == 0 ? spent : std::min(e.cpu_seconds, spent);
       e.cost = run.statistics;
@@ -201,13 +194,11 @@ private:
     for (AccuracyEntry& e : study_.entries) {
       if (!e.failure.empty()) continue;
       const double error = study_.error_of(e);
-      e.is_pareto = std::none_of(study_.entries.begin(), study_.entries.end(),
-                                 [&](const AccuracyEntry& other) {
-                                   if (&other == &e || !other.failure.empty()) return false;
-                                   const double their = study_.error_of(other);
-                                   return their <= error && other.cpu_seconds <= e.cpu_seconds &&
-                                          (their < error || other.cpu_seconds < e.cpu_seconds);
-                                 });
+      e.is_pareto = std::none_of(study_.entries.begin(), study_.entries.end(), [&](const AccuracyEntry& other) {
+        if (&other == &e || !other.failure.empty()) return false;
+        const double their = study_.error_of(other);
+        return their <= error && other.cpu_seconds <= e.cpu_seconds && (their < error || other.cpu_seconds < e.cpu_seconds);
+      });
     }
   }
 
@@ -281,8 +272,7 @@ double AccuracyStudy::error_of(const AccuracyEntry& entry) const {
 const AccuracyEntry* AccuracyStudy::cheapest(double wanted) const {
   const AccuracyEntry* best = nullptr;
   for (const AccuracyEntry& e : entries)
-    if (e.failure.empty() && error_of(e) <= wanted && (!best || e.cpu_seconds < best->cpu_seconds))
-      best = &e;
+    if (e.failure.empty() && error_of(e) <= wanted && (!best || e.cpu_seconds < best->cpu_seconds)) best = &e;
   return best;
 }
 
@@ -305,24 +295,20 @@ std::vector<ErrorSlope> AccuracyStudy::slopes() const {
   return slopes;
 }
 
-std::vector<MethodSetting> usual_ladder(const System& system, const std::vector<std::string>& names,
-                                        double step) {
+std::vector<MethodSetting> usual_ladder(const System& system, const std::vector<std::string>& names, double step) {
   std::vector<MethodSetting> ladder;
   for (const std::string& name : names) {
     if (is_adaptive(system, name)) {
-      for (int digits = 3; digits <= 12;
-           ++digits) // read from text: 1e-3, not 0.001 with an error in the last place
+      for (int digits = 3; digits <= 12; ++digits) // read from text: 1e-3, not 0.001 with an error in the last place
         ladder.push_back({name, std::stod("1e-" + std::to_string(digits)), false});
     } else {
-      for (double h = 8.0 * step; h > 0.1 * step; h *= 0.5)
-        ladder.push_back({name, h, true});
+      for (double h = 8.0 * step; h > 0.1 * step; h *= 0.5) ladder.push_back({name, h, true});
     }
   }
   return ladder;
 }
 
-AccuracyStudy study_accuracy(const System& system, const State& initial,
-                             const SimulationOptions& base, const AccuracyOptions& options) {
+AccuracyStudy study_accuracy(const System& system, const State& initial, const SimulationOptions& base, const AccuracyOptions& options) {
   return Study(system, initial, base, options).made();
 }
 

@@ -37,16 +37,16 @@ struct MethodSetting {
 struct AccuracyOptions {
   std::vector<MethodSetting> ladder;
   MethodSetting first_reference{"dop853", 1e-13}, second_reference{"tsit5", 1e-13};
-  int repeats = 3;              ///< at most: of runs that take a large part of the budget fewer
-  double cpu_limit = 60.0;      ///< s: a run that needs more is given up, and the table says so
+  int repeats = 3;                                         ///< at most: of runs that take a large part of the budget fewer
+  double cpu_limit = 60.0;                                 ///< s: a run that needs more is given up, and the table says so
   double budget = std::numeric_limits<double>::infinity(); ///< s of CPU time for the ladder; the references come first and are not counted
-  EventFilter is_event_counted; ///< empty: all events
-  std::function<void(const std::string& text)> progress; ///< what is being run, if given
+  EventFilter is_event_counted;                            ///< empty: all events
+  std::function<void(const std::string& text)> progress;   ///< what is being run, if given
 };
 
 struct AccuracyEntry {
   MethodSetting setting;
-  std::string failure; ///< why there is no result; empty: there is one
+  std::string failure;      ///< why there is no result; empty: there is one
   bool is_left_out = false; ///< it would have gone beyond the budget
   double cpu_seconds = 0.0;
   RunStatistics cost; ///< of a run without samples
@@ -81,13 +81,11 @@ inline constexpr double k_agreement = 1e-6;
 
 /// All integrators that `names` lists, adaptive ones with tolerances 1e-3 … 1e-12, fixed-step ones
 /// with steps from 8 to 1/8 of `step`.
-[[nodiscard]] std::vector<MethodSetting>
-usual_ladder(const System& system, const std::vector<std::string>& names, double step);
+[[nodiscard]] std::vector<MethodSetting> usual_ladder(const System& system, const std::vector<std::string>& names, double step);
 
 /// `base` gives the end and the samples. Throws NumericalFailure if the two references cannot be
 /// had or do not agree.
-[[nodiscard]] AccuracyStudy study_accuracy(const System& system, const State& initial,
-                                           const SimulationOptions& base,
+[[nodiscard]] AccuracyStudy study_accuracy(const System& system, const State& initial, const SimulationOptions& base,
                                            const AccuracyOptions& options);
 
 } // namespace steplap

@@ -19,7 +19,7 @@ const char* const k_overload = ".overload";
 const char* const k_shares = ".shares";
 const char* const k_unknown = ".unknown";
 constexpr double k_velocity = 1e-12; // m/s: to which constraints are met, and velocities known (Integrator::rate_accuracy)
-constexpr double k_one_line = 1e-9; // of the bodies' size, rad
+constexpr double k_one_line = 1e-9;  // of the bodies' size, rad
 
 double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
   const FrictionUnit& unit = system.frictions[f];
@@ -36,7 +36,8 @@ double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
   if (state.phase == FrictionPhase::slip) return power;
   if (unit.friction->never_slips()) return 0.0;
   constexpr double k_no_bound = 1e20; // N or N m: what holds whatever it takes, as a one-way clutch does, is seen by what it bears
-  const double most = unit.friction->support(*s.evaluation, state, rate), size = std::max({std::abs(rate[0]), std::abs(rate[1]), std::abs(rate[2])});
+  const double most = unit.friction->support(*s.evaluation, state, rate),
+               size = std::max({std::abs(rate[0]), std::abs(rate[1]), std::abs(rate[2])});
   return most > k_no_bound * size ? power : most;
 }
 
@@ -51,12 +52,14 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
   double normal[3], against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0}; // of what holds one way only, the side that bears
-  if (!(unit.friction->support(*s.evaluation, state, against) > 0.0)) return 0.0; // as good as unloaded
+  if (!(unit.friction->support(*s.evaluation, state, against) > 0.0)) return 0.0;    // as good as unloaded
   return unit.friction->gauge(*s.evaluation, state, wrench, normal) - 1.0;
 }
 
 // Of friction whose wrench turns with its slip: wrench over speed is what it changes by with a change of that.
-bool may_turn(const FrictionUnit& unit) { return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips(); }
+bool may_turn(const FrictionUnit& unit) {
+  return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips();
+}
 
 double unknown_force(const Snapshot& s, const System& system) {
   double sum = 0.0;
@@ -76,8 +79,7 @@ double unknown_force(const Snapshot& s, const System& system) {
 
 double largest_pull(const Snapshot& s, int count) {
   double pull = 0.0;
-  for (int i = 0; i < count; ++i)
-    pull = std::max(pull, -s.evaluation->contact_force[i]);
+  for (int i = 0; i < count; ++i) pull = std::max(pull, -s.evaluation->contact_force[i]);
   return pull;
 }
 
@@ -101,8 +103,7 @@ std::vector<std::vector<std::size_t>> frictions_on_one_line(const System& system
     if (one.a != other.a || one.b != other.b || one.next || other.next) return false;
     const auto m = evaluate_row<false>(one, motion.data()), n = evaluate_row<false>(other, motion.data());
     const Pair<double> along_a = n.lever_a - m.lever_a, along_b = n.lever_b - m.lever_b;
-    const double size =
-        k_one_line * (1.0 + portable::hypot(m.lever_a.x, m.lever_a.y) + portable::hypot(n.lever_a.x, n.lever_a.y));
+    const double size = k_one_line * (1.0 + portable::hypot(m.lever_a.x, m.lever_a.y) + portable::hypot(n.lever_a.x, n.lever_a.y));
     return std::abs(cross(m.direction, n.direction)) <= k_one_line && std::abs(cross(along_a, m.direction)) <= size &&
            std::abs(cross(along_b, m.direction)) <= size && std::abs(m.couple) + std::abs(n.couple) == 0.0;
   };
@@ -110,8 +111,7 @@ std::vector<std::vector<std::size_t>> frictions_on_one_line(const System& system
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionElement& friction = *system.frictions[f].friction;
     if (friction.dimension() != 1 || friction.never_slips()) continue;
-    const auto known =
-        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return is_one_line(group.front(), f); });
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return is_one_line(group.front(), f); });
     if (known == groups.end()) groups.push_back({f});
     else known->push_back(f);
   }
@@ -148,8 +148,8 @@ void add_shared_channels(System& system) {
     for (const std::size_t f : group) {
       const std::string& name = system.element_names[system.frictions[f].element];
       names += (names.empty() ? "shared: " : " + ") + name;
-      system.channels.push_back({k_prefix + name + k_shares, "", "1: what it bears is a share",
-                                 [group](const Snapshot& s) { return shares_of(s, group); }});
+      system.channels.push_back(
+          {k_prefix + name + k_shares, "", "1: what it bears is a share", [group](const Snapshot& s) { return shares_of(s, group); }});
     }
     system.channels.push_back({names, "N", "what frictions along one line bear together",
                                [self, group](const Snapshot& s) { return borne_together(s, *self, group); }});
@@ -169,8 +169,7 @@ double largest_force(const RunResult& run) {
   double force = 0.0;
   const Trajectory& t = *run.trajectory;
   for (std::size_t c = 0; c < t.channels().size(); ++c)
-    for (std::size_t row = 0; t.channels()[c]->unit == "N" && row < t.size(); ++row)
-      force = std::max(force, std::abs(t.value(row, c)));
+    for (std::size_t row = 0; t.channels()[c]->unit == "N" && row < t.size(); ++row) force = std::max(force, std::abs(t.value(row, c)));
   return force;
 }
 
@@ -190,8 +189,7 @@ const char* const k_place_names[3] = {".x", ".y", ".theta"};
 std::vector<std::size_t> columns(const System& system, const Trajectory& t, const char* const (&names)[3]) {
   std::vector<std::size_t> list(3 * system.bodies.size(), 0);
   for (std::size_t b = 1; b < system.bodies.size(); ++b)
-    for (std::size_t i = 0; i < 3; ++i)
-      list[3 * b + i] = t.column(system.bodies[b].name + names[i]);
+    for (std::size_t i = 0; i < 3; ++i) list[3 * b + i] = t.column(system.bodies[b].name + names[i]);
   return list;
 }
 
@@ -210,9 +208,8 @@ void add_audit_channels(System& system, const Model& model) {
     actions->additions.push_back([](System& made) { add_audit_channels(made, *action_group(made)->model); });
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const std::string name = k_prefix + system.element_names[system.frictions[f].element];
-    system.channels.push_back({name + k_pushes, "W", "power that friction gives", [self, f](const Snapshot& s) {
-                                 return pushing_power(s, *self, f);
-                               }});
+    system.channels.push_back(
+        {name + k_pushes, "W", "power that friction gives", [self, f](const Snapshot& s) { return pushing_power(s, *self, f); }});
     system.channels.push_back({name + k_overload, "", "share of its bound that friction takes, less 1",
                                [self, f](const Snapshot& s) { return overload_of(s, *self, f); }});
   }
@@ -221,9 +218,8 @@ void add_audit_channels(System& system, const Model& model) {
     system.channels.push_back({k_prefix + "velocities" + k_unknown, "", "what forces change by where velocities do by rounding, N",
                                [self](const Snapshot& s) { return unknown_force(s, *self); }});
   if (may_pull(model)) return;
-  system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N", [self](const Snapshot& s) {
-                               return largest_pull(s, self->contact_count);
-                             }});
+  system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N",
+                             [self](const Snapshot& s) { return largest_pull(s, self->contact_count); }});
 }
 
 std::string pushes_channel(const std::string& element) { return k_prefix + element + k_pushes; }
@@ -231,7 +227,8 @@ std::string shares_channel(const std::string& element) { return k_prefix + eleme
 
 int unknown_force_column(const Trajectory& trajectory) {
   const std::vector<const Channel*>& channels = trajectory.channels();
-  const auto found = std::find_if(channels.begin(), channels.end(), [](const Channel* c) { return is_audit_channel(*c) && ends_with(c->name, k_unknown); });
+  const auto found = std::find_if(channels.begin(), channels.end(),
+                                  [](const Channel* c) { return is_audit_channel(*c) && ends_with(c->name, k_unknown); });
   return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
 }
 
@@ -244,8 +241,7 @@ double energy_scale(const System& system, const RunResult& run) {
   double scale = std::max(run.statistics.energy_exchanged, k_still * largest_force(run) * size);
   const Trajectory& t = *run.trajectory;
   const std::vector<std::size_t> rates = columns(system, t, k_rate_names);
-  for (std::size_t row = 0; row < t.size(); ++row)
-    scale = std::max(scale, kinetic_energy(system, t, row, rates));
+  for (std::size_t row = 0; row < t.size(); ++row) scale = std::max(scale, kinetic_energy(system, t, row, rates));
   return scale;
 }
 
@@ -321,25 +317,20 @@ std::vector<int> bodies_of(const ElementEntry& entry, const std::map<std::string
 
 std::vector<std::vector<int>> free_groups(const Model& model, const System& system) {
   std::map<std::string, int> body_index, marker_body; // fixed bodies are the ground
-  for (const Body& body : model.bodies)
-    body_index[body.name] = k_ground;
-  for (std::size_t b = 1; b < system.bodies.size(); ++b)
-    body_index[system.bodies[b].name] = static_cast<int>(b);
+  for (const Body& body : model.bodies) body_index[body.name] = k_ground;
+  for (std::size_t b = 1; b < system.bodies.size(); ++b) body_index[system.bodies[b].name] = static_cast<int>(b);
   marker_body["ground"] = k_ground;
-  for (const Marker& marker : model.markers)
-    marker_body[marker.name] = marker.body == "ground" ? k_ground : body_index[marker.body];
+  for (const Marker& marker : model.markers) marker_body[marker.name] = marker.body == "ground" ? k_ground : body_index[marker.body];
   Groups groups(system.bodies.size());
   for (const ElementEntry& entry : model.elements) {
     const std::vector<int> bodies = bodies_of(entry, body_index, marker_body);
-    for (std::size_t i = 1; i < bodies.size(); ++i)
-      groups.join(bodies[0], bodies[i]);
+    for (std::size_t i = 1; i < bodies.size(); ++i) groups.join(bodies[0], bodies[i]);
   }
   std::map<int, std::vector<int>> lists;
   for (int b = 1; b < system.body_count(); ++b)
     if (groups.root(b) != groups.root(k_ground)) lists[groups.root(b)].push_back(b);
   std::vector<std::vector<int>> result;
-  for (auto& [root, list] : lists)
-    result.push_back(std::move(list));
+  for (auto& [root, list] : lists) result.push_back(std::move(list));
   return result;
 }
 
@@ -371,8 +362,7 @@ Momentum momentum_of(const System& system, const std::vector<int>& group, const 
     const double spin = body.inertia * t.value(row, rates[3 * b + 2]);
     sum.turn += body.mass * (rx * uy - ry * ux) + spin;
     sum.turn_size += body.mass * portable::hypot(rx, ry) * portable::hypot(ux, uy) + std::abs(spin);
-    sum.size +=
-        body.mass * portable::hypot(t.value(row, rates[3 * b]), t.value(row, rates[3 * b + 1]));
+    sum.size += body.mass * portable::hypot(t.value(row, rates[3 * b]), t.value(row, rates[3 * b + 1]));
   }
   sum.x -= mass * system.gravity.x() * t.times()[row];
   sum.y -= mass * system.gravity.y() * t.times()[row];
@@ -393,9 +383,8 @@ AuditFinding momentum_change(const System& system, const std::vector<std::vector
       const Momentum now = momentum_of(system, group, t, row, places, rates);
       size = std::max(size, now.size);
       turn_size = std::max(turn_size, now.turn_size);
-      const double change =
-          std::max(size > 0.0 ? portable::hypot(now.x - first.x, now.y - first.y) / size : 0.0,
-                   turn_size > 0.0 ? std::abs(now.turn - first.turn) / turn_size : 0.0);
+      const double change = std::max(size > 0.0 ? portable::hypot(now.x - first.x, now.y - first.y) / size : 0.0,
+                                     turn_size > 0.0 ? std::abs(now.turn - first.turn) / turn_size : 0.0);
       if (!(change <= worst.value)) {
         worst.where = system.bodies[group.front()].name;
         worst.t = t.times()[row];

@@ -33,9 +33,9 @@ void add_audit_channels(System& system, const Model& model);
 [[nodiscard]] int unknown_force_column(const Trajectory& trajectory);
 
 struct AuditFinding {
-  std::string what;   ///< "friction does positive work"
-  std::string where;  ///< element
-  double t = 0.0;     ///< s
+  std::string what;  ///< "friction does positive work"
+  std::string where; ///< element
+  double t = 0.0;    ///< s
   double value = 0.0, bound = 0.0;
   [[nodiscard]] double ratio() const { return value / bound; }
 };
@@ -57,7 +57,6 @@ struct AuditFinding {
 [[nodiscard]] std::vector<std::vector<int>> free_groups(const Model& model, const System& system);
 
 /// The worst change of momentum or angular momentum of a free group, of the scale of its own motion.
-[[nodiscard]] AuditFinding momentum_change(const System& system, const std::vector<std::vector<int>>& groups,
-                                           const RunResult& run);
+[[nodiscard]] AuditFinding momentum_change(const System& system, const std::vector<std::vector<int>>& groups, const RunResult& run);
 
 } // namespace steplap

@@ -1,9 +1,9 @@
 #include "mbd/trust/cross_check.h"
 
-#include "mbd/trust/cross_curves.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
+#include "mbd/trust/cross_curves.h"
 
 #include <algorithm>
 #include <array>
@@ -19,16 +19,16 @@ namespace {
 // them (how far an event's end is known, projection) does not follow the tolerance.
 constexpr double k_floor = 1e-7, k_reaction_floor = 1e-6, k_time_floor = 1e-6;
 constexpr double k_integral_floor = 1e-6;
-constexpr double k_energy_allowed = 1e-5;       // residual of an adaptive run over the energy exchanged
-constexpr double k_stepped_energy_allowed = 0.2; // of a run of fixed steps: it damps, and says so
+constexpr double k_energy_allowed = 1e-5;                        // residual of an adaptive run over the energy exchanged
+constexpr double k_stepped_energy_allowed = 0.2;                 // of a run of fixed steps: it damps, and says so
 constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2; // of the run's own powers and forces
-constexpr double k_shrinking = 0.8;               // of the residual at twice the step
-constexpr int k_persistent = 4; // samples: time stepping's forces at an instant are not what it steps with
-constexpr double k_brief_steps = 20.0; // what changes back within so many fixed steps is not missed
-constexpr double k_own_doubt = 1e-3;            // an adaptive method's estimate beyond it is looked at
+constexpr double k_shrinking = 0.8;                              // of the residual at twice the step
+constexpr int k_persistent = 4;                                  // samples: time stepping's forces at an instant are not what it steps with
+constexpr double k_brief_steps = 20.0;                           // what changes back within so many fixed steps is not missed
+constexpr double k_own_doubt = 1e-3;                             // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
 constexpr long k_steps_between_looks = 8; // a step of time stepping may take milliseconds
-constexpr double k_closer = 0.25; // steps and samples of a closer look
+constexpr double k_closer = 0.25;         // steps and samples of a closer look
 
 constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // of the coarsest level, in a run
 
@@ -63,22 +63,18 @@ class Checker {
 public:
   Checker(const System& system, const State& initial, const SimulationOptions& base, const CrossCheckOptions& options)
       : system_(system), initial_(initial), base_(base), options_(options) {
-    for (const FrictionUnit& unit : system.frictions)
-      friction_names_.insert(system.element_names[unit.element]);
+    for (const FrictionUnit& unit : system.frictions) friction_names_.insert(system.element_names[unit.element]);
     is_counted_ = [this](const Event& event) {
       return friction_names_.count(event.element) > 0 && (!options_.is_event_counted || options_.is_event_counted(event));
     };
   }
 
   CrossCheck made() {
-    for (const CrossMethod& method : options_.methods)
-      run(method, static_cast<double>(options_.methods.size() - check_.runs.size()));
+    for (const CrossMethod& method : options_.methods) run(method, static_cast<double>(options_.methods.size() - check_.runs.size()));
     make_curves();
-    for (std::size_t i = 0; i < curves_.size(); ++i)
-      check_laws(i);
+    for (std::size_t i = 0; i < curves_.size(); ++i) check_laws(i);
     for (std::size_t i = 0; i < curves_.size(); ++i) {
-      for (std::size_t j = i + 1; j < curves_.size(); ++j)
-        compare(i, j);
+      for (std::size_t j = i + 1; j < curves_.size(); ++j) compare(i, j);
     }
     check_own();
     conclude();
@@ -124,25 +120,22 @@ private:
     for (Method& method : methods_) {
       const CrossRun& r = check_.runs[method.run];
       bool is_number = is_finite(r.result);
-      for (const RunResult& coarser : method.coarser)
-        is_number = is_number && is_finite(coarser);
+      for (const RunResult& coarser : method.coarser) is_number = is_number && is_finite(coarser);
       if (is_number) sound.push_back(std::move(method));
       else note({Doubt::not_a_number, r.setting.integrator, "", "", 0.0, INFINITY, "the result is no number"});
     }
     methods_ = std::move(sound);
     if (methods_.empty()) return;
     std::vector<const RunResult*> finest;
-    for (const Method& method : methods_)
-      finest.push_back(&check_.runs[method.run].result);
+    for (const Method& method : methods_) finest.push_back(&check_.runs[method.run].result);
     channels_ = compared_channels(system_, finest);
     for (const Method& method : methods_) {
       CrossRun& r = check_.runs[method.run];
       std::vector<const RunResult*> levels;
-      for (const RunResult& coarser : method.coarser)
-        levels.push_back(&coarser);
+      for (const RunResult& coarser : method.coarser) levels.push_back(&coarser);
       levels.push_back(&r.result);
-      curves_.push_back(std::make_unique<MethodCurves>(channels_, levels, r.setting.is_step ? r.setting.value : 0.0,
-                                                       base_.end, is_counted_));
+      curves_.push_back(
+          std::make_unique<MethodCurves>(channels_, levels, r.setting.is_step ? r.setting.value : 0.0, base_.end, is_counted_));
       r.estimate = curves_.back()->largest(ErrorKind::position).value;
       r.known_until = curves_.back()->known_until();
     }
@@ -173,8 +166,7 @@ private:
     const double exchanged = energy_scale(system_, r.result), residual = r.result.statistics.energy_residual;
     const double allowed = (methods_[i].is_adaptive ? k_energy_allowed : k_stepped_energy_allowed) * exchanged;
     // Time stepping damps: a residual that goes with the step is its error, and estimated as such.
-    const bool is_shrinking = !methods_[i].is_adaptive &&
-                              residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
+    const bool is_shrinking = !methods_[i].is_adaptive && residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
     // One that does not is a step too coarse for the scene: such a run has no opinion.
     if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) dismiss(i);
     if (exchanged > 0.0 && methods_[i].is_adaptive)
@@ -187,8 +179,7 @@ private:
       if (!has_steps_alone)
         note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
               number_text(f.value) + ", allowed " + number_text(f.bound)});
-      else if (f.ratio() > 1.0 && !is_smaller_than_before(f, audit(system_, methods_[i].coarser.back(), share, persistent)))
-        dismiss(i);
+      else if (f.ratio() > 1.0 && !is_smaller_than_before(f, audit(system_, methods_[i].coarser.back(), share, persistent))) dismiss(i);
     }
     if (options_.free_groups.empty()) return;
     const AuditFinding change = momentum_change(system_, options_.free_groups, r.result);
@@ -205,14 +196,14 @@ private:
 
   // The same breach at twice the step, anywhere: a share of it is left where it is the steps' own error.
   static bool is_smaller_than_before(const AuditFinding& now, const std::vector<AuditFinding>& before) {
-    return std::any_of(before.begin(), before.end(), [&](const AuditFinding& f) { return f.what == now.what && now.ratio() < k_shrinking * f.ratio(); });
+    return std::any_of(before.begin(), before.end(),
+                       [&](const AuditFinding& f) { return f.what == now.what && now.ratio() < k_shrinking * f.ratio(); });
   }
 
   // A method of high order that knows its own answer less well than time stepping does.
   void check_own() {
-    const auto stepping = std::find_if(curves_.begin(), curves_.end(), [&](const auto& c) {
-      return is_stepping(static_cast<std::size_t>(&c - curves_.data()));
-    });
+    const auto stepping = std::find_if(curves_.begin(), curves_.end(),
+                                       [&](const auto& c) { return is_stepping(static_cast<std::size_t>(&c - curves_.data())); });
     if (stepping == curves_.end()) return;
     for (std::size_t i = 0; i < curves_.size(); ++i) {
       if (!methods_[i].is_adaptive) continue;
@@ -220,8 +211,7 @@ private:
         const WorstError own = curves_[i]->largest(kind);
         const double bound = std::max(k_own_doubt, 2.0 * (*stepping)->largest(kind).value);
         note({Doubt::self, name_of_run(i), "", own.where, base_.end, own.value / bound,
-              "its own estimate is " + number_text(own.value) + ", time stepping's " +
-                  number_text((*stepping)->largest(kind).value)});
+              "its own estimate is " + number_text(own.value) + ", time stepping's " + number_text((*stepping)->largest(kind).value)});
       }
     }
   }
@@ -239,7 +229,7 @@ private:
   void compare_channels(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const std::size_t rows = std::min(x.rows(), y.rows());
-    const double until = std::min(x.known_until(), y.known_until()); // beyond it nothing can be told
+    const double until = std::min(x.known_until(), y.known_until());      // beyond it nothing can be told
     const int unknown_column = unknown_force_column(*x.run().trajectory); // the same in all runs
     const auto unknown_force = [&](const MethodCurves& curves, std::size_t row) {
       return unknown_column < 0 ? 0.0 : curves.run().trajectory->value(row, static_cast<std::size_t>(unknown_column));
@@ -255,9 +245,10 @@ private:
       for (std::size_t row = 0; row < rows && x.run().trajectory->times()[row] <= until; ++row) {
         double& ratio = recent[row % k_persistent] = 0.0;
         if (is_share(channel, *x.run().trajectory, row) || is_share(channel, *y.run().trajectory, row)) continue;
-        const double distance = distance_at(channel, *x.run().trajectory, *y.run().trajectory, row,
-                                            k_margin * (x.slack(row) + y.slack(row)));
-        const double unknown = channel.kind == ErrorKind::reaction ? std::max(unknown_force(x, row), unknown_force(y, row)) / channel.arm : 0.0;
+        const double distance =
+            distance_at(channel, *x.run().trajectory, *y.run().trajectory, row, k_margin * (x.slack(row) + y.slack(row)));
+        const double unknown =
+            channel.kind == ErrorKind::reaction ? std::max(unknown_force(x, row), unknown_force(y, row)) / channel.arm : 0.0;
         const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor + unknown;
         ratio = distance > 0.0 ? distance / allowed : 0.0;
         const bool is_near_event = x.slack(row) > 2.0 * x.step() || y.slack(row) > 2.0 * y.step();
@@ -297,14 +288,16 @@ private:
       }
       if (is_doubted) continue;
       // What it takes of energy is less than is known of that: nothing can be told.
-      const double energy = std::max(x.friction_energy(event.element, event.t, event.lasts), y.friction_energy(event.element, event.t, event.lasts));
+      const double energy =
+          std::max(x.friction_energy(event.element, event.t, event.lasts), y.friction_energy(event.element, event.t, event.lasts));
       const double ratio = std::min(std::min(distance, base_.end) / (allowed + near), energy / energy_allowed);
       if (!(ratio > worst.ratio)) continue;
       worst.where = "'" + event.element + "' " + words_of(event.kind);
       worst.t = event.t;
       worst.ratio = ratio;
-      worst.text = std::isfinite(distance) ? number_text(distance) + " s from the nearest, estimates allow " + number_text(allowed + near) + " s"
-                                           : "is missing";
+      worst.text = std::isfinite(distance)
+                       ? number_text(distance) + " s from the nearest, estimates allow " + number_text(allowed + near) + " s"
+                       : "is missing";
     }
     note(worst);
   }
@@ -370,24 +363,15 @@ bool is_worth_a_closer_look(const CrossCheck& check) {
 
 const char* name_of(Doubt doubt) {
   switch (doubt) {
-  case Doubt::channel:
-    return "channel";
-  case Doubt::event:
-    return "event";
-  case Doubt::verdict:
-    return "verdict";
-  case Doubt::integral:
-    return "energy account";
-  case Doubt::energy:
-    return "energy balance";
-  case Doubt::momentum:
-    return "momentum";
-  case Doubt::law:
-    return "law";
-  case Doubt::not_a_number:
-    return "not a number";
-  case Doubt::self:
-    return "own estimate";
+  case Doubt::channel: return "channel";
+  case Doubt::event: return "event";
+  case Doubt::verdict: return "verdict";
+  case Doubt::integral: return "energy account";
+  case Doubt::energy: return "energy balance";
+  case Doubt::momentum: return "momentum";
+  case Doubt::law: return "law";
+  case Doubt::not_a_number: return "not a number";
+  case Doubt::self: return "own estimate";
   }
   return "";
 }
@@ -397,13 +381,15 @@ std::vector<CrossMethod> usual_methods(double end, double tolerance, double step
     return CrossMethod{name, {{name, coarse, false}, {name, 0.01 * coarse, false}}};
   };
   const double stepping = end / k_moreau_steps, rk4 = step > 0.0 ? std::min(step, end / k_rk4_steps) : end / k_rk4_steps;
-  return {adaptive("auto", std::max(tolerance, 1e-12)), adaptive("dop853", 1e-8), adaptive("tsit5", 1e-8), adaptive("rodas5p", 1e-6),
+  return {adaptive("auto", std::max(tolerance, 1e-12)),
+          adaptive("dop853", 1e-8),
+          adaptive("tsit5", 1e-8),
+          adaptive("rodas5p", 1e-6),
           {"rk4", {{"rk4", rk4, true}, {"rk4", 0.5 * rk4, true}}},
           {"moreau", {{"moreau", stepping, true}, {"moreau", 0.5 * stepping, true}, {"moreau", 0.25 * stepping, true}}}};
 }
 
-CrossCheck cross_check(const System& system, const State& initial, const SimulationOptions& base,
-                       const CrossCheckOptions& options) {
+CrossCheck cross_check(const System& system, const State& initial, const SimulationOptions& base, const CrossCheckOptions& options) {
   const double start = thread_cpu_seconds();
   CrossCheckOptions used = options;
   if (used.methods.empty()) used.methods = usual_methods(base.end, base.settings.tolerance, base.settings.step);

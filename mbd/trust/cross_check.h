@@ -56,12 +56,12 @@ struct CrossCheckOptions {
   std::vector<CrossMethod> methods; ///< empty: usual_methods()
   double cpu_limit = 60.0;          ///< s, of all runs together; each method may take an even part of what is left of it
   long evaluation_limit = std::numeric_limits<long>::max(); ///< of one run: the same on every machine
-  int closer_looks = 2;             ///< at most, at fixed steps that disagree
-  EventFilter is_event_counted;     ///< of those of friction elements; empty: all
+  int closer_looks = 2;                                     ///< at most, at fixed steps that disagree
+  EventFilter is_event_counted;                             ///< of those of friction elements; empty: all
   /// What the run comes to, in a word; empty: not compared.
   std::function<std::string(const RunResult& run)> verdict;
   std::function<void(const MethodSetting& level, const RunResult& run)> note_level; ///< told of every run, if given
-  std::vector<std::vector<int>> free_groups; ///< whose momentum is looked at
+  std::vector<std::vector<int>> free_groups;                                        ///< whose momentum is looked at
   std::function<void(const std::string& text)> progress;
 };
 
@@ -73,24 +73,24 @@ struct Disagreement {
   std::string first, second; ///< methods; the second empty where one breaks a law alone
   std::string where;         ///< channel, element and event
   double t = 0.0;
-  double ratio = 0.0;        ///< difference over what the estimates allow; a disagreement above 1
-  std::string text;          ///< "0.31 rad, estimates 2e-9 and 1e-4 rad"
+  double ratio = 0.0; ///< difference over what the estimates allow; a disagreement above 1
+  std::string text;   ///< "0.31 rad, estimates 2e-9 and 1e-4 rad"
 };
 
 struct CrossRun {
-  MethodSetting setting;   ///< of the finest level, which is compared
-  std::string failure;     ///< of any level; empty: all reached the end
-  RunResult result;        ///< of the finest
+  MethodSetting setting;    ///< of the finest level, which is compared
+  std::string failure;      ///< of any level; empty: all reached the end
+  RunResult result;         ///< of the finest
   double cpu_seconds = 0.0; ///< of all levels
-  double estimate = 0.0;   ///< own error at the end, of positions, scaled (run_comparison.h)
+  double estimate = 0.0;    ///< own error at the end, of positions, scaled (run_comparison.h)
   double known_until = 0.0; ///< s: until there the estimate is below k_vague of the motion
   std::string verdict;
-  Disagreement worst;      ///< with any other, or with a law: the largest ratio
+  Disagreement worst; ///< with any other, or with a law: the largest ratio
 };
 
 enum class CrossOutcome {
   agree,
-  vague,    ///< no disagreement, but from some time on estimates are as large as the motion
+  vague, ///< no disagreement, but from some time on estimates are as large as the motion
   disagree
 };
 

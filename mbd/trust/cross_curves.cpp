@@ -14,11 +14,11 @@ namespace {
 
 constexpr double k_least_part = 1e-3; // of the largest range of its kind: a channel that moves less is measured by that
 constexpr double k_wide_part = 0.1;
-constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // of the differences of three settings
-constexpr double k_doubtful_event = 0.02; // of the run: where an event is or is not, reactions are not compared
+constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9;         // of the differences of three settings
+constexpr double k_doubtful_event = 0.02;                         // of the run: where an event is or is not, reactions are not compared
 constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1; // of the largest estimate in it
-constexpr double k_lacking = 0.1;         // of a residual of energy
-constexpr double k_still = 1e-3;          // of the bodies' size: what moves less does not move
+constexpr double k_lacking = 0.1;                                 // of a residual of energy
+constexpr double k_still = 1e-3;                                  // of the bodies' size: what moves less does not move
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;
@@ -51,10 +51,8 @@ std::vector<int> mechanisms_of(const System& system) {
     const int from = number[a], to = number[b];
     std::replace(number.begin(), number.end(), from, to);
   };
-  for (int i = 0; i < system.links.size(); ++i)
-    join(system.links[i].a, system.links[i].b);
-  for (const RowSpec& row : system.rows)
-    join(row.a, row.b);
+  for (int i = 0; i < system.links.size(); ++i) join(system.links[i].a, system.links[i].b);
+  for (const RowSpec& row : system.rows) join(row.a, row.b);
   const State start = system.initial_state();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const RowSpec& row = system.frictions[f].friction->rows(start.friction[f])[0];
@@ -74,16 +72,14 @@ int share_column(const std::vector<const Channel*>& channels, const Channel& cha
   const std::size_t dot = channel.name.rfind('.');
   if (dot == std::string::npos || channel.name.substr(dot) != ".friction") return -1;
   const std::string wanted = shares_channel(channel.name.substr(0, dot));
-  const auto found =
-      std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return c->name == wanted; });
+  const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return c->name == wanted; });
   return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
 }
 
 // Of all bodies, or the force that accelerates them by `acceleration`.
 double weight_of(const System& system, double acceleration) {
   double mass = 0.0;
-  for (const BodyData& body : system.bodies)
-    mass += body.mass;
+  for (const BodyData& body : system.bodies) mass += body.mass;
   return mass * (system.gravity.norm() + acceleration);
 }
 
@@ -98,8 +94,7 @@ double range_of(const Trajectory& t, std::size_t column) {
 
 double middle_range(const std::vector<const RunResult*>& runs, std::size_t column) {
   std::vector<double> ranges;
-  for (const RunResult* run : runs)
-    ranges.push_back(range_of(*run->trajectory, column));
+  for (const RunResult* run : runs) ranges.push_back(range_of(*run->trajectory, column));
   std::sort(ranges.begin(), ranges.end());
   return ranges.empty() ? 0.0 : ranges[ranges.size() / 2];
 }
@@ -118,8 +113,7 @@ using Times = std::map<Key, std::vector<double>>;
 
 Times times_of(const RunResult& run) {
   Times times;
-  for (const Event& event : run.events)
-    times[{event.element, event.kind, event.is_at_start()}].push_back(event.t);
+  for (const Event& event : run.events) times[{event.element, event.kind, event.is_at_start()}].push_back(event.t);
   return times;
 }
 
@@ -154,8 +148,9 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
   const double duration = times.size() > 1 ? times.back() - times.front() : 1.0;
   const bool rests = is_at_rest(system, runs);
   const double still = rests ? 1.0 : k_still, least_part = rests ? 1.0 : k_least_part;
-  std::map<ErrorKind, double> largest{{ErrorKind::position, still * size}, {ErrorKind::velocity, still * size / duration},
-                                     {ErrorKind::reaction, still * weight_of(system, size / (duration * duration))}};
+  std::map<ErrorKind, double> largest{{ErrorKind::position, still * size},
+                                      {ErrorKind::velocity, still * size / duration},
+                                      {ErrorKind::reaction, still * weight_of(system, size / (duration * duration))}};
   const auto& channels = runs.front()->trajectory->channels();
   for (std::size_t column = 0; column < channels.size(); ++column) {
     const std::optional<ErrorKind> kind = kind_of(*channels[column], bodies);
@@ -207,12 +202,11 @@ double extrapolated_error(const std::vector<double>& differences) {
   return std::max(last * ratio / (1.0 - ratio), k_least_ratio * before); // neither of the two may be small by chance
 }
 
-MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels,
-                           double step, double end, const EventFilter& is_counted)
+MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels, double step,
+                           double end, const EventFilter& is_counted)
     : channels_(channels), levels_(levels), step_(step) {
   rows_ = levels_.front()->trajectory->size();
-  for (const RunResult* level : levels_)
-    rows_ = std::min(rows_, level->trajectory->size());
+  for (const RunResult* level : levels_) rows_ = std::min(rows_, level->trajectory->size());
   estimate_events(is_counted);
   spread_slack(end);
   estimate_channels();
@@ -232,18 +226,15 @@ MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const s
 void MethodCurves::estimate_events(const EventFilter& is_counted) {
   const Times fine = times_of(*levels_.back());
   std::vector<Times> coarser;
-  for (std::size_t i = 0; i + 1 < levels_.size(); ++i)
-    coarser.push_back(times_of(*levels_[i]));
+  for (std::size_t i = 0; i + 1 < levels_.size(); ++i) coarser.push_back(times_of(*levels_[i]));
   std::map<std::string, std::vector<double>> of_element;
-  for (const Event& event : levels_.back()->events)
-    of_element[event.element].push_back(event.t);
+  for (const Event& event : levels_.back()->events) of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
     const auto& [element, kind, is_at_start] = key;
     const double within = is_at_start ? 0.0 : 2.0 * step_; // where it begins every run knows
     for (const double t : times) {
       TimedEvent event{element, kind, is_at_start, t, within, INFINITY, INFINITY, !is_counted || is_counted({t, element, kind})};
-      for (const Times& other : coarser)
-        event.shift = std::max(event.shift, within + shift_of(t, times, other, key));
+      for (const Times& other : coarser) event.shift = std::max(event.shift, within + shift_of(t, times, other, key));
       bool is_itself = true;
       for (const double other : of_element[element]) {
         if (other == t && is_itself) is_itself = false;
@@ -280,8 +271,8 @@ void MethodCurves::estimate_channels() {
       const std::size_t at = std::min(row + ahead, rows_ - 1);
       for (std::size_t i = 0; i < pairs; ++i)
         for (const std::size_t k : {row, at})
-          difference[i] = std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory,
-                                                              *levels_[i + 1]->trajectory, k, slack_[k]));
+          difference[i] =
+              std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory, *levels_[i + 1]->trajectory, k, slack_[k]));
       estimate_[c][row] = extrapolated_error(difference);
     }
     if (step_ > 0.0) add_step_of_motion(c);
@@ -302,10 +293,8 @@ void MethodCurves::share_estimates() {
     for (const auto& [key, list] : groups)
       for (std::size_t row = 0; row < rows_; ++row) {
         double most = 0.0;
-        for (const std::size_t c : list)
-          most = std::max(most, channels_[c].arm * estimate_[c][row]);
-        for (const std::size_t c : list)
-          estimate_[c][row] = std::max(estimate_[c][row], part * most / channels_[c].arm);
+        for (const std::size_t c : list) most = std::max(most, channels_[c].arm * estimate_[c][row]);
+        for (const std::size_t c : list) estimate_[c][row] = std::max(estimate_[c][row], part * most / channels_[c].arm);
       }
   };
   share(bodies, k_part_of_body);
@@ -349,8 +338,7 @@ void MethodCurves::find_known() {
       if (channels_[c].kind == ErrorKind::position && !(estimate_[c][at] <= k_vague * channels_[c].wide_scale)) return true;
     return false;
   };
-  while (row < rows_ && !is_lost(row))
-    ++row;
+  while (row < rows_ && !is_lost(row)) ++row;
   known_until_ = row == 0 ? 0.0 : times[row - 1];
 }
 

@@ -15,11 +15,11 @@ struct ComparedChannel {
   const Channel* channel = nullptr;
   std::size_t column = 0;
   ErrorKind kind = ErrorKind::position;
-  double arm = 1.0;   ///< m: makes a length of an angle
-  double scale = 1.0; ///< its range over the run, or a part of the largest range of its kind; in its own unit
-  double wide_scale = 1.0; ///< a greater part: what a motion is lost by
+  double arm = 1.0;            ///< m: makes a length of an angle
+  double scale = 1.0;          ///< its range over the run, or a part of the largest range of its kind; in its own unit
+  double wide_scale = 1.0;     ///< a greater part: what a motion is lost by
   int body = 0, mechanism = 0; ///< of a body's channel: bodies that act on each other have the same mechanism
-  int shares = -1; ///< of a friction's force: column that tells where it is only a share (audit.h); -1: nowhere
+  int shares = -1;             ///< of a friction's force: column that tells where it is only a share (audit.h); -1: nowhere
 };
 
 /// At the sample, is it a force that friction laws leave open?
@@ -28,8 +28,7 @@ struct ComparedChannel {
 }
 
 /// Ranges are the middle ones of those of all runs: a single one that has gone astray does not set the scale.
-[[nodiscard]] std::vector<ComparedChannel> compared_channels(const System& system,
-                                                             const std::vector<const RunResult*>& runs);
+[[nodiscard]] std::vector<ComparedChannel> compared_channels(const System& system, const std::vector<const RunResult*>& runs);
 
 struct TimedEvent {
   std::string element;
@@ -45,8 +44,8 @@ struct TimedEvent {
 class MethodCurves {
 public:
   /// `levels`: coarse to fine, two or three. `step`: the finest level's, if fixed.
-  MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels, double step,
-               double end, const EventFilter& is_counted);
+  MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels, double step, double end,
+               const EventFilter& is_counted);
 
   [[nodiscard]] const RunResult& run() const { return *levels_.back(); }
   [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -87,8 +86,7 @@ private:
 
 /// |x − y| at the sample, or the distance of the two graphs within `slack` seconds; for a reaction also within a
 /// sample.
-[[nodiscard]] double distance_at(const ComparedChannel& channel, const Trajectory& x, const Trajectory& y,
-                                 std::size_t row, double slack);
+[[nodiscard]] double distance_at(const ComparedChannel& channel, const Trajectory& x, const Trajectory& y, std::size_t row, double slack);
 
 /// What is left of the error in the last of the levels, from the largest differences of neighbours.
 [[nodiscard]] double extrapolated_error(const std::vector<double>& differences);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t k_most_cells = 4000000; // of one table; lists beyond that are not paired at all
 constexpr double k_as_good_as_at = 1e-12;     // s, and of t
-constexpr double k_furthest = 10.0; // of the time to what the element did before or next: what is further off was another time
+constexpr double k_furthest = 10.0;           // of the time to what the element did before or next: what is further off was another time
 
 using Places = std::vector<std::size_t>;
 
@@ -52,8 +52,8 @@ Places partners(const std::vector<double>& few, const std::vector<double>& many)
   return places;
 }
 
-void pair_up(const Places& mine, const Places& theirs, const std::vector<Event>& my_events,
-             const std::vector<Event>& their_events, EventMatch& match) {
+void pair_up(const Places& mine, const Places& theirs, const std::vector<Event>& my_events, const std::vector<Event>& their_events,
+             EventMatch& match) {
   const bool is_mine_fewer = mine.size() <= theirs.size();
   const Places& few = is_mine_fewer ? mine : theirs;
   const Places& many = is_mine_fewer ? theirs : mine;
@@ -90,7 +90,9 @@ std::vector<double> times_to_neighbours(const std::vector<Event>& events) {
       if (passed <= k_as_good_as_at * std::max(1.0, events[places[k]].t)) continue;
       for (std::size_t i = before; i < k; ++i) times[places[i]] = std::min(times[places[i]], passed);
       std::size_t last = k;
-      while (last + 1 < places.size() && events[places[last + 1]].t - events[places[k]].t <= k_as_good_as_at * std::max(1.0, events[places[k]].t)) ++last;
+      while (last + 1 < places.size() &&
+             events[places[last + 1]].t - events[places[k]].t <= k_as_good_as_at * std::max(1.0, events[places[k]].t))
+        ++last;
       for (std::size_t i = k; i <= last; ++i) times[places[i]] = passed;
       before = k;
       k = last;

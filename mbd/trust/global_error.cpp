@@ -1,14 +1,14 @@
 #include "mbd/trust/global_error.h"
 
-#include "mbd/trust/event_match.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
 #include "mbd/system/formula_channel.h"
+#include "mbd/trust/event_match.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <initializer_list>
+#include <map>
 
 namespace steplap {
 
@@ -18,13 +18,13 @@ constexpr double k_finer_tolerance = 0.01;
 constexpr double k_least_tolerance = 1e-14; // below it rounding makes the steps
 constexpr int k_division = 2;
 constexpr double k_finer_step = 1.0 / k_division;
-constexpr double k_finer_cost = 3.0;     // of a hundredth of the tolerance: order 5 takes 2.5 times the steps
-constexpr double k_rounding = 1e-14;     // of a channel's largest value, and of times
-constexpr double k_first_order = 0.5;    // what half the step leaves
+constexpr double k_finer_cost = 3.0;  // of a hundredth of the tolerance: order 5 takes 2.5 times the steps
+constexpr double k_rounding = 1e-14;  // of a channel's largest value, and of times
+constexpr double k_first_order = 0.5; // what half the step leaves
 constexpr double k_safety = 1.5;
 constexpr long k_steps_between_looks = 64; // at the evaluations made
-constexpr double k_most_left = 0.9;      // of the error, by a finer run: its difference is the rest, a tenth of the error
-constexpr double k_stepping_safety = 3.0; // where nothing is located
+constexpr double k_most_left = 0.9;        // of the error, by a finer run: its difference is the rest, a tenth of the error
+constexpr double k_stepping_safety = 3.0;  // where nothing is located
 // Of an extreme beside a singular position (within 1e-5 rad): a force that goes with one over the distance is larger by far than
 // away from it, and runs that come to other distances do not agree on it.
 constexpr double k_disagreed = 0.01, k_grown = 1e3;
@@ -33,10 +33,11 @@ bool locates_events(const SimulationOptions& options) { return !method(options.i
 
 // Error over difference; unknown where the finer run was none. What it leaves of the error is told by the steps that were
 // taken, not by those that were asked for.
-double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine,
-                  const RunStatistics& finer, bool has_storm) {
+double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine, const RunStatistics& finer,
+                  bool has_storm) {
   if (fine.settings.step != coarse.settings.step) {
-    const double part = std::max(fine.settings.step / coarse.settings.step, static_cast<double>(run.steps) / static_cast<double>(finer.steps));
+    const double part =
+        std::max(fine.settings.step / coarse.settings.step, static_cast<double>(run.steps) / static_cast<double>(finer.steps));
     return part > k_most_left ? k_unknown_error : (locates_events(coarse) ? 1.0 : k_stepping_safety) / (1.0 - part);
   }
   const double part = has_storm ? k_first_order : fine.settings.tolerance / coarse.settings.tolerance;
@@ -176,8 +177,9 @@ void set_scales(const System& system, const RunResult& run, std::map<std::string
   }
   const double length = largest("m") > 0.0 ? largest("m") : 1.0;
   const double force = std::max(largest("N"), mass * system.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0, v = std::sqrt(a * length);
-  const std::pair<const char*, double> scales[] = {{"m/s", v}, {"rad/s", v / length}, {"m/s^2", a}, {"rad/s^2", std::max(turned, a / length)},
-                                                   {"N", force}, {"N m", force * length}, {"W", force * v}, {"J", force * length}};
+  const std::pair<const char*, double> scales[] = {
+      {"m/s", v},   {"rad/s", v / length},   {"m/s^2", a},     {"rad/s^2", std::max(turned, a / length)},
+      {"N", force}, {"N m", force * length}, {"W", force * v}, {"J", force * length}};
   for (const auto& [unit, scale] : scales)
     if (const auto found = kinds.find(unit); found != kinds.end()) found->second.scale = scale;
 }
@@ -280,17 +282,16 @@ RunResult simulate_within(const System& system, const State& initial, const Simu
                           double most_evaluations) {
   Simulation simulation(system, initial, options);
   for (long steps = 0; simulation.advance(); ++steps)
-    if (steps % k_steps_between_looks == 0 && static_cast<double>(spent.evaluations + simulation.statistics().evaluations) > most_evaluations)
-      throw EstimateTooDear("given up after " + number_text(most_evaluations) + " evaluations, at t = " +
-                            number_text(simulation.state().t) + " s of a finer run");
+    if (steps % k_steps_between_looks == 0 &&
+        static_cast<double>(spent.evaluations + simulation.statistics().evaluations) > most_evaluations)
+      throw EstimateTooDear("given up after " + number_text(most_evaluations) +
+                            " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
   return std::move(simulation).result();
 }
 
 } // namespace
 
-double larger_error(double a, double b) {
-  return std::isnan(a) || std::isnan(b) ? k_unknown_error : std::max(a, b);
-}
+double larger_error(double a, double b) { return std::isnan(a) || std::isnan(b) ? k_unknown_error : std::max(a, b); }
 
 double ChannelError::largest() const {
   double worst = 0.0;

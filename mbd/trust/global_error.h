@@ -30,7 +30,8 @@
 
 namespace steplap {
 
-inline constexpr double k_unknown_error = std::numeric_limits<double>::quiet_NaN(); ///< Stands for an error that is not known: not-a-number.
+inline constexpr double k_unknown_error =
+    std::numeric_limits<double>::quiet_NaN(); ///< Stands for an error that is not known: not-a-number.
 
 /// Errors of what a run tells of a channel (ChannelRange), in its unit. Not-a-number: unknown.
 struct ChannelError {
@@ -73,9 +74,8 @@ struct EstimateTooDear : NumericalFailure {
 
 /// `run` was made from `initial` with `options`, which ask for samples and extremes. Throws NumericalFailure if a finer
 /// run cannot be finished, EstimateTooDear if all of them together take more than `most_evaluations`.
-[[nodiscard]] GlobalErrorEstimate estimate_global_error(const System& system, const State& initial,
-                                                        const SimulationOptions& options, const RunResult& run,
-                                                        const EventFilter& is_counted = {},
+[[nodiscard]] GlobalErrorEstimate estimate_global_error(const System& system, const State& initial, const SimulationOptions& options,
+                                                        const RunResult& run, const EventFilter& is_counted = {},
                                                         double most_evaluations = std::numeric_limits<double>::infinity());
 
 /// Does the method choose its steps by the tolerance? False for fixed steps.

@@ -22,15 +22,14 @@ struct Compared {
   ErrorKind kind = ErrorKind::position;
   std::size_t column = 0;
   double low = 0.0, high = 0.0, size = 0.0; ///< of the reference
-  double arm = 1.0; ///< m: times an angle it is a length; by it a couple is a force
+  double arm = 1.0;                         ///< m: times an angle it is a length; by it a couple is a force
   [[nodiscard]] double range() const { return high - low; }
 };
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (channel.unit == "N" || channel.unit == "N m") return ErrorKind::reaction;
   const std::size_t dot = channel.name.rfind('.');
-  if (dot == std::string::npos || bodies.count(channel.name.substr(0, dot)) == 0)
-    return std::nullopt;
+  if (dot == std::string::npos || bodies.count(channel.name.substr(0, dot)) == 0) return std::nullopt;
   if (channel.unit == "m" || channel.unit == "rad") return ErrorKind::position;
   if (channel.unit == "m/s" || channel.unit == "rad/s") return ErrorKind::velocity;
   return std::nullopt;
@@ -78,8 +77,7 @@ void set_ranges(std::vector<Compared>& list, const System& system, const RunResu
 std::vector<Compared> compared_channels(const System& system, const RunResult& run) {
   const Trajectory& reference = *run.trajectory;
   std::set<std::string> bodies;
-  for (const BodyData& body : system.bodies)
-    bodies.insert(body.name);
+  for (const BodyData& body : system.bodies) bodies.insert(body.name);
   const double size = size_of(system);
   std::vector<Compared> list;
   for (std::size_t column = 0; column < reference.channels().size(); ++column) {
@@ -165,14 +163,10 @@ std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std:
 
 const char* name_of(ErrorKind kind) {
   switch (kind) {
-  case ErrorKind::position:
-    return "positions";
-  case ErrorKind::velocity:
-    return "velocities";
-  case ErrorKind::reaction:
-    return "reactions";
-  case ErrorKind::event_time:
-    return "event times";
+  case ErrorKind::position: return "positions";
+  case ErrorKind::velocity: return "velocities";
+  case ErrorKind::reaction: return "reactions";
+  case ErrorKind::event_time: return "event times";
   }
   return "";
 }
@@ -184,8 +178,7 @@ double RunDifference::largest() const {
   return value;
 }
 
-RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference,
-                           const EventFilter& is_counted) {
+RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference, const EventFilter& is_counted) {
   RunDifference d;
   const Trajectory& mine = *run.trajectory;
   const Trajectory& theirs = *reference.trajectory;
@@ -205,8 +198,7 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
     const Event &mine_event = run.events[pair.mine], &event = reference.events[pair.reference];
     if (is_counted && !is_counted(event)) continue;
     keep_worst(d.worst[static_cast<std::size_t>(ErrorKind::event_time)],
-               std::abs(mine_event.t - event.t) / (duration > 0.0 ? duration : 1.0),
-               "'" + event.element + "' " + event.words(), event.t);
+               std::abs(mine_event.t - event.t) / (duration > 0.0 ? duration : 1.0), "'" + event.element + "' " + event.words(), event.t);
   }
   return d;
 }

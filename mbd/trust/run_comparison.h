@@ -37,9 +37,7 @@ struct RunDifference {
   int unmatched_events = 0;    ///< those that one run has and the other has not
   double compared_until = 0.0; ///< s: the last sample both have
 
-  [[nodiscard]] const WorstError& of(ErrorKind kind) const {
-    return worst[static_cast<std::size_t>(kind)];
-  }
+  [[nodiscard]] const WorstError& of(ErrorKind kind) const { return worst[static_cast<std::size_t>(kind)]; }
   /// Of all kinds, event times included.
   [[nodiscard]] double largest() const;
 };
@@ -48,8 +46,7 @@ struct RunDifference {
 using EventFilter = std::function<bool(const Event& event)>;
 
 /// Both runs are of `system`, with the same channels, sampled at the same times.
-[[nodiscard]] RunDifference compare_runs(const System& system, const RunResult& run,
-                                         const RunResult& reference,
+[[nodiscard]] RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference,
                                          const EventFilter& is_counted = {});
 
 } // namespace steplap

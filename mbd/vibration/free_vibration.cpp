@@ -53,8 +53,7 @@ MatX steady_motions(const FreeVibration& v) {
   const RightSingular singular = right_singular(beyond);
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < v.loose.cols(); ++i)
-    if (i >= singular.values.size() || singular.values[i] <= k_rounded_terms * k_epsilon * size)
-      free.push_back(i);
+    if (i >= singular.values.size() || singular.values[i] <= k_rounded_terms * k_epsilon * size) free.push_back(i);
   MatX motions(k + r, static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) {
     const VecX rate = v.loose * singular.v.col(free[i]);

@@ -1,9 +1,9 @@
 #include "mbd/vibration/modes.h"
 
 #include "mbd/algebra/decompositions.h"
+#include "mbd/rest/tangent.h"
 #include "mbd/vibration/free_vibration.h"
 #include "mbd/vibration/sparse_modes.h"
-#include "mbd/rest/tangent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,15 +65,11 @@ std::vector<Complex> shape_of(const System& system, const ComplexVector& q) {
 } // namespace
 
 double VibrationMode::frequency() const { return std::abs(eigenvalue.imag()) / k_two_pi; }
-double VibrationMode::natural_frequency() const {
-  return size_of(eigenvalue) / k_two_pi;
-}
+double VibrationMode::natural_frequency() const { return size_of(eigenvalue) / k_two_pi; }
 double WantedModes::distance(const std::complex<double>& eigenvalue) const {
   return near ? size_of(eigenvalue - Complex(0.0, k_two_pi * *near)) : size_of(eigenvalue);
 }
-double VibrationMode::damping_ratio() const {
-  return -eigenvalue.real() / size_of(eigenvalue);
-}
+double VibrationMode::damping_ratio() const { return -eigenvalue.real() / size_of(eigenvalue); }
 
 namespace {
 
@@ -115,8 +111,7 @@ VibrationModes some_modes(const System& system, const State& state, const Wanted
   found.rigid_motions = sparse.rigid_motions;
   found.is_all = sparse.is_all;
   found.is_counted = sparse.is_counted;
-  for (const SparseModes::Mode& mode : sparse.modes)
-    found.modes.push_back({mode.eigenvalue, shape_of(system, mode.q), mode.residual});
+  for (const SparseModes::Mode& mode : sparse.modes) found.modes.push_back({mode.eigenvalue, shape_of(system, mode.q), mode.residual});
   return found;
 }
 

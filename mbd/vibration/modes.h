@@ -9,8 +9,8 @@
 // Contacts that are closed and joints that stick stay so: amplitudes are as small as that asks for.
 #pragma once
 
-#include "mbd/system/system.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/system/system.h"
 
 #include <complex>
 #include <optional>
@@ -20,9 +20,7 @@
 namespace steplap {
 
 /// |z|, where std::abs would call the C library.
-[[nodiscard]] inline double size_of(const std::complex<double>& z) {
-  return portable::hypot(z.real(), z.imag());
-}
+[[nodiscard]] inline double size_of(const std::complex<double>& z) { return portable::hypot(z.real(), z.imag()); }
 
 /// One mode of small vibrations.
 struct VibrationMode {

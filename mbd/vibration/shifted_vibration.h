@@ -22,9 +22,9 @@ public:
 
   [[nodiscard]] Eigen::Index coordinates() const { return n_; }
   [[nodiscard]] const VecX& scale() const { return scale_; }
-  [[nodiscard]] const VecX& mass() const { return mass_; }         ///< kg over the size
+  [[nodiscard]] const VecX& mass() const { return mass_; }             ///< kg over the size
   [[nodiscard]] const Sparse& stiffness() const { return stiffness_; } ///< K̂
-  [[nodiscard]] const Sparse& damping() const { return damping_; } ///< D̂
+  [[nodiscard]] const Sparse& damping() const { return damping_; }     ///< D̂
   [[nodiscard]] const std::vector<SparseRow>& rows() const { return rows_.rows(); }
   [[nodiscard]] bool is_symmetric() const { return is_symmetric_; } ///< K̂
   [[nodiscard]] bool is_damped() const { return is_damped_; }

@@ -1,9 +1,9 @@
 #include "mbd/vibration/sparse_modes.h"
 
 #include "mbd/algebra/decompositions.h"
+#include "mbd/rest/spread.h"
 #include "mbd/vibration/free_vibration.h"
 #include "mbd/vibration/shifted_vibration.h"
-#include "mbd/rest/spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +20,14 @@ using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_new = 1e-9;        // of its length: what a vector has beyond those before, to be a direction of its own
-constexpr double k_residual = 1e-9;   // of a mode's own acceleration
-constexpr double k_out_of_balance = 1e-4; // the same, of modes of a whole scene, which dense algebra has to find
-constexpr double k_rounding = 32.0;   // epsilons of the terms that a residual is the sum of
-constexpr double k_same = 1e-6;       // squares of frequencies that are not told apart
+constexpr double k_new = 1e-9;              // of its length: what a vector has beyond those before, to be a direction of its own
+constexpr double k_residual = 1e-9;         // of a mode's own acceleration
+constexpr double k_out_of_balance = 1e-4;   // the same, of modes of a whole scene, which dense algebra has to find
+constexpr double k_rounding = 32.0;         // epsilons of the terms that a residual is the sum of
+constexpr double k_same = 1e-6;             // squares of frequencies that are not told apart
 constexpr double k_well_below = 1.0 / 64.0; // σ² of the square of the first frequency
-constexpr int k_starts = 3;           // vectors that the space begins with, beside one for each rigid motion
-constexpr int k_beyond = 2;           // modes after the last one wanted that have to be known, too
+constexpr int k_starts = 3;                 // vectors that the space begins with, beside one for each rigid motion
+constexpr int k_beyond = 2;                 // modes after the last one wanted that have to be known, too
 constexpr int k_most_rigid = 200;
 
 // W, and the Krylov vectors in it.
@@ -143,11 +143,9 @@ public:
     }
     const int most = std::min(directions_, 10 * wanted_.count + 2 * rigid_ + 200);
     MotionSpace space(scene_, *sigma, std::max(size_of(*sigma), std::sqrt(scene_.loose())), most);
-    for (int i = 0; i < k_starts + rigid_ && space.add_start(); ++i) {
-    }
+    for (int i = 0; i < k_starts + rigid_ && space.add_start(); ++i) {}
     for (int wanted = std::min(most, 3 * wanted_.count + 2 * rigid_ + 20);; wanted = std::min(most, wanted + wanted / 2)) {
-      while (!space.grow(wanted) && space.add_start()) {
-      }
+      while (!space.grow(wanted) && space.add_start()) {}
       const bool is_whole = space.size() == directions_, is_found = look(space);
       if (is_found || (is_whole && worst_ < k_out_of_balance)) return finished(is_whole);
       if (is_whole || space.size() < wanted || space.size() >= most) fail();
@@ -267,24 +265,23 @@ private:
     if (unsure_ > 0)
       throw NumericalFailure("of the " + size + " wanted some do not converge: " + std::to_string(unsure_) +
                              " of them are out of balance by more than " + std::to_string(k_residual) + " of their own acceleration");
-    throw NumericalFailure("of the " + size + " wanted some are missing: so many are of one frequency, or of nearly one. Ask for more, or for "
-                                              "fewer than come to it");
+    throw NumericalFailure("of the " + size +
+                           " wanted some are missing: so many are of one frequency, or of nearly one. Ask for more, or for "
+                           "fewer than come to it");
   }
 
   SparseVibration scene_;
   const WantedModes& wanted_;
-  int directions_ = 0;   ///< that are neither bare nor held by rows
-  int rigid_ = 0;        ///< of them those that nothing holds
-  int unsure_ = 0;       ///< modes that are not known well enough
-  double worst_ = 0.0;   ///< residual
+  int directions_ = 0;    ///< that are neither bare nor held by rows
+  int rigid_ = 0;         ///< of them those that nothing holds
+  int unsure_ = 0;        ///< modes that are not known well enough
+  double worst_ = 0.0;    ///< residual
   bool has_more_ = false; ///< than are wanted
   SparseModes found_;
 };
 
 } // namespace
 
-SparseModes sparse_modes(const System& system, State state, const WantedModes& wanted) {
-  return Search(system, state, wanted).run();
-}
+SparseModes sparse_modes(const System& system, State state, const WantedModes& wanted) { return Search(system, state, wanted).run(); }
 
 } // namespace steplap

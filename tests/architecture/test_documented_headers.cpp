@@ -29,7 +29,8 @@ struct Undocumented {
 
 bool starts_with_word(const std::string& text, const char* word) {
   const std::string start = word;
-  return text.starts_with(start) && (text.size() == start.size() || !(std::isalnum(static_cast<unsigned char>(text[start.size()])) || text[start.size()] == '_'));
+  return text.starts_with(start) &&
+         (text.size() == start.size() || !(std::isalnum(static_cast<unsigned char>(text[start.size()])) || text[start.size()] == '_'));
 }
 
 std::string trimmed(const std::string& text) {
@@ -167,8 +168,8 @@ std::vector<fs::path> public_headers() {
   for (const char* room : {"run", "mbd/acceptance", "mbd/model", "mbd/simulation"})
     for (const auto& entry : fs::directory_iterator(root / room))
       if (entry.path().extension() == ".h") headers.push_back(entry.path());
-  for (const char* header : {"mbd/io/reader.h", "mbd/rest/equilibrium.h", "mbd/vibration/modes.h", "mbd/rest/start.h", "mbd/trust/global_error.h",
-                             "mbd/system/system.h", "mbd/system/instance.h"})
+  for (const char* header : {"mbd/io/reader.h", "mbd/rest/equilibrium.h", "mbd/vibration/modes.h", "mbd/rest/start.h",
+                             "mbd/trust/global_error.h", "mbd/system/system.h", "mbd/system/instance.h"})
     headers.push_back(root / header);
   return headers;
 }
@@ -190,8 +191,10 @@ TEST_CASE("every public declaration of the headers that users meet says what it 
 }
 
 TEST_CASE("a declaration without words is found") {
-  CHECK(undocumented_in("namespace n {\n/// Says it.\nint f();\nint g(int a,\n      int b);\nint h(); ///< m\n} // namespace n\n").lines == "a.h:4: int g(int a, int b);\n");
-  const Undocumented record = undocumented_in("/// A thing.\nclass A {\npublic:\n  A() = default;\n  int f() const { return 1; }\nprivate:\n  int b;\n};\nint c;\n");
+  CHECK(undocumented_in("namespace n {\n/// Says it.\nint f();\nint g(int a,\n      int b);\nint h(); ///< m\n} // namespace n\n").lines ==
+        "a.h:4: int g(int a, int b);\n");
+  const Undocumented record = undocumented_in(
+      "/// A thing.\nclass A {\npublic:\n  A() = default;\n  int f() const { return 1; }\nprivate:\n  int b;\n};\nint c;\n");
   CHECK(record.lines == "a.h:5: int f() const { return 1; }\na.h:9: int c;\n");
   CHECK(record.count == 3);
   CHECK(undocumented_in("/// A choice.\nenum class E {\n  a, ///< the first\n  b\n};\n").lines == "a.h:4: b\n");

@@ -70,7 +70,8 @@ private:
 
   void skip_to(std::size_t end) {
     end = std::min(end, text_.size());
-    source_.code.append(static_cast<std::size_t>(std::count(text_.begin() + static_cast<long>(at_), text_.begin() + static_cast<long>(end), '\n')), '\n');
+    source_.code.append(
+        static_cast<std::size_t>(std::count(text_.begin() + static_cast<long>(at_), text_.begin() + static_cast<long>(end), '\n')), '\n');
     at_ = end;
   }
 
@@ -118,7 +119,8 @@ bool is_scope(std::string head) {
   for (const char* word : {"namespace", "inline namespace", "class", "struct", "union", "enum", "extern"}) {
     const std::size_t at = head.find_first_not_of(" \n");
     const std::string start = word;
-    if (at != std::string::npos && head.compare(at, start.size(), start) == 0 && !is_of_word((head + " ")[at + start.size()])) return head.find(')') == std::string::npos;
+    if (at != std::string::npos && head.compare(at, start.size(), start) == 0 && !is_of_word((head + " ")[at + start.size()]))
+      return head.find(')') == std::string::npos;
   }
   return false;
 }
@@ -172,7 +174,8 @@ bool names_option(const std::string& text) {
   for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 2)) {
     const bool is_at_start = at == 0 || text[at - 1] == ' ' || text[at - 1] == '(' || text[at - 1] == '`';
     const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at + 2);
-    const bool is_of_style = (at >= 4 && text.compare(at - 4, 4, "var(") == 0) || (end != std::string::npos && text.compare(end, 2, ":#") == 0);
+    const bool is_of_style =
+        (at >= 4 && text.compare(at - 4, 4, "var(") == 0) || (end != std::string::npos && text.compare(end, 2, ":#") == 0);
     if (is_at_start && !is_of_style && at + 2 < text.size() && std::islower(static_cast<unsigned char>(text[at + 2]))) return true;
   }
   const std::size_t at = (" " + text + " ").find(" -o");

@@ -17,14 +17,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> k_rooms = {"mbd", "record", "elements", "transformer", "run", "report", "explore", "python", "study", "assess", "tools"};
+const std::vector<std::string> k_rooms = {"mbd",     "record", "elements", "transformer", "run",  "report",
+                                          "explore", "python", "study",    "assess",      "tools"};
 
 using Definitions = std::map<std::string, std::set<std::string>>; // files by the type's full name
 
 /// Namespaces begin and end at the first column; types of unnamed ones are each file's own, and so are members of types.
 void collect(std::istream& lines, const std::string& file, Definitions& out) {
   static const std::regex opens(R"(^(?:inline )?namespace ?([\w:]*) ?\{$)"), closes(R"(^\} // namespace)");
-  static const std::regex defines(R"(^(?:template ?<.*> ?)?(?:struct|class|union|enum class|enum) (?:alignas\(\w+\) )?(\w+)(?: final)?(?: : [^;]*)?\s*\{)");
+  static const std::regex defines(
+      R"(^(?:template ?<.*> ?)?(?:struct|class|union|enum class|enum) (?:alignas\(\w+\) )?(\w+)(?: final)?(?: : [^;]*)?\s*\{)");
   std::vector<std::string> names;
   std::smatch match;
   for (std::string line; std::getline(lines, line);) {
@@ -68,7 +70,8 @@ TEST_CASE("no two types have one name") {
 TEST_CASE("a type that stands twice is seen") {
   Definitions out;
   std::istringstream one("namespace a {\nstruct Place {\n};\nnamespace {\nstruct Own {\n};\n} // namespace\n} // namespace a\n");
-  std::istringstream two("namespace a {\nclass Place final : Base {\n};\nnamespace {\nstruct Own {\n};\n} // namespace\n} // namespace a\n");
+  std::istringstream two(
+      "namespace a {\nclass Place final : Base {\n};\nnamespace {\nstruct Own {\n};\n} // namespace\n} // namespace a\n");
   collect(one, "one", out);
   collect(two, "two", out);
   CHECK(out.at("a::Place").size() == 2);

@@ -71,8 +71,10 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
     const std::string name = m.name;
     // "auto" is a word of others, too: of drawings.
     Reasons reasons = by_right;
-    if (name == "auto") reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"run/symbols.cpp", "how an element is drawn"}});
-    check_places(name, {"mbd/integrators/methods.cpp", "mbd/integrators/" + (name == "auto" ? "automatic" : name) + ".cpp"}, reasons, sources);
+    if (name == "auto")
+      reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"run/symbols.cpp", "how an element is drawn"}});
+    check_places(name, {"mbd/integrators/methods.cpp", "mbd/integrators/" + (name == "auto" ? "automatic" : name) + ".cpp"}, reasons,
+                 sources);
   }
 }
 
@@ -83,13 +85,19 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
-      {"limit", {{"run/report_json.cpp", "of a criterion"}, {"tools/steplap/run_screen.cpp", "of a criterion"}, {"assess/static_json.cpp", "of a criterion"}}},
+      {"limit",
+       {{"run/report_json.cpp", "of a criterion"},
+        {"tools/steplap/run_screen.cpp", "of a criterion"},
+        {"assess/static_json.cpp", "of a criterion"}}},
       {"load", {{"assess/static_json.cpp", "an acceleration of a proof"}}},
       {"buffer", {{"mbd/model/shunting_signal.cpp", "a field"}}},
       {"rope", {{"run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
-      {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
-                    {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"},
-                    {"elements/formula_force.cpp", "a coordinate"}}},
+      {"distance",
+       {{"elements/motor.cpp", "a coordinate"},
+        {"elements/prescribed_motion.cpp", "a coordinate"},
+        {"elements/limit.cpp", "a coordinate"},
+        {"elements/joint_friction.cpp", "a coordinate"},
+        {"elements/formula_force.cpp", "a coordinate"}}},
       {"step_lap_joint", {{"study/scene.cpp", "channels that every verdict needs"}}},
       {"spring_damper", {{"mbd/model/model.h", "an example"}}},
   };
@@ -114,7 +122,8 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
   // What else is called so, and who reads a kind's settings besides the kind itself.
   const std::map<std::string, Reasons> besides = {
       {"sample", {{"study/store.cpp", "a table of the store"}}},
-      {"reliability", {{"study/limit_function.h", "hands its settings to the methods of reliability"}, {"study/limit_function.cpp", "the same"}}},
+      {"reliability",
+       {{"study/limit_function.h", "hands its settings to the methods of reliability"}, {"study/limit_function.cpp", "the same"}}},
   };
   const std::string& list = sources.at("study/kinds.cpp");
   const std::regex entry("(\\w+)_kind\\(\\)"); // read from the source: builds without studies have this test, too
@@ -128,7 +137,8 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
     REQUIRE(sources.count(file + ".cpp") == 1);
     CHECK(sources.at(file + ".cpp").find("kind.name = \"" + name + '"') != std::string::npos);
     check_places(name, own, reasons, sources);
-    const std::regex settings("\\b" + std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])))) + name.substr(1) + "Settings\\b");
+    const std::regex settings("\\b" + std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])))) +
+                              name.substr(1) + "Settings\\b");
     CHECK(std::regex_search(sources.at(file + ".h"), settings));
     std::set<std::string> listed;
     for (const auto& [path, text] : sources) {

@@ -16,12 +16,14 @@ namespace {
 
 // In the order of the data: a model is read, compiled, moved, asked.
 const std::vector<std::string> k_rooms = {
-    "mbd/math",   "mbd/base",       "mbd/formula",  "mbd/algebra",  "mbd/tape",       "mbd/model",  "mbd/system", "mbd/dynamics", "mbd/friction", "mbd/integrators",
-    "mbd/events", "mbd/simulation", "mbd/rest", "mbd/vibration", "mbd/trust", "mbd/acceptance", "mbd/io", "record", "elements/patch", "elements", "transformer",
-    "run", "report", "explore/page", "explore", "python", "study", "assess", "tools"};
+    "mbd/math",     "mbd/base",        "mbd/formula",    "mbd/algebra",    "mbd/tape",    "mbd/model",     "mbd/system", "mbd/dynamics",
+    "mbd/friction", "mbd/integrators", "mbd/events",     "mbd/simulation", "mbd/rest",    "mbd/vibration", "mbd/trust",  "mbd/acceptance",
+    "mbd/io",       "record",          "elements/patch", "elements",       "transformer", "run",           "report",     "explore/page",
+    "explore",      "python",          "study",          "assess",         "tools"};
 
 // Headers of libraries, of which one file of the product knows.
-const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "boost/beast", "unsupported/Eigen/FFT"};
+const std::vector<std::string> k_heavy = {
+    "toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "boost/beast", "unsupported/Eigen/FFT"};
 
 // Rooms with doors: the headers that other rooms may include, and why. The others are the room's own affair.
 struct Door {
@@ -77,7 +79,8 @@ std::vector<Source> all_sources() {
 }
 
 // What cmake/install.cmake leaves out.
-const std::vector<std::string> k_not_installed = {"record/", "tools/", "study/", "report/", "explore/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
+const std::vector<std::string> k_not_installed = {
+    "record/", "tools/", "study/", "report/", "explore/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
 
 // The longest room that the path lies in; −1: none.
 int room_of(const std::string& path) {
@@ -90,8 +93,8 @@ int room_of(const std::string& path) {
 }
 
 // A way from `path` back to a header that is being followed, "" if there is none.
-std::string circle_from(const std::string& path, const std::map<std::string, std::vector<std::string>>& includes, std::vector<std::string>& way,
-                        std::set<std::string>& done) {
+std::string circle_from(const std::string& path, const std::map<std::string, std::vector<std::string>>& includes,
+                        std::vector<std::string>& way, std::set<std::string>& done) {
   if (const auto met = std::find(way.begin(), way.end(), path); met != way.end()) {
     std::string text;
     for (auto step = met; step != way.end(); ++step) text += *step + " -> ";
@@ -134,7 +137,8 @@ TEST_CASE("rest, vibration and trust are entered by their doors alone") {
       if (other < 0 || other == room) continue;
       const auto doors = k_doors.find(k_rooms[static_cast<std::size_t>(other)]);
       if (doors == k_doors.end()) continue;
-      const auto door = std::find_if(doors->second.begin(), doors->second.end(), [&](const Door& d) { return doors->first + "/" + d.header == name; });
+      const auto door =
+          std::find_if(doors->second.begin(), doors->second.end(), [&](const Door& d) { return doors->first + "/" + d.header == name; });
       CHECK_MESSAGE(door != doors->second.end(), source.path << " includes " << name << ", which is no door of its room");
       if (door == doors->second.end()) continue;
       used.insert(name);
@@ -143,7 +147,8 @@ TEST_CASE("rest, vibration and trust are entered by their doors alone") {
     }
   }
   for (const auto& [room, doors] : k_doors)
-    for (const Door& door : doors) CHECK_MESSAGE(used.count(room + "/" + door.header) == 1, room << "/" << door.header << " is a door that nobody uses");
+    for (const Door& door : doors)
+      CHECK_MESSAGE(used.count(room + "/" + door.header) == 1, room << "/" << door.header << " is a door that nobody uses");
 }
 
 TEST_CASE("no header leads back to itself") {
@@ -168,7 +173,8 @@ TEST_CASE("the circle of headers is found where there is one") {
 TEST_CASE("headers of the library include no other maker's than Eigen's") {
   int headers = 0;
   for (const Source& source : all_sources()) {
-    const bool is_installed = std::none_of(k_not_installed.begin(), k_not_installed.end(), [&](const std::string& start) { return source.path.starts_with(start); });
+    const bool is_installed = std::none_of(k_not_installed.begin(), k_not_installed.end(),
+                                           [&](const std::string& start) { return source.path.starts_with(start); });
     if (!source.path.ends_with(".h") || !is_installed) continue;
     ++headers;
     for (const std::string& name : source.foreign) { // those of the standard library have neither folder nor ending
@@ -191,5 +197,6 @@ TEST_CASE("a heavy header is known to one file") {
     CHECK(users.front().ends_with(".cpp"));
   }
   for (const Source& source : all_sources()) // CGAL has many headers
-    for (const std::string& name : source.foreign) CHECK_MESSAGE((!name.starts_with("CGAL/") || source.path.starts_with("elements/patch/exact_")), source.path);
+    for (const std::string& name : source.foreign)
+      CHECK_MESSAGE((!name.starts_with("CGAL/") || source.path.starts_with("elements/patch/exact_")), source.path);
 }

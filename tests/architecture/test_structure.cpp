@@ -36,7 +36,8 @@ std::vector<std::string> quoted_in(const std::string& line) {
 }
 
 bool is_path(const std::string& text) {
-  return text.find(' ') == std::string::npos && (text.find('/') != std::string::npos || text.ends_with(".h") || text.ends_with(".cpp") || text.ends_with(".md"));
+  return text.find(' ') == std::string::npos &&
+         (text.find('/') != std::string::npos || text.ends_with(".h") || text.ends_with(".cpp") || text.ends_with(".md"));
 }
 
 bool occurs(const std::string& function, const std::string& text) {
@@ -110,7 +111,8 @@ TEST_CASE("rooms are about as large as docs/design/structure.md says") {
   int rooms = 0;
   for (std::string line; std::getline(page, line);) {
     const std::vector<std::string> quoted = quoted_in(line);
-    const std::size_t last = line.find_last_of('|'), before = last == std::string::npos || last == 0 ? last : line.find_last_of('|', last - 1);
+    const std::size_t last = line.find_last_of('|'),
+                      before = last == std::string::npos || last == 0 ? last : line.find_last_of('|', last - 1);
     if (!line.starts_with("| `") || before == std::string::npos || quoted.empty() || !quoted.front().ends_with('/')) continue;
     const long said = std::atol(line.substr(before + 1).c_str());
     if (said == 0) continue;

@@ -14,7 +14,8 @@ namespace assess_test {
 /// Triangles along x one after the other, peaks in m/s², each `duration` s long with `quiet` s after it, samples every `step` s.
 [[nodiscard]] steplap::assess::DriveHistory triangles(const std::vector<double>& peaks, double duration, double quiet, double step = 1e-3);
 /// The final value of a channel after a driven run.
-[[nodiscard]] double final_value(const steplap::assess::DrivenModel& model, const steplap::assess::DriveHistory& history, const std::string& channel);
+[[nodiscard]] double final_value(const steplap::assess::DrivenModel& model, const steplap::assess::DriveHistory& history,
+                                 const std::string& channel);
 /// A folder that is empty, and gone at the end.
 struct Folder {
   Folder();

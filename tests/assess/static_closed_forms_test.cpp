@@ -74,7 +74,8 @@ TEST_CASE("a block slides or tips at the closed form in every direction") {
       REQUIRE_FALSE(direction.ray.limits.empty());
       const StaticLimit& first = direction.ray.limits.front();
       const double second_order = 4.0 * form.turned * form.turned * (h / b + b / h);
-      CHECK(std::abs(first.acceleration / form.a - 1.0) < (1.0 + form.steepness * form.a / k_g) * (1e-9 + second_order) + 2.0 * first.error / form.a);
+      CHECK(std::abs(first.acceleration / form.a - 1.0) <
+            (1.0 + form.steepness * form.a / k_g) * (1e-9 + second_order) + 2.0 * first.error / form.a);
       if (std::abs(std::cos(direction.angle)) < 1e-9) CHECK(first.kind == LimitKind::lifts); // weightless
       else CHECK(first.kind == (mu < b / h ? LimitKind::slides : LimitKind::lifts));
       CHECK(direction.ray.limits.back().kind == LimitKind::ends);
@@ -143,19 +144,25 @@ TEST_CASE("what a rest cannot prove is open") {
     CHECK(proof.reason.find("nothing holds 'block'") != std::string::npos);
   }
   SUBCASE("nothing holds the vehicle") {
-    const StaticProof proof = proof_of("[[body]]\nname = 'sledge'\nmass = 1000\ninertia = 100\n[[element]]\nkind = 'prismatic'\nname = 'rail'\na = 'sledge'\nb = 'ground'\naxis = [1, 0]\n", {1.0, 0.0});
+    const StaticProof proof = proof_of("[[body]]\nname = 'sledge'\nmass = 1000\ninertia = 100\n[[element]]\nkind = 'prismatic'\nname = "
+                                       "'rail'\na = 'sledge'\nb = 'ground'\naxis = [1, 0]\n",
+                                       {1.0, 0.0});
     CHECK(proof.verdict == Verdict::open);
     CHECK(proof.reason.find("Hold its vehicle by a drive") != std::string::npos);
   }
   SUBCASE("nothing is asked") {
-    const StaticProof proof = proof_of("[[body]]\nname = 'post'\nmass = 10\ninertia = 1\n[[element]]\nkind = 'weld'\nname = 'foot'\na = 'post'\nb = 'ground'\n", {1.0, 0.0});
+    const StaticProof proof =
+        proof_of("[[body]]\nname = 'post'\nmass = 10\ninertia = 1\n[[element]]\nkind = 'weld'\nname = 'foot'\na = 'post'\nb = 'ground'\n",
+                 {1.0, 0.0});
     CHECK(proof.verdict == Verdict::open);
     CHECK(proof.reason.find("nothing was asked") != std::string::npos);
   }
   SUBCASE("a stop bears with friction or without it") {
     // Friction μ m g = 3.9 kN of the 5.9 kN that pull; the spring bears the rest, or after a shake all of it.
-    const std::string stop = "[[element]]\nkind = 'spring_damper'\nname = 'stop'\na = { body = 'block', at = [0, 0.1] }\nb = { body = 'ground', at = [0, 0.1] }\n"
-                             "axis = [1, 0]\nstiffness = 1e7\ndamping = 1e4\n[[acceptance]]\nname = 'stop'\nchannel = 'stop.force'\nconsequence = 'reject'\nwithin = ";
+    const std::string stop = "[[element]]\nkind = 'spring_damper'\nname = 'stop'\na = { body = 'block', at = [0, 0.1] }\nb = { body = "
+                             "'ground', at = [0, 0.1] }\n"
+                             "axis = [1, 0]\nstiffness = 1e7\ndamping = 1e4\n[[acceptance]]\nname = 'stop'\nchannel = "
+                             "'stop.force'\nconsequence = 'reject'\nwithin = ";
     const std::string block = block_on_deck(0.9, 0.5, 0.4);
     const Vec2 pull(0.6 * k_g, 0.0);
     CHECK(proof_of(block + stop + "1e3\n", pull).verdict == Verdict::reject);
@@ -179,7 +186,8 @@ TEST_CASE("joints that would slip are rejected with their margin") {
   CHECK(proof.verdict == Verdict::reject);
   REQUIRE(proof.cases[0].joints.size() == 2);
   // 411.9 kN at 0.1 MPa; two weights of 9 t. The limb's own lever arms are none in translation.
-  for (const StaticJoint& joint : proof.cases[0].joints) CHECK(joint.margin == doctest::Approx(0.2 * 411894.0 / (2.0 * 9000.0 * k_g)).epsilon(1e-3));
+  for (const StaticJoint& joint : proof.cases[0].joints)
+    CHECK(joint.margin == doctest::Approx(0.2 * 411894.0 / (2.0 * 9000.0 * k_g)).epsilon(1e-3));
 }
 
 // An elastic joint yields before it slides, in the search as in a run: where it lets go is its limit surface's matter alone.
@@ -195,7 +203,8 @@ TEST_CASE("an elastic joint slips where a rigid one does") {
   };
   const double rigid = slip({});
   // The limb sinks by its weight over the stiffness, 0.1 mm; friction in translation does not change with the place of the overlap.
-  CHECK(slip({"element.front joint.tangential_stiffness=1e9", "element.back joint.tangential_stiffness=1e9"}) == doctest::Approx(rigid).epsilon(1e-5));
+  CHECK(slip({"element.front joint.tangential_stiffness=1e9", "element.back joint.tangential_stiffness=1e9"}) ==
+        doctest::Approx(rigid).epsilon(1e-5));
 }
 
 // Friction at its bound and the stop share the pull: F = m (a − μ g). Feet a hundred times stiffer than the stop make the symmetric
@@ -204,7 +213,8 @@ TEST_CASE("what slides comes to rest where the stop bears what friction does not
   for (const double stiffness : {1e6, 1e7, 1e8, 1e9})
     for (const double mu : {0.1, 0.4, 0.55})
       for (const double sign : {1.0, -1.0}) {
-        const std::string stop = "[[element]]\nkind = 'spring_damper'\nname = 'stop'\na = { body = 'block', at = [0, 0.1] }\nb = { body = 'ground', at = [0, 0.1] }\naxis = [1, 0]\nstiffness = " +
+        const std::string stop = "[[element]]\nkind = 'spring_damper'\nname = 'stop'\na = { body = 'block', at = [0, 0.1] }\nb = { body = "
+                                 "'ground', at = [0, 0.1] }\naxis = [1, 0]\nstiffness = " +
                                  std::to_string(stiffness) + "\ndamping = 1e4\n";
         const auto loaded = machine(block_on_deck(0.9, 0.5, mu, stop));
         StaticMachine asked(*loaded);

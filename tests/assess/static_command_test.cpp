@@ -95,9 +95,14 @@ TEST_CASE("what is wrong is said once, with place and remedy") {
   refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1]\n"), k_paper}, 3, "own.toml:5");
   refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = ['1 kN', 0]\n"), k_paper}, 3, "own.toml:5");
   for (const char* const pull : {"[1e6, 0]", "[0, nan]", "[-inf, 0]"})
-    refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = " + std::string(pull) + "\n"), k_paper}, 3, "own.toml:");
+    refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = " + std::string(pull) + "\n"), k_paper}, 3,
+            "own.toml:");
   refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\nplane = 'up'\n"), k_paper}, 3, "own.toml:6");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\n[[case]]\nname = 'x'\npull = [2, 0]\n"), k_paper}, 3, "two cases 'x'");
+  refused(
+      {"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\n[[case]]\nname = 'x'\npull = [2, 0]\n"), k_paper},
+      3, "two cases 'x'");
   refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npul = [1, 0]\npull = [1, 0]\n"), k_paper}, 3, "'pul'");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\nplane = 'transverse'\n"), "--plane", "lengthwise", k_paper}, 2, "has no load for a model");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\nplane = 'transverse'\n"), "--plane",
+           "lengthwise", k_paper},
+          2, "has no load for a model");
 }

@@ -45,13 +45,15 @@ void compare(const std::vector<std::string>& overrides, double peak, int& compar
     REQUIRE_FALSE(run.failure);
     for (const StaticLimit& limit : ray.limits) {
       if (limit.kind == LimitKind::ends) continue;
-      const double a = limit.kind == LimitKind::lifts ? at_event(run, limit.element, {EventKind::opens}, peak)
-                                                      : at_event(run, limit.element, {EventKind::slips_forward, EventKind::slips_backward}, peak);
+      const double a = limit.kind == LimitKind::lifts
+                           ? at_event(run, limit.element, {EventKind::opens}, peak)
+                           : at_event(run, limit.element, {EventKind::slips_forward, EventKind::slips_backward}, peak);
       CAPTURE(sign);
       CAPTURE(limit.text);
       // Dampers hold back by c v: of a device of 2e8 N/m and 2e5 N s/m that is a millisecond, 5e-5 of the ramp; twice that for all
       // that the machine is made of.
-      CHECK(std::abs(a / limit.acceleration - 1.0) < 1e-4 + 1e-3 / k_seconds * peak / limit.acceleration + limit.error / limit.acceleration);
+      CHECK(std::abs(a / limit.acceleration - 1.0) <
+            1e-4 + 1e-3 / k_seconds * peak / limit.acceleration + limit.error / limit.acceleration);
       ++compared;
       break; // beyond the first limit friction remembers the way, which a run with dampers goes a little otherwise
     }

@@ -20,8 +20,11 @@ namespace {
 /// A block that holds what its record shakes it by, and the command on them.
 struct Bench {
   Bench() {
-    assess_test::write(folder.file("shock.csv"), record_csv(1000.0, 2.0, [](double t) { return t < 0.5 || t > 0.6 ? 0.0 : 12.0 * std::sin(10.0 * std::numbers::pi * (t - 0.5)); }));
-    assess_test::write(folder.file("block.toml"), block_text(2.0, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 mm\"\n"));
+    assess_test::write(folder.file("shock.csv"), record_csv(1000.0, 2.0, [](double t) {
+                         return t < 0.5 || t > 0.6 ? 0.0 : 12.0 * std::sin(10.0 * std::numbers::pi * (t - 0.5));
+                       }));
+    assess_test::write(folder.file("block.toml"),
+                       block_text(2.0, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 mm\"\n"));
   }
   /// Its exit code.
   [[nodiscard]] int assess(const std::string& output, const std::string& before = "") const {

@@ -16,7 +16,8 @@ using namespace assess_test;
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-const std::string k_only_models = "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
+const std::string k_only_models =
+    "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
 const std::string k_axes_head = "Timestamp;X Peak [g];Y Peak [g];Z Peak [g];Duration [ms];Velocity change [m/s]\n";
 
 /// A block on a driven tank, and a list of peaks.
@@ -30,7 +31,8 @@ struct Case {
     options.criteria = folder.file("criteria.toml");
     assess_test::write(options.criteria, k_only_models);
     assess_test::write(record, list);
-    assess_test::write(model, block_text(friction, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"" + within + "\"\n"));
+    assess_test::write(model,
+                       block_text(friction, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"" + within + "\"\n"));
   }
   [[nodiscard]] Assessment made() const { return assess::assess({record}, {model}, options); }
 
@@ -116,7 +118,8 @@ TEST_CASE("gravity in a list is taken away where the user says so") {
   list.options.reading.gravity = "z";
   const Assessment a = list.made();
   REQUIRE(a.events.size() == 4); // two axes, both ways each
-  for (const RecordedEvent& event : a.records[0].events) CHECK(std::abs(event.event.axes[2].peak) == doctest::Approx(0.5 * k_gravity).epsilon(1e-9));
+  for (const RecordedEvent& event : a.records[0].events)
+    CHECK(std::abs(event.event.axes[2].peak) == doctest::Approx(0.5 * k_gravity).epsilon(1e-9));
 }
 
 TEST_CASE("what a list does not tell is asked for") {

@@ -37,14 +37,14 @@ TEST_CASE("presets can be read, and each of their criteria has a source and a te
 
 TEST_CASE("what is wrong in a file of criteria is told with line and column") {
   CHECK(place_of(k_head + "quantity = \"peek\"\nat_most = 3\n").line == 4);
-  CHECK(place_of(k_head + "quantity = \"peak\"\n").line == 2);                         // no limit
-  CHECK(place_of(k_head + "quantity = \"peak\"\nat_most = \"3 kg\"\n").line == 5);     // not an acceleration
+  CHECK(place_of(k_head + "quantity = \"peak\"\n").line == 2);                     // no limit
+  CHECK(place_of(k_head + "quantity = \"peak\"\nat_most = \"3 kg\"\n").line == 5); // not an acceleration
   CHECK(place_of(k_head + "quantity = \"peak\"\nat_most = -1\n").line == 5);
-  CHECK(place_of(k_head + "quantity = \"slip\"\nat_most = 1\n").line == 5);            // takes no limit
+  CHECK(place_of(k_head + "quantity = \"slip\"\nat_most = 1\n").line == 5); // takes no limit
   CHECK(place_of(k_head + "quantity = \"margin\"\nat_least = 1.2\naxis = \"x\"\n").line == 6);
   CHECK(place_of(k_head + "quantity = \"slip\"\noutcome = \"energise\"\n").line == 5);
   CHECK(place_of(k_head + "quantity = \"slip\"\nseverity = 3\n").line == 5);
-  CHECK(place_of("name = \"mine\"\n").file == "mine.toml");                            // nothing is asked
-  CHECK(place_of(k_head + "quantity = \"slip\"\n").line == 0);                         // all is well
+  CHECK(place_of("name = \"mine\"\n").file == "mine.toml");    // nothing is asked
+  CHECK(place_of(k_head + "quantity = \"slip\"\n").line == 0); // all is well
   CHECK_THROWS_AS(static_cast<void>(read_criteria("acceptance-3G")), FileError);
 }

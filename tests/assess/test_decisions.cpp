@@ -38,7 +38,8 @@ std::string block_file(const Folder& folder, double mu, const std::string& withi
   return file;
 }
 
-const std::string k_only_models = "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
+const std::string k_only_models =
+    "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
 
 Decision decision_on(const std::string& record, const std::string& model, const AssessmentOptions& options) {
   const Assessment a = assess::assess({record}, {model}, options);
@@ -54,7 +55,9 @@ TEST_CASE("one impact read at 18 g and at 1.5 g gives one decision") {
   const Folder folder;
   const std::string record = folder.file("shock.csv");
   write(record, record_csv(4000.0, 2.0, [](double t) {
-          const double ring = t > 0.5 && t < 0.53 ? 45.0 * k_gravity * std::sin(2.0 * std::numbers::pi * 170.0 * (t - 0.5)) * half_sine(t, 0.5, 0.03, 1.0) : 0.0;
+          const double ring = t > 0.5 && t < 0.53
+                                  ? 45.0 * k_gravity * std::sin(2.0 * std::numbers::pi * 170.0 * (t - 0.5)) * half_sine(t, 0.5, 0.03, 1.0)
+                                  : 0.0;
           return half_sine(t, 0.5, 0.06, 1.4 * k_gravity) + ring;
         }));
   AssessmentOptions options = options_of();
@@ -89,7 +92,8 @@ TEST_CASE("a limit that is met, one that is not, and one that rejects: energise,
   CHECK(decision_on(record, block_file(folder, 0.5, "1 m"), options) == Decision::energise);
   CHECK(decision_on(record, block_file(folder, 0.5, "1 mm"), options) == Decision::inspect);
   const std::string strict = folder.file("strict.toml");
-  write(strict, block_text(0.5, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 mm\"\nconsequence = \"reject\"\n"));
+  write(strict,
+        block_text(0.5, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 mm\"\nconsequence = \"reject\"\n"));
   CHECK(decision_on(record, strict, options) == Decision::send_back);
   // Of two models the worse decides.
   const Assessment both = assess::assess({record}, {block_file(folder, 0.5, "1 m"), strict}, options);
@@ -149,8 +153,10 @@ TEST_CASE("the value at which the decision turns is found") {
           const double s = (t - 0.5) / 0.1; // the closed form's gravity is the model's
           return s < 0.0 || s > 1.0 ? 0.0 : 0.6 * 9.81 * (1.0 - std::abs(2.0 * s - 1.0));
         }));
-  write(model, block_text(0.35, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"3.602 mm\"\n[[uncertain]]\nname = \"floor friction\"\npaths = "
-                                "[\"element.floor.static_friction\"]\ndistribution = \"uniform\"\nlow = 0.2\nhigh = 0.5\nsource = \"assumed\"\nsource_text = \"a test\"\n"));
+  write(model, block_text(0.35, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"3.602 mm\"\n[[uncertain]]\nname = "
+                                "\"floor friction\"\npaths = "
+                                "[\"element.floor.static_friction\"]\ndistribution = \"uniform\"\nlow = 0.2\nhigh = 0.5\nsource = "
+                                "\"assumed\"\nsource_text = \"a test\"\n"));
   AssessmentOptions options = options_of();
   options.sampling.samples = 4;
   options.reading.rules.threshold = 0.3 * k_gravity;
@@ -173,8 +179,9 @@ TEST_CASE("the program's exit code is the decision, and a file that is there is 
   write(record, record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.1, 1.2 * k_gravity); }));
   write(criteria, k_only_models);
   const auto run = [&](const std::string& model, const std::string& more) {
-    const std::string command = std::string(STEPLAP_PROGRAM) + " assess " + record + " --model " + model + " --gravity z --samples 0 --criteria " + criteria + " -o " + folder.file("out") + " " + more +
-                                " > " + folder.file("screen") + " 2> " + folder.file("errors");
+    const std::string command = std::string(STEPLAP_PROGRAM) + " assess " + record + " --model " + model +
+                                " --gravity z --samples 0 --criteria " + criteria + " -o " + folder.file("out") + " " + more + " > " +
+                                folder.file("screen") + " 2> " + folder.file("errors");
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   };

@@ -13,10 +13,13 @@ namespace {
 
 // A bar of mass m and inertia I about its centre, gravity off, recorder `h` above the centre.
 std::string bar_text(double h, const std::string& rotation, const std::string& axes = "x = \"x\"\ny = \"z\"\n", double turned = 0.0) {
-  return "gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\nintegrator = \"dop853\"\ntolerance = 1e-10\n[[body]]\nname = \"bar\"\nmass = 200.0\ninertia = 150.0\n"
-         "[[body]]\nname = \"weight\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"weld\"\nname = \"screw\"\na = \"weight\"\nb = \"bar\"\n"
-         "[[marker]]\nname = \"place\"\nbody = \"bar\"\npoint = [0.0, " + std::to_string(h) + "]\nangle = " + std::to_string(turned) +
-         "\n[[recorder]]\nname = \"recorder\"\nmarker = \"place\"\n" + axes + "settle = 0.0\nrotation = \"" + rotation + "\"\n";
+  return "gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\nintegrator = \"dop853\"\ntolerance = 1e-10\n[[body]]\nname = \"bar\"\nmass = "
+         "200.0\ninertia = 150.0\n"
+         "[[body]]\nname = \"weight\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"weld\"\nname = \"screw\"\na = \"weight\"\nb = "
+         "\"bar\"\n"
+         "[[marker]]\nname = \"place\"\nbody = \"bar\"\npoint = [0.0, " +
+         std::to_string(h) + "]\nangle = " + std::to_string(turned) + "\n[[recorder]]\nname = \"recorder\"\nmarker = \"place\"\n" + axes +
+         "settle = 0.0\nrotation = \"" + rotation + "\"\n";
 }
 
 DriveHistory constant(double ax, double ay, double duration) {
@@ -78,12 +81,14 @@ TEST_CASE("a block on the driven tank slides as Newmark's sliding block does") {
     double mu, slide;
   } cases[] = {{0.2, 9.787e-3}, {0.3, 3.602e-3}, {0.4, 1.059e-3}};
   const DriveHistory pulse = triangles({0.6 * 9.81}, 0.1, 0.4);
-  for (const auto& c : cases) CHECK(std::abs(final_value(driven(block_text(c.mu)), pulse, "floor.slide")) == doctest::Approx(c.slide).epsilon(1e-3));
+  for (const auto& c : cases)
+    CHECK(std::abs(final_value(driven(block_text(c.mu)), pulse, "floor.slide")) == doctest::Approx(c.slide).epsilon(1e-3));
   CHECK(std::abs(final_value(driven(block_text(0.61)), pulse, "floor.slide")) < 1e-12);
 }
 
 TEST_CASE("what else drives the recorder's body is refused, unless the record takes its place") {
-  const std::string brake = "[[signal]]\nname = \"brake\"\nkind = \"haversine\"\npeak = -5.0\nduration = 0.1\n[[element]]\nkind = \"prescribed_motion\"\nname = \"brake\"\na = \"tank\"\nsignal = \"brake\"\n";
+  const std::string brake = "[[signal]]\nname = \"brake\"\nkind = \"haversine\"\npeak = -5.0\nduration = 0.1\n[[element]]\nkind = "
+                            "\"prescribed_motion\"\nname = \"brake\"\na = \"tank\"\nsignal = \"brake\"\n";
   CHECK_THROWS_AS(static_cast<void>(driven(block_text(0.3, brake))), ModelError);
   std::string replaced = block_text(0.3, brake + "[[acceptance]]\nname = \"brake force\"\nchannel = \"brake.reaction\"\nwithin = 1e6\n");
   replaced.replace(replaced.find("settle = 0.3"), 12, "settle = 0.3\nreplaces = [\"brake\"]");

@@ -15,8 +15,11 @@ namespace {
 std::string mutated(const std::string& text, std::uint64_t number) {
   const study::CounterRandom random(7, 1);
   std::uint32_t draw = 0;
-  const auto next = [&](std::size_t below) { return static_cast<std::size_t>(random.uniform(number, draw++) * static_cast<double>(below)); };
-  static const std::vector<std::string> words = {"\"", "nan", "inf", "-1", "1e400", "\"-z\"", "[[recorder]]\n", "[[criterion]]\n", "\n", "=", "[]", "\"\"", "\xff", "0", "\"3 kg\"", "name = \"x\"\n"};
+  const auto next = [&](std::size_t below) {
+    return static_cast<std::size_t>(random.uniform(number, draw++) * static_cast<double>(below));
+  };
+  static const std::vector<std::string> words = {"\"", "nan", "inf", "-1",   "1e400", "\"-z\"", "[[recorder]]\n", "[[criterion]]\n",
+                                                 "\n", "=",   "[]",  "\"\"", "\xff",  "0",      "\"3 kg\"",       "name = \"x\"\n"};
   std::string changed = text;
   const std::size_t changes = 1 + next(3);
   for (std::size_t i = 0; i < changes && !changed.empty(); ++i) {
@@ -28,7 +31,8 @@ std::string mutated(const std::string& text, std::uint64_t number) {
     case 2: changed.insert(line, changed.substr(line, end - line)); break;
     case 3: changed.insert(at, words[next(words.size())]); break;
     default:
-      if (const std::size_t equals = changed.find('=', line); equals != std::string::npos && equals < end) changed.replace(equals + 1, end - equals - 2, " " + words[next(words.size())]);
+      if (const std::size_t equals = changed.find('=', line); equals != std::string::npos && equals < end)
+        changed.replace(equals + 1, end - equals - 2, " " + words[next(words.size())]);
     }
   }
   return changed;
@@ -61,7 +65,8 @@ TEST_CASE("mutated recorders and uncertain numbers of a model are taken, or refu
   const std::string head = block_text(0.3);
   const std::size_t from = head.find("[[recorder]]"), to = head.find("[[element]]");
   const std::string tables = head.substr(from, to - from) +
-                             "[[uncertain]]\nname = \"floor\"\npaths = [\"element.floor.static_friction\"]\ndistribution = \"lognormal\"\nmean = 0.3\ncov = 0.2\nlower = 0.1\nsource = \"assumed\"\nsource_text = \"a test\"\n";
+                             "[[uncertain]]\nname = \"floor\"\npaths = [\"element.floor.static_friction\"]\ndistribution = "
+                             "\"lognormal\"\nmean = 0.3\ncov = 0.2\nlower = 0.1\nsource = \"assumed\"\nsource_text = \"a test\"\n";
   long read = 0, refused = 0;
   for (std::uint64_t i = 1; i <= 1500; ++i) {
     const std::string text = head.substr(0, from) + mutated(tables, i) + "\n" + head.substr(to);

@@ -14,8 +14,10 @@ using namespace assess_test;
 
 namespace {
 
-const std::string k_only_models = "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
-const std::string k_peak = "name = \"peaks\"\n[[criterion]]\nname = \"3 g\"\nquantity = \"peak\"\nat_most = \"3 gravity\"\noutcome = \"inspect\"\n";
+const std::string k_only_models =
+    "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
+const std::string k_peak =
+    "name = \"peaks\"\n[[criterion]]\nname = \"3 g\"\nquantity = \"peak\"\nat_most = \"3 gravity\"\noutcome = \"inspect\"\n";
 const std::string k_slip = "name = \"slip\"\n[[criterion]]\nname = \"slip\"\nquantity = \"slip\"\noutcome = \"inspect\"\n";
 
 double half_sine(double t, double start, double duration, double peak) {
@@ -72,20 +74,24 @@ TEST_CASE("a record that is whole and a machine that holds: energise") { CHECK(C
 TEST_CASE("a record that is cut, or that ends because a battery was empty, leaves the decision open") {
   const std::string whole = record_csv(1000.0, 2.0, shock);
   Case(k_only_models, whole.substr(0, whole.size() - 12)).check_fault(RecordFault::cut);
-  for (const char* end : {";stopped, low battery\n", "# memory full\n", "; Vbat below limit\n"}) Case(k_only_models, whole + end).check_fault(RecordFault::cut);
+  for (const char* end : {";stopped, low battery\n", "# memory full\n", "; Vbat below limit\n"})
+    Case(k_only_models, whole + end).check_fault(RecordFault::cut);
   CHECK(Case(k_only_models, whole + ";stopped, by button\n").decision() == Decision::energise);
 }
 
 TEST_CASE("a fall leaves the decision open, though no sample is beyond the threshold") {
   const auto falling = [](double from, double to) {
-    return rows(1000.0, 2.0, [=](double t) { return t >= from && t < to ? row_of(t, noise(t), noise(t), noise(t)) : row_of(t, noise(t), noise(t), 1.0 - noise(t)); });
+    return rows(1000.0, 2.0, [=](double t) {
+      return t >= from && t < to ? row_of(t, noise(t), noise(t), noise(t)) : row_of(t, noise(t), noise(t), 1.0 - noise(t));
+    });
   };
   Case(k_only_models, falling(1.2, 1.4)).check_fault(RecordFault::fall);
   CHECK(Case(k_only_models, falling(1.2, 1.25)).made().records.at(0).faults.empty()); // 1.2 cm
 }
 
 TEST_CASE("an axis that did not measure leaves the decision open") {
-  Case(k_only_models, rows(1000.0, 2.0, [](double t) { return row_of(t, shock(t) / k_gravity, 0.0, 1.0 - noise(t)); })).check_fault(RecordFault::dead);
+  Case(k_only_models, rows(1000.0, 2.0, [](double t) { return row_of(t, shock(t) / k_gravity, 0.0, 1.0 - noise(t)); }))
+      .check_fault(RecordFault::dead);
 }
 
 TEST_CASE("a record of 50 Hz leaves the decision open, one of 100 Hz does not") {
@@ -102,7 +108,9 @@ TEST_CASE("a limit on every axis is open where an axis is not in the record") {
 
 TEST_CASE("neither a filter nor a threshold hides a peak from a limit in g") {
   // 1.2 g with 8 g at 150 Hz on it.
-  const auto ringing = [](double t) { return shock(t) + half_sine(t, 0.5, 0.1, 8.0 * k_gravity) * std::sin(2.0 * std::numbers::pi * 150.0 * (t - 0.5)); };
+  const auto ringing = [](double t) {
+    return shock(t) + half_sine(t, 0.5, 0.1, 8.0 * k_gravity) * std::sin(2.0 * std::numbers::pi * 150.0 * (t - 0.5));
+  };
   Case wide(k_peak, record_csv(4000.0, 2.0, ringing));
   CHECK(wide.decision() == Decision::inspect);
   wide.options.reading.frequency_class = 10.0;
@@ -127,7 +135,9 @@ TEST_CASE("what stays below the threshold is run where it is greatest") {
 
 TEST_CASE("windows below the threshold meet neither events nor each other, in one long record and in many short parts") {
   for (const double threshold : {0.4, 1.0}) {
-    Case many(k_only_models, record_csv(200.0, 400.0, [](double t) { return (0.3 + 0.25 * std::sin(0.37 * t) + (std::fmod(t, 40.0) < 0.05 ? 0.9 : 0.0)) * k_gravity * std::sin(40.0 * t); }));
+    Case many(k_only_models, record_csv(200.0, 400.0, [](double t) {
+                return (0.3 + 0.25 * std::sin(0.37 * t) + (std::fmod(t, 40.0) < 0.05 ? 0.9 : 0.0)) * k_gravity * std::sin(40.0 * t);
+              }));
     EventReading reading = many.options.reading;
     reading.rules.threshold = threshold * k_gravity;
     const RecordEvents record = read_events(many.record, reading);
@@ -135,7 +145,8 @@ TEST_CASE("windows below the threshold meet neither events nor each other, in on
     for (std::size_t i = 0; i < record.events.size(); ++i) {
       below += record.events[i].is_below;
       if (i > 0) CHECK(record.events[i].event.begin > record.events[i - 1].event.end);
-      for (std::size_t k = 0; record.events[i].is_below && k < record.events[i].window.filtered[0].size(); ++k) CHECK(std::abs(record.events[i].window.filtered[0][k]) <= reading.rules.threshold);
+      for (std::size_t k = 0; record.events[i].is_below && k < record.events[i].window.filtered[0].size(); ++k)
+        CHECK(std::abs(record.events[i].window.filtered[0][k]) <= reading.rules.threshold);
     }
     CHECK(record.events.size() > below);
     if (threshold > 0.5) CHECK(below == 1);
@@ -165,7 +176,8 @@ TEST_CASE("a recorder that sat otherwise than the model says is refused by the g
 TEST_CASE("a model without a joint does not say that no joint slips") { CHECK(Case(k_slip).decision() == Decision::open); }
 
 TEST_CASE("peaks without a waveform decide nothing about a machine, accepted or not") {
-  const std::string list = "Timestamp;X Peak [g];Y Peak [g];Z Peak [g];Duration [ms]\n2016-01-04 10:25:17;1.20;0.10;1.02;50\n2016-01-04 10:25:20;1.60;0.16;1.01;120\n";
+  const std::string list = "Timestamp;X Peak [g];Y Peak [g];Z Peak [g];Duration [ms]\n2016-01-04 10:25:17;1.20;0.10;1.02;50\n2016-01-04 "
+                           "10:25:20;1.60;0.16;1.01;120\n";
   for (const std::string& criteria : {k_only_models, k_slip}) {
     Case peaks(criteria, list);
     peaks.options.reading.gravity.reset();

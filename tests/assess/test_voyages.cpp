@@ -26,7 +26,9 @@ std::vector<double> slides(const DrivenModel& model, const std::vector<double>& 
 }
 
 std::string lashed(double strength) {
-  return k_asked + "[[element]]\nkind = \"tie\"\nname = \"lashing\"\na = { body = \"block\", at = [0.0, 0.0] }\nb = { body = \"tank\", at = [-1.0, 0.0] }\naxis = [1.0, 0.0]\nacts = \"both\"\nstiffness = 1e9\ndamping = 1e5\nstrength = " +
+  return k_asked +
+         "[[element]]\nkind = \"tie\"\nname = \"lashing\"\na = { body = \"block\", at = [0.0, 0.0] }\nb = { body = \"tank\", at = [-1.0, "
+         "0.0] }\naxis = [1.0, 0.0]\nacts = \"both\"\nstiffness = 1e9\ndamping = 1e5\nstrength = " +
          std::to_string(strength) + "\n";
 }
 
@@ -50,8 +52,8 @@ TEST_CASE("the order of events counts: what a strong one breaks no longer holds 
   const double strong_first = slides(model, {0.6 * k_g, 0.4 * k_g}).back();
   const double weak_first = slides(model, {0.4 * k_g, 0.6 * k_g}).back();
   const double weak_alone = slides(model, {0.4 * k_g}).back();
-  CHECK(weak_alone < 1e-4);                       // it holds
-  CHECK(strong_first > weak_first + 1e-3);        // and does not after the strong one
+  CHECK(weak_alone < 1e-4);                // it holds
+  CHECK(strong_first > weak_first + 1e-3); // and does not after the strong one
   CHECK(slides(driven(block_text(0.2, lashed(1e6))), {0.6 * k_g, 0.4 * k_g}).back() < 1e-4);
 }
 
@@ -74,7 +76,8 @@ TEST_CASE("the voyage by one system, as samples take it, is the voyage event by 
 
 namespace {
 
-const std::string k_uncertain = "[[uncertain]]\nname = \"floor\"\npaths = [\"element.floor.static_friction\"]\ndistribution = \"uniform\"\nlow = 0.2\nhigh = 0.4\nsource = \"assumed\"\nsource_text = \"a test\"\n";
+const std::string k_uncertain = "[[uncertain]]\nname = \"floor\"\npaths = [\"element.floor.static_friction\"]\ndistribution = "
+                                "\"uniform\"\nlow = 0.2\nhigh = 0.4\nsource = \"assumed\"\nsource_text = \"a test\"\n";
 
 struct Voyage {
   std::vector<DrivenModel> models;
@@ -84,7 +87,8 @@ struct Voyage {
 // |slide| beyond 3.602 mm, that of a friction of 0.3: half of the uniform distribution.
 Voyage uncertain_voyage() {
   Voyage voyage;
-  voyage.models.push_back(driven(block_text(0.3, k_uncertain + "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"3.602 mm\"\n")));
+  voyage.models.push_back(
+      driven(block_text(0.3, k_uncertain + "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"3.602 mm\"\n")));
   voyage.histories.push_back({triangles({0.6 * k_g}, 0.1, 0.2)});
   return voyage;
 }

@@ -77,12 +77,16 @@ TEST_CASE("conformance: every kind of the catalogue has a scene, and all of its 
 
 TEST_CASE("conformance: at rest the force is minus the gradient of the potential energy") {
   for_each_draw(false, [](const ConformanceScene& scene, Probe& probe, Pose pose) {
-    if (std::string(scene.kind) == "load" || std::string(scene.kind) == "motor" || std::string(scene.kind) == "force") return; // have no potential
+    if (std::string(scene.kind) == "load" || std::string(scene.kind) == "motor" || std::string(scene.kind) == "force")
+      return; // have no potential
     pose.v.setZero();
     if (scene.kind == std::string("unilateral_contact")) probe.start_at(pose);
     else probe.choose_modes(pose);
     if (is_near_kink(probe, pose)) return;
-    if (scene.kind == std::string("tyre") || std::string(scene.text).find("\"tyre\"") != std::string::npos) { // bristles in the air lose what they store; slides and inclines against the tread's coordinate have no potential
+    if (scene.kind == std::string("tyre") ||
+        std::string(scene.text).find("\"tyre\"") !=
+            std::string::
+                npos) { // bristles in the air lose what they store; slides and inclines against the tread's coordinate have no potential
       constexpr UnitMode k_presses_and_adheres = 1;
       if ((probe.state().mode[0] & 15U) != k_presses_and_adheres || std::string(scene.text).find("road") != std::string::npos) return;
     }
@@ -232,8 +236,10 @@ TEST_CASE("conformance: Jacobians of inner states against differences") {
       for (int c = 0; c < j.count; ++c) {
         const auto [force, rates] = differ(pose, pose, j.first + c, k_step);
         for (int i = 0; i < 6; ++i)
-          if (body[i / 3] != k_ground) CHECK(std::abs(force[3 * body[i / 3] + i % 3] - j.force(i, c)) < k_difference * (10.0 + j.force.norm()));
-        for (int r = 0; r < j.count; ++r) CHECK(std::abs(rates[j.first + r] - j.by_inner(r, c)) < k_difference * (10.0 + j.by_inner.norm()));
+          if (body[i / 3] != k_ground)
+            CHECK(std::abs(force[3 * body[i / 3] + i % 3] - j.force(i, c)) < k_difference * (10.0 + j.force.norm()));
+        for (int r = 0; r < j.count; ++r)
+          CHECK(std::abs(rates[j.first + r] - j.by_inner(r, c)) < k_difference * (10.0 + j.by_inner.norm()));
       }
       for (int k = 0; k < 6; ++k)
         for (const bool is_velocity : {false, true}) {

@@ -26,8 +26,7 @@ inline std::string conformance_text(const ConformanceScene& scene, bool is_mirro
     text.erase(at, 1);
   }
   const auto replace = [&text](const std::string& from, const std::string& to) {
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-      text.replace(at, from.size(), to);
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
   };
   replace("\"A\"", is_swapped ? "\"on b\"" : "\"on a\"");
   replace("\"B\"", is_swapped ? "\"on a\"" : "\"on b\"");
@@ -38,7 +37,8 @@ class Probe {
 public:
   explicit Probe(const ConformanceScene& scene, bool is_mirrored = false, bool is_swapped = false)
       : system_(compile(parse_model(conformance_text(scene, is_mirrored, is_swapped), scene.kind, element_catalog()))),
-        state_(system_->initial_state()), motion_(static_cast<std::size_t>(system_->links.slot_count())), arrays_(*system_), scratch_(*system_) {
+        state_(system_->initial_state()), motion_(static_cast<std::size_t>(system_->links.slot_count())), arrays_(*system_),
+        scratch_(*system_) {
     arrays_.connect(e_, motion_);
     e_.t = 0.1;
     e_.mode = state_.mode.data();
@@ -107,8 +107,7 @@ public:
         if (foot == 1 && system_->element_kinds[system_->frictions[f].element] != "coulomb_stick") continue;
         FrictionState state = state_.friction[f];
         if (system_->element_kinds[system_->frictions[f].element] == "coulomb_stick") state.foot = foot;
-        for (int r = 0; r < system_->frictions[f].friction->dimension(); ++r)
-          all.push_back(system_->frictions[f].friction->rows(state)[r]);
+        for (int r = 0; r < system_->frictions[f].friction->dimension(); ++r) all.push_back(system_->frictions[f].friction->rows(state)[r]);
       }
     return all;
   }

@@ -139,7 +139,8 @@ Bounds bounds_of(const ConformanceScene& scene, const Probe& probe, double wrenc
   }
   if (std::string(scene.kind) == "lossy_gear") { // 1/0.8 − 1 of the couple of its teeth
     const Motion<double>&a = e.motion[1], &b = e.motion[2];
-    const double couple = 90.0 * ((a.theta - 0.2) + 2.5 * (b.theta + 0.1)) + 3.0 * (a.omega + 2.5 * b.omega), bound = 0.25 * (std::abs(couple) + 1e-10); // rounding of the couple
+    const double couple = 90.0 * ((a.theta - 0.2) + 2.5 * (b.theta + 0.1)) + 3.0 * (a.omega + 2.5 * b.omega),
+                 bound = 0.25 * (std::abs(couple) + 1e-10); // rounding of the couple
     return {bound, bound};
   }
   const double normal = std::max(0.0, std::accumulate(e.contact_force, e.contact_force + probe.system().contact_count, 0.0));
@@ -263,7 +264,8 @@ TEST_CASE("conformance: the mode problem's blocks are solved") {
     if (n == 3) { // positive definite: G Gᵀ and a diagonal
       double g[9];
       for (double& value : g) value = draw.number();
-      for (int i = 0; i < 9; ++i) a[i] = g[3 * (i / 3)] * g[3 * (i % 3)] + g[3 * (i / 3) + 1] * g[3 * (i % 3) + 1] + g[3 * (i / 3) + 2] * g[3 * (i % 3) + 2];
+      for (int i = 0; i < 9; ++i)
+        a[i] = g[3 * (i / 3)] * g[3 * (i % 3)] + g[3 * (i / 3) + 1] * g[3 * (i % 3) + 1] + g[3 * (i / 3) + 2] * g[3 * (i % 3) + 2];
       for (int i = 0; i < 3; ++i) a[4 * i] += 0.5;
     }
     const double size = n == 1 ? 30.0 : 3000.0;
@@ -285,7 +287,8 @@ TEST_CASE("conformance: the mode problem's blocks are solved") {
       }
       CHECK(dot(w, Wrench{block.direction[0], block.direction[1], block.direction[2]}, n) <= 0.0);
       // The worst w' of the set against `left` is what it bears against −left: left·w' ≥ −h(left).
-      const double share = n == 1 && is_kinetic ? bounds_of(scene, probe, w[0]).slip / std::max(bounds_of(scene, probe, w[0]).stick, 1e-300) : 1.0;
+      const double share =
+          n == 1 && is_kinetic ? bounds_of(scene, probe, w[0]).slip / std::max(bounds_of(scene, probe, w[0]).stick, 1e-300) : 1.0;
       const double bound = share * friction.support(e, state, left.data());
       CHECK(std::abs(dot(left, w, n) + bound) <= 1e-7 * (bound + slack));
     }

@@ -54,8 +54,7 @@ TEST_CASE("admissible wrench: optimal for regular mobilities") {
   for (int i = 0; i < cases(30000); ++i) {
     if (i % 10 == 0) patch = patch_cases::patch(draw);
     const Mat3 a = mobility(draw, patch, 4);
-    const Vec3 b = draw.scale(1e-2, 1e3) *
-                   Vec3(draw.within(-1, 1), draw.within(-1, 1), draw.within(-1, 1) / reach(patch));
+    const Vec3 b = draw.scale(1e-2, 1e3) * Vec3(draw.within(-1, 1), draw.within(-1, 1), draw.within(-1, 1) / reach(patch));
     const AdmissibleWrench r = admissible_wrench(patch, a, b);
     check_optimal(patch, a, b, r);
     slips += r.slips;
@@ -121,8 +120,7 @@ TEST_CASE("admissible wrench: at the onset of slip") {
       CHECK(r.slips == (excess > 0));
       const Vec3 off = (r.wrench - boundary).cwiseProduct(scale);
       // the set is convex and the projection in the norm of A: within the excess times A's spread
-      if (excess < 0)
-        CHECK(off.norm() < 2 * std::abs(excess) * patch.force() + 1e-9 * patch.force());
+      if (excess < 0) CHECK(off.norm() < 2 * std::abs(excess) * patch.force() + 1e-9 * patch.force());
     }
   }
 }

@@ -1,9 +1,9 @@
 // Random polygons, twists and wrenches for the tests of elements/patch, the same on every machine.
 #pragma once
 
-#include "tests/sanitized.h"
 #include "elements/patch/limit_surface.h"
 #include "elements/patch/overlap.h"
+#include "tests/sanitized.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,7 @@ inline constexpr int k_thin_out = 20;
 #else
 inline constexpr int k_thin_out = 1;
 #endif
-inline constexpr int cases(int n) {
-  return n > k_thin_out ? n / k_thin_out : 1;
-}
+inline constexpr int cases(int n) { return n > k_thin_out ? n / k_thin_out : 1; }
 
 /// Uniform and other draws straight from the generator: the library's distributions differ.
 /// In which order arguments are drawn is the compiler's choice: clang's shapes are not GCC's.
@@ -40,10 +38,8 @@ public:
   Vec3 twist() {
     Vec3 nu(within(-1, 1), within(-1, 1), sign() * scale(1e-6, 1e3));
     const double kind = unit();
-    if (kind < 0.05)
-      nu[2] = 0;
-    else if (kind < 0.1)
-      nu[0] = nu[1] = 0;
+    if (kind < 0.05) nu[2] = 0;
+    else if (kind < 0.1) nu[0] = nu[1] = 0;
     return nu;
   }
 
@@ -55,15 +51,13 @@ private:
 inline Ring star(Draw& draw, int n, double inner, double outer, const Vec2& centre = {0, 0}) {
   std::vector<double> angles(n);
   do {
-    for (double& a : angles)
-      a = draw.within(0, 2 * std::numbers::pi);
+    for (double& a : angles) a = draw.within(0, 2 * std::numbers::pi);
     std::sort(angles.begin(), angles.end());
     // a gap above π would put the centre outside, a large one near an edge
   } while ([&] {
     const double widest = n < 5 ? 3.0 : 2.2;
     for (int i = 0; i < n; ++i)
-      if (angles[(i + 1) % n] - angles[i] + (i + 1 == n ? 2 * std::numbers::pi : 0) > widest)
-        return true;
+      if (angles[(i + 1) % n] - angles[i] + (i + 1 == n ? 2 * std::numbers::pi : 0) > widest) return true;
     return false;
   }());
   Ring ring;
@@ -85,8 +79,7 @@ inline Ring stretched(Ring ring, double factor, double angle) {
 
 /// Convex polygon of radius 1, up to 20 times longer than wide.
 inline Polygon convex_polygon(Draw& draw) {
-  return {stretched(star(draw, 3 + draw.index(6), 1, 1), draw.scale(0.05, 1), draw.within(0, 6.3)),
-          {}};
+  return {stretched(star(draw, 3 + draw.index(6), 1, 1), draw.scale(0.05, 1), draw.within(0, 6.3)), {}};
 }
 
 /// Star-shaped polygon, with a hole about its centre every other time.
@@ -100,9 +93,7 @@ inline Polygon concave_polygon(Draw& draw) {
   return polygon;
 }
 
-inline Pose pose(Draw& draw, double reach) {
-  return {draw.within(-reach, reach), draw.within(-reach, reach), draw.within(-3.2, 3.2)};
-}
+inline Pose pose(Draw& draw, double reach) { return {draw.within(-reach, reach), draw.within(-reach, reach), draw.within(-3.2, 3.2)}; }
 
 /// One to three pieces, convex or not, of different traction, about a reference somewhere near.
 inline Patch patch(Draw& draw) {
@@ -112,12 +103,10 @@ inline Patch patch(Draw& draw) {
     const Vec2 shift = draw.point(3);
     const double size = draw.scale(0.1, 1);
     const auto move = [&](Ring& ring) {
-      for (Vec2& p : ring)
-        p = shift + size * p;
+      for (Vec2& p : ring) p = shift + size * p;
     };
     move(polygon.outer);
-    for (Ring& hole : polygon.holes)
-      move(hole);
+    for (Ring& hole : polygon.holes) move(hole);
     out.add(polygon, draw.within(0.5, 2));
   }
   if (draw.unit() < 0.95) // without, every far evaluation makes its own table: same values, slower
@@ -139,8 +128,7 @@ inline double fastest(const Patch& patch, const Vec3& nu) {
 /// Farthest point of the patch from its reference.
 inline double reach(const Patch& patch) {
   double far = 0;
-  for (const auto& piece : patch.pieces())
-    far = std::max(far, (piece.centroid - patch.reference()).norm() + piece.radius);
+  for (const auto& piece : patch.pieces()) far = std::max(far, (piece.centroid - patch.reference()).norm() + piece.radius);
   return far;
 }
 

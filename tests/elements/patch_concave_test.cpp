@@ -46,8 +46,7 @@ Polygon round_shape(int corners, double radius = 3) {
 }
 /// A window with four panes, and one with a round one.
 Polygon window() {
-  return {{{0, 0}, {5, 0}, {5, 5}, {0, 5}},
-          {box(1, 1, 2, 2).outer, box(3, 1, 4, 2).outer, box(1, 3, 2, 4).outer, box(3, 3, 4, 4).outer}};
+  return {{{0, 0}, {5, 0}, {5, 5}, {0, 5}}, {box(1, 1, 2, 2).outer, box(3, 1, 4, 2).outer, box(1, 3, 2, 4).outer, box(3, 3, 4, 4).outer}};
 }
 Polygon ring_shape() { return {{{-3, -3}, {3, -3}, {3, 3}, {-3, 3}}, {round_shape(24, 2).outer}}; }
 

@@ -92,7 +92,8 @@ TEST_CASE("exact overlap: as much as triangles have in common, in whichever orde
     for (Vec2& p : shifted.outer) p += shift;
     for (Ring& hole : shifted.holes)
       for (Vec2& p : hole) p += shift;
-    const Region both = exact_intersection(a, b, {shift.x(), shift.y(), 0}), other_way = exact_intersection(b, a, {-shift.x(), -shift.y(), 0});
+    const Region both = exact_intersection(a, b, {shift.x(), shift.y(), 0}),
+                 other_way = exact_intersection(b, a, {-shift.x(), -shift.y(), 0});
     CHECK(std::abs(area(both) - common_area(triangle_rings(a), triangle_rings(shifted))) < k_area);
     CHECK(std::abs(area(both) - area(other_way)) < k_area);
     CHECK(both.size() == other_way.size());

@@ -14,27 +14,21 @@ namespace {
 // area are sums of products of a few dozen coordinates with a rounding of 1e-16 each.
 constexpr double k_area = 1e-12;
 
-Polygon box(double x0, double y0, double x1, double y1) {
-  return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, {}};
-}
+Polygon box(double x0, double y0, double x1, double y1) { return {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, {}}; }
 
 Polygon moved(Polygon polygon, const Pose& pose) {
-  for (Vec2& p : polygon.outer)
-    p = placed(p, pose);
+  for (Vec2& p : polygon.outer) p = placed(p, pose);
   for (Ring& hole : polygon.holes)
-    for (Vec2& p : hole)
-      p = placed(p, pose);
+    for (Vec2& p : hole) p = placed(p, pose);
   return polygon;
 }
 
 template <class Visit> void each_edge(const Polygon& polygon, Visit visit) {
   const auto round = [&](const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      visit(ring[i], ring[(i + 1) % ring.size()]);
+    for (std::size_t i = 0; i < ring.size(); ++i) visit(ring[i], ring[(i + 1) % ring.size()]);
   };
   round(polygon.outer);
-  for (const Ring& hole : polygon.holes)
-    round(hole);
+  for (const Ring& hole : polygon.holes) round(hole);
 }
 
 int winding(const Polygon& polygon, const Vec2& p) {
@@ -60,15 +54,12 @@ double swept_inside(const Polygon& p, const Polygon& q) {
     });
     std::sort(cuts.begin(), cuts.end());
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-      if (winding(q, a + 0.5 * (cuts[i] + cuts[i + 1]) * (b - a)) != 0)
-        sum += (cuts[i + 1] - cuts[i]) * cross(a, b);
+      if (winding(q, a + 0.5 * (cuts[i] + cuts[i + 1]) * (b - a)) != 0) sum += (cuts[i + 1] - cuts[i]) * cross(a, b);
   });
   return sum;
 }
 
-double independent_area(const Polygon& a, const Polygon& b) {
-  return 0.5 * (swept_inside(a, b) + swept_inside(b, a));
-}
+double independent_area(const Polygon& a, const Polygon& b) { return 0.5 * (swept_inside(a, b) + swept_inside(b, a)); }
 
 double overlap_area(const Polygon& a, const Polygon& b, const Pose& pose = {}) {
   OverlapWorkspace workspace;
@@ -145,18 +136,14 @@ TEST_CASE("overlap: the fast path agrees with the exact one") {
   Region fast;
   for (int i = 0; i < cases(4000); ++i) {
     const bool snapped = draw.coin();
-    const Outline a = make_outline(snapped ? box(0, 0, 1 + draw.index(3), 1 + draw.index(3))
-                                           : convex_polygon(draw));
-    const Outline b = make_outline(snapped ? box(0, 0, 1 + draw.index(3), 1 + draw.index(3))
-                                           : convex_polygon(draw));
+    const Outline a = make_outline(snapped ? box(0, 0, 1 + draw.index(3), 1 + draw.index(3)) : convex_polygon(draw));
+    const Outline b = make_outline(snapped ? box(0, 0, 1 + draw.index(3), 1 + draw.index(3)) : convex_polygon(draw));
     Pose at = pose(draw, 1.5);
-    if (snapped)
-      at = {double(draw.index(7) - 3), double(draw.index(7) - 3),
-            0.5 * std::numbers::pi * draw.index(4)};
+    if (snapped) at = {double(draw.index(7) - 3), double(draw.index(7) - 3), 0.5 * std::numbers::pi * draw.index(4)};
     intersect(a, b, at, workspace, fast);
     const Region exact = exact_intersection(a.polygon, b.polygon, at);
     CHECK(std::abs(area(fast) - area(exact)) < 20 * k_area); // coordinates up to 4.5
-    if (area(exact) > 1e-9) // a thin one's centroid is only as good as its width
+    if (area(exact) > 1e-9)                                  // a thin one's centroid is only as good as its width
       CHECK((centroid(fast) - centroid(exact)).norm() < 1e-4);
   }
 }
@@ -196,27 +183,13 @@ TEST_CASE("overlap: touching is not overlapping") {
 TEST_CASE("overlap: slivers down to rounding, and pieces") {
   for (const double width : {1e-3, 1e-6, 1e-9, 1e-12}) {
     // the edge at 1 − width is itself rounded by 1.1e-16
-    CHECK(std::abs(overlap_area(box(0, 0, 1, 1), box(0, 0, 1, 1), {1 - width, 0, 0}) - width) <
-          2.3e-16);
+    CHECK(std::abs(overlap_area(box(0, 0, 1, 1), box(0, 0, 1, 1), {1 - width, 0, 0}) - width) < 2.3e-16);
     const Polygon notched{{{0, 0}, {1, 0}, {1, 1}, {0.5, 0.5}, {0, 1}}, {}};
-    CHECK(std::abs(overlap_area(notched, box(0, 0, 1, 1), {1 - width, 0, 0}) -
-                   (width - 0.5 * width * width)) < 2.3e-16);
+    CHECK(std::abs(overlap_area(notched, box(0, 0, 1, 1), {1 - width, 0, 0}) - (width - 0.5 * width * width)) < 2.3e-16);
   }
   CHECK(overlap_area(box(0, 0, 1, 1), box(0, 0, 1, 1), {1 - 1e-16, 0, 0}) == 0);
 
-  const Polygon comb{{{0, 0},
-                      {5, 0},
-                      {5, 2},
-                      {4, 2},
-                      {4, 1},
-                      {3, 1},
-                      {3, 2},
-                      {2, 2},
-                      {2, 1},
-                      {1, 1},
-                      {1, 2},
-                      {0, 2}},
-                     {}};
+  const Polygon comb{{{0, 0}, {5, 0}, {5, 2}, {4, 2}, {4, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {}};
   OverlapWorkspace workspace;
   Region out;
   intersect(make_outline(comb), make_outline(box(-1, 1.25, 6, 1.75)), {}, workspace, out);
@@ -230,8 +203,7 @@ TEST_CASE("overlap: the way apart crosses zero transversally where the area does
   OverlapWorkspace workspace;
   for (const double e : {1e-3, 1e-5, -1e-5, -1e-3}) {
     CHECK(std::abs(penetration(unit, unit, {1 - e, 1 - e, 0}, workspace) - e) < 2.3e-16);
-    CHECK(std::abs(overlap_area(unit.polygon, unit.polygon, {1 - e, 1 - e, 0}) -
-                   (e > 0 ? e * e : 0)) < 1e-15);
+    CHECK(std::abs(overlap_area(unit.polygon, unit.polygon, {1 - e, 1 - e, 0}) - (e > 0 ? e * e : 0)) < 1e-15);
   }
   const Outline ell = make_outline({{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {}});
   CHECK(penetration(ell, unit, {1.25, 1.25, 0}, workspace) == doctest::Approx(-0.25));
@@ -243,19 +215,16 @@ TEST_CASE("overlap: repeated and collinear vertices and reversed rings are repai
   for (int i = 0; i < cases(20000); ++i) {
     const Polygon clean = draw.coin() ? convex_polygon(draw) : concave_polygon(draw);
     Polygon dirty{untidy(draw, clean.outer), {}};
-    for (const Ring& hole : clean.holes)
-      dirty.holes.push_back(untidy(draw, hole));
+    for (const Ring& hole : clean.holes) dirty.holes.push_back(untidy(draw, hole));
     const Polygon tidy = repaired(dirty);
     CHECK(tidy.outer.size() <= clean.outer.size());
     CHECK(std::abs(area(tidy) - area(clean)) < k_area);
     CHECK(signed_area(tidy.outer) > 0);
-    for (const Ring& hole : tidy.holes)
-      CHECK(signed_area(hole) < 0);
+    for (const Ring& hole : tidy.holes) CHECK(signed_area(hole) < 0);
     if (i % 20 == 0) {
       const Outline other = make_outline(concave_polygon(draw));
       const Pose at = pose(draw, 1);
-      CHECK(std::abs(overlap_area(dirty, other.polygon, at) -
-                     independent_area(clean, moved(other.polygon, at))) < k_area);
+      CHECK(std::abs(overlap_area(dirty, other.polygon, at) - independent_area(clean, moved(other.polygon, at))) < k_area);
     }
   }
   // a spike carries no area and is dropped
@@ -274,15 +243,12 @@ TEST_CASE("overlap: what cannot be repaired is named") {
   contains(refusal({{{0, 0}, {1, 0}, {NAN, 1}}, {}}), "vertex 2 is not a finite number");
   contains(refusal({square, {{{5, 5}, {5, 6}, {6, 5}}}}), "hole 0: lies outside");
   contains(refusal({square, {{{3, 3}, {3, 5}, {5, 3}}}}), "meets hole 0's");
-  contains(refusal({square, {{{1, 1}, {1, 3}, {3, 1}}, {{1.25, 1.25}, {1.25, 1.5}, {1.5, 1.25}}}}),
-           "hole 1: lies inside hole 0");
+  contains(refusal({square, {{{1, 1}, {1, 3}, {3, 1}}, {{1.25, 1.25}, {1.25, 1.5}, {1.5, 1.25}}}}), "hole 1: lies inside hole 0");
   // touching itself in a vertex
   contains(refusal({{{0, 0}, {2, 0}, {1, 1}, {2, 2}, {0, 2}, {1, 1}}, {}}), "meets");
   CHECK(is_convex(square));
   Ring pentagram;
-  for (int i = 0; i < 5; ++i)
-    pentagram.emplace_back(std::cos(i * 0.8 * std::numbers::pi),
-                           std::sin(i * 0.8 * std::numbers::pi));
+  for (int i = 0; i < 5; ++i) pentagram.emplace_back(std::cos(i * 0.8 * std::numbers::pi), std::sin(i * 0.8 * std::numbers::pi));
   CHECK(!is_convex(pentagram));
   contains(refusal({pentagram, {}}), "must not cross");
 }

@@ -37,8 +37,7 @@ TEST_CASE("patch: even, homogeneous, convex, normal") {
       patch = patch_cases::patch(draw);
     const Vec3 nu = draw.twist(), eta = draw.twist();
     const Dissipation d = evaluate_gradient(patch, nu), e = evaluate_gradient(patch, eta);
-    const double tolerance =
-        k_rounding * patch.force() * (fastest(patch, nu) + fastest(patch, eta));
+    const double tolerance = k_rounding * patch.force() * (fastest(patch, nu) + fastest(patch, eta));
 
     const Dissipation back = evaluate_gradient(patch, -nu);
     CHECK(back.h == d.h); // the same arithmetic but for signs
@@ -104,8 +103,7 @@ TEST_CASE("patch: a linear traction is the sum of its parts too") {
     const Vec2 c = centroid(polygon), gradient = draw.point(0.3);
     Patch whole, both;
     whole.add(polygon, Traction{1.5, gradient});
-    for (const Polygon& half : {left, right})
-      both.add(half, Traction{1.5 + gradient.dot(centroid(half) - c), gradient});
+    for (const Polygon& half : {left, right}) both.add(half, Traction{1.5 + gradient.dot(centroid(half) - c), gradient});
     const Vec3 nu = draw.twist();
     const Dissipation w = evaluate(whole, nu), b = evaluate(both, nu);
     CHECK(std::abs(w.h - b.h) < 1e-12 * 2 * fastest(whole, nu));
@@ -126,9 +124,7 @@ TEST_CASE("patch: pieces that lie over each other, taken together or one by one"
         const double length = 0.8 - 0.05 * (k % 4), q = 5e-3 * (k % 5 - 2), w = k % 5 == 4 ? 18e-3 : 4.5e-3;
         const Vec2 t = Vec2(1, corner.y() > 0 ? 1 : -1).normalized(), n(-t.y(), t.x());
         const auto at = [&](double s, double across) { return Vec2(corner + s * t + across * n); };
-        const Polygon strip{{at(-0.5 * length, q), at(0.5 * length, q), at(0.5 * length - w, q + w),
-                             at(w - 0.5 * length, q + w)},
-                            {}};
+        const Polygon strip{{at(-0.5 * length, q), at(0.5 * length, q), at(0.5 * length - w, q + w), at(w - 0.5 * length, q + w)}, {}};
         const Traction traction{1e5 * (1 + k), k % 3 == 0 ? Vec2(1e4, -2e4) : Vec2(0, 0)};
         alone.add(strip, traction);
         together.add(strip, traction);
@@ -182,8 +178,7 @@ TEST_CASE("patch: moving and turning the scene, and the point of reference, chan
     const Polygon polygon = convex_polygon(draw);
     const Pose at = pose(draw, 2);
     Polygon there = polygon;
-    for (Vec2& p : there.outer)
-      p = placed(p, at);
+    for (Vec2& p : there.outer) p = placed(p, at);
     const Vec2 reference = draw.point(1);
     Patch here(reference), moved(placed(reference, at));
     here.add(polygon, 1);
@@ -198,8 +193,7 @@ TEST_CASE("patch: moving and turning the scene, and the point of reference, chan
     CHECK(std::abs(a.gradient[2] - b.gradient[2]) < 1e-10);
 
     const Vec2 point = draw.point(1), arm = point - reference;
-    const Dissipation other =
-        evaluate_about(here, point, {nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x(), nu[2]});
+    const Dissipation other = evaluate_about(here, point, {nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x(), nu[2]});
     CHECK(std::abs(a.h - other.h) < 1e-12 * fastest(here, nu));
   }
 }

@@ -22,17 +22,14 @@ Patch rectangle(double a, double b) {
 }
 
 /// The friction wrench of counter-clockwise slip about c, as the paper writes it: −∇h.
-Vec3 slip_wrench(const Patch& patch, const Vec2& c) {
-  return -evaluate(patch, {c.y(), -c.x(), 1}).gradient;
-}
+Vec3 slip_wrench(const Patch& patch, const Vec2& c) { return -evaluate(patch, {c.y(), -c.x(), 1}).gradient; }
 
 /// Regular polygon of n sides with the area of the unit disc.
 Patch disc(int n) {
   const double step = 2 * std::numbers::pi / n;
   const double radius = std::sqrt(2 * std::numbers::pi / (n * std::sin(step)));
   Ring ring;
-  for (int i = 0; i < n; ++i)
-    ring.emplace_back(radius * std::cos(i * step), radius * std::sin(i * step));
+  for (int i = 0; i < n; ++i) ring.emplace_back(radius * std::cos(i * step), radius * std::sin(i * step));
   Patch patch;
   patch.add(Polygon{ring, {}}, 1 / std::numbers::pi); // capacity 1
   return patch;
@@ -47,8 +44,7 @@ struct DiscFriction {
 DiscFriction disc_friction(double ratio) {
   static const std::array discs{disc(128), disc(256), disc(512)};
   std::array<Vec3, 3> w;
-  for (std::size_t i = 0; i < 3; ++i)
-    w[i] = evaluate(discs[i], {ratio, 0, 1}).gradient;
+  for (std::size_t i = 0; i < 3; ++i) w[i] = evaluate(discs[i], {ratio, 0, 1}).gradient;
   const Vec3 first = w[1] + (w[1] - w[0]) / 3, second = w[2] + (w[2] - w[1]) / 3;
   const Vec3 limit = second + (second - first) / 15;
   return {limit[0], limit[2]};
@@ -75,16 +71,14 @@ TEST_CASE("patch: rectangle table") {
     CHECK(std::abs(w[2] - c.m) < 1e-9);
   }
   const double exact = -(std::sqrt(2.0) + std::asinh(1.0)) / 6;
-  CHECK(std::abs(slip_wrench(rectangle(.5, .5), {0, 0})[2] - exact) <
-        1e-15); // four edges' rounding
+  CHECK(std::abs(slip_wrench(rectangle(.5, .5), {0, 0})[2] - exact) < 1e-15); // four edges' rounding
 }
 
 TEST_CASE("patch: disc table") {
-  const double table[][3] = {{.1, .09987484, .66167605},  {.25, .24803131, .63578612},
-                             {.5, .48384376, .54774835},  {.653, .61603194, .47169447},
-                             {.75, .69267323, .41798322}, {.9, .79575931, .33321169},
-                             {1.5, .94081938, .17379811}, {2, .96768751, .12780920},
-                             {5, .99497468, .05016857},   {1, .848826363, .282942121}};
+  const double table[][3] = {{.1, .09987484, .66167605},   {.25, .24803131, .63578612}, {.5, .48384376, .54774835},
+                             {.653, .61603194, .47169447}, {.75, .69267323, .41798322}, {.9, .79575931, .33321169},
+                             {1.5, .94081938, .17379811},  {2, .96768751, .12780920},   {5, .99497468, .05016857},
+                             {1, .848826363, .282942121}};
   for (const auto& [ratio, force, torque] : table) {
     const DiscFriction d = disc_friction(ratio);
     CAPTURE(ratio);
@@ -119,8 +113,7 @@ TEST_CASE("patch: the ellipsoid overstates what a disc can bear by up to 7 %") {
   CHECK(std::abs(radial(1) - .949) < 5e-4);
   CHECK(std::abs(radial(1.5) - .976) < 5e-4);
   double least = 1;
-  for (double ratio = 0.05; ratio < 3; ratio += 0.01)
-    least = std::min(least, radial(ratio));
+  for (double ratio = 0.05; ratio < 3; ratio += 0.01) least = std::min(least, radial(ratio));
   CHECK(1 / least > 1.065);
   CHECK(1 / least < 1.075);
 }

@@ -16,8 +16,7 @@ namespace {
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, at);)
-    parts.push_back(part);
+  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
   return parts;
 }
 
@@ -56,8 +55,7 @@ std::vector<Row> read_table() {
             {number(12), number(13), number(14)},
             number(11)};
     for (const std::string& ring : split(cell.at(2), '|'))
-      (row.polygon.outer.empty() ? row.polygon.outer : row.polygon.holes.emplace_back()) =
-          read_ring(ring);
+      (row.polygon.outer.empty() ? row.polygon.outer : row.polygon.holes.emplace_back()) = read_ring(ring);
     rows.push_back(row);
   }
   return rows;
@@ -65,8 +63,7 @@ std::vector<Row> read_table() {
 
 double largest_traction(const Row& row) {
   double w = 0;
-  for (const Vec2& p : row.polygon.outer)
-    w = std::max(w, row.traction.at_centroid + row.traction.gradient.dot(p - row.point));
+  for (const Vec2& p : row.polygon.outer) w = std::max(w, row.traction.at_centroid + row.traction.gradient.dot(p - row.point));
   return w;
 }
 
@@ -90,8 +87,7 @@ TEST_CASE("patch: h and the wrench agree with 50-digit values") {
       const double speed = std::max(row.nu.head<2>().norm(), size * std::abs(row.nu[2]));
       const Vec3 error = d.gradient - row.gradient;
       const double e =
-          std::max({std::abs(d.h - row.h) / (force * speed), error.head<2>().norm() / force,
-                    std::abs(error[2]) / (force * size)});
+          std::max({std::abs(d.h - row.h) / (force * speed), error.head<2>().norm() / force, std::abs(error[2]) / (force * size)});
       CAPTURE(row.name);
       CAPTURE(row.where);
       CAPTURE(row.nu.transpose());
@@ -102,8 +98,7 @@ TEST_CASE("patch: h and the wrench agree with 50-digit values") {
     }
   }
   double all = 0;
-  for (const auto& [what, e] : worst)
-    all = std::max(all, e);
+  for (const auto& [what, e] : worst) all = std::max(all, e);
   MESSAGE("largest error: " << all);
 }
 

@@ -16,10 +16,8 @@ namespace {
 Vec3 random_wrench(Draw& draw, const Patch& patch) {
   Vec3 w(draw.within(-1, 1), draw.within(-1, 1), draw.sign() * draw.scale(1e-4, 1e2));
   const double kind = draw.unit();
-  if (kind < 0.05)
-    w[2] = 0;
-  else if (kind < 0.1)
-    w[0] = w[1] = 0;
+  if (kind < 0.05) w[2] = 0;
+  else if (kind < 0.1) w[0] = w[1] = 0;
   return w * patch.force();
 }
 
@@ -106,8 +104,7 @@ TEST_CASE("required pressure: agrees with (13)-(15) solved for p, x_c, y_c") {
       jacobian << -d.gradient, x[0] * d.hessian.col(1), -x[0] * d.hessian.col(0);
       x -= jacobian.fullPivLu().solve(-x[0] * d.gradient - w);
     }
-    if (!(std::abs(x[0] - share) < 1e-6))
-      continue; // plain Newton went elsewhere: nothing to compare with
+    if (!(std::abs(x[0] - share) < 1e-6)) continue; // plain Newton went elsewhere: nothing to compare with
     ++solved;
     CHECK(std::abs(x[0] - r.u) < 1e-10 * r.u); // Newton's own end, and that of the direction
   }

@@ -18,17 +18,14 @@ constexpr double k_line = 0.5; // m, length of the mitre: the limb's end, at y =
 
 const std::vector<Vec2> k_yoke = rectangle(-0.5, 0.0, 0.5, 0.4), k_limb = rectangle(-0.25, -1.0, 0.25, 0.01);
 
-std::string limb_at_yoke(const std::string& simulation, double output_step, const std::string& joint_fields,
-                         double pressure, double clearance, const Vec2& velocity, const std::string& more = "",
-                         double spin = 0.0) {
-  return header(simulation, output_step) + body("limb", 10.0, 1.0, {0.0, -0.5}, velocity, spin) +
-         joint("limb", "ground", joint_fields) +
+std::string limb_at_yoke(const std::string& simulation, double output_step, const std::string& joint_fields, double pressure,
+                         double clearance, const Vec2& velocity, const std::string& more = "", double spin = 0.0) {
+  return header(simulation, output_step) + body("limb", 10.0, 1.0, {0.0, -0.5}, velocity, spin) + joint("limb", "ground", joint_fields) +
          interface(k_yoke, k_limb, pressure, 0.2, "clearance = " + number(clearance)) + more;
 }
 
 const std::string k_loose = "tangential_stiffness = 1e-3\n";
-const char* const k_upwards =
-    "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"limb\"\nb = \"ground\"\naxis = [0.0, 1.0]\n";
+const char* const k_upwards = "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"limb\"\nb = \"ground\"\naxis = [0.0, 1.0]\n";
 
 } // namespace
 
@@ -50,8 +47,7 @@ TEST_CASE("a limb thrown at the yoke bounces off its edges like a mass on a spri
     CHECK(std::abs(closes[0] - c / v) < bound);
     CHECK(std::abs(opens[0] - c / v - k_pi / w) < bound);
     CHECK(r.last("limb.vy") == doctest::Approx(-v).epsilon(1e-6));
-    const auto force = r.series("joint.edge_force_1"), start = r.series("joint.edge_load_1_start"),
-               y = r.series("limb.y");
+    const auto force = r.series("joint.edge_force_1"), start = r.series("joint.edge_load_1_start"), y = r.series("limb.y");
     for (std::size_t i = 0; i < y.size(); ++i) {
       const double depth = std::max(0.0, y[i] + 0.5 - c);
       CHECK(force[i] == doctest::Approx(k * k_line * depth).epsilon(1e-9));
@@ -63,9 +59,9 @@ TEST_CASE("a limb thrown at the yoke bounces off its edges like a mass on a spri
 
 TEST_CASE("a limb that turns bears along a part of the line: force, moment and energy are sums over it") {
   // 20 000 points of the line, their depths and a midpoint rule: good to 1e-8 of the whole.
-  const auto system = steplap::compile(steplap::parse_model(
-      limb_at_yoke("end = 1.0\nintegrator = \"auto\"", 1.0, "edge_stiffness = 3e8", 1e3, 0.2e-3, Vec2::Zero()),
-      "scene.toml", steplap::transformer_catalog()));
+  const auto system = steplap::compile(
+      steplap::parse_model(limb_at_yoke("end = 1.0\nintegrator = \"auto\"", 1.0, "edge_stiffness = 3e8", 1e3, 0.2e-3, Vec2::Zero()),
+                           "scene.toml", steplap::transformer_catalog()));
   steplap::Dynamics dynamics(*system);
   const double k = 3e8, c = 0.2e-3;
   constexpr int k_points = 20000;
@@ -101,9 +97,8 @@ TEST_CASE("a limb that turns bears along a part of the line: force, moment and e
 TEST_CASE("thrown askew it rocks on its edges, and no energy is made") {
   for (const char* integrator : {"dop853", "rodas5p"}) {
     CAPTURE(integrator);
-    const Run r =
-        run_text(limb_at_yoke(std::string("end = 0.008\nintegrator = \"") + integrator + "\"\ntolerance = 1e-11", 0.008,
-                              k_loose + "edge_stiffness = 2e8", 1e-6, 0.5e-3, {0.02, 0.3}, "", 0.4));
+    const Run r = run_text(limb_at_yoke(std::string("end = 0.008\nintegrator = \"") + integrator + "\"\ntolerance = 1e-11", 0.008,
+                                        k_loose + "edge_stiffness = 2e8", 1e-6, 0.5e-3, {0.02, 0.3}, "", 0.4));
     REQUIRE(r.times("joint", "closes").size() >= 1);
     REQUIRE(r.times("joint", "opens").size() >= 1);
     const double before = 0.5 * 10.0 * (0.02 * 0.02 + 0.3 * 0.3) + 0.5 * 0.16;
@@ -116,13 +111,12 @@ TEST_CASE("thrown askew it rocks on its edges, and no energy is made") {
 
 TEST_CASE("pressed towards the yoke the overlap stops growing where the edges bear") {
   // Capacity F = 0.2 · 1e5 · 0.005 = 100 N; a load of 600 N comes within 50 ms, and is damped by a tie beside it.
-  const std::string push =
-      "[[signal]]\nname = \"push\"\nkind = \"trapezoid\"\npeak = 600.0\nrise = 0.05\nfall = 0.1\nduration = 10.0\n"
-      "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"limb\"\nforce_y = \"push\"\n"
-      "[[element]]\nkind = \"spring_damper\"\nname = \"damper\"\na = \"limb\"\naxis = [0.0, 1.0]\ndamping = 2e4\n";
+  const std::string push = "[[signal]]\nname = \"push\"\nkind = \"trapezoid\"\npeak = 600.0\nrise = 0.05\nfall = 0.1\nduration = 10.0\n"
+                           "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"limb\"\nforce_y = \"push\"\n"
+                           "[[element]]\nkind = \"spring_damper\"\nname = \"damper\"\na = \"limb\"\naxis = [0.0, 1.0]\ndamping = 2e4\n";
   const auto depth = [&](const std::string& edges) {
-    return run_text(limb_at_yoke("end = 0.5\nintegrator = \"auto\"\ntolerance = 1e-9", 0.5, edges, 1e5, 0.5e-3,
-                                 Vec2::Zero(), std::string(push) + k_upwards));
+    return run_text(limb_at_yoke("end = 0.5\nintegrator = \"auto\"\ntolerance = 1e-9", 0.5, edges, 1e5, 0.5e-3, Vec2::Zero(),
+                                 std::string(push) + k_upwards));
   };
   const double k = 2e6;
   const Run r = depth("edge_stiffness = " + number(k) + "\nallowed_line_load = 900.0");
@@ -130,8 +124,7 @@ TEST_CASE("pressed towards the yoke the overlap stops growing where the edges be
   // little).
   const double moved = r.last("limb.y") + 0.5, friction = -r.last("joint.fy");
   CHECK(r.last("joint.edge_force_1") == doctest::Approx(k * k_line * (moved - 0.5e-3)).epsilon(1e-9));
-  CHECK(friction + r.last("joint.edge_force_1") ==
-        doctest::Approx(600.0).epsilon(1e-3)); // what the damper leaves after 0.45 s
+  CHECK(friction + r.last("joint.edge_force_1") == doctest::Approx(600.0).epsilon(1e-3)); // what the damper leaves after 0.45 s
   CHECK(r.last("joint.edge_share") == doctest::Approx(r.last("joint.edge_load") / 900.0).epsilon(1e-12));
   CHECK(r.last("joint.edge_load") == doctest::Approx(r.last("joint.edge_force_1") / k_line).epsilon(1e-9));
   CHECK(moved < 1.1e-3);
@@ -141,12 +134,11 @@ TEST_CASE("pressed towards the yoke the overlap stops growing where the edges be
 TEST_CASE("after a bump that the edges bear the core sits as before") {
   // Sheets that butt from the start, an elastic joint: of the bump the edges take k l/(K + k l) = 5/6, and the joint,
   // which alone would slide at 100 N, holds 400 N/6.
-  const std::string bump =
-      "[[signal]]\nname = \"bump\"\nkind = \"haversine\"\npeak = 400.0\nstart = 0.0\nduration = 0.2\n"
-      "[[element]]\nkind = \"load\"\nname = \"bump\"\nat = \"limb\"\nforce_y = \"bump\"\n";
+  const std::string bump = "[[signal]]\nname = \"bump\"\nkind = \"haversine\"\npeak = 400.0\nstart = 0.0\nduration = 0.2\n"
+                           "[[element]]\nkind = \"load\"\nname = \"bump\"\nat = \"limb\"\nforce_y = \"bump\"\n";
   const auto after = [&](const std::string& fields) {
-    return run_text(limb_at_yoke("end = 0.4\nintegrator = \"auto\"\ntolerance = 1e-10", 0.4, fields, 1e5, 0.0,
-                                 Vec2::Zero(), std::string(bump) + k_upwards));
+    return run_text(limb_at_yoke("end = 0.4\nintegrator = \"auto\"\ntolerance = 1e-10", 0.4, fields, 1e5, 0.0, Vec2::Zero(),
+                                 std::string(bump) + k_upwards));
   };
   const Run with = after("tangential_stiffness = 2e7\nedge_stiffness = 2e8");
   CHECK(with.times("joint", "slips").empty());
@@ -158,10 +150,9 @@ TEST_CASE("after a bump that the edges bear the core sits as before") {
 
 TEST_CASE("crushed edges reject a joint; a closed clearance does no more") {
   const auto verdict = [](const std::string& fields) {
-    const steplap::Model model =
-        steplap::parse_model(limb_at_yoke("end = 0.008\nintegrator = \"dop853\"\ntolerance = 1e-9", 1e-3,
-                                          k_loose + fields, 1e-6, 0.5e-3, {0.0, 0.1}, k_upwards),
-                             "scene.toml", steplap::transformer_catalog());
+    const steplap::Model model = steplap::parse_model(
+        limb_at_yoke("end = 0.008\nintegrator = \"dop853\"\ntolerance = 1e-9", 1e-3, k_loose + fields, 1e-6, 0.5e-3, {0.0, 0.1}, k_upwards),
+        "scene.toml", steplap::transformer_catalog());
     const Run r = run(model);
     return steplap::assess_joints(model, r.result).at(0);
   };

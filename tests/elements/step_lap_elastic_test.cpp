@@ -20,25 +20,22 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_capacity = 400.0; // N: 0.02 m² · 1e5 Pa · 0.2
 
-std::string elastic(const std::string& simulation, double output_step, const Vec2& velocity,
-                    const std::string& stiffness, const std::string& more = "") {
-  return header(simulation, output_step) + body("limb", 10.0, 1.0, {0.0, 0.0}, velocity) +
-         joint("limb", "ground", stiffness) +
+std::string elastic(const std::string& simulation, double output_step, const Vec2& velocity, const std::string& stiffness,
+                    const std::string& more = "") {
+  return header(simulation, output_step) + body("limb", 10.0, 1.0, {0.0, 0.0}, velocity) + joint("limb", "ground", stiffness) +
          interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2) + more;
 }
 
-std::string k_of(double stiffness) {
-  return "tangential_stiffness = " + number(stiffness);
-}
+std::string k_of(double stiffness) { return "tangential_stiffness = " + number(stiffness); }
 
 std::string driven(const std::string& coordinate, const std::string& signal) {
-  return "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive " + coordinate +
-         "\"\na = \"limb\"\ncoordinate = \"" + coordinate + "\"\nsignal = \"" + signal + "\"\nas = \"position\"\n";
+  return "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive " + coordinate + "\"\na = \"limb\"\ncoordinate = \"" + coordinate +
+         "\"\nsignal = \"" + signal + "\"\nas = \"position\"\n";
 }
 
 std::string harmonic(const std::string& name, double amplitude, double frequency) {
-  return "[[signal]]\nname = \"" + name + "\"\nkind = \"harmonics\"\namplitudes = [" + number(amplitude) +
-         "]\nfrequencies = [" + number(frequency) + "]\nphases = [" + number(-0.5 * k_pi) + "]\n"; // a sine
+  return "[[signal]]\nname = \"" + name + "\"\nkind = \"harmonics\"\namplitudes = [" + number(amplitude) + "]\nfrequencies = [" +
+         number(frequency) + "]\nphases = [" + number(-0.5 * k_pi) + "]\n"; // a sine
 }
 
 std::string with(const std::string& integrator, const std::string& how, double end) {
@@ -48,8 +45,8 @@ std::string with(const std::string& integrator, const std::string& how, double e
 /// A path of the limb that turns while it slides to and fro: yields along a curve of the limit surface.
 std::string looping(const std::string& simulation, double output_step) {
   return elastic(simulation, output_step, Vec2::Zero(), k_of(1e6),
-                 harmonic("along", 1e-3, 1.0) + harmonic("across", 0.7e-3, 1.5) + harmonic("turn", 8e-3, 0.7) +
-                     driven("x", "along") + driven("y", "across") + driven("angle", "turn"));
+                 harmonic("along", 1e-3, 1.0) + harmonic("across", 0.7e-3, 1.5) + harmonic("turn", 8e-3, 0.7) + driven("x", "along") +
+                     driven("y", "across") + driven("angle", "turn"));
 }
 
 Vec3 path(double t) {
@@ -90,8 +87,7 @@ TEST_CASE("a patch pulled and let go within its bound comes back, and loses noth
   const auto x = r.series("limb.x");
   const double w = std::sqrt(1e5);
   for (std::size_t i = 0; i < x.size(); ++i)
-    CHECK(std::abs(x[i] - 0.1 / w * std::sin(w * 0.01 * static_cast<double>(i))) <
-          1e-12); // 50 periods, 1e-11 each of 0.3 mm
+    CHECK(std::abs(x[i] - 0.1 / w * std::sin(w * 0.01 * static_cast<double>(i))) < 1e-12); // 50 periods, 1e-11 each of 0.3 mm
   CHECK(r.result.statistics.dissipated == 0.0);
 }
 
@@ -154,17 +150,16 @@ TEST_CASE("all methods find the same path through the limit surface, at their or
   CHECK((wrench("tsit5", "tolerance = 1e-10") - exact).norm() < 1e-6 * k_capacity);
   CHECK((wrench("rodas5p", "tolerance = 1e-9") - exact).norm() < 1e-5 * k_capacity);
   CHECK((wrench("auto", "tolerance = 1e-10") - exact).norm() < 1e-6 * k_capacity);
-  const double coarse = (wrench("rk4", "step = 8e-3") - exact).norm(),
-               fine = (wrench("rk4", "step = 1e-3") - exact).norm();
+  const double coarse = (wrench("rk4", "step = 8e-3") - exact).norm(), fine = (wrench("rk4", "step = 1e-3") - exact).norm();
   CHECK(fine < coarse / std::pow(8.0, 3.5)); // order 4: 8⁴; directions are known to 1e-10, the fine one's error is 2e-9
 }
 
 TEST_CASE("energy balances to 1e-9 while a free limb slides and turns on its spring") {
   for (const char* integrator : {"dop853", "tsit5", "rodas5p"}) {
     CAPTURE(integrator);
-    const Run r = run_text(header(with(integrator, "tolerance = 1e-11", 0.2), 0.2) +
-                           body("limb", 10.0, 0.05, {0.0, 0.0}, {0.5, 0.2}, 4.0) + joint("limb", "ground", k_of(1e6)) +
-                           interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2));
+    const Run r =
+        run_text(header(with(integrator, "tolerance = 1e-11", 0.2), 0.2) + body("limb", 10.0, 0.05, {0.0, 0.0}, {0.5, 0.2}, 4.0) +
+                 joint("limb", "ground", k_of(1e6)) + interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2));
     CHECK(r.times("joint", "slips").size() > 0);
     CHECK(r.relative_energy_residual() < 1e-9);
     CHECK(r.result.statistics.dissipated > 0.9 * 0.5 * (10.0 * 0.29 + 0.05 * 16.0));
@@ -174,10 +169,9 @@ TEST_CASE("energy balances to 1e-9 while a free limb slides and turns on its spr
 TEST_CASE("stiffer and stiffer: the joint that sticks exactly, at first order of the compliance") {
   // A pulse of force beside a constant one (which keeps the swing after the stop off the bound's other side): the slid
   // distance against the rigid joint's, about 4 mm; F₀/K = 10, 1, 0.1 µm.
-  const std::string pulse =
-      "[[signal]]\nname = \"pulse\"\nkind = \"haversine\"\npeak = 800.0\nstart = 0.0\nduration = 0.02\n"
-      "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"limb\"\nforce_x = \"pulse\"\n"
-      "[[element]]\nkind = \"load\"\nname = \"bias\"\nat = \"limb\"\nforce = [100.0, 0.0]\n";
+  const std::string pulse = "[[signal]]\nname = \"pulse\"\nkind = \"haversine\"\npeak = 800.0\nstart = 0.0\nduration = 0.02\n"
+                            "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"limb\"\nforce_x = \"pulse\"\n"
+                            "[[element]]\nkind = \"load\"\nname = \"bias\"\nat = \"limb\"\nforce = [100.0, 0.0]\n";
   const auto slid = [&](const std::string& stiffness) {
     const Run r = run_text(elastic(with("auto", "tolerance = 1e-10", 0.05), 0.05, Vec2::Zero(), stiffness, pulse));
     CHECK(r.last("joint.mode") == 1.0);
@@ -199,11 +193,10 @@ TEST_CASE("a spring beside the joint takes its share before the joint slides") {
   // Slowly growing load P: joint K, spring k. It slides at P = F₀ (K + k)/K, a rigid one at F₀: to that the spring
   // gives nothing.
   const double k = 1e6, beside = 5e5;
-  const std::string load =
-      "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = 1000.0\nduration = 20.0\n"
-      "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"limb\"\nforce_x = \"ramp\"\n"
-      "[[element]]\nkind = \"spring_damper\"\nname = \"plate\"\na = \"limb\"\naxis = [1.0, 0.0]\nstiffness = " +
-      number(beside) + "\ndamping = 1e3\n";
+  const std::string load = "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = 1000.0\nduration = 20.0\n"
+                           "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"limb\"\nforce_x = \"ramp\"\n"
+                           "[[element]]\nkind = \"spring_damper\"\nname = \"plate\"\na = \"limb\"\naxis = [1.0, 0.0]\nstiffness = " +
+                           number(beside) + "\ndamping = 1e3\n";
   const Run r = run_text(elastic(with("auto", "tolerance = 1e-9", 8.0), 4.0, Vec2::Zero(), k_of(k), load));
   const auto slips = r.times("joint", "slips");
   REQUIRE(slips.size() >= 1);
@@ -231,20 +224,17 @@ TEST_CASE("a limb that slides off its yoke comes apart where its sheets have par
     REQUIRE(elastic_one.times("joint", "comes apart").size() == 1);
     REQUIRE(rigid.times("joint", "comes apart").size() == 1);
     // It counts as parted with a hundredth of the overlap left, 0.2 mm at 0.3 m/s, and 1e-4/2 of the work.
-    CHECK(std::abs(elastic_one.times("joint", "comes apart")[0] + 0.7e-3 - rigid.times("joint", "comes apart")[0]) <
-          3e-4);
+    CHECK(std::abs(elastic_one.times("joint", "comes apart")[0] + 0.7e-3 - rigid.times("joint", "comes apart")[0]) < 3e-4);
     CHECK(elastic_one.relative_energy_residual() < 1e-6); // at a tolerance of 1e-8
-    CHECK(elastic_one.result.statistics.dissipated ==
-          doctest::Approx(rigid.result.statistics.dissipated).epsilon(5e-4));
+    CHECK(elastic_one.result.statistics.dissipated == doctest::Approx(rigid.result.statistics.dissipated).epsilon(5e-4));
   }
 }
 
 TEST_CASE("a shaken limb ratchets down its joint, and shakes down onto a tie plate") {
   // The example of docs/explanation/step_lap_joint.md: its table.
   const auto slid = [](const char* plate) {
-    const Run r =
-        run(steplap::read_model(std::string(STEPLAP_MODELS) + "/../examples/ratcheting.toml",
-                                steplap::transformer_catalog(), {std::string("element.tie plate.stiffness=") + plate}));
+    const Run r = run(steplap::read_model(std::string(STEPLAP_MODELS) + "/../examples/ratcheting.toml", steplap::transformer_catalog(),
+                                          {std::string("element.tie plate.stiffness=") + plate}));
     const auto dy = r.series("joint.dy");
     return std::vector<double>{-dy[10], -dy[20], -dy[30]};
   };
@@ -259,8 +249,7 @@ TEST_CASE("a shaken limb ratchets down its joint, and shakes down onto a tie pla
 TEST_CASE("stiffness of sheets in shear and contact, spread over the overlap, about the limb's centre") {
   const auto matrix = [](const std::string& stiffness) {
     const steplap::Model model = steplap::parse_model(
-        header("end = 1.0\nintegrator = \"auto\"", 1.0) + body("limb", 10.0, 1.0, {0.3, 0.0}) +
-            joint("limb", "ground", stiffness) +
+        header("end = 1.0\nintegrator = \"auto\"", 1.0) + body("limb", 10.0, 1.0, {0.3, 0.0}) + joint("limb", "ground", stiffness) +
             interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2, "count = 50"),
         "scene.toml", steplap::transformer_catalog());
     const auto system = steplap::compile(model);
@@ -277,8 +266,7 @@ TEST_CASE("stiffness of sheets in shear and contact, spread over the overlap, ab
 }
 
 TEST_CASE("what an elastic joint cannot be is refused with the reason") {
-  const auto refusal = [](const std::string& simulation, const std::string& stiffness,
-                          const std::string& friction) -> std::string {
+  const auto refusal = [](const std::string& simulation, const std::string& stiffness, const std::string& friction) -> std::string {
     try {
       run_text(header(simulation, 1.0) + body("limb", 10.0, 1.0, {0.0, 0.0}) + joint("limb", "ground", stiffness) +
                interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2, friction));
@@ -290,8 +278,7 @@ TEST_CASE("what an elastic joint cannot be is refused with the reason") {
   const std::string stepping = refusal("end = 1.0\nstep = 1e-3\nintegrator = \"moreau\"", k_of(1e6), "");
   CHECK(stepping.find("'moreau' does not follow") != std::string::npos);
   CHECK(stepping.rfind("scene.toml:16:1: error: step_lap_joint 'joint'", 0) == 0); // where the joint stands, before a run begins
-  CHECK(refusal("end = 1.0", k_of(1e6), "kinetic_friction = 0.1").find("one friction coefficient") !=
-        std::string::npos);
+  CHECK(refusal("end = 1.0", k_of(1e6), "kinetic_friction = 0.1").find("one friction coefficient") != std::string::npos);
   CHECK(refusal("end = 1.0", k_of(1e6) + "\ncontact_stiffness = 1e9", "").find("not both") != std::string::npos);
   CHECK(refusal("end = 1.0", k_of(1e6) + "\nmode = \"monitor\"", "").find("cannot be a monitor") != std::string::npos);
 }

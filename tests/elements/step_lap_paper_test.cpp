@@ -36,8 +36,8 @@ TEST_CASE("required pressure of the paper's joints, both conditions, as tabled")
     double front, back;
   };
   // Computed apart from this software, extremes over 1 kHz samples; digits as given (half a unit is 1.7e-6).
-  for (const Expected& e : {Expected{"paper/no_interference.toml", 29722.9, 29840.1},
-                            Expected{"paper/interference.toml", 31967.9, 27866.4}})
+  for (const Expected& e :
+       {Expected{"paper/no_interference.toml", 29722.9, 29840.1}, Expected{"paper/interference.toml", 31967.9, 27866.4}})
     for (const char* mode : {"slip", "monitor"}) {
       CAPTURE(e.model);
       CAPTURE(mode);
@@ -62,7 +62,8 @@ TEST_CASE("weak clamping: both joints slide and hold again, with the tank bottom
   const Run tsit5 = run_file("paper/weak_clamping.toml", {"simulation.integrator=tsit5", "simulation.tolerance=1e-10"});
   const Run dop853 = run_file("paper/weak_clamping.toml", {"simulation.tolerance=1e-10"});
   std::optional<Run> fixed; // a hundred thousand evaluations; under the sanitizers step_lap_rest_test.cpp has a fixed step through a slip
-  if (!steplap::testing::k_is_sanitized) fixed = run_file("paper/weak_clamping.toml", {"simulation.integrator=rk4", "simulation.step=1e-5"});
+  if (!steplap::testing::k_is_sanitized)
+    fixed = run_file("paper/weak_clamping.toml", {"simulation.integrator=rk4", "simulation.step=1e-5"});
   const Run& rk4 = fixed ? *fixed : dop853;
   const auto told = story(tsit5);
   REQUIRE(told.size() == 8);
@@ -95,12 +96,10 @@ TEST_CASE("weak clamping: both joints slide and hold again, with the tank bottom
       }
     }
     const auto friction = r->series("tank bottom.friction"), capacity = r->series("tank bottom.capacity");
-    for (std::size_t i = 0; i < friction.size(); ++i)
-      CHECK(std::abs(friction[i]) <= capacity[i] * (1.0 + 1e-9));
+    for (std::size_t i = 0; i < friction.size(); ++i) CHECK(std::abs(friction[i]) <= capacity[i] * (1.0 + 1e-9));
   }
   // somewhere both joints slide together, somewhere with the tank bottom
-  const auto front = tsit5.series("front joint.mode"), back = tsit5.series("back joint.mode"),
-             bottom = tsit5.series("tank bottom.mode");
+  const auto front = tsit5.series("front joint.mode"), back = tsit5.series("back joint.mode"), bottom = tsit5.series("tank bottom.mode");
   bool together = false, with_bottom = false;
   for (std::size_t i = 0; i < front.size(); ++i) {
     together = together || (front[i] == 2.0 && back[i] == 2.0);

@@ -18,23 +18,19 @@ std::string corner(double side, double pressure) {
   const Vec2 away(-M_SQRT1_2, -side * M_SQRT1_2); // from the yoke
   const auto strip = [&](double s0, double s1, double q0, double q1) {
     std::vector<Vec2> ring;
-    for (const auto& [s, q] :
-         {std::pair{s0, q0}, std::pair{s1, q0}, std::pair{s1, q1}, std::pair{s0, q1}})
+    for (const auto& [s, q] : {std::pair{s0, q0}, std::pair{s1, q0}, std::pair{s1, q1}, std::pair{s0, q1}})
       ring.push_back(from + s * along + q * away);
     return ring;
   };
-  return interface(strip(-0.02, length + 0.02, -0.05, 0.5 * lap),
-                   strip(0.0, length, -0.5 * lap, 0.05), pressure, 0.2, "count = 2079",
+  return interface(strip(-0.02, length + 0.02, -0.05, 0.5 * lap), strip(0.0, length, -0.5 * lap, 0.05), pressure, 0.2, "count = 2079",
                    side > 0.0 ? "top" : "bottom");
 }
 
 // A limb of 9 t on a base that a haversine of 1.5 g and 60 ms stops.
-std::string stopped_base(const std::string& simulation, double pressure = 0.03e6,
-                         double base_mass = 5e4, bool has_bottom = true) {
+std::string stopped_base(const std::string& simulation, double pressure = 0.03e6, double base_mass = 5e4, bool has_bottom = true) {
   const double speed = 1.5 * 9.81 * 0.03; // what the pulse takes away
   return header(simulation + "\nvelocity = [" + number(speed) + ", 0.0]", 0.1, "[0.0, -9.81]") +
-         body("base", base_mass, 2.0 * base_mass, {0, 0}, {speed, 0.0}) +
-         body("limb", 9e3, 10.8e3, {-0.95, 0.1}, {speed, 0.0}) +
+         body("base", base_mass, 2.0 * base_mass, {0, 0}, {speed, 0.0}) + body("limb", 9e3, 10.8e3, {-0.95, 0.1}, {speed, 0.0}) +
          "[[signal]]\nname = \"stop\"\nkind = \"haversine\"\npeak = " + number(-1.5 * 9.81) +
          "\nstart = 0.02\nduration = 0.06\n"
          "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"base\"\ncoordinate = "
@@ -65,18 +61,13 @@ Stop stop_of(const std::string& text) {
   return stop;
 }
 
-std::string with(const std::string& method, const std::string& how) {
-  return "end = 0.1\nintegrator = \"" + method + "\"\n" + how;
-}
+std::string with(const std::string& method, const std::string& how) { return "end = 0.1\nintegrator = \"" + method + "\"\n" + how; }
 
-std::string tolerance(const std::string& value) {
-  return "tolerance = " + value;
-}
+std::string tolerance(const std::string& value) { return "tolerance = " + value; }
 
 } // namespace
 
-TEST_CASE(
-    "a slip begins and ends once, whatever the tolerance, and at the same time for every method") {
+TEST_CASE("a slip begins and ends once, whatever the tolerance, and at the same time for every method") {
   // Far finer than what it is compared with.
   const Stop exact = stop_of(stopped_base(with("dop853", tolerance(steplap::testing::k_is_sanitized ? "1e-9" : "1e-12"))));
   REQUIRE(exact.slips == 1);
@@ -99,10 +90,8 @@ TEST_CASE(
       // the slip's 13 ms distances.
       const double speed = 20.0 * tol, share = 0.01;
       CHECK(std::abs(stop.rest - exact.rest) < std::min(speed / 3.0, share * slip) + 1e-12);
-      CHECK(std::abs(stop.dx - exact.dx) <
-            std::min(speed * slip, share * std::abs(exact.dx)) + 1e-13);
-      CHECK(std::abs(stop.dy - exact.dy) <
-            std::min(speed * slip, share * std::abs(exact.dy)) + 1e-13);
+      CHECK(std::abs(stop.dx - exact.dx) < std::min(speed * slip, share * std::abs(exact.dx)) + 1e-13);
+      CHECK(std::abs(stop.dy - exact.dy) < std::min(speed * slip, share * std::abs(exact.dy)) + 1e-13);
     }
 }
 
@@ -110,10 +99,8 @@ TEST_CASE("the mass of a base whose motion is given has no part in when a slip e
   for (const bool has_bottom : {true, false}) {
     if (steplap::testing::k_is_sanitized && !has_bottom) continue; // the same with fewer elements
     const double pressure = has_bottom ? 0.03e6 : 0.15e6;
-    const Stop light =
-        stop_of(stopped_base(with("dop853", tolerance("1e-12")), pressure, 1e3, has_bottom));
-    const Stop heavy =
-        stop_of(stopped_base(with("dop853", tolerance("1e-12")), pressure, 1e7, has_bottom));
+    const Stop light = stop_of(stopped_base(with("dop853", tolerance("1e-12")), pressure, 1e3, has_bottom));
+    const Stop heavy = stop_of(stopped_base(with("dop853", tolerance("1e-12")), pressure, 1e7, has_bottom));
     REQUIRE(light.sticks >= 1);
     REQUIRE(heavy.sticks == light.sticks);
     // ten thousand times the mass changes the acceleration to which the law's beginning and end are
@@ -141,8 +128,7 @@ TEST_CASE("a fixed step follows a slip from its beginning to its end") {
 
 TEST_CASE("a uniform disc that slides and spins is at rest at the same time for every method") {
   const auto scene = [](const std::string& simulation) {
-    return header(simulation, 0.3) + body("slider", 1.0, 0.5, {0, 0}, {1.0, 0.0}, 0.5) +
-           joint("slider", "ground") +
+    return header(simulation, 0.3) + body("slider", 1.0, 0.5, {0, 0}, {1.0, 0.0}, 0.5) + joint("slider", "ground") +
            interface(rectangle(-10, -10, 10, 10), disc(1.0, 12), 1.0 / M_PI / 0.25, 0.25);
   };
   const auto rest = [&](const std::string& simulation) {
@@ -156,9 +142,7 @@ TEST_CASE("a uniform disc that slides and spins is at rest at the same time for 
       CAPTURE(method);
       CAPTURE(tol);
       // some twenty steps of tol (0.06 + 1) m/s each, deceleration about 0.6 m/s²
-      CHECK(std::abs(
-                rest(std::string("integrator = \"") + method + "\"\ntolerance = " + number(tol)) -
-                exact) < 30.0 * tol);
+      CHECK(std::abs(rest(std::string("integrator = \"") + method + "\"\ntolerance = " + number(tol)) - exact) < 30.0 * tol);
     }
   CHECK(std::abs(rest("integrator = \"rk4\"\nstep = 1e-2") - exact) < 1e-6);
 }

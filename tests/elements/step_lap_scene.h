@@ -1,9 +1,9 @@
 // Scenes for tests of the step-lap joint, as text of a model file.
 #pragma once
 
-#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "transformer/catalog.h"
 
 #include <cmath>
 #include <memory>
@@ -17,9 +17,7 @@ struct Run {
   std::unique_ptr<steplap::System> system;
   steplap::RunResult result;
 
-  [[nodiscard]] std::vector<double> series(const std::string& channel) const {
-    return result.trajectory->series(channel);
-  }
+  [[nodiscard]] std::vector<double> series(const std::string& channel) const { return result.trajectory->series(channel); }
   [[nodiscard]] double last(const std::string& channel) const { return series(channel).back(); }
   /// Times of the events of one element.
   [[nodiscard]] std::vector<double> times(const std::string& element, const std::string& what) const {
@@ -28,9 +26,7 @@ struct Run {
       if (e.element == element && e.kind == steplap::event_kind_called(what).value()) t.push_back(e.t);
     return t;
   }
-  [[nodiscard]] double relative_energy_residual() const {
-    return result.statistics.energy_residual / result.statistics.energy_exchanged;
-  }
+  [[nodiscard]] double relative_energy_residual() const { return result.statistics.energy_residual / result.statistics.energy_exchanged; }
 };
 
 inline Run run(const steplap::Model& model) {
@@ -45,13 +41,10 @@ inline Run run_text(const std::string& text, const std::vector<std::string>& ove
 }
 
 inline steplap::Model read(const std::string& path, const std::vector<std::string>& overrides = {}) {
-  return steplap::read_model(std::string(STEPLAP_MODELS) + "/" + path, steplap::transformer_catalog(),
-                             overrides);
+  return steplap::read_model(std::string(STEPLAP_MODELS) + "/" + path, steplap::transformer_catalog(), overrides);
 }
 
-inline Run run_file(const std::string& path, const std::vector<std::string>& overrides = {}) {
-  return run(read(path, overrides));
-}
+inline Run run_file(const std::string& path, const std::vector<std::string>& overrides = {}) { return run(read(path, overrides)); }
 
 inline std::string number(double x) {
   std::ostringstream text;
@@ -66,9 +59,7 @@ inline std::string points(const std::vector<steplap::Vec2>& ring) {
   return text + "]";
 }
 
-inline std::vector<steplap::Vec2> rectangle(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
+inline std::vector<steplap::Vec2> rectangle(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 /// Regular, of the area π R².
 inline std::vector<steplap::Vec2> disc(double radius, int sides) {
@@ -80,22 +71,20 @@ inline std::vector<steplap::Vec2> disc(double radius, int sides) {
 
 inline std::string body(const std::string& name, double mass, double inertia, const steplap::Vec2& at,
                         const steplap::Vec2& velocity = steplap::Vec2::Zero(), double spin = 0.0) {
-  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(mass) + "\ninertia = " + number(inertia) +
-         "\nposition = [" + number(at.x()) + ", " + number(at.y()) + "]\nvelocity = [" +
-         number(velocity.x()) + ", " + number(velocity.y()) + "]\nangular_velocity = " + number(spin) + "\n";
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(mass) + "\ninertia = " + number(inertia) + "\nposition = [" +
+         number(at.x()) + ", " + number(at.y()) + "]\nvelocity = [" + number(velocity.x()) + ", " + number(velocity.y()) +
+         "]\nangular_velocity = " + number(spin) + "\n";
 }
 
 inline std::string joint(const std::string& limb, const std::string& part, const std::string& more = "") {
-  return "[[element]]\nkind = \"step_lap_joint\"\nname = \"joint\"\nlimb = \"" + limb +
-         "\"\nactive_part = \"" + part + "\"\n" + more + "\n";
+  return "[[element]]\nkind = \"step_lap_joint\"\nname = \"joint\"\nlimb = \"" + limb + "\"\nactive_part = \"" + part + "\"\n" + more +
+         "\n";
 }
 
-inline std::string interface(const std::vector<steplap::Vec2>& yoke, const std::vector<steplap::Vec2>& limb,
-                             double pressure, double friction, const std::string& more = "",
-                             const std::string& name = "sheets") {
-  return "[[element]]\nkind = \"step_lap_interface\"\nname = \"" + name + "\"\njoint = \"joint\"\nyoke = " +
-         points(yoke) + "\nlimb = " + points(limb) + "\npressure = " + number(pressure) +
-         "\nstatic_friction = " + number(friction) + "\n" + more + "\n";
+inline std::string interface(const std::vector<steplap::Vec2>& yoke, const std::vector<steplap::Vec2>& limb, double pressure,
+                             double friction, const std::string& more = "", const std::string& name = "sheets") {
+  return "[[element]]\nkind = \"step_lap_interface\"\nname = \"" + name + "\"\njoint = \"joint\"\nyoke = " + points(yoke) +
+         "\nlimb = " + points(limb) + "\npressure = " + number(pressure) + "\nstatic_friction = " + number(friction) + "\n" + more + "\n";
 }
 
 inline std::string header(const std::string& simulation, double output_step, const char* gravity = "[0.0, 0.0]") {

@@ -13,11 +13,9 @@ namespace {
 // Adaptive, tight: what is left is rounding.
 const char* const k_tight = "end = 4.0\nintegrator = \"tsit5\"\ntolerance = 1e-11";
 
-std::string on_ground(const std::vector<Vec2>& sheet, double mass, double inertia, const Vec2& velocity,
-                      double spin, double friction_force, double area, const std::string& simulation,
-                      double output_step, const std::string& more = "") {
-  return header(simulation, output_step) + body("slider", mass, inertia, {0.0, 0.0}, velocity, spin) +
-         joint("slider", "ground") +
+std::string on_ground(const std::vector<Vec2>& sheet, double mass, double inertia, const Vec2& velocity, double spin, double friction_force,
+                      double area, const std::string& simulation, double output_step, const std::string& more = "") {
+  return header(simulation, output_step) + body("slider", mass, inertia, {0.0, 0.0}, velocity, spin) + joint("slider", "ground") +
          interface(rectangle(-10, -10, 10, 10), sheet, friction_force / area / 0.25, 0.25) + more;
 }
 
@@ -66,7 +64,7 @@ TEST_CASE("a disc that slides and spins stops both at once, v/(Rω) → 0.653") 
     CAPTURE(spin);
     const double r12 = last_ratio(12, velocity, spin), r24 = last_ratio(24, velocity, spin);
     const double extrapolated = r24 + (r24 - r12) / 3.0; // the polygon's error falls as 1/sides²
-    CHECK(std::abs(extrapolated - 0.653) < 1e-3); // the digits given, and what Aitken leaves
+    CHECK(std::abs(extrapolated - 0.653) < 1e-3);        // the digits given, and what Aitken leaves
   }
 }
 
@@ -117,12 +115,11 @@ TEST_CASE("a rectangle's stopping time and turning angle converge under refineme
 TEST_CASE("after an onset |ν| = α τ², α = n·Ẇ/(2 nᵀMn)") {
   // A force through a point off the centre grows with time, so that the bound is met by force and couple.
   const double mass = 2.0, inertia = 0.05, rate = 1.0;
-  const Run r = run_text(
-      on_ground(rectangle(-0.2, -0.1, 0.2, 0.1), mass, inertia, {0.0, 0.0}, 0.0, 5.0, 0.08,
-                "end = 20.0\nintegrator = \"tsit5\"\ntolerance = 1e-12", 1e-3,
-                "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = 100.0\nduration = 200.0\n"
-                "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = { body = \"slider\", at = [0.05, 0.15] }\n"
-                "force_x = \"ramp\"\n"));
+  const Run r = run_text(on_ground(rectangle(-0.2, -0.1, 0.2, 0.1), mass, inertia, {0.0, 0.0}, 0.0, 5.0, 0.08,
+                                   "end = 20.0\nintegrator = \"tsit5\"\ntolerance = 1e-12", 1e-3,
+                                   "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = 100.0\nduration = 200.0\n"
+                                   "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = { body = \"slider\", at = [0.05, 0.15] }\n"
+                                   "force_x = \"ramp\"\n"));
   const auto onset = r.times("joint", "slips");
   REQUIRE(onset.size() == 1);
   const auto* joint = dynamic_cast<const steplap::StepLapFriction*>(r.system->frictions[0].friction.get());
@@ -215,8 +212,8 @@ TEST_CASE("holes count") {
 TEST_CASE("cutouts of any shape count, in either sense, and move with their sheet") {
   // A square of side 0.5 in the yoke, a triangle in the limb that stays on the yoke; after 0.1 s the limb has moved by
   // 0.1 m less what friction takes.
-  const Run r = run_text(header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
-                         body("slider", 1.0, 1.0, {0, 0}, {1.0, 0.0}) + joint("slider", "ground") +
+  const Run r = run_text(header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) + body("slider", 1.0, 1.0, {0, 0}, {1.0, 0.0}) +
+                         joint("slider", "ground") +
                          interface(rectangle(-2, -2, 2, 2), rectangle(-0.5, -0.5, 0.5, 0.5), 1.0, 0.5,
                                    "yoke_cutouts = [[[0.25, -0.25], [0.75, -0.25], [0.75, 0.25], [0.25, 0.25]], "
                                    "[[1.5, 1.5], [1.5, 1.6], [1.6, 1.5]]]\n"
@@ -236,10 +233,10 @@ TEST_CASE("a cross with a square hole slides as far as its area lets it") {
   const std::vector<steplap::Vec2> cross{{0.1, -0.3}, {0.1, -0.1}, {0.3, -0.1}, {0.3, 0.1},   {0.1, 0.1},   {0.1, 0.3},
                                          {-0.1, 0.3}, {-0.1, 0.1}, {-0.3, 0.1}, {-0.3, -0.1}, {-0.1, -0.1}, {-0.1, -0.3}};
   const double deceleration = mu * pressure * area / mass;
-  const Run r = run_text(header("end = 0.6\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
-                         body("slider", mass, 1.0, {0, 0}, {0.6 * v, 0.8 * v}) + joint("slider", "ground") +
-                         interface(rectangle(-3, -3, 3, 3), cross, pressure, mu,
-                                   "limb_cutouts = [" + points(rectangle(-0.05, -0.05, 0.05, 0.05)) + "]"));
+  const Run r = run_text(
+      header("end = 0.6\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) + body("slider", mass, 1.0, {0, 0}, {0.6 * v, 0.8 * v}) +
+      joint("slider", "ground") +
+      interface(rectangle(-3, -3, 3, 3), cross, pressure, mu, "limb_cutouts = [" + points(rectangle(-0.05, -0.05, 0.05, 0.05)) + "]"));
   CHECK(r.last("joint.area") == doctest::Approx(area).epsilon(1e-13));
   const double distance = v * v / (2.0 * deceleration); // at rest from 0.42 s on
   CHECK(std::hypot(r.last("slider.x"), r.last("slider.y")) == doctest::Approx(distance).epsilon(1e-9));
@@ -249,8 +246,8 @@ TEST_CASE("a cross with a square hole slides as far as its area lets it") {
 TEST_CASE("cutouts that cannot be meant are named with their place in the file") {
   const auto message = [](const std::string& rings) -> std::string {
     try {
-      static_cast<void>(run_text(header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
-                                 body("slider", 1.0, 1.0, {7, 0}) + joint("slider", "ground") +
+      static_cast<void>(run_text(header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) + body("slider", 1.0, 1.0, {7, 0}) +
+                                 joint("slider", "ground") +
                                  interface(rectangle(5, -2, 9, 2), rectangle(6, -1, 8, 1), 1.0, 0.1,
                                            "limb_holes = [[7.5, 0.5]]\nhole_diameter = 0.2\nlimb_cutouts = " + rings)));
     } catch (const steplap::ModelError& error) {
@@ -290,13 +287,13 @@ TEST_CASE("models that cannot be meant are refused with the place and the reason
     }
     return "";
   };
-  const std::string start = header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
-                            body("slider", 1.0, 1.0, {0, 0}) + joint("slider", "ground");
-  CHECK(message(start + interface(rectangle(1, 1, 2, 2), rectangle(3, 3, 4, 4), 1.0, 0.1)).find("do not overlap") !=
-        std::string::npos);
+  const std::string start =
+      header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) + body("slider", 1.0, 1.0, {0, 0}) + joint("slider", "ground");
+  CHECK(message(start + interface(rectangle(1, 1, 2, 2), rectangle(3, 3, 4, 4), 1.0, 0.1)).find("do not overlap") != std::string::npos);
   CHECK(message(start + interface(rectangle(-1, -1, 2, 2), {{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 1.0, 0.1)).find("'limb': outer ring") !=
         std::string::npos);
   CHECK(message(start + interface(rectangle(-1, -1, 2, 2), rectangle(0, 0, 1, 1), 1.0, 0.1, "kinetic_friction = 0.2"))
             .find("must not exceed") != std::string::npos);
-  CHECK(message(start + interface(rectangle(-1, -1, 2, 2), rectangle(0, 0, 1, 1), 1e308, 100.0)).find("traction that is no number") != std::string::npos);
+  CHECK(message(start + interface(rectangle(-1, -1, 2, 2), rectangle(0, 0, 1, 1), 1e308, 100.0)).find("traction that is no number") !=
+        std::string::npos);
 }

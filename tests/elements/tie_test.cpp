@@ -77,9 +77,9 @@ TEST_CASE("a tie breaks at its strength: what it had stored is dissipated, and i
 
 TEST_CASE("a tie that must not break ends the run, and a broken one is rejected") {
   const auto model = [](const std::string& fields) {
-    return steplap::parse_model(block("end = 0.05\nintegrator = \"dop853\"\ntolerance = 1e-10", 1e-3, {0.6, 0.0},
-                                      tie("stiffness = 5e4\n" + fields)),
-                                "scene.toml", steplap::transformer_catalog());
+    return steplap::parse_model(
+        block("end = 0.05\nintegrator = \"dop853\"\ntolerance = 1e-10", 1e-3, {0.6, 0.0}, tie("stiffness = 5e4\n" + fields)), "scene.toml",
+        steplap::transformer_catalog());
   };
   const Run stopped = run(model("strength = 150.0\non_break = \"stop\""));
   CHECK(stopped.result.trajectory->times().back() < 0.01);
@@ -94,11 +94,10 @@ TEST_CASE("a tie that must not break ends the run, and a broken one is rejected"
   CHECK(outcome("strength = 250.0") == steplap::Verdict::hold); // 0.6/w · k = 190 N
 }
 
-TEST_CASE(
-    "a flitch plate beside an elastic joint: a preloaded one relieves it, a weak one breaks and hands its load on") {
+TEST_CASE("a flitch plate beside an elastic joint: a preloaded one relieves it, a weak one breaks and hands its load on") {
   const auto scene = [](const std::string& plate, const std::string& end) {
-    return header("end = " + end + "\nintegrator = \"auto\"\ntolerance = 1e-9", 1.0) +
-           body("limb", 10.0, 1.0, {0.0, 0.0}) + joint("limb", "ground", "tangential_stiffness = 1e6") +
+    return header("end = " + end + "\nintegrator = \"auto\"\ntolerance = 1e-9", 1.0) + body("limb", 10.0, 1.0, {0.0, 0.0}) +
+           joint("limb", "ground", "tangential_stiffness = 1e6") +
            interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2) +
            "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = 1000.0\nduration = 20.0\n"
            "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"limb\"\nforce_x = \"ramp\"\n"

@@ -37,14 +37,16 @@ void check_alike(const Results& a, const Results& b) {
       if (!(x[k] == y[k] || (std::isnan(x[k]) && std::isnan(y[k])))) FAIL_CHECK(a.channels[i].name << " at " << a.times[k]);
   }
   REQUIRE(a.events.size() == b.events.size());
-  for (std::size_t i = 0; i < a.events.size(); ++i) CHECK((a.events[i].t == b.events[i].t && a.events[i].element == b.events[i].element && a.events[i].kind == b.events[i].kind));
+  for (std::size_t i = 0; i < a.events.size(); ++i)
+    CHECK((a.events[i].t == b.events[i].t && a.events[i].element == b.events[i].element && a.events[i].kind == b.events[i].kind));
   CHECK(a.drawing == b.drawing);
 }
 
 } // namespace
 
 TEST_CASE("values set in memory, in the file and in a saved file give the same run") {
-  for (const char* name : {"machines/stacked_blocks", "paper/weak_clamping", "machines/crane_arm", "layouts/three_limb", "benchmarks/slider_crank"}) {
+  for (const char* name :
+       {"machines/stacked_blocks", "paper/weak_clamping", "machines/crane_arm", "layouts/three_limb", "benchmarks/slider_crank"}) {
     CAPTURE(name);
     const Workbench bench;
     ExploredModel model(model_at(name), {"simulation.end=0.05"});
@@ -59,7 +61,8 @@ TEST_CASE("values set in memory, in the file and in a saved file give the same r
     CHECK(first.judgement.verdict == second.judgement.verdict);
     CHECK(overview_of(first).reason == overview_of(second).reason);
     REQUIRE(first.findings.size() == second.findings.size());
-    for (std::size_t i = 0; i < first.findings.size(); ++i) CHECK(text_with_place(first.findings[i]) == text_with_place(second.findings[i]));
+    for (std::size_t i = 0; i < first.findings.size(); ++i)
+      CHECK(text_with_place(first.findings[i]) == text_with_place(second.findings[i]));
     // The file of the changes stands beside the model's in use; here in a copy of its folder.
     const std::string folder = bench.at("copy");
     fs::copy(fs::path(STEPLAP_MODELS), folder, fs::copy_options::recursive);
@@ -94,7 +97,8 @@ TEST_CASE("results without a folder are those that the folder gives back") {
 TEST_CASE("changes of what a file that extends another does not reach are saved as a model that stands alone") {
   const Workbench bench;
   bench.write("wheel.toml", "[[body]]\nname = \"disc\"\nmass = 2\ninertia = 1\n");
-  const std::string file = bench.write("cart.toml", "[simulation]\nend = 0.01\nstep = 1e-3\n[[part]]\nname = \"front\"\nfile = \"wheel.toml\"\n");
+  const std::string file =
+      bench.write("cart.toml", "[simulation]\nend = 0.01\nstep = 1e-3\n[[part]]\nname = \"front\"\nfile = \"wheel.toml\"\n");
   ExploredModel model(file, {});
   try {
     model.read();
@@ -124,6 +128,7 @@ TEST_CASE("a file that cannot be read any more leaves the model as it was") {
   CHECK_THROWS_AS(model.read(), ModelError);
   check_alike(before, results_of(model.run({}, {})));
   CHECK(model.files().size() == 1);
-  for (const ExploredValues& values : {ExploredValues{{"body.none.mass", 1.0}}, ExploredValues{{"body.ball.mass", std::nan("")}}, ExploredValues{{"body.ball.mass", -1.0}}, ExploredValues{{"title", 1.0}}})
+  for (const ExploredValues& values : {ExploredValues{{"body.none.mass", 1.0}}, ExploredValues{{"body.ball.mass", std::nan("")}},
+                                       ExploredValues{{"body.ball.mass", -1.0}}, ExploredValues{{"title", 1.0}}})
     CHECK_THROWS_AS((void)model.run(values, {}), ModelError);
 }

@@ -13,7 +13,12 @@ constexpr unsigned short k_port = 4242;
 const std::string k_token = "0123456789abcdef0123456789abcdef";
 
 Knock good(const std::string& method) {
-  Knock knock{method, "/" + k_token + "/run", "127.0.0.1:4242", method == "POST" ? "http://127.0.0.1:4242" : "", "", method == "POST" ? "application/json" : ""};
+  Knock knock{method,
+              "/" + k_token + "/run",
+              "127.0.0.1:4242",
+              method == "POST" ? "http://127.0.0.1:4242" : "",
+              "",
+              method == "POST" ? "application/json" : ""};
   return knock;
 }
 
@@ -31,17 +36,20 @@ TEST_CASE("what the page itself asks is let in") {
 TEST_CASE("one thing that is wrong is enough to be refused") {
   const Gate gate(k_port, k_token);
   for (const char* method : {"GET", "POST"}) {
-    for (const char* target : {"", "/", "/0123456789abcdef0123456789abcdee/run", "/0123456789abcdef0123456789abcdef", "/0123456789abcdef/", "0123456789abcdef0123456789abcdef/"}) {
+    for (const char* target : {"", "/", "/0123456789abcdef0123456789abcdee/run", "/0123456789abcdef0123456789abcdef", "/0123456789abcdef/",
+                               "0123456789abcdef0123456789abcdef/"}) {
       Knock knock = good(method);
       knock.target = target;
       CHECK_MESSAGE(gate.refusal(knock) != "", target);
     }
-    for (const char* host : {"", "127.0.0.1", "127.0.0.1:4243", "localhost:4242", "evil.example:4242", "127.0.0.1:4242.evil.example", "[::1]:4242"}) {
+    for (const char* host :
+         {"", "127.0.0.1", "127.0.0.1:4243", "localhost:4242", "evil.example:4242", "127.0.0.1:4242.evil.example", "[::1]:4242"}) {
       Knock knock = good(method);
       knock.host = host;
       CHECK_MESSAGE(gate.refusal(knock) != "", host);
     }
-    for (const char* origin : {"null", "http://evil.example", "https://127.0.0.1:4242", "http://127.0.0.1", "http://localhost:4242", "http://127.0.0.1:4242/"}) {
+    for (const char* origin :
+         {"null", "http://evil.example", "https://127.0.0.1:4242", "http://127.0.0.1", "http://localhost:4242", "http://127.0.0.1:4242/"}) {
       Knock knock = good(method);
       knock.origin = origin;
       CHECK_MESSAGE(gate.refusal(knock) != "", origin);
@@ -63,7 +71,8 @@ TEST_CASE("one thing that is wrong is enough to be refused") {
   Knock nameless = good("POST");
   nameless.origin = "";
   CHECK(gate.refusal(nameless) != "");
-  for (const char* type : {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data"}) { // what a form of another site can send
+  for (const char* type :
+       {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data"}) { // what a form of another site can send
     Knock form = good("POST");
     form.content_type = type;
     CHECK_MESSAGE(gate.refusal(form) != "", type);

@@ -17,7 +17,8 @@ TEST_CASE("every slider of every model leads to its number, and can be set to it
   long models = 0, sliders = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(STEPLAP_MODELS)) {
     const std::string path = entry.path().string();
-    if (entry.path().extension() != ".toml" || path.find("/studies/") != std::string::npos || path.find("/loads/") != std::string::npos) continue;
+    if (entry.path().extension() != ".toml" || path.find("/studies/") != std::string::npos || path.find("/loads/") != std::string::npos)
+      continue;
     Model given;
     try {
       given = read_given_model(path, program_catalogue());
@@ -58,7 +59,8 @@ name = "b"
 mass = 2
 inertia = 1
 velocity = ["= push/'1 kg'*'1 s'", 0]
-)", "a.toml", program_catalogue());
+)",
+                                        "a.toml", program_catalogue());
   const std::vector<Slider> sliders = sliders_of(model);
   REQUIRE(sliders.size() > 3);
   CHECK(sliders[0].path == "parameters.grip");
@@ -70,7 +72,9 @@ velocity = ["= push/'1 kg'*'1 s'", 0]
   CHECK(sliders[1].value == 2000.0);
   CHECK(sliders[1].unit == "N");
   CHECK_FALSE(sliders[1].has_own_range);
-  const auto has = [&](const std::string& path) { return std::any_of(sliders.begin(), sliders.end(), [&](const Slider& s) { return s.path == path; }); };
+  const auto has = [&](const std::string& path) {
+    return std::any_of(sliders.begin(), sliders.end(), [&](const Slider& s) { return s.path == path; });
+  };
   CHECK(has("body.b.mass"));
   CHECK(has("body.b.velocity.1"));
   CHECK_FALSE(has("parameters.half"));

@@ -42,7 +42,9 @@ TEST_CASE("the most urgent task is done first, and of the same owner the newest 
   std::promise<void> last;
   WorkQueue queue;
   Busy busy(queue);
-  const auto task = [&done](char name) { return [&done, name](const WorkQueue::IsStale& is_stale) { done += is_stale() ? static_cast<char>(name - 'a' + 'A') : name; }; };
+  const auto task = [&done](char name) {
+    return [&done, name](const WorkQueue::IsStale& is_stale) { done += is_stale() ? static_cast<char>(name - 'a' + 'A') : name; };
+  };
   REQUIRE(queue.add(Urgency::background, "", task('m')));
   REQUIRE(queue.add(Urgency::drag, "one", task('a')));
   REQUIRE(queue.add(Urgency::page, "", task('r')));

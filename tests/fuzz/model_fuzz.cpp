@@ -1,8 +1,8 @@
 // Model files: read, compiled, joints closed, run for a short while and judged.
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/assembly.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/fuzz/fuzz.h"
 #include "transformer/catalog.h"
@@ -22,8 +22,7 @@ void run_a_little(const Model& model, const System& system, const State& start) 
   options.end = std::min(options.end, k_most);
   options.output_step = 0.25 * options.end;
   Simulation simulation(system, start, options);
-  while (simulation.statistics().evaluations < k_most_evaluations && simulation.advance()) {
-  }
+  while (simulation.statistics().evaluations < k_most_evaluations && simulation.advance()) {}
   const RunResult result = std::move(simulation).result();
   (void)judge(model, system, result, "");
 }

@@ -8,11 +8,11 @@
 // An answer is a run, an error of the model or a numerical failure; everything else is a finding: signals, other exceptions, memory
 // beyond 4 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/assembly.h"
-#include "mbd/rest/equilibrium.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/simulation/simulation.h"
 #include "run/findings.h"
 #include "run/report.h"
@@ -46,10 +46,10 @@ constexpr std::uint64_t k_memory = 4'000'000'000ULL; // bytes
 
 struct Options {
   std::uint64_t count = 0, seed = 1, first = 0;
-  unsigned limit = 10;           // s of a processor
-  long evaluations = 0;          // after which a run is left; 0: none is
-  std::uint64_t whole = 0;       // one in so many cases goes the whole way; 0: none
-  std::string said;              // file for the counts so far
+  unsigned limit = 10;     // s of a processor
+  long evaluations = 0;    // after which a run is left; 0: none is
+  std::uint64_t whole = 0; // one in so many cases goes the whole way; 0: none
+  std::string said;        // file for the counts so far
   bool shows = false, times = false;
   std::vector<fs::path> files;
 
@@ -138,8 +138,9 @@ void run_one(const std::string& text, const fs::path& file, bool is_whole, long 
     alarm(30 * options.limit); // whoever waits for a file takes no processor time
     run_one(cases.text_of(i), cases.files[cases.file_of(i)], options.is_whole(i), options.evaluations, progress);
     if (!options.said.empty() && i % 500 == 0)
-      std::ofstream(options.said) << i + 1 - options.first << " of " << options.count << " cases, " << progress.run << " run, " << progress.left << " left, "
-                                  << progress.refused << " refused, " << progress.failed << " could not be followed\n";
+      std::ofstream(options.said) << i + 1 - options.first << " of " << options.count << " cases, " << progress.run << " run, "
+                                  << progress.left << " left, " << progress.refused << " refused, " << progress.failed
+                                  << " could not be followed\n";
   }
   std::_Exit(0);
 }
@@ -147,7 +148,8 @@ void run_one(const std::string& text, const fs::path& file, bool is_whole, long 
 void add_files(const fs::path& path, std::vector<fs::path>& files) {
   if (!fs::is_directory(path)) return files.push_back(path);
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    const bool is_model = entry.path().extension() == ".toml" || (!entry.path().has_extension() && path.string().find("corpus") != std::string::npos);
+    const bool is_model =
+        entry.path().extension() == ".toml" || (!entry.path().has_extension() && path.string().find("corpus") != std::string::npos);
     if (entry.is_regular_file() && is_model) files.push_back(entry.path());
   }
 }
@@ -174,17 +176,20 @@ int storm(const Cases& cases, const Options& options) {
     const std::uint64_t at = progress.number;
     const bool is_hang = WIFSIGNALED(status) && (WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGPROF);
     ++(is_hang ? hangs : crashes);
-    std::printf("%s: seed %llu, case %llu%s, %s, %s\n", is_hang ? "hang" : "crash", Number{cases.seed}, Number{at}, options.is_whole(at) ? " (whole)" : "",
-                cases.files[cases.file_of(at)].c_str(), ending_of(status));
+    std::printf("%s: seed %llu, case %llu%s, %s, %s\n", is_hang ? "hang" : "crash", Number{cases.seed}, Number{at},
+                options.is_whole(at) ? " (whole)" : "", cases.files[cases.file_of(at)].c_str(), ending_of(status));
     next = at + 1;
   }
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);
-  const double seconds = static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-  std::printf("%llu cases of seed %llu from %llu: %llu run, %llu left after %ld evaluations, %llu refused, %llu could not be followed, %llu the whole way, "
+  const double seconds = static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  std::printf("%llu cases of seed %llu from %llu: %llu run, %llu left after %ld evaluations, %llu refused, %llu could not be followed, "
+              "%llu the whole way, "
               "%llu crashes, %llu beyond %u s; %.0f a second of a processor\n",
-              Number{options.count}, Number{cases.seed}, Number{options.first}, Number{progress.run}, Number{progress.left}, options.evaluations, Number{progress.refused},
-              Number{progress.failed}, Number{progress.whole}, crashes, hangs, options.limit, static_cast<double>(options.count) / seconds);
+              Number{options.count}, Number{cases.seed}, Number{options.first}, Number{progress.run}, Number{progress.left},
+              options.evaluations, Number{progress.refused}, Number{progress.failed}, Number{progress.whole}, crashes, hangs, options.limit,
+              static_cast<double>(options.count) / seconds);
   return crashes > 0 ? 1 : 0;
 }
 
@@ -224,7 +229,8 @@ Cases cases_of(const Options& options) {
   cases.files = options.files;
   const auto is_of_corpus = [](const fs::path& file) {
     const std::string folder = file.parent_path().string();
-    return folder.find("corpus") != std::string::npos || folder.find("malformed") != std::string::npos || folder.find("studies") != std::string::npos;
+    return folder.find("corpus") != std::string::npos || folder.find("malformed") != std::string::npos ||
+           folder.find("studies") != std::string::npos;
   };
   const auto is_before = [&](const fs::path& a, const fs::path& b) { // folders list their files in any order
     return is_of_corpus(a) != is_of_corpus(b) ? is_of_corpus(b) : a < b;
@@ -244,7 +250,8 @@ Cases cases_of(const Options& options) {
 int main(int argc, char** argv) {
   const Options options = options_of(argc, argv);
   if (options.files.empty()) {
-    std::fprintf(stderr, "usage: mutated_models [--show | --times] COUNT_OR_NUMBER SEED [--first NUMBER] [--limit SECONDS] [--evaluations COUNT] [--whole NUMBER]\n"
+    std::fprintf(stderr, "usage: mutated_models [--show | --times] COUNT_OR_NUMBER SEED [--first NUMBER] [--limit SECONDS] [--evaluations "
+                         "COUNT] [--whole NUMBER]\n"
                          "                      [--said FILE] FILE_OR_FOLDER...\n");
     return 2;
   }

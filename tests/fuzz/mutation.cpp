@@ -93,7 +93,10 @@ private:
   void change() {
     if (is_gentle_ && random_.chance(0.9)) return change_number();
     switch (random_.below(12)) {
-    case 0: case 1: case 2: case 3: return change_number();
+    case 0:
+    case 1:
+    case 2:
+    case 3: return change_number();
     case 4: return change_word();
     case 5: return change_lines();
     case 6: return move_key();
@@ -103,11 +106,36 @@ private:
     }
   }
 
-  template <class T> std::size_t any(const std::vector<T>& of) { return static_cast<std::size_t>(random_.below(static_cast<int>(of.size()))); }
+  template <class T> std::size_t any(const std::vector<T>& of) {
+    return static_cast<std::size_t>(random_.below(static_cast<int>(of.size())));
+  }
 
   void change_number() {
-    static const std::vector<std::string> extremes = {"0", "-0.0", "1", "-1", "2", "1e-300", "-1e-300", "1e-20", "1e-12", "1e-9", "1e-6", "1e6", "1e9", "1e12", "1e20",
-                                                      "1e300", "-1e300", "1e-320", "nan", "inf", "-inf", "9223372036854775807", "2147483648", "0.1", "3.141592653589793"};
+    static const std::vector<std::string> extremes = {"0",
+                                                      "-0.0",
+                                                      "1",
+                                                      "-1",
+                                                      "2",
+                                                      "1e-300",
+                                                      "-1e-300",
+                                                      "1e-20",
+                                                      "1e-12",
+                                                      "1e-9",
+                                                      "1e-6",
+                                                      "1e6",
+                                                      "1e9",
+                                                      "1e12",
+                                                      "1e20",
+                                                      "1e300",
+                                                      "-1e300",
+                                                      "1e-320",
+                                                      "nan",
+                                                      "inf",
+                                                      "-inf",
+                                                      "9223372036854775807",
+                                                      "2147483648",
+                                                      "0.1",
+                                                      "3.141592653589793"};
     const Spans numbers = numbers_in(text_);
     if (numbers.empty()) return;
     const auto [begin, length] = numbers[any(numbers)];
@@ -115,9 +143,11 @@ private:
     std::string now;
     switch (random_.below(8)) {
     case 0: now = extremes[any(extremes)]; break;
-    case 1: case 2: now = random::number(value * random_.decades(-12.0, 12.0)); break;
+    case 1:
+    case 2: now = random::number(value * random_.decades(-12.0, 12.0)); break;
     case 3: now = random::number(value * random_.decades(-2.0, 2.0)); break;
-    case 4: case 5: now = random::number(random_.chance(0.5) ? -value : value * (1.0 + 1e-6 * random_.either(0.1, 1.0))); break;
+    case 4:
+    case 5: now = random::number(random_.chance(0.5) ? -value : value * (1.0 + 1e-6 * random_.either(0.1, 1.0))); break;
     default: {
       const auto [from, size] = numbers[any(numbers)];
       now = text_.substr(from, size);

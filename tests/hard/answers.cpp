@@ -13,8 +13,7 @@ constexpr double k_g = 9.81, k_pi = 3.14159265358979323846;
 constexpr double k_wrong = 1.0; // events are missing or too many
 
 // Of the first event of a kind, if it is the only one.
-double time_error(const Finished& run, const std::string& element, const std::string& what,
-                  double expected) {
+double time_error(const Finished& run, const std::string& element, const std::string& what, double expected) {
   const std::vector<double> times = run.event_times(element, what);
   return times.size() == 1 ? std::abs(times[0] - expected) : k_wrong;
 }
@@ -42,8 +41,7 @@ Answer two_springs(double ratio) {
       double x = 1.0;
       for (const double lambda : {low, high}) {
         const double phi = stiff / (stiff - lambda); // of x₁ = 1, from the second equation
-        x +=
-            10.0 * phi * phi / (1.0 + phi * phi) / lambda * (1.0 - std::cos(std::sqrt(lambda) * t));
+        x += 10.0 * phi * phi / (1.0 + phi * phi) / lambda * (1.0 - std::cos(std::sqrt(lambda) * t));
       }
       return x;
     };
@@ -55,22 +53,19 @@ Answer two_springs(double ratio) {
 // g)²/(2 k).
 double bounce_to_rest(const Finished& run) {
   const double k = 1e5, sunk = k_g / k, lost = k_g * 1.0 + 0.5 * k_g * k_g / k;
-  return std::max(std::abs(run.last("ball.y") + sunk),
-                  std::abs(run.result.statistics.dissipated - lost) / lost);
+  return std::max(std::abs(run.last("ball.y") + sunk), std::abs(run.result.statistics.dissipated - lost) / lost);
 }
 
 // Flight √(2h/g) up and down; in contact y = −m g/k + … with ω² = k/m: half a period and what
 // gravity adds, t = (2/ω)(π − atan(v ω/g)), v the speed of impact.
 double bounce_for_ever(const Finished& run) {
   const double omega = std::sqrt(1e5), fall = std::sqrt(2.0 / k_g), v = k_g * fall;
-  const double contact = 2.0 / omega * (k_pi - std::atan(v * omega / k_g)),
-               period = 2.0 * fall + contact;
+  const double contact = 2.0 / omega * (k_pi - std::atan(v * omega / k_g)), period = 2.0 * fall + contact;
   const std::vector<double> closes = run.event_times("floor", "closes");
   const auto expected = static_cast<std::size_t>((run.times().back() - fall) / period) + 1;
   if (closes.size() != expected) return k_wrong;
   double worst = 0.0;
-  for (std::size_t i = 0; i < closes.size(); ++i)
-    worst = std::max(worst, std::abs(closes[i] - fall - static_cast<double>(i) * period));
+  for (std::size_t i = 0; i < closes.size(); ++i) worst = std::max(worst, std::abs(closes[i] - fall - static_cast<double>(i) * period));
   return worst / period;
 }
 
@@ -82,12 +77,10 @@ struct Dip {
   double middle, half;
 };
 std::vector<Dip> dips(const Finished& run) {
-  const std::vector<double> closes = run.event_times("ground", "closes"),
-                            opens = run.event_times("ground", "opens");
+  const std::vector<double> closes = run.event_times("ground", "closes"), opens = run.event_times("ground", "opens");
   std::vector<Dip> found;
   if (closes.size() != opens.size()) return found;
-  for (std::size_t i = 0; i < closes.size(); ++i)
-    found.push_back({0.5 * (closes[i] + opens[i]), 0.5 * (opens[i] - closes[i])});
+  for (std::size_t i = 0; i < closes.size(); ++i) found.push_back({0.5 * (closes[i] + opens[i]), 0.5 * (opens[i] - closes[i])});
   return found;
 }
 
@@ -127,8 +120,7 @@ double belt_cycles(const Finished& run) {
   const double first = std::asin(speed / (middle * omega)) / omega;
   const double x1 = middle * (1.0 - std::cos(omega * first));
   const double carried = (middle + delta - x1) / speed;
-  const double slip = (2.0 * k_pi - 2.0 * std::atan(delta * omega / speed)) / omega,
-               stick = 2.0 * delta / speed;
+  const double slip = (2.0 * k_pi - 2.0 * std::atan(delta * omega / speed)) / omega, stick = 2.0 * delta / speed;
   const std::vector<double> sticks = run.event_times("friction", "sticks");
   const double cycles = (run.result.final_state.t - first - carried) / (slip + stick);
   if (std::abs(static_cast<double>(sticks.size()) - cycles) > 2.0) return k_wrong;
@@ -160,8 +152,7 @@ double slips_by_a_hair(const Finished& run) {
 // of the block's height, 1e-17 m, as 1e-12 N.
 double slow_ramp(const Finished& run) {
   const double path = 1e-6 / 6.0; // at 2 s
-  return std::max(time_error(run, "friction", "slips forward", 1.0),
-                  1e-3 * std::abs(run.last("block.x") / path - 1.0));
+  return std::max(time_error(run, "friction", "slips forward", 1.0), 1e-3 * std::abs(run.last("block.x") / path - 1.0));
 }
 
 // 12 N/s against (0.3 + 0.5) 9.81 N; then x = r (t − t₁)³/(6 m). How the feet share the load before
@@ -179,8 +170,7 @@ double ten_blocks(const Finished& run) {
   double worst = 0.0;
   for (int i = 1; i <= 10; ++i) {
     const std::string n = std::to_string(i);
-    worst = std::max(
-        worst, std::abs(run.last("block " + n + ".x") - 2.0 * i - rate * left * left * left / 6.0));
+    worst = std::max(worst, std::abs(run.last("block " + n + ".x") - 2.0 * i - rate * left * left * left / 6.0));
   }
   return std::max(worst, common_slip_error(run, 10, onset));
 }
@@ -188,9 +178,7 @@ double ten_blocks(const Finished& run) {
 } // namespace
 
 // Apart, or joined by rods, which make the rows of sticking blocks dependent on each other.
-double ten_at_once(const Finished& run) {
-  return ten_blocks(run);
-}
+double ten_at_once(const Finished& run) { return ten_blocks(run); }
 
 namespace {
 
@@ -201,8 +189,7 @@ double rocking_angle(double end) {
   struct State {
     double y, theta, vy, omega;
   };
-  const double m = 100.0, inertia = 60.0, k = 4e5, half = 0.5, height = 0.8,
-               sunk = m * k_g / (2.0 * k);
+  const double m = 100.0, inertia = 60.0, k = 4e5, half = 0.5, height = 0.8, sunk = m * k_g / (2.0 * k);
   const auto rates = [&](const State& s) {
     State d{s.vy, s.omega, -k_g, 0.0};
     for (const double side : {-half, half}) { // the foot (side, −height) in the box's axes
@@ -221,11 +208,9 @@ double rocking_angle(double end) {
   const double h = end / steps;
   State s{height, 0.0, 0.0, 0.8};
   for (int i = 0; i < steps; ++i) {
-    const State a = rates(s), b = rates(moved(s, a, 0.5 * h)), c = rates(moved(s, b, 0.5 * h)),
-                d = rates(moved(s, c, h));
+    const State a = rates(s), b = rates(moved(s, a, 0.5 * h)), c = rates(moved(s, b, 0.5 * h)), d = rates(moved(s, c, h));
     s = moved(s,
-              {a.y + 2.0 * b.y + 2.0 * c.y + d.y, a.theta + 2.0 * b.theta + 2.0 * c.theta + d.theta,
-               a.vy + 2.0 * b.vy + 2.0 * c.vy + d.vy,
+              {a.y + 2.0 * b.y + 2.0 * c.y + d.y, a.theta + 2.0 * b.theta + 2.0 * c.theta + d.theta, a.vy + 2.0 * b.vy + 2.0 * c.vy + d.vy,
                a.omega + 2.0 * b.omega + 2.0 * c.omega + d.omega},
               h / 6.0);
   }
@@ -234,34 +219,26 @@ double rocking_angle(double end) {
 
 } // namespace
 
-double rocking(const Finished& run) {
-  return std::abs(run.last("box.theta") - rocking_angle(run.times().back()));
-}
+double rocking(const Finished& run) { return std::abs(run.last("box.theta") - rocking_angle(run.times().back())); }
 
 // Light (1 kg) at distance 1 m from heavy (r kg), which rests while it moves at 2 m/s across: 2
 // rad/s about the common centre of gravity, which moves at 2/(1 + r).
 Answer dumbbell(double ratio) {
   return [ratio](const Finished& run) {
-    const double omega = 2.0, arm = ratio / (1.0 + ratio), centre = 1.0 / (1.0 + ratio),
-                 drift = 2.0 / (1.0 + ratio);
-    return std::max(
-        {run.worst("light.x", [&](double t) { return centre + arm * std::cos(omega * t); }),
-         run.worst("light.y", [&](double t) { return drift * t + arm * std::sin(omega * t); }),
-         run.worst("heavy.x",
-                   [&](double t) { return centre - (1.0 - arm) * std::cos(omega * t); })});
+    const double omega = 2.0, arm = ratio / (1.0 + ratio), centre = 1.0 / (1.0 + ratio), drift = 2.0 / (1.0 + ratio);
+    return std::max({run.worst("light.x", [&](double t) { return centre + arm * std::cos(omega * t); }),
+                     run.worst("light.y", [&](double t) { return drift * t + arm * std::sin(omega * t); }),
+                     run.worst("heavy.x", [&](double t) { return centre - (1.0 - arm) * std::cos(omega * t); })});
   };
 }
 
 // u = x₁ − x₂ + 1 swings with ω² = k (1 + 1/r)/m, the centre of gravity moves on.
 Answer two_masses(double ratio) {
   return [ratio](const Finished& run) {
-    const double k = ratio > 1.0 ? 100.0 : 1e-4, v = 0.1,
-                 omega = std::sqrt(k * (1.0 + 1.0 / ratio)), drift = v / (1.0 + ratio);
+    const double k = ratio > 1.0 ? 100.0 : 1e-4, v = 0.1, omega = std::sqrt(k * (1.0 + 1.0 / ratio)), drift = v / (1.0 + ratio);
     const double arm = ratio / (1.0 + ratio), amplitude = v / omega;
     const auto light = [&](double t) { return drift * t + arm * amplitude * std::sin(omega * t); };
-    const auto heavy = [&](double t) {
-      return 1.0 + drift * t - (1.0 - arm) * amplitude * std::sin(omega * t);
-    };
+    const auto heavy = [&](double t) { return 1.0 + drift * t - (1.0 - arm) * amplitude * std::sin(omega * t); };
     return std::max(run.worst("light.x", light), run.worst("heavy.x", heavy)) / amplitude;
   };
 }
@@ -272,8 +249,7 @@ double parallelogram(const Finished& run) {
   const auto angle = [](double t) { return 0.5 + 2.0 * t; };
   return std::max({run.worst("coupler.x", [&](double t) { return 1.0 + std::cos(angle(t)); }),
                    run.worst("coupler.y", [&](double t) { return std::sin(angle(t)); }),
-                   run.worst("coupler.theta", [](double) { return 0.0; }),
-                   run.worst("second.theta", angle)});
+                   run.worst("coupler.theta", [](double) { return 0.0; }), run.worst("second.theta", angle)});
 }
 
 // Three cranks (1 kg, 0.1 kg m², pinned at 0.5 m from their centre of gravity) and a coupler of 2
@@ -285,24 +261,20 @@ double redundant_loop(const Finished& run) {
   for (int i = 0; i < static_cast<int>(std::lround(end / h)); ++i) {
     const double k1 = -c * std::cos(theta), k2 = -c * std::cos(theta + 0.5 * h * omega),
                  k3 = -c * std::cos(theta + 0.5 * h * omega + 0.25 * h * h * k1),
-                 k4 = -c * std::cos(theta + h * omega +
-                                    0.5 * h * h * k2); // Nyström's form: no velocity in the force
+                 k4 = -c * std::cos(theta + h * omega + 0.5 * h * h * k2); // Nyström's form: no velocity in the force
     theta += h * omega + h * h / 6.0 * (k1 + k2 + k3);
     omega += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
   }
-  return std::max(std::abs(run.last("first.theta") - theta),
-                  std::abs(run.last("third.theta") - theta));
+  return std::max(std::abs(run.last("first.theta") - theta), std::abs(run.last("third.theta") - theta));
 }
 
 namespace {
 
 // A ramp r t against a constant capacity C and inertia m: onset at C/r, then r (t − C/r)³/(6 m).
-double ramped(const Finished& run, const std::string& channel, double rate, double capacity,
-              double inertia) {
+double ramped(const Finished& run, const std::string& channel, double rate, double capacity, double inertia) {
   const double onset = capacity / rate, left = run.times().back() - onset;
   const double path = rate * left * left * left / (6.0 * inertia);
-  return std::max(time_error(run, "joint", "slips", onset),
-                  std::abs(run.last(channel) / path - 1.0));
+  return std::max(time_error(run, "joint", "slips", onset), std::abs(run.last(channel) / path - 1.0));
 }
 
 constexpr double k_traction = 100.0 * 0.25 * 1e5; // n μ p, Pa
@@ -312,21 +284,17 @@ constexpr double k_traction = 100.0 * 0.25 * 1e5; // n μ p, Pa
 // ∬|r| dA over a square of side a = a³ (√2 + ln(1 + √2))/6; the limb's sheet stays inside the
 // yoke's.
 double patch_rotation(const Finished& run) {
-  const double moment =
-      k_traction * std::pow(0.6, 3) * (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0))) / 6.0;
+  const double moment = k_traction * std::pow(0.6, 3) * (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0))) / 6.0;
   return ramped(run, "limb.theta", 4e6, moment, 700.0);
 }
 
-double patch_translation(const Finished& run) {
-  return ramped(run, "limb.x", 1.8e7, k_traction * 0.36, 1000.0);
-}
+double patch_translation(const Finished& run) { return ramped(run, "limb.x", 1.8e7, k_traction * 0.36, 1000.0); }
 
 // 60 kN against 50 kN (1 − x/w), w = 20 mm: u = x + w (60 − 50)/50 grows as cosh √(50 kN/(m w)) t
 // until x = w.
 double patch_vanishes(const Finished& run) {
   const double w = 0.02, capacity = k_traction * w, lead = w * (60e3 - capacity) / capacity;
-  const double rate = std::sqrt(capacity / (1000.0 * w)),
-               apart = std::acosh((w + lead) / lead) / rate;
+  const double rate = std::sqrt(capacity / (1000.0 * w)), apart = std::acosh((w + lead) / lead) / rate;
   return time_error(run, "joint", "comes apart", apart) / apart;
 }
 
@@ -351,8 +319,7 @@ double path_under(const std::vector<double>& t, const std::vector<double>& f, do
 } // namespace
 
 double noisy_record(const Finished& run) {
-  const CsvTable table =
-      read_csv(std::string(STEPLAP_MODELS) + "/benchmarks/hard/noise_4khz.csv", {});
+  const CsvTable table = read_csv(std::string(STEPLAP_MODELS) + "/benchmarks/hard/noise_4khz.csv", {});
   const double path = path_under(table.columns[0], table.columns[1], run.times().back());
   return std::abs(run.last("mass.x") / path - 1.0);
 }
@@ -360,8 +327,7 @@ double noisy_record(const Finished& run) {
 // 10 N from 0.12345 s for 0.3 s; a triangle of −30 N from 0.23456 s for 0.2 s.
 double jumps(const Finished& run) {
   const double end = run.times().back();
-  const double path = path_under({0.12345, 0.42345}, {10.0, 10.0}, end) +
-                      path_under({0.23456, 0.33456, 0.43456}, {0.0, -30.0, 0.0}, end);
+  const double path = path_under({0.12345, 0.42345}, {10.0, 10.0}, end) + path_under({0.23456, 0.33456, 0.43456}, {0.0, -30.0, 0.0}, end);
   return std::abs(run.last("mass.x") / path - 1.0);
 }
 

@@ -21,16 +21,12 @@ struct Finished {
   const RunResult& result;
 
   [[nodiscard]] const std::vector<double>& times() const { return result.trajectory->times(); }
-  [[nodiscard]] std::vector<double> series(const std::string& channel) const {
-    return result.trajectory->series(channel);
-  }
+  [[nodiscard]] std::vector<double> series(const std::string& channel) const { return result.trajectory->series(channel); }
   [[nodiscard]] double last(const std::string& channel) const { return series(channel).back(); }
   /// Of one element with one description.
-  [[nodiscard]] std::vector<double> event_times(const std::string& element,
-                                                const std::string& what) const;
+  [[nodiscard]] std::vector<double> event_times(const std::string& element, const std::string& what) const;
   /// Largest |channel − exact(t)| over the samples.
-  [[nodiscard]] double worst(const std::string& channel,
-                             const std::function<double(double t)>& exact) const;
+  [[nodiscard]] double worst(const std::string& channel, const std::function<double(double t)>& exact) const;
 };
 
 struct HardCase {
@@ -43,8 +39,7 @@ struct HardCase {
   std::string unit; ///< what the error is relative to
   /// A method that is only of first order is held to this instead; 0: it is not fit for the case.
   double first_order_bound = 1e-2;
-  std::vector<std::string> shortened =
-      {}; ///< overrides for a test, where the whole case takes seconds
+  std::vector<std::string> shortened = {}; ///< overrides for a test, where the whole case takes seconds
 };
 
 [[nodiscard]] const std::vector<HardCase>& hard_cases();
@@ -64,7 +59,7 @@ struct Outcome {
 [[nodiscard]] double bound_for(const HardCase& hard_case, const std::string& integrator);
 
 /// Never throws NumericalFailure. `more`: overrides after those of the case.
-[[nodiscard]] Outcome run(const HardCase& hard_case, const std::string& integrator,
-                          bool is_shortened, const std::vector<std::string>& more = {});
+[[nodiscard]] Outcome run(const HardCase& hard_case, const std::string& integrator, bool is_shortened,
+                          const std::vector<std::string>& more = {});
 
 } // namespace steplap::hard

@@ -46,8 +46,7 @@ void print_table(bool is_short) {
 }
 
 const HardCase& case_of(const std::string& file, const std::string& unit) {
-  return *std::find_if(hard_cases().begin(), hard_cases().end(),
-                       [&](const HardCase& c) { return c.file == file && c.unit == unit; });
+  return *std::find_if(hard_cases().begin(), hard_cases().end(), [&](const HardCase& c) { return c.file == file && c.unit == unit; });
 }
 
 // Of a foot that grazes: depth and time of contact against tolerance.

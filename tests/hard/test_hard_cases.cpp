@@ -1,7 +1,7 @@
 // Every hard case under every integrator: the known answer, energy, constraints, no number that is
 // none.
-#include "tests/sanitized.h"
 #include "tests/hard/hard_cases.h"
+#include "tests/sanitized.h"
 
 #include <doctest/doctest.h>
 

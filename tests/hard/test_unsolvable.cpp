@@ -1,8 +1,8 @@
 // Problems that have no solution, or none in a lifetime: a clear stop, with what there is saved,
 // never a hang.
-#include "mbd/trust/accuracy_study.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/accuracy_study.h"
 #include "tests/tools/workbench.h"
 #include "transformer/catalog.h"
 
@@ -76,7 +76,8 @@ TEST_CASE("joints and ropes at distances beyond all numbers are refused") {
   REQUIRE(has(four_bar, last));
   four_bar.replace(four_bar.find(last), last.size(), "b = { body = \"ground\", point = [1e300,0] }");
   is_refused(four_bar, "cannot be assembled: distances are beyond what numbers hold");
-  is_refused(scene("[[element]]\nkind = \"rope\"\nname = \"rope\"\na = \"mass\"\nb = { body = \"ground\", at = [-1e300, 0.0] }\ninextensible = true\n"),
+  is_refused(scene("[[element]]\nkind = \"rope\"\nname = \"rope\"\na = \"mass\"\nb = { body = \"ground\", at = [-1e300, 0.0] "
+                   "}\ninextensible = true\n"),
              "distances are beyond what numbers hold");
 }
 
@@ -110,10 +111,8 @@ TEST_CASE("infinite and undefined numbers are refused where they stand") {
 TEST_CASE("a record with a value that is no number is refused with file and line") {
   const Workbench bench;
   bench.write("record.csv", "t,f\n0.0,1.0\n0.1,nan\n0.2,1.0\n");
-  const Outcome outcome = simulated(
-      bench,
-      scene("[[signal]]\nname = \"r\"\nkind = \"record\"\nfile = \"record.csv\"\n[[element]]\nkind "
-            "= \"load\"\nname = \"push\"\nat = \"mass\"\nforce_x = \"r\"\n"));
+  const Outcome outcome = simulated(bench, scene("[[signal]]\nname = \"r\"\nkind = \"record\"\nfile = \"record.csv\"\n[[element]]\nkind "
+                                                 "= \"load\"\nname = \"push\"\nat = \"mass\"\nforce_x = \"r\"\n"));
   CAPTURE(outcome.err);
   CHECK(outcome.code == 3);
   CHECK(has(outcome.err, "record.csv:3"));
@@ -137,13 +136,10 @@ as = "velocity"
   is_given_up(scene(drives), "way'");
 }
 
-TEST_CASE("a step of which it would take 1e12 is refused") {
-  is_refused(scene("", "integrator = \"rk4\"\nstep = 1e-12"), "1e+12 steps");
-}
+TEST_CASE("a step of which it would take 1e12 is refused") { is_refused(scene("", "integrator = \"rk4\"\nstep = 1e-12"), "1e+12 steps"); }
 
 // An adaptive method finds its steps while it runs: what they add up to is seen after a few.
-TEST_CASE(
-    "a motion so fast that adaptive steps would never end is given up, with what there is saved") {
+TEST_CASE("a motion so fast that adaptive steps would never end is given up, with what there is saved") {
   const Workbench bench;
   const std::string text = scene("[[element]]\nkind = \"spring_damper\"\nname = \"glass\"\na = "
                                  "\"mass\"\naxis = [0.0, 1.0]\nstiffness = 1e27\n",

@@ -1,10 +1,10 @@
 #include "tests/honest/honesty.h"
 
+#include "mbd/io/reader.h"
+#include "mbd/model/validate.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/equilibrium.h"
 #include "mbd/trust/event_match.h"
-#include "mbd/io/reader.h"
-#include "mbd/model/validate.h"
 #include "transformer/catalog.h"
 
 #include <algorithm>
@@ -49,8 +49,19 @@ void look_at(Honesty& h, const std::string& where, double value, double truth, d
 // The instant at which a contact's force passes to another foot is felt by nothing else, and known less well. Nor is a slip of no
 // length, by chance on the bound.
 bool is_felt_by_others(const std::vector<Event>& events, const Event& event, double end) {
-  const auto is_at_once = [&](const Event& other) { return &other != &event && other.element == event.element && std::abs(other.t - event.t) <= k_no_length * end; };
+  const auto is_at_once = [&](const Event& other) {
+    return &other != &event && other.element == event.element && std::abs(other.t - event.t) <= k_no_length * end;
+  };
   return !is_kink(event.kind) && event.kind != EventKind::changes_foot && std::none_of(events.begin(), events.end(), is_at_once);
+}
+
+// Of channels in the same unit: beside it there is rounding.
+std::map<std::string, double> largest_by_unit(const std::vector<ChannelRange>& ranges) {
+  std::map<std::string, double> largest;
+  for (const ChannelRange& t : ranges)
+    for (const double value : {t.low.value, t.high.value, t.channel->unit.starts_with("rad") ? 1.0 : 0.0})
+      if (std::isfinite(value)) largest[t.channel->unit] = std::max(largest[t.channel->unit], std::abs(value));
+  return largest;
 }
 
 } // namespace
@@ -93,11 +104,10 @@ Judged Truth::judged(const std::string& integrator, double setting) const {
       energies{"dissipation, work"};
   const double end = run.final_state.t;
   const EventMatch match = match_events(run.events, truth_.events), own = match_events(truth_.events, second_.events);
-  std::map<std::string, double> largest; // of channels in the same unit: beside it there is rounding
-  for (const ChannelRange& t : truth_.ranges)
-    for (const double value : {t.low.value, t.high.value, t.channel->unit.starts_with("rad") ? 1.0 : 0.0})
-      if (std::isfinite(value)) largest[t.channel->unit] = std::max(largest[t.channel->unit], std::abs(value));
-  const auto rounding = [&](const Channel& channel) { return k_rounding * largest[channel.unit]; };
+  const std::map<std::string, double> largest = largest_by_unit(truth_.ranges);
+  const auto rounding = [&](const Channel& channel) {
+    return largest.contains(channel.unit) ? k_rounding * largest.at(channel.unit) : 0.0;
+  };
   for (std::size_t c = 0; c < run.ranges.size(); ++c) {
     const ChannelRange &r = run.ranges[c], &t = truth_.ranges[c], &u = second_.ranges[c];
     const ChannelError& e = estimate.channels[c];
@@ -130,22 +140,23 @@ Judged Truth::judged(const std::string& integrator, double setting) const {
             truth_.ranges[c].high.value - truth_.ranges[c].low.value);
   }
   std::vector<double> event_known(truth_.events.size(), k_unknown_error);
-  for (const EventPair& pair : own.pairs)
-    event_known[pair.mine] = std::abs(truth_.events[pair.mine].t - second_.events[pair.reference].t);
+  for (const EventPair& pair : own.pairs) event_known[pair.mine] = std::abs(truth_.events[pair.mine].t - second_.events[pair.reference].t);
   const auto is_felt = [&](const Event& event) { return is_felt_by_others(run.events, event, end); };
   for (const EventPair& pair : match.pairs)
-    if (is_felt(run.events[pair.mine])) look_at(events, run.events[pair.mine].element + " " + run.events[pair.mine].words(), run.events[pair.mine].t,
-            truth_.events[pair.reference].t, event_known[pair.reference], estimate.event_times[pair.mine], end);
+    if (is_felt(run.events[pair.mine]))
+      look_at(events, run.events[pair.mine].element + " " + run.events[pair.mine].words(), run.events[pair.mine].t,
+              truth_.events[pair.reference].t, event_known[pair.reference], estimate.event_times[pair.mine], end);
   // An event that one of the two truths has and the other not is not known to them.
   const std::vector<std::size_t> unknown_to_second = match_events(run.events, second_.events).only_mine;
-  const auto is_known = [&](std::size_t event) { return std::find(unknown_to_second.begin(), unknown_to_second.end(), event) != unknown_to_second.end(); };
+  const auto is_known = [&](std::size_t event) { return std::ranges::count(unknown_to_second, event) > 0; };
   for (const std::size_t alone : match.only_mine)
-    if (is_felt(run.events[alone]) && is_known(alone)) look_at(events, "no such: " + run.events[alone].element + " " + run.events[alone].words(), 1.0, 0.0, 0.0, std::isnan(estimate.event_times[alone]) ? k_unknown_error : 1e-300, end);
+    if (is_felt(run.events[alone]) && is_known(alone))
+      look_at(events, "no such: " + run.events[alone].element + " " + run.events[alone].words(), 1.0, 0.0, 0.0,
+              std::isnan(estimate.event_times[alone]) ? k_unknown_error : 1e-300, end);
   const RunStatistics &s = run.statistics, &t = truth_.statistics, &u = second_.statistics;
   look_at(energies, "dissipated", s.dissipated, t.dissipated, std::abs(t.dissipated - u.dissipated), estimate.dissipated, t.energy_scale);
   look_at(energies, "work", s.work, t.work, std::abs(t.work - u.work), estimate.work, t.energy_scale);
-  judged.kinds = {extremes, times, ends, curves, events, energies};
-  return judged;
+  return {.kinds = {extremes, times, ends, curves, events, energies}, .failure = {}};
 }
 
 } // namespace steplap::testing

@@ -17,9 +17,9 @@ struct Honesty {
   std::string kind;
   double worst = 0.0;
   std::string where = {};
-  double error = 0.0, estimate = 0.0; ///< of the worst
-  double most_range = 0.0;            ///< of the worst: estimate over the channel's range, or the duration
-  long count = 0, unknown = 0, too_small = 0;   ///< numbers looked at; those whose error is unknown; worst > 1
+  double error = 0.0, estimate = 0.0;         ///< of the worst
+  double most_range = 0.0;                    ///< of the worst: estimate over the channel's range, or the duration
+  long count = 0, unknown = 0, too_small = 0; ///< numbers looked at; those whose error is unknown; worst > 1
 };
 
 struct Judged {

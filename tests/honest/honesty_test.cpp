@@ -40,8 +40,8 @@ void check(const Truth& truth, const std::string& integrator, double setting, do
 } // namespace
 
 TEST_CASE("errors are not larger than estimated, but for a factor") {
-  for (const char* file : {"/paper/no_interference.toml", "/layouts/three_limb.toml", "/benchmarks/stick_slip_belt.toml",
-                           "/benchmarks/rocking_block.toml"}) {
+  for (const char* file :
+       {"/paper/no_interference.toml", "/layouts/three_limb.toml", "/benchmarks/stick_slip_belt.toml", "/benchmarks/rocking_block.toml"}) {
     CAPTURE(std::string(file));
     const Truth truth(std::string(STEPLAP_MODELS) + file, 0.3);
     REQUIRE(truth.failure().empty());

@@ -40,8 +40,8 @@ int judge_random(std::uint64_t first, std::uint64_t last, const std::string& int
       if (!(h.worst > k_dishonest)) continue;
       is_bad = true;
       std::printf("%6llu: %-18s worst %-9.3g error %-9.2g estimate %-9.2g (%.1e of range) %ld of %ld too small  %s\n",
-                  static_cast<unsigned long long>(seed), h.kind.c_str(), h.worst, h.error, h.estimate, h.most_range, h.too_small,
-                  h.count, h.where.c_str());
+                  static_cast<unsigned long long>(seed), h.kind.c_str(), h.worst, h.error, h.estimate, h.most_range, h.too_small, h.count,
+                  h.where.c_str());
     }
     dishonest += is_bad ? 1 : 0;
     unknown += is_unknown ? 1 : 0;
@@ -64,8 +64,8 @@ int main(int argc, char** argv) {
   }
   const double longest = std::strtod(argv[1], nullptr);
   const std::vector<std::pair<std::string, double>> settings{
-      {"dop853", 1e-4}, {"dop853", 1e-6}, {"dop853", 1e-8}, {"tsit5", 1e-4}, {"tsit5", 1e-6}, {"tsit5", 1e-8}, {"rodas5p", 1e-4},
-      {"rodas5p", 1e-6}, {"auto", 1e-5}, {"auto", 1e-8}, {"rk4", 1e-3}, {"rk4", 2e-4}, {"moreau", 1e-3}, {"moreau", 2e-4}};
+      {"dop853", 1e-4},  {"dop853", 1e-6}, {"dop853", 1e-8}, {"tsit5", 1e-4}, {"tsit5", 1e-6}, {"tsit5", 1e-8},  {"rodas5p", 1e-4},
+      {"rodas5p", 1e-6}, {"auto", 1e-5},   {"auto", 1e-8},   {"rk4", 1e-3},   {"rk4", 2e-4},   {"moreau", 1e-3}, {"moreau", 2e-4}};
   for (int i = 2; i < argc; ++i) {
     const Truth truth(argv[i], longest);
     std::printf("%s %s\n", argv[i], truth.failure().c_str());
@@ -74,8 +74,9 @@ int main(int argc, char** argv) {
       const Judged judged = truth.judged(integrator, setting);
       if (!judged.failure.empty()) std::printf("  %-8s %g: no estimate: %.60s\n", integrator.c_str(), setting, judged.failure.c_str());
       for (const Honesty& h : judged.kinds)
-        std::printf("  %-8s %-6g %-18s worst %-9.3g error %-9.2g estimate %-9.2g (%.1e of range) n %ld, %ld unknown, %ld too small  %s\n", integrator.c_str(), setting,
-                    h.kind.c_str(), h.worst, h.error, h.estimate, h.most_range, h.count, h.unknown, h.too_small, h.where.c_str());
+        std::printf("  %-8s %-6g %-18s worst %-9.3g error %-9.2g estimate %-9.2g (%.1e of range) n %ld, %ld unknown, %ld too small  %s\n",
+                    integrator.c_str(), setting, h.kind.c_str(), h.worst, h.error, h.estimate, h.most_range, h.count, h.unknown,
+                    h.too_small, h.where.c_str());
     }
     std::fflush(stdout);
   }

@@ -1,11 +1,11 @@
 // Estimated errors where something else than tolerance or step cuts the steps: the samples of a record, what a harmonic may
 // turn within a step, breakpoints of pulses, and samples of the output, which must not matter. An undamped oscillator under
 // such loads has a closed form.
-#include "mbd/trust/global_error.h"
 #include "mbd/io/reader.h"
+#include "mbd/simulation/energy_account.h"
+#include "mbd/trust/global_error.h"
 #include "tests/random/random_number.h"
 #include "transformer/catalog.h"
-#include "mbd/simulation/energy_account.h"
 
 #include <doctest/doctest.h>
 
@@ -86,7 +86,8 @@ Oscillator random_oscillator(RandomNumber& r) {
   o.start = size * r.either(0.2, 1.0);
   // No resonance, whose growth would hang on the digits of the file.
   for (int left = r.below(4); left > 0; --left)
-    o.harmonics.push_back({o.stiffness * size * r.decades(-1.5, 0.5), omega * (r.chance(0.5) ? r.between(0.1, 0.8) : r.between(1.3, 20.0)), r.between(0.0, 6.0)});
+    o.harmonics.push_back({o.stiffness * size * r.decades(-1.5, 0.5), omega * (r.chance(0.5) ? r.between(0.1, 0.8) : r.between(1.3, 20.0)),
+                           r.between(0.0, 6.0)});
   const int rows = r.chance(0.3) ? 1 : 1 + r.below(200);
   double t = 0.0;
   for (int i = 0; i <= rows; ++i) {
@@ -118,12 +119,14 @@ void write(const Oscillator& o, const std::string& folder) {
   std::ofstream model(folder + "/scene.toml");
   model << "gravity = [0, 0]\n[simulation]\nend = " << digits(o.end) << "\n[[body]]\nname = \"b\"\nmass = " << digits(o.mass)
         << "\ninertia = 1.0\nposition = [" << digits(o.start) << ", 0.0]\n"
-        << "[[element]]\nkind = \"spring_damper\"\nname = \"k\"\na = \"b\"\nb = \"ground\"\naxis = [1.0, 0.0]\nfree_length = 0.0\nstiffness = "
+        << "[[element]]\nkind = \"spring_damper\"\nname = \"k\"\na = \"b\"\nb = \"ground\"\naxis = [1.0, 0.0]\nfree_length = "
+           "0.0\nstiffness = "
         << digits(o.stiffness) << "\n[[signal]]\nname = \"r\"\nkind = \"record\"\nfile = \"record.csv\"\nafter = \"hold\"\n"
         << "[[element]]\nkind = \"load\"\nname = \"recorded\"\nat = \"b\"\nforce_x = \"r\"\n";
   if (o.harmonics.empty()) return;
   model << "[[signal]]\nname = \"h\"\nkind = \"harmonics\"\namplitudes = " << listed(o.harmonics, &Harmonic::amplitude, 1.0)
-        << "frequencies = " << listed(o.harmonics, &Harmonic::omega, 0.5 / M_PI) << "phases = " << listed(o.harmonics, &Harmonic::phase, 1.0)
+        << "frequencies = " << listed(o.harmonics, &Harmonic::omega, 0.5 / M_PI)
+        << "phases = " << listed(o.harmonics, &Harmonic::phase, 1.0)
         << "[[element]]\nkind = \"load\"\nname = \"shaken\"\nat = \"b\"\nforce_x = \"h\"\n";
 }
 
@@ -174,10 +177,12 @@ TEST_CASE("no estimate is too small where records, harmonics and outputs cut the
       error = std::max(error, std::abs(x[i] - truth[i]));
       largest = std::max(largest, std::abs(truth[i]));
     }
-    const auto c = static_cast<std::size_t>(std::find_if(system->channels.begin(), system->channels.end(),
-                                                         [](const Channel& channel) { return channel.name == "b.x"; }) - system->channels.begin());
+    const auto c = static_cast<std::size_t>(
+        std::find_if(system->channels.begin(), system->channels.end(), [](const Channel& channel) { return channel.name == "b.x"; }) -
+        system->channels.begin());
     const RunStatistics& s = run.statistics;
-    const bool is_distrusted = s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale; // the verdict says so (mbd/acceptance/trust.h)
+    const bool is_distrusted =
+        s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale; // the verdict says so (mbd/acceptance/trust.h)
     const double estimated = estimate.channels[c].curve;
     INFO("seed " << seed << ", " << options.integrator << ", step " << options.settings.step << ", tolerance " << options.settings.tolerance
                  << ": error " << error << " of " << largest << ", estimated " << estimated << ", steps " << run.statistics.steps << " and "

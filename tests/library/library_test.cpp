@@ -54,7 +54,8 @@ bool install_and_build() {
   output_of(cmake + " --install " STEPLAP_BUILD " --prefix " + k_prefix);
   output_of(cmake + " -S " STEPLAP_SOURCE "/examples -B " + k_programs + " -G '" STEPLAP_GENERATOR "' -DCMAKE_PREFIX_PATH=" + k_prefix +
             " -DCMAKE_CXX_COMPILER=" STEPLAP_COMPILER " -DCMAKE_CXX_COMPILER_LAUNCHER=" STEPLAP_LAUNCHER
-            " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON '-DCMAKE_CXX_FLAGS=" + k_warnings + "'");
+            " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON '-DCMAKE_CXX_FLAGS=" +
+            k_warnings + "'");
   output_of(cmake + " --build " + k_programs + " --parallel 2");
   return true;
 }
@@ -77,9 +78,7 @@ public:
   // The feet are springs that let the block pitch by m h a/(2 k l²), its centre of gravity lean by h times that:
   // k_pitch a. When it slips this grows with the braking, by k_pitch A ω/2 at most, a speed that the rigid block does not
   // have; and at the end it has sprung back from k_pitch μg.
-  [[nodiscard]] double slide_error() const {
-    return k_pitch * (0.5 * k_peak * k_omega * (sticks - slips) + drag_);
-  }
+  [[nodiscard]] double slide_error() const { return k_pitch * (0.5 * k_peak * k_omega * (sticks - slips) + drag_); }
   // It slips when a + k_pitch ä = μg, at most ä/ȧ ≤ ω/sin ωτ₁ times k_pitch from where a alone is.
   [[nodiscard]] double slip_error() const { return k_pitch * k_omega / std::sin(k_omega * slips); }
 
@@ -195,7 +194,8 @@ TEST_CASE("the installed library: users get no options of ours, and no headers b
   REQUIRE(is_installed());
   std::string commands = text_of(k_programs + "/compile_commands.json");
   REQUIRE_FALSE(commands.empty());
-  for (std::size_t i = commands.find(k_warnings); i != std::string::npos; i = commands.find(k_warnings, i)) commands.erase(i, k_warnings.size());
+  for (std::size_t i = commands.find(k_warnings); i != std::string::npos; i = commands.find(k_warnings, i))
+    commands.erase(i, k_warnings.size());
   for (const char* option : {" -W", " -f", " -m", " -include "}) CHECK_MESSAGE(commands.find(option) == std::string::npos, commands);
   std::istringstream words(commands);
   int folders = 0;

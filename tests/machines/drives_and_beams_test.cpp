@@ -1,6 +1,6 @@
 // Machines with bands, cams, beams and controllers, each against a closed form or an integration written by hand.
-#include "tests/sanitized.h"
 #include "tests/machines/machine.h"
+#include "tests/sanitized.h"
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,8 @@ namespace {
 constexpr double k_g = 9.81, k_pi = std::numbers::pi;
 
 // The classical method of Runge and Kutta.
-template <std::size_t N, class Rate> std::array<double, N> integrated(std::array<double, N> z, double start, double end, long steps, const Rate& rate) {
+template <std::size_t N, class Rate>
+std::array<double, N> integrated(std::array<double, N> z, double start, double end, long steps, const Rate& rate) {
   const double h = (end - start) / static_cast<double>(steps);
   const auto moved = [](std::array<double, N> from, const std::array<double, N>& by, double share) {
     for (std::size_t i = 0; i < N; ++i) from[i] += share * by[i];
@@ -25,7 +26,8 @@ template <std::size_t N, class Rate> std::array<double, N> integrated(std::array
   };
   for (long n = 0; n < steps; ++n) {
     const double t = start + static_cast<double>(n) * h;
-    const auto k1 = rate(t, z), k2 = rate(t + 0.5 * h, moved(z, k1, 0.5 * h)), k3 = rate(t + 0.5 * h, moved(z, k2, 0.5 * h)), k4 = rate(t + h, moved(z, k3, h));
+    const auto k1 = rate(t, z), k2 = rate(t + 0.5 * h, moved(z, k1, 0.5 * h)), k3 = rate(t + 0.5 * h, moved(z, k2, 0.5 * h)),
+               k4 = rate(t + h, moved(z, k3, h));
     for (std::size_t i = 0; i < N; ++i) z[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
   }
   return z;
@@ -39,7 +41,8 @@ TEST_CASE("a band brake that grips itself stops its drum e^{μπ} times sooner t
     CAPTURE(speed);
     const MachineRun r("band_brake", {"parameters.speed=" + std::to_string(speed) + " rad/s", "simulation.end=3"});
     REQUIRE(r.is_complete());
-    const double couple = speed < 0.0 ? radius * pull * (grip - 1.0) : radius * pull * (1.0 - 1.0 / grip), stops = inertia * std::abs(speed) / couple;
+    const double couple = speed < 0.0 ? radius * pull * (grip - 1.0) : radius * pull * (1.0 - 1.0 / grip),
+                 stops = inertia * std::abs(speed) / couple;
     REQUIRE(stops < 2.9);
     // The lever gives by some tenths of a millimetre as the band stretches, against its dashpot.
     CHECK(std::abs(r.at("drum.omega", 0.5 * stops)) == doctest::Approx(0.5 * std::abs(speed)).epsilon(0.01));
@@ -55,7 +58,8 @@ TEST_CASE("a follower jumps off its cam from the jump speed on, at the time of t
   CHECK(jump == doctest::Approx(70.55).epsilon(1e-3));
   for (const double share : {0.995, 1.02}) {
     const double speed = share * jump, a = 0.01 * natural / (natural - speed * speed) * speed * speed;
-    const MachineRun r("cam_jump", {"parameters.speed=" + std::to_string(speed) + " rad/s", "simulation.tolerance=1e-11", "simulation.end=0.1"});
+    const MachineRun r("cam_jump",
+                       {"parameters.speed=" + std::to_string(speed) + " rad/s", "simulation.tolerance=1e-11", "simulation.end=0.1"});
     REQUIRE(r.is_complete());
     const std::vector<double> off = r.events("contact", EventKind::opens);
     CHECK(off.empty() == (share < 1.0));
@@ -86,7 +90,8 @@ TEST_CASE("a wedge that locks itself goes in and comes out at the forces of the 
   const double in = weight * (std::tan(slope + phi) + 0.2) + own, out = weight * (std::tan(phi - slope) + 0.2) + own;
   const MachineRun r("locking_wedge");
   REQUIRE(r.is_complete());
-  const std::vector<double> forward = r.events("upper face", EventKind::slips_forward), backward = r.events("upper face", EventKind::slips_backward);
+  const std::vector<double> forward = r.events("upper face", EventKind::slips_forward),
+                            backward = r.events("upper face", EventKind::slips_backward);
   const std::vector<double> all = [&] {
     std::vector<double> times = forward;
     times.insert(times.end(), backward.begin(), backward.end());
@@ -107,7 +112,8 @@ TEST_CASE("a governor with a servo follows its equations, also while the servo i
   const auto rate = [](double t, const std::array<double, 4>& z) {
     const double s = std::sin(z[0]), c = std::cos(z[0]), x = 0.05 + 0.3 * s;
     const double turning = (-2.0 * k_g * 0.3 * s + 2.0 * z[2] * z[2] * x * 0.3 * c - 0.8 * z[1]) / (0.004 + 2.0 * 0.09);
-    return std::array<double, 4>{z[1], turning, (200.0 * std::clamp(z[3], 0.0, 1.0) - (t < 5.0 ? 40.0 : 80.0)) / 30.0, std::clamp(1.5 * (0.6 - z[0]), -0.5, 0.5)};
+    return std::array<double, 4>{z[1], turning, (200.0 * std::clamp(z[3], 0.0, 1.0) - (t < 5.0 ? 40.0 : 80.0)) / 30.0,
+                                 std::clamp(1.5 * (0.6 - z[0]), -0.5, 0.5)};
   };
   const MachineRun r("engine_governor", {"simulation.tolerance=1e-10"});
   REQUIRE(r.is_complete());
@@ -126,7 +132,9 @@ TEST_CASE("a drum with balls in a ring balances itself above its critical speed,
   double most = 0.0;
   for (const double x : r.series("tub.x")) most = std::max(most, std::abs(x));
   CHECK(most > 1e-3); // before
-  const auto between = [&](const std::string& ball) { return std::abs(std::remainder(r.last(ball + ".theta") - r.last("drum.theta"), 2.0 * k_pi)); };
+  const auto between = [&](const std::string& ball) {
+    return std::abs(std::remainder(r.last(ball + ".theta") - r.last("drum.theta"), 2.0 * k_pi));
+  };
   const double expected = k_pi - std::acos(0.4 / (2.0 * 1.0 * 0.25));
   CHECK(between("ball 0") == doctest::Approx(expected).epsilon(1e-3));
   CHECK(between("ball 1") == doctest::Approx(expected).epsilon(1e-3));
@@ -134,7 +142,8 @@ TEST_CASE("a drum with balls in a ring balances itself above its critical speed,
 
 TEST_CASE("a controller with an integral part brings its arm to the angle, and the integral carries weight and couple") {
   for (const double unknown : {5.0, -3.0}) {
-    const MachineRun r("pid_pendulum", {"parameters.unknown=" + std::to_string(unknown) + " N m", "simulation.tolerance=1e-10", "simulation.end=30"});
+    const MachineRun r("pid_pendulum",
+                       {"parameters.unknown=" + std::to_string(unknown) + " N m", "simulation.tolerance=1e-10", "simulation.end=30"});
     REQUIRE(r.is_complete());
     const double target = k_pi / 3.0;
     CHECK(std::abs(r.last("arm.theta") - target) < 1e-6);
@@ -142,9 +151,11 @@ TEST_CASE("a controller with an integral part brings its arm to the angle, and t
     // (J + m l²) θ'' = −m g l sin θ − M + motor; the integral waits while the motor is at its end.
     const auto rate = [&](double, const std::array<double, 3>& z) {
       const double asked = 60.0 * (target - z[0]) - 20.0 * z[1] + z[2], couple = std::clamp(asked, -40.0, 40.0);
-      return std::array<double, 3>{z[1], (couple - 4.0 * k_g * 0.5 * std::sin(z[0]) - unknown) / (0.12 + 4.0 * 0.25), std::abs(asked) < 40.0 ? 60.0 * (target - z[0]) : 0.0};
+      return std::array<double, 3>{z[1], (couple - 4.0 * k_g * 0.5 * std::sin(z[0]) - unknown) / (0.12 + 4.0 * 0.25),
+                                   std::abs(asked) < 40.0 ? 60.0 * (target - z[0]) : 0.0};
     };
     const auto expected = integrated<3>({0.0, 0.0, 0.0}, 0.0, 2.0, 400000, rate);
-    CHECK(r.at("arm.theta", 2.0) == doctest::Approx(expected[0]).epsilon(1e-5)); // the jump of the integral's rate falls between steps of 5 µs
+    CHECK(r.at("arm.theta", 2.0) ==
+          doctest::Approx(expected[0]).epsilon(1e-5)); // the jump of the integral's rate falls between steps of 5 µs
   }
 }

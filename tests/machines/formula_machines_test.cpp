@@ -37,7 +37,12 @@ Balance rate_of(const Balance& z) {
   const double a = k_cart + k_rod, b = -k_rod * k_half * c, d = k_inertia + k_rod * k_half * k_half;
   const double p = push - k_rod * k_half * s * z[3] * z[3], q = k_rod * k_g * k_half * s, det = a * d - b * b;
   const double wanted = 8.0 * z[0] + 14.0 * z[1] - 60.0 * z[5] - 10.0 * z[3];
-  return {z[1], (d * p - b * q) / det, z[3], (a * q - b * p) / det, (std::clamp(wanted, -24.0, 24.0) - 0.4 * z[4] - 2.5 * z[1]) / 0.004, (z[2] - z[5]) / 0.002};
+  return {z[1],
+          (d * p - b * q) / det,
+          z[3],
+          (a * q - b * p) / det,
+          (std::clamp(wanted, -24.0, 24.0) - 0.4 * z[4] - 2.5 * z[1]) / 0.004,
+          (z[2] - z[5]) / 0.002};
 }
 
 // The classical method of Runge and Kutta.

@@ -19,7 +19,7 @@ using Mat4 = Eigen::Matrix4d;
 constexpr double k_g = 9.81;
 
 struct Spring {
-  Vec2 foot;  ///< on the tank, from its centre of gravity
+  Vec2 foot; ///< on the tank, from its centre of gravity
   Vec2 axis;
   double k, c;
 };

@@ -41,7 +41,8 @@ std::string number(double value) {
 std::string block(double slope, const std::string& contact) {
   return "gravity = [" + number(k_g * std::sin(slope)) + ", " + number(-k_g * std::cos(slope)) + "]\n[simulation]\nend = 1.0\n" +
          "[[body]]\nname = \"block\"\nmass = 30.0\ninertia = 2.9\nposition = [0.0, 0.5]\n"
-         "outline = [[-0.2, -0.5], [0.2, -0.5], [0.2, 0.5], [-0.2, 0.5]]\n" + contact;
+         "outline = [[-0.2, -0.5], [0.2, -0.5], [0.2, 0.5], [-0.2, 0.5]]\n" +
+         contact;
 }
 
 const std::string k_outline = "[[element]]\nkind = \"polygon_contact\"\nname = \"floor\"\na = \"block\"\nstiffness = 1e12\n"
@@ -52,8 +53,9 @@ std::string foot(const std::string& name, double x) {
          ", -0.5] }\nstiffness = 1e8\ndamping = 1e4\n";
 }
 
-const std::string k_feet = foot("left", -0.2) + foot("right", 0.2) +
-                           "[[element]]\nkind = \"coulomb_stick\"\nname = \"grip\"\ncontacts = [\"left\", \"right\"]\nstatic_friction = 0.9\n";
+const std::string k_feet =
+    foot("left", -0.2) + foot("right", 0.2) +
+    "[[element]]\nkind = \"coulomb_stick\"\nname = \"grip\"\ncontacts = [\"left\", \"right\"]\nstatic_friction = 0.9\n";
 
 } // namespace
 
@@ -132,10 +134,13 @@ TEST_CASE("each of stacked blocks tips with what stands on it, a ladder away fro
 
   const auto lower = [](double half) {
     return "[[body]]\nname = \"lower\"\nmass = 50.0\ninertia = 5.0\nposition = [0.0, 0.2]\noutline = [[" + number(-half) + ", -0.2], [" +
-           number(half) + ", -0.2], [" + number(half) + ", 0.2], [" + number(-half) + ", 0.2]]\n"
-           "[[body]]\nname = \"upper\"\nmass = 20.0\ninertia = 1.0\nposition = [0.1, 0.7]\noutline = [[-0.2, -0.3], [0.2, -0.3], [0.2, 0.3], [-0.2, 0.3]]\n"
+           number(half) + ", -0.2], [" + number(half) + ", 0.2], [" + number(-half) +
+           ", 0.2]]\n"
+           "[[body]]\nname = \"upper\"\nmass = 20.0\ninertia = 1.0\nposition = [0.1, 0.7]\noutline = [[-0.2, -0.3], [0.2, -0.3], [0.2, "
+           "0.3], [-0.2, 0.3]]\n"
            "[[element]]\nkind = \"polygon_contact\"\nname = \"ground face\"\na = \"lower\"\nstiffness = 1e10\nstatic_friction = 0.9\n"
-           "[[element]]\nkind = \"polygon_contact\"\nname = \"middle face\"\na = \"upper\"\nb = \"lower\"\nstiffness = 1e10\nstatic_friction = 0.9\n";
+           "[[element]]\nkind = \"polygon_contact\"\nname = \"middle face\"\na = \"upper\"\nb = \"lower\"\nstiffness = "
+           "1e10\nstatic_friction = 0.9\n";
   };
   const auto stack = loaded_from("[simulation]\nend = 1.0\n" + lower(0.5));
   const auto parts = tipping_of(*stack, equilibrium_of(*stack).state);
@@ -156,10 +161,9 @@ constexpr double k_half = 0.8, k_mast = 100.0, k_high = 2.0, k_arm = 0.3, k_top 
 
 std::string mast(const std::string& more) {
   const auto stand = [](const char* name, double x) {
-    return "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + std::string(name) +
-           "\"\na = { body = \"mast\", at = [" + number(x) +
-           ", 0.0] }\nstiffness = 1e9\n[[element]]\nkind = \"coulomb_stick\"\nname = \"" + name +
-           " grip\"\ncontacts = [\"" + name + "\"]\nstatic_friction = 0.9\n";
+    return "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + std::string(name) + "\"\na = { body = \"mast\", at = [" + number(x) +
+           ", 0.0] }\nstiffness = 1e9\n[[element]]\nkind = \"coulomb_stick\"\nname = \"" + name + " grip\"\ncontacts = [\"" + name +
+           "\"]\nstatic_friction = 0.9\n";
   };
   return "[simulation]\nend = 1.0\n[[body]]\nname = \"mast\"\nmass = 100.0\ninertia = 300.0\nposition = [0.0, 2.0]\n"
          "[[marker]]\nname = \"top\"\nbody = \"mast\"\nat = [0.3, 5.0]\n" +
@@ -173,8 +177,8 @@ std::string table(const std::string& array, const std::string& fields) {
 }
 
 std::string load_at(double x, double y, double mass = k_load, const std::string& name = "load") {
-  return table("body", "name = '" + name + "'; mass = " + number(mass) + "; inertia = 2.0; position = [" + number(x) +
-                           ", " + number(y) + "]");
+  return table("body",
+               "name = '" + name + "'; mass = " + number(mass) + "; inertia = 2.0; position = [" + number(x) + ", " + number(y) + "]");
 }
 
 // The weight of what hangs pulls at the point that it hangs from, however that is tilted.
@@ -190,18 +194,14 @@ TEST_CASE("a mast tips with its hanging load as if that were in the point that i
   const std::string winch = table("marker", "name = 'winch'; body = 'mast'; at = [-0.4, 0.5]");
   const std::vector<std::pair<const char*, std::string>> ways{
       {"rod", below + table("element", "kind = 'distance'; name = 'hook'; " + hook)},
-      {"pin",
-       below + table("element", "kind = 'revolute'; name = 'hook'; a = { body = 'load', at = [0.3, 5.0] }; b = 'top'")},
+      {"pin", below + table("element", "kind = 'revolute'; name = 'hook'; a = { body = 'load', at = [0.3, 5.0] }; b = 'top'")},
       {"rope", below + table("element", "kind = 'rope'; name = 'hook'; inextensible = true; " + hook)},
       {"elastic rope", below + table("element", "kind = 'rope'; name = 'hook'; stiffness = 1e6; " + hook)},
       {"spring", below + table("element", "kind = 'spring_damper'; name = 'hook'; stiffness = 1e6; " + hook)},
       {"rope to a winch",
-       below + winch +
-           table("element",
-                 "kind = 'rope'; name = 'hook'; inextensible = true; a = 'load'; over = ['top']; b = 'winch'")},
+       below + winch + table("element", "kind = 'rope'; name = 'hook'; inextensible = true; a = 'load'; over = ['top']; b = 'winch'")},
       {"elastic rope to a winch",
-       below + winch +
-           table("element", "kind = 'rope'; name = 'hook'; stiffness = 1e7; a = 'winch'; over = ['top']; b = 'load'")},
+       below + winch + table("element", "kind = 'rope'; name = 'hook'; stiffness = 1e7; a = 'winch'; over = ['top']; b = 'load'")},
       {"two in a chain", load_at(k_arm, 4.0, 20.0, "block") + load_at(k_arm, 3.0, 40.0) +
                              table("element", "kind = 'distance'; name = 'upper'; a = 'block'; b = 'top'") +
                              table("element", "kind = 'distance'; name = 'lower'; a = 'load'; b = 'block'")}};
@@ -221,8 +221,7 @@ TEST_CASE("a mast tips with its hanging load as if that were in the point that i
     CHECK(std::abs(given[0].margin - mast_margin(k_load)) < 1e-5);
   }
   // Given swung out it hangs from the same point.
-  const auto swung =
-      loaded_from(mast(load_at(k_arm + 1.2, 3.4) + table("element", "kind = 'distance'; name = 'hook'; " + hook)));
+  const auto swung = loaded_from(mast(load_at(k_arm + 1.2, 3.4) + table("element", "kind = 'distance'; name = 'hook'; " + hook)));
   const auto found = tipping_of(*swung, swung->assembled);
   REQUIRE(found.size() == 1);
   CHECK(std::abs(found[0].margin - mast_margin(k_load)) < 1e-5);
@@ -230,9 +229,9 @@ TEST_CASE("a mast tips with its hanging load as if that were in the point that i
   const auto bare = loaded_from(mast(""));
   CHECK(std::abs(tipping_of(*bare, equilibrium_of(*bare).state)[0].margin - std::atan(k_half / k_high)) < 1e-5);
   // A load that no tilt would let hang freely is not one that hangs: its motor holds it.
-  const auto held = loaded_from(mast(
-      below + table("element", "kind = 'revolute'; name = 'hook'; a = { body = 'load', at = [0.3, 5.0] }; b = 'top'") +
-      table("element", "kind = 'rotational_spring_damper'; name = 'motor'; a = 'load'; b = 'mast'; stiffness = 1e4")));
+  const auto held =
+      loaded_from(mast(below + table("element", "kind = 'revolute'; name = 'hook'; a = { body = 'load', at = [0.3, 5.0] }; b = 'top'") +
+                       table("element", "kind = 'rotational_spring_damper'; name = 'motor'; a = 'load'; b = 'mast'; stiffness = 1e4")));
   CHECK(tipping_of(*held, equilibrium_of(*held).state).empty());
 }
 
@@ -242,10 +241,9 @@ TEST_CASE("a rope that runs over the mast to a winch on the ground pulls it towa
   const double light = 20.0;
   for (const double at : {-6.0, 5.0}) {
     CAPTURE(at);
-    const auto loaded = loaded_from(mast(
-        load_at(k_arm, 3.0, light) +
-        table("marker", "name = 'winch'; body = 'ground'; at = [" + number(at) + ", 0.0]") +
-        table("element", "kind = 'rope'; name = 'hoist'; stiffness = 1e7; a = 'load'; over = ['top']; b = 'winch'")));
+    const auto loaded =
+        loaded_from(mast(load_at(k_arm, 3.0, light) + table("marker", "name = 'winch'; body = 'ground'; at = [" + number(at) + ", 0.0]") +
+                         table("element", "kind = 'rope'; name = 'hoist'; stiffness = 1e7; a = 'load'; over = ['top']; b = 'winch'")));
     const auto found = tipping_of(*loaded, equilibrium_of(*loaded).state);
     REQUIRE(found.size() == 1);
     const double turn = found[0].is_clockwise ? found[0].margin : -found[0].margin; // of down, counter-clockwise
@@ -253,8 +251,7 @@ TEST_CASE("a rope that runs over the mast to a winch on the ground pulls it towa
     CHECK((at > 0.0) == found[0].is_clockwise);
     const double down_x = std::sin(turn), down_y = -std::cos(turn), length = std::hypot(at - k_arm, k_top);
     const auto moment = [&](double x, double y, double fx, double fy) { return (x - foot) * fy - y * fx; };
-    const double sum = moment(0.0, k_high, k_mast * down_x, k_mast * down_y) +
-                       moment(k_arm, k_top, light * down_x, light * down_y) +
+    const double sum = moment(0.0, k_high, k_mast * down_x, k_mast * down_y) + moment(k_arm, k_top, light * down_x, light * down_y) +
                        moment(k_arm, k_top, light * (at - k_arm) / length, -light * k_top / length);
     CHECK(std::abs(sum) < 1e-4 * k_mast * k_high);
   }
@@ -264,8 +261,7 @@ TEST_CASE("a rope that runs over the mast to a winch on the ground pulls it towa
 TEST_CASE("a mast with a taut stay tips the other way") {
   const auto stay = [](const char* name, double x) {
     return table("element", "kind = 'rope'; name = '" + std::string(name) +
-                                "'; inextensible = true; a = 'top'; b = { body = 'ground', at = [" + number(x) +
-                                ", 0.0] }");
+                                "'; inextensible = true; a = 'top'; b = { body = 'ground', at = [" + number(x) + ", 0.0] }");
   };
   const auto left = loaded_from(mast(stay("stay", -4.0)));
   const auto found = tipping_of(*left, left->assembled);
@@ -279,25 +275,23 @@ namespace {
 
 // Columns 2b (the right one 2b') wide and 2h high, 4 m apart, and a beam over both, lying on their faces, its centre at
 // beam_x.
-std::string portal(double slope, double b, double h, double column, double beam, double right_b = 0.0,
-                   double beam_x = 0.0) {
+std::string portal(double slope, double b, double h, double column, double beam, double right_b = 0.0, double beam_x = 0.0) {
   if (right_b == 0.0) right_b = b;
   const auto box = [](const std::string& name, double mass, double x, double y, double half_width, double half_height) {
     const std::string w = number(half_width), l = number(half_height);
-    return table("body", "name = '" + name + "'; mass = " + number(mass) + "; inertia = " +
-                             number(mass * (half_width * half_width + half_height * half_height) / 3.0) +
-                             "; position = [" + number(x) + ", " + number(y) + "]; outline = [[-" + w + ", -" + l +
-                             "], [" + w + ", -" + l + "], [" + w + ", " + l + "], [-" + w + ", " + l + "]]");
+    return table("body", "name = '" + name + "'; mass = " + number(mass) +
+                             "; inertia = " + number(mass * (half_width * half_width + half_height * half_height) / 3.0) +
+                             "; position = [" + number(x) + ", " + number(y) + "]; outline = [[-" + w + ", -" + l + "], [" + w + ", -" + l +
+                             "], [" + w + ", " + l + "], [-" + w + ", " + l + "]]");
   };
   const auto face = [](const std::string& name, const std::string& on) {
-    return table("element", "kind = 'polygon_contact'; name = '" + name + "'; " + on +
-                                "; stiffness = 1e11; static_friction = 0.8");
+    return table("element", "kind = 'polygon_contact'; name = '" + name + "'; " + on + "; stiffness = 1e11; static_friction = 0.8");
   };
-  return "gravity = [" + number(k_g * std::sin(slope)) + ", " + number(-k_g * std::cos(slope)) +
-         "]\n[simulation]\nend = 1.0\n" + box("left column", column, -2.0, h, b, h) +
-         box("right column", column, 2.0, h, right_b, h) + box("beam", beam, beam_x, 2.0 * h + 0.2, 4.0, 0.2) +
-         face("left base", "a = 'left column'") + face("right base", "a = 'right column'") +
-         face("left head", "a = 'beam'; b = 'left column'") + face("right head", "a = 'beam'; b = 'right column'");
+  return "gravity = [" + number(k_g * std::sin(slope)) + ", " + number(-k_g * std::cos(slope)) + "]\n[simulation]\nend = 1.0\n" +
+         box("left column", column, -2.0, h, b, h) + box("right column", column, 2.0, h, right_b, h) +
+         box("beam", beam, beam_x, 2.0 * h + 0.2, 4.0, 0.2) + face("left base", "a = 'left column'") +
+         face("right base", "a = 'right column'") + face("left head", "a = 'beam'; b = 'left column'") +
+         face("right head", "a = 'beam'; b = 'right column'");
 }
 
 } // namespace
@@ -315,9 +309,8 @@ TEST_CASE("columns under a beam tip at the angle of a single column, whatever th
       const auto loaded = loaded_from(portal(slope, 0.3, 1.5, 800.0, beam));
       const auto found = tipping_of(*loaded, equilibrium_of(*loaded).state);
       REQUIRE(!found.empty());
-      const auto nearest = std::min_element(found.begin(), found.end(), [](const Tipping& one, const Tipping& other) {
-        return one.margin < other.margin;
-      });
+      const auto nearest =
+          std::min_element(found.begin(), found.end(), [](const Tipping& one, const Tipping& other) { return one.margin < other.margin; });
       CHECK(nearest->others == 2);
       // Faces of 1e11 N/m² under 1e4 N/m give way by 1e-7 m.
       CHECK(std::abs(nearest->margin - (limit - std::abs(slope))) < 1e-5);
@@ -341,8 +334,7 @@ TEST_CASE("unequal columns under a beam that lies askew tip as the power of all 
     const auto tilt = [&](double from, double left_rise, double to, double right_rise, double sense) {
       const double turns = (right_rise - left_rise) / (to - from); // of the beam, per rate of the columns
       const double rise = column * (b + wide) + beam * (left_rise + turns * (x - from));
-      const double along =
-          2.0 * column * h + beam * (2.0 * h - sense * turns * 0.2); // its centre is 0.2 m above its face
+      const double along = 2.0 * column * h + beam * (2.0 * h - sense * turns * 0.2); // its centre is 0.2 m above its face
       return std::atan(rise / along);
     };
     const double clockwise = tilt(-2.0 - b, 2.0 * b, 2.0 - wide, 2.0 * wide, 1.0),
@@ -350,8 +342,8 @@ TEST_CASE("unequal columns under a beam that lies askew tip as the power of all 
     const auto loaded = loaded_from(portal(0.0, b, h, column, beam, wide, x));
     const auto found = tipping_of(*loaded, equilibrium_of(*loaded).state);
     REQUIRE(!found.empty());
-    const auto nearest = std::min_element(
-        found.begin(), found.end(), [](const Tipping& one, const Tipping& other) { return one.margin < other.margin; });
+    const auto nearest =
+        std::min_element(found.begin(), found.end(), [](const Tipping& one, const Tipping& other) { return one.margin < other.margin; });
     CHECK(std::abs(nearest->margin - std::min(clockwise, counter)) < 1e-5);
     CHECK(nearest->is_clockwise == (clockwise < counter));
     // And the way of statics: up to there it stands where it is, beyond it comes down.
@@ -362,8 +354,7 @@ TEST_CASE("unequal columns under a beam that lies askew tip as the power of all 
       try {
         const Equilibrium rest = equilibrium_of(*tilted);
         stands = rest.moved < 0.01;
-      } catch (const NumericalFailure&) {
-      }
+      } catch (const NumericalFailure&) {}
       CHECK(stands == (share < 1.0));
     }
   }
@@ -375,8 +366,9 @@ TEST_CASE("a search that finds no rest says what tips over") {
   const std::string wheels = "[[body]]\nname = \"crane\"\nmass = 100.0\ninertia = 20.0\nposition = [0.7, 1.0]\n";
   const auto wheel = [](const char* name, double x) {
     return std::string("[[element]]\nkind = \"segment_contact\"\nname = \"") + name + "\"\na = { body = \"crane\", at = [" + number(x) +
-           ", 0.25] }\nradius = 0.25\nfrom = [-1.0, 0.0]\nto = [0.6, 0.0]\nstiffness = 1e7\n[[element]]\nkind = \"coulomb_stick\"\nname = \"" + name +
-           " grip\"\ncontacts = [\"" + name + "\"]\nstatic_friction = 0.5\n";
+           ", 0.25] }\nradius = 0.25\nfrom = [-1.0, 0.0]\nto = [0.6, 0.0]\nstiffness = 1e7\n[[element]]\nkind = \"coulomb_stick\"\nname = "
+           "\"" +
+           name + " grip\"\ncontacts = [\"" + name + "\"]\nstatic_friction = 0.5\n";
   };
   const auto loaded = loaded_from("[simulation]\nend = 1.0\n" + wheels + wheel("rear", -0.5) + wheel("front", 0.5));
   std::string message;
@@ -394,11 +386,15 @@ TEST_CASE("a search that finds no rest says what tips over") {
 TEST_CASE("what stands and is not judged says why") {
   const std::string lift = foot("left", -0.2) + foot("right", 0.2) +
                            "[[body]]\nname = \"cage\"\nmass = 5.0\ninertia = 0.5\nposition = [0.0, 1.2]\n"
-                           "[[element]]\nkind = \"revolute\"\nname = \"hinge\"\na = { body = \"cage\", at = [0.0, 1.0] }\nb = { body = \"block\", at = [0.0, 1.0] }\n";
-  const std::string servo = "[[element]]\nkind = \"motor\"\nname = \"level\"\na = \"cage\"\nb = \"block\"\ncoordinate = \"angle\"\nproportional = 1e5\nderivative = 1e3\n";
-  const std::string drive = "[[signal]]\nname = \"zero\"\nkind = \"constant\"\nvalue = 0.0\n[[element]]\nkind = \"prescribed_motion\"\nname = \"level\"\n"
-                            "a = \"cage\"\ncoordinate = \"angle\"\nsignal = \"zero\"\nas = \"position\"\nzero = \"reference\"\n"
-                            "[[element]]\nkind = \"weld\"\nname = \"rigid\"\na = { body = \"cage\", at = [0.0, 1.0] }\nb = { body = \"block\", at = [0.0, 1.0] }\n";
+                           "[[element]]\nkind = \"revolute\"\nname = \"hinge\"\na = { body = \"cage\", at = [0.0, 1.0] }\nb = { body = "
+                           "\"block\", at = [0.0, 1.0] }\n";
+  const std::string servo = "[[element]]\nkind = \"motor\"\nname = \"level\"\na = \"cage\"\nb = \"block\"\ncoordinate = "
+                            "\"angle\"\nproportional = 1e5\nderivative = 1e3\n";
+  const std::string drive =
+      "[[signal]]\nname = \"zero\"\nkind = \"constant\"\nvalue = 0.0\n[[element]]\nkind = \"prescribed_motion\"\nname = \"level\"\n"
+      "a = \"cage\"\ncoordinate = \"angle\"\nsignal = \"zero\"\nas = \"position\"\nzero = \"reference\"\n"
+      "[[element]]\nkind = \"weld\"\nname = \"rigid\"\na = { body = \"cage\", at = [0.0, 1.0] }\nb = { body = \"block\", at = [0.0, 1.0] "
+      "}\n";
   const auto held = loaded_from(block(0.0, lift + servo));
   const auto by_servo = not_judged_for_tipping(*held, equilibrium_of(*held).state);
   REQUIRE(by_servo.size() == 1);

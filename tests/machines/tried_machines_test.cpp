@@ -15,9 +15,10 @@ namespace {
 // A bed whose frame lies at its right end and whose centre of gravity in its middle; a crate on its right half.
 std::string bed(bool is_fixed, const std::string& cg) {
   return "[simulation]\nend = 0.5\ntolerance = 1e-9\n" +
-         body("bed", std::string(is_fixed ? "fixed = true; " : "mass = 1000.0; inertia = 3000.0; ") +
-                         "position = [3.0, 1.05]; cg = " + cg + "; outline = [[-6.0, -0.05], [0.0, -0.05], [0.0, 0.05], [-6.0, 0.05]]") +
-         body("crate", "mass = 500.0; inertia = 83.0; position = [2.0, 1.6]; outline = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]") +
+         body("bed", std::string(is_fixed ? "fixed = true; " : "mass = 1000.0; inertia = 3000.0; ") + "position = [3.0, 1.05]; cg = " + cg +
+                         "; outline = [[-6.0, -0.05], [0.0, -0.05], [0.0, 0.05], [-6.0, 0.05]]") +
+         body("crate",
+              "mass = 500.0; inertia = 83.0; position = [2.0, 1.6]; outline = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]") +
          (is_fixed ? "" : element("weld", "held", "a = { body = 'bed', point = [0.0, 0.0] }; b = { body = 'ground', at = [3.0, 1.05] }")) +
          element("polygon_contact", "on bed", "a = 'crate'; b = 'bed'; stiffness = 5e7; dissipation = 1.0");
 }
@@ -52,19 +53,23 @@ TEST_CASE("an outline lies in the body's frame, wherever the centre of gravity i
 // slid with and the couple of that, less and less from there: friction is never again at its bound, however often the place
 // that it is reckoned to act at changes.
 TEST_CASE("a box on a belt slides once, and holds while it rocks") {
-  const Written model("[simulation]\nend = 1.5\ntolerance = 1e-9\n" +
-                      body("belt", "mass = 100.0; inertia = 100.0; position = [0.0, -0.05]; outline = [[-10.0, -0.05], [10.0, -0.05], [10.0, 0.05], [-10.0, 0.05]]") +
-                      body("box", "mass = 10.0; inertia = 0.15; position = [0.0, 0.15]; outline = [[-0.15, -0.15], [0.15, -0.15], [0.15, 0.15], [-0.15, 0.15]]") +
-                      signal_entry("constant", "speed", "value = 2.0") + element("prismatic", "guide", "a = 'belt'") +
-                      element("prescribed_motion", "drive", "a = 'belt'; coordinate = 'x'; signal = 'speed'; as = 'velocity'") +
-                      element("polygon_contact", "c", "a = 'box'; b = 'belt'; stiffness = 1e8; dissipation = 2.0; static_friction = 0.4"));
+  const Written model(
+      "[simulation]\nend = 1.5\ntolerance = 1e-9\n" +
+      body("belt", "mass = 100.0; inertia = 100.0; position = [0.0, -0.05]; outline = [[-10.0, -0.05], [10.0, -0.05], [10.0, 0.05], "
+                   "[-10.0, 0.05]]") +
+      body("box",
+           "mass = 10.0; inertia = 0.15; position = [0.0, 0.15]; outline = [[-0.15, -0.15], [0.15, -0.15], [0.15, 0.15], [-0.15, 0.15]]") +
+      signal_entry("constant", "speed", "value = 2.0") + element("prismatic", "guide", "a = 'belt'") +
+      element("prescribed_motion", "drive", "a = 'belt'; coordinate = 'x'; signal = 'speed'; as = 'velocity'") +
+      element("polygon_contact", "c", "a = 'box'; b = 'belt'; stiffness = 1e8; dissipation = 2.0; static_friction = 0.4"));
   const Run run = run_model(model.loaded());
   REQUIRE_FALSE(run.failure);
   CHECK(count(run, "c", EventKind::changes_foot) > 10); // it does rock
   CHECK(count(run, "c", EventKind::slips_forward) == 0);
   CHECK(count(run, "c", EventKind::slips_backward) == 1);
   REQUIRE(count(run, "c", EventKind::sticks) == 1);
-  const auto sticks = std::find_if(run.result.events.begin(), run.result.events.end(), [](const Event& e) { return e.kind == EventKind::sticks; });
+  const auto sticks =
+      std::find_if(run.result.events.begin(), run.result.events.end(), [](const Event& e) { return e.kind == EventKind::sticks; });
   // The normal force swings about the weight as the contact closes, and the face rocks: some 1e-4 of the way each.
   CHECK(std::abs(sticks->t - 2.0 / (0.4 * k_g)) < 1e-3 * sticks->t);
 }
@@ -73,10 +78,12 @@ TEST_CASE("a box on a belt slides once, and holds while it rocks") {
 // is zero, exactly, and what rounding makes of zero must not keep a time step from its end.
 TEST_CASE("time stepping: a ball that rolls on by itself takes no friction, and rolls on") {
   const double v = 6.0, spin = 20.0, r = 0.11, mu = 0.12;
-  const Written model("[simulation]\nend = 3.0\nintegrator = \"moreau\"\nstep = 1e-3\n[output]\nstep = 0.1\n" +
-                      body("ball", "mass = 6.0; inertia = 0.02904; position = [0.0, 0.109994114]; velocity = [6.0, 0.0]; angular_velocity = 20.0") +
-                      element("segment_contact", "lane", "a = 'ball'; radius = 0.11; from = [-1.0, 0.0]; to = [30.0, 0.0]; stiffness = 1e7; damping = 5e3") +
-                      element("coulomb_stick", "friction", "contacts = ['lane']; static_friction = 0.12"));
+  const Written model(
+      "[simulation]\nend = 3.0\nintegrator = \"moreau\"\nstep = 1e-3\n[output]\nstep = 0.1\n" +
+      body("ball", "mass = 6.0; inertia = 0.02904; position = [0.0, 0.109994114]; velocity = [6.0, 0.0]; angular_velocity = 20.0") +
+      element("segment_contact", "lane",
+              "a = 'ball'; radius = 0.11; from = [-1.0, 0.0]; to = [30.0, 0.0]; stiffness = 1e7; damping = 5e3") +
+      element("coulomb_stick", "friction", "contacts = ['lane']; static_friction = 0.12"));
   const double until = (v + spin * r) / (3.5 * mu * k_g), rolls = v - mu * k_g * until;
   for (const double step : {2e-3, 5e-4, 1.25e-4}) {
     CAPTURE(step);
@@ -127,7 +134,7 @@ TEST_CASE("check warns of a corner at which two segments press on one circle") {
   CAPTURE(warned.out);
   CHECK(has(warned.out, "segment_contacts 'kerb' and 'path' end at "));
   CHECK(has(warned.out, "20 mm for a depth of 1 mm")); // sqrt(2 · 0.2 m · 1 mm)
-  CHECK_FALSE(has(warned.out, "'road' and 'kerb'"));    // in an inner corner a circle touches two sides
+  CHECK_FALSE(has(warned.out, "'road' and 'kerb'"));   // in an inner corner a circle touches two sides
   const Written apart(road("[1.0, 0.0]", "[1.05, 0.05]"));
   CHECK_FALSE(has(steplap_does({"check", apart.file.string()}).out, "end at the same point"));
   const Written straight(road("[0.9, -0.3]", "[1.0, 0.0]", "[9.0, 0.0]")); // and where they lie in line with each other
@@ -138,9 +145,11 @@ TEST_CASE("check warns of a corner at which two segments press on one circle") {
 TEST_CASE("at rest a drive is held, and takes what holding takes") {
   const auto crane = [](const std::string& slope) {
     return "[simulation]\nend = 1.0\n" + body("trolley", "mass = 500.0; inertia = 50.0; position = [0.0, 8.0]") +
-           body("load", "mass = 2000.0; inertia = 500.0; position = [0.0, 3.0]") + element("prismatic", "rail", "a = 'trolley'; axis = " + slope) +
+           body("load", "mass = 2000.0; inertia = 500.0; position = [0.0, 3.0]") +
+           element("prismatic", "rail", "a = 'trolley'; axis = " + slope) +
            signal_entry("rectangle", "pulse", "peak = 0.5; duration = 2.0") +
-           element("prescribed_motion", "travel", "a = 'trolley'; coordinate = 'x'; signal = 'pulse'") + element("distance", "hoist", "a = 'load'; b = 'trolley'");
+           element("prescribed_motion", "travel", "a = 'trolley'; coordinate = 'x'; signal = 'pulse'") +
+           element("distance", "hoist", "a = 'load'; b = 'trolley'");
   };
   const Written level(crane("[1.0, 0.0]"));
   Answer answer = steplap_does({"equilibrium", level.file.string()});
@@ -161,7 +170,8 @@ TEST_CASE("at rest a drive is held, and takes what holding takes") {
 TEST_CASE("check: a machine at rest that a signal made of others is to move") {
   for (const std::string& kind : {std::string("scaled"), std::string("sum"), std::string("product")}) {
     const std::string parts = kind == "scaled" ? "signal = 'pull'; factor = -1.0" : "signals = ['pull', 'pull']";
-    const Written model("gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\n" + body("drum", "mass = 30.0; inertia = 0.6") + element("revolute", "axle", "a = 'drum'") +
+    const Written model("gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\n" + body("drum", "mass = 30.0; inertia = 0.6") +
+                        element("revolute", "axle", "a = 'drum'") +
                         signal_entry("trapezoid", "pull", "peak = 1500.0; start = 0.2; duration = 10.0; rise = 0.2; fall = 0.2") +
                         signal_entry(kind, "push", parts) + element("load", "cam", "at = 'drum'; torque = 'push'"));
     const Answer answer = steplap_does({"check", model.file.string()});
@@ -182,13 +192,10 @@ TEST_CASE("what is given at its stop begins in touch with it, whatever its last 
       CAPTURE(is_pressed);
       const Written model(
           "[simulation]\nend = 0.05\n[output]\nstep = 0.01\n" +
-          body("arm", "mass = 2.0; inertia = 0.2; position = [" + number(x) + ", " + number(y) +
-                          "]; angle = " + number(angle)) +
-          element("revolute", "pin",
-                  "a = { body = 'arm', point = [-0.5, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
+          body("arm", "mass = 2.0; inertia = 0.2; position = [" + number(x) + ", " + number(y) + "]; angle = " + number(angle)) +
+          element("revolute", "pin", "a = { body = 'arm', point = [-0.5, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
           element("limit", "stop",
-                  "a = 'arm'; stiffness = 1e6; damping = 100.0; " +
-                      std::string(is_pressed ? "lower = 0.0" : "upper = 0.0")));
+                  "a = 'arm'; stiffness = 1e6; damping = 100.0; " + std::string(is_pressed ? "lower = 0.0" : "upper = 0.0")));
       const Run run = run_model(model.loaded());
       REQUIRE_FALSE(run.failure);
       CHECK(count(run, "stop", EventKind::reaches_lower_stop) == 0);
@@ -202,10 +209,9 @@ TEST_CASE("what is given at its stop begins in touch with it, whatever its last 
   // A load that hangs with its slack just taken up by a stop of its distance, typed to twelve digits; and one that is
   // not there yet.
   for (const std::string upper : {"1.11803398875", "1.2"}) {
-    const Written model(
-        "[simulation]\nend = 0.05\n[output]\nstep = 0.01\n" +
-        body("load", "mass = 2.0; inertia = 0.2; position = [0.5, -1.0]") +
-        element("limit", "stop", "a = 'load'; coordinate = 'distance'; stiffness = 1e6; upper = " + upper));
+    const Written model("[simulation]\nend = 0.05\n[output]\nstep = 0.01\n" +
+                        body("load", "mass = 2.0; inertia = 0.2; position = [0.5, -1.0]") +
+                        element("limit", "stop", "a = 'load'; coordinate = 'distance'; stiffness = 1e6; upper = " + upper));
     const Run run = run_model(model.loaded());
     REQUIRE_FALSE(run.failure);
     CHECK(count(run, "stop", EventKind::reaches_upper_stop) == 0);

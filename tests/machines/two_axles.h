@@ -85,7 +85,10 @@ struct TwoAxles {
       const double x = s[0] + rx, y = s[1] + ry, vx = s[3] - s[5] * ry, vy = s[4] + s[5] * rx;
       double foot = x; // nearest place, by Newton's method with a slope of differences
       for (int j = 0; j < 30; ++j) {
-        const auto off = [&](double at) { const auto [h, slope] = road(at); return (at - x) + slope * (h - y); };
+        const auto off = [&](double at) {
+          const auto [h, slope] = road(at);
+          return (at - x) + slope * (h - y);
+        };
         const double step = off(foot) / ((off(foot + 1e-6) - off(foot - 1e-6)) / 2e-6);
         foot -= step;
         if (std::abs(step) < 1e-13) break;
@@ -97,7 +100,7 @@ struct TwoAxles {
       const double slip = tx * vx + ty * vy + radius * s[6 + k], bent = s[8 + k], c0 = slip_stiffness / relaxation;
       const double held = slip - std::abs(radius * s[6 + k]) * bent / relaxation, most = friction * normal[i];
       grip[i] = std::clamp(c0 * bent + tread * held, -most, most);
-      d[8 + k] = (grip[i] - c0 * bent) / tread; // adhering this is `held`
+      d[8 + k] = (grip[i] - c0 * bent) / tread;             // adhering this is `held`
       const double couple = i == 1 ? -drive(t, s[2]) : 0.0; // on the wheel
       const double fx = -ty * normal[i] - tx * grip[i], fy = tx * normal[i] - ty * grip[i] - 9.81 * w.mass;
       d[6 + k] = (couple - radius * grip[i]) / w.inertia;
@@ -118,7 +121,8 @@ struct TwoAxles {
   }
 
   void step(double t, double h) {
-    const State a = rates(t, state), b = rates(t + 0.5 * h, state + 0.5 * h * a), c = rates(t + 0.5 * h, state + 0.5 * h * b), d = rates(t + h, state + h * c);
+    const State a = rates(t, state), b = rates(t + 0.5 * h, state + 0.5 * h * a), c = rates(t + 0.5 * h, state + 0.5 * h * b),
+                d = rates(t + h, state + h * c);
     state += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
     for (std::size_t i = 0; i < 2; ++i) {
       const auto k = static_cast<Eigen::Index>(6 + i);

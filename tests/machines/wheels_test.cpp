@@ -39,7 +39,8 @@ struct Train {
       for (std::size_t i = 0; i < 3; ++i) a[i] += by * d[i];
       return a;
     };
-    const auto a = rates(t, angle), b = rates(t + 0.5 * h, moved(a, 0.5 * h)), c = rates(t + 0.5 * h, moved(b, 0.5 * h)), d = rates(t + h, moved(c, h));
+    const auto a = rates(t, angle), b = rates(t + 0.5 * h, moved(a, 0.5 * h)), c = rates(t + 0.5 * h, moved(b, 0.5 * h)),
+               d = rates(t + h, moved(c, h));
     for (std::size_t i = 0; i < 3; ++i) angle[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
   }
 };
@@ -75,8 +76,9 @@ TwoAxles bike() {
   v.tread = 200.0;
   v.wheel = {OwnWheel{0.75, -0.35, 12.0, 0.6, 0.0}, OwnWheel{-0.65, -0.35, 15.0, 0.8, 0.0}};
   v.state[1] = 0.65;
-  v.road = OwnSpline({{-3, 0}, {2, 0}, {4, 0.02}, {6, -0.015}, {8.5, 0.03}, {11.5, 0}, {15, 0.025}, {17, -0.02}, {19.5, 0.01}, {22.5, 0.03},
-                      {26, -0.01}, {28, 0.02}, {30.5, -0.025}, {33.5, 0.015}, {37, 0}, {39, 0.03}, {41.5, -0.01}, {44.5, 0}, {48, 0}, {50, 0}});
+  v.road = OwnSpline({{-3, 0},     {2, 0},       {4, 0.02},     {6, -0.015}, {8.5, 0.03}, {11.5, 0},      {15, 0.025},
+                      {17, -0.02}, {19.5, 0.01}, {22.5, 0.03},  {26, -0.01}, {28, 0.02},  {30.5, -0.025}, {33.5, 0.015},
+                      {37, 0},     {39, 0.03},   {41.5, -0.01}, {44.5, 0},   {48, 0},     {50, 0}});
   v.drive = [](double t, double lean) { return 900.0 * std::min(1.0, t / 2.5) * (1.0 - lean / (20.0 * k_degree)); };
   return v;
 }
@@ -124,7 +126,8 @@ TEST_CASE("a drawbar train follows the front of its lorry as tractrices do") {
 }
 
 TEST_CASE("a drawbar train that is backed jack-knifes") {
-  const MachineRun r("drawbar_train", {"parameters.speed=-1 m/s", "parameters.turned=1 deg", "parameters.aside=0 m/s", "simulation.end=14"});
+  const MachineRun r("drawbar_train",
+                     {"parameters.speed=-1 m/s", "parameters.turned=1 deg", "parameters.aside=0 m/s", "simulation.end=14"});
   REQUIRE(r.is_complete());
   for (double t = 0.0; t <= 14.0; t += 0.5) // errors grow as the angle does, a hundredfold
     CHECK(std::tan(0.5 * r.at("dolly.theta", t)) == doctest::Approx(std::tan(0.5 * k_degree) * std::exp(t / 3.0)).epsilon(1e-6));
@@ -177,7 +180,9 @@ TEST_CASE("on a level road a front wheel lifts where the acceleration is g b/h")
   const MachineRun r("wheelie", {"element.front tyre.road" + flat, "element.rear tyre.road" + flat, "output.step=0.001"});
   REQUIRE(r.is_complete());
   // Of all masses about the rear wheel's foot, with the wheels' spin; the springs under it swing a little, and the load grows.
-  const double lifts = r.events("front tyre", EventKind::opens).back(), a = (r.at("bike.vx", lifts + 0.005) - r.at("bike.vx", lifts - 0.005)) / 0.01;
-  const double weights = (250.0 * 0.65 + 12.0 * 1.4) * k_g, way = 250.0 * r.at("bike.y", lifts) + 12.0 * r.at("front.y", lifts) + 15.0 * r.at("rear.y", lifts) + (0.6 + 0.8) / 0.3;
+  const double lifts = r.events("front tyre", EventKind::opens).back(),
+               a = (r.at("bike.vx", lifts + 0.005) - r.at("bike.vx", lifts - 0.005)) / 0.01;
+  const double weights = (250.0 * 0.65 + 12.0 * 1.4) * k_g,
+               way = 250.0 * r.at("bike.y", lifts) + 12.0 * r.at("front.y", lifts) + 15.0 * r.at("rear.y", lifts) + (0.6 + 0.8) / 0.3;
   CHECK(a == doctest::Approx(weights / way).epsilon(0.02));
 }

@@ -17,8 +17,7 @@ constexpr double k_tolerance = 1e-10;
 const char* const k_methods[] = {"auto", "dop853", "tsit5", "rodas5p"};
 
 std::string settings(double end, const std::string& more = "") {
-  return "[simulation]\nend = " + number(end) + "\ntolerance = 1e-10\n[output]\nstep = " + number(end / 200.0) + "\n" +
-         more;
+  return "[simulation]\nend = " + number(end) + "\ntolerance = 1e-10\n[output]\nstep = " + number(end / 200.0) + "\n" + more;
 }
 
 std::string wheel(const std::string& name, double mass, double inertia, const std::string& at) {
@@ -39,18 +38,16 @@ double at_time(const Run& run, const std::string& channel, double t) {
 TEST_CASE("a load runs down from its drum as rope and inertias say") {
   const double m = 50.0, inertia = 0.8, r = 0.2, k = 2e5, end = 1.5;
   const double square = k * (1.0 / m + r * r / inertia), omega = std::sqrt(square);
-  const double fallen =
-      0.5 * k_g * end * end - k / m * k_g / square * (0.5 * end * end + (std::cos(omega * end) - 1.0) / square);
+  const double fallen = 0.5 * k_g * end * end - k / m * k_g / square * (0.5 * end * end + (std::cos(omega * end) - 1.0) / square);
   const double stretch = k_g / square * (1.0 - std::cos(omega * end));
   for (const double side : {1.0, -1.0}) // on the right turning counter-clockwise winds up, on the left clockwise
     for (const std::string method : k_methods) {
       CAPTURE(side);
       CAPTURE(method);
       const std::string radius = number(side * r);
-      const Written model(
-          settings(end) + wheel("drum", 30.0, inertia, "[0.0, 5.0]") +
-          body("load", "mass = 50.0; inertia = 1.0; position = [" + radius + ", 4.0]") +
-          element("wound_rope", "rope", "a = 'drum'; b = 'load'; radius_a = " + radius + "; stiffness = 2e5"));
+      const Written model(settings(end) + wheel("drum", 30.0, inertia, "[0.0, 5.0]") +
+                          body("load", "mass = 50.0; inertia = 1.0; position = [" + radius + ", 4.0]") +
+                          element("wound_rope", "rope", "a = 'drum'; b = 'load'; radius_a = " + radius + "; stiffness = 2e5"));
       const Run run = run_model(model.loaded({"simulation.integrator=" + method}));
       REQUIRE_FALSE(run.failure);
       // 14 swings at 1e-10 a step; positions of metres.
@@ -73,14 +70,11 @@ TEST_CASE("a pendulum whose thread winds itself on a cylinder") {
   const int steps = 20000; // of fourth order: 1e-13
   for (int i = 0; i < steps; ++i) {
     const double h = end / steps;
-    const auto moved = [](const std::array<double, 2>& from, double by,
-                          const std::array<double, 2>& k) -> std::array<double, 2> {
+    const auto moved = [](const std::array<double, 2>& from, double by, const std::array<double, 2>& k) -> std::array<double, 2> {
       return {from[0] + by * k[0], from[1] + by * k[1]};
     };
-    const auto k1 = rates(y), k2 = rates(moved(y, 0.5 * h, k1)), k3 = rates(moved(y, 0.5 * h, k2)),
-               k4 = rates(moved(y, h, k3));
-    for (int j = 0; j < 2; ++j)
-      y[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+    const auto k1 = rates(y), k2 = rates(moved(y, 0.5 * h, k1)), k3 = rates(moved(y, 0.5 * h, k2)), k4 = rates(moved(y, h, k3));
+    for (int j = 0; j < 2; ++j) y[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
   }
   const auto place = [&](double angle) {
     return std::array<double, 2>{R * std::cos(angle) + (length + R * (angle - start)) * std::sin(angle),
@@ -90,10 +84,8 @@ TEST_CASE("a pendulum whose thread winds itself on a cylinder") {
   double before = 1.0;
   for (const double stiffness : {1e6, 1e7}) { // the bob's position by the rope's stretch, of the order of m g/k
     const Written model(
-        settings(end) +
-        body("bob", "mass = 2.0; inertia = 0.01; position = [" + number(first[0]) + ", " + number(first[1]) + "]") +
-        element("wound_rope", "thread",
-                "a = 'ground'; b = 'bob'; radius_a = 0.1; damping = 2e3; stiffness = " + number(stiffness)));
+        settings(end) + body("bob", "mass = 2.0; inertia = 0.01; position = [" + number(first[0]) + ", " + number(first[1]) + "]") +
+        element("wound_rope", "thread", "a = 'ground'; b = 'bob'; radius_a = 0.1; damping = 2e3; stiffness = " + number(stiffness)));
     const Run run = run_model(model.loaded({"simulation.integrator=rodas5p"}));
     REQUIRE_FALSE(run.failure);
     const double off = std::hypot(last(run, "bob.x") - expected[0], last(run, "bob.y") - expected[1]);
@@ -109,8 +101,7 @@ TEST_CASE("a belt drive: bearings, its mode, and when its slack side goes slack"
   const double k = 4e4, r1 = 0.1, r2 = 0.25, J1 = 0.02, J2 = 0.6, tight = 300.0, apart = 0.8;
   const double couple = 60.0;
   const std::string belt = "stiffness = 4e4; pretension = 300.0; a = 'small'; b = 'large'; ";
-  const std::string drive = k_no_gravity + settings(0.05) + wheel("small", 2.0, J1, "[0.0, 0.0]") +
-                            wheel("large", 8.0, J2, "[0.8, 0.0]") +
+  const std::string drive = k_no_gravity + settings(0.05) + wheel("small", 2.0, J1, "[0.0, 0.0]") + wheel("large", 8.0, J2, "[0.8, 0.0]") +
                             element("wound_rope", "above", belt + "radius_a = 0.1; radius_b = -0.25") +
                             element("wound_rope", "below", belt + "radius_a = -0.1; radius_b = 0.25") +
                             element("load", "motor", "at = 'small'; couple = 60.0");
@@ -122,16 +113,15 @@ TEST_CASE("a belt drive: bearings, its mode, and when its slack side goes slack"
     CAPTURE(method);
     const Run run = run_model(model.loaded({"simulation.integrator=" + method}));
     REQUIRE_FALSE(run.failure);
-    const auto slack = std::find_if(run.result.events.begin(), run.result.events.end(),
-                                    [](const Event& e) { return e.kind == EventKind::enters_gap; });
+    const auto slack =
+        std::find_if(run.result.events.begin(), run.result.events.end(), [](const Event& e) { return e.kind == EventKind::enters_gap; });
     REQUIRE(slack != run.result.events.end());
     CHECK(slack->element == "below"); // counter-clockwise the small wheel winds up above what it lets go below
     CHECK(std::abs(slack->t - slack_at) < 1e-9);
-    CHECK(std::abs(at_time(run, "small bearing.force_x", 0.0) +
-                   2.0 * tight * std::sqrt(1.0 - std::pow((r2 - r1) / apart, 2))) < 1e-9 * tight);
+    CHECK(std::abs(at_time(run, "small bearing.force_x", 0.0) + 2.0 * tight * std::sqrt(1.0 - std::pow((r2 - r1) / apart, 2))) <
+          1e-9 * tight);
     // Taut or not, what drives is couple over both inertias: J₁ω₁ r₂ + J₂ω₂ r₁ = M r₂ t.
-    CHECK(std::abs(J1 * last(run, "small.omega") * r2 + J2 * last(run, "large.omega") * r1 - couple * r2 * 0.05) <
-          1e-8);
+    CHECK(std::abs(J1 * last(run, "small.omega") * r2 + J2 * last(run, "large.omega") * r1 - couple * r2 * 0.05) < 1e-8);
   }
   const Written held(drive.substr(0, drive.find("[[element]]\nkind = \"load\"")));
   const Answer modes = steplap_does({"modes", held.file.string()});
@@ -146,13 +136,12 @@ TEST_CASE("a belt drive: bearings, its mode, and when its slack side goes slack"
 TEST_CASE("a differential hoist holds its load with half the difference of its radii") {
   const double R = 0.20, r = 0.16, weight = 1000.0 * k_g, turned = 6.0 * std::numbers::pi;
   const std::string rope = "a = 'drum'; b = 'sheave'; stiffness = 1e8; damping = 1e5; ";
-  const Written model(
-      settings(4.0) + wheel("drum", 40.0, 1.0, "[0.0, 5.0]") +
-      body("sheave", "mass = 1000.0; inertia = 5.0; position = [0.02, 2.0]") +
-      element("wound_rope", "right part", rope + "radius_a = 0.2; radius_b = -0.18") +
-      element("wound_rope", "left part", rope + "radius_a = -0.16; radius_b = 0.18") +
-      signal_entry("haversine", "turning", "peak = " + number(2.0 * turned / 4.0) + "; duration = 4.0") +
-      element("prescribed_motion", "crank", "a = 'drum'; coordinate = 'angle'; signal = 'turning'; as = 'velocity'"));
+  const Written model(settings(4.0) + wheel("drum", 40.0, 1.0, "[0.0, 5.0]") +
+                      body("sheave", "mass = 1000.0; inertia = 5.0; position = [0.02, 2.0]") +
+                      element("wound_rope", "right part", rope + "radius_a = 0.2; radius_b = -0.18") +
+                      element("wound_rope", "left part", rope + "radius_a = -0.16; radius_b = 0.18") +
+                      signal_entry("haversine", "turning", "peak = " + number(2.0 * turned / 4.0) + "; duration = 4.0") +
+                      element("prescribed_motion", "crank", "a = 'drum'; coordinate = 'angle'; signal = 'turning'; as = 'velocity'"));
   const auto loaded = model.loaded({"simulation.initial=equilibrium"});
   const Equilibrium rest = equilibrium_of(*loaded);
   CHECK(std::abs(at_rest(*loaded, rest, "crank.reaction") - 0.5 * weight * (R - r)) < 1e-6 * weight * R);
@@ -192,8 +181,7 @@ TEST_CASE("what a wound rope cannot be is refused") {
   CHECK(has(refused("a = 'drum'; b = 'load'; radius_a = 0.25"),
             "centres are 0.2 m apart, but a straight part of rope between them takes more than 0.25 m"));
   CHECK(has(refused("a = 'drum'; b = 'load'; pretension = 1.0; slack = 0.1"), "either 'pretension' or 'slack'"));
-  CHECK(has(refused("a = 'drum'; b = { body = 'drum', point = [1.0, 0.0] }; radius_a = 0.1"),
-            "joins a body with itself"));
+  CHECK(has(refused("a = 'drum'; b = { body = 'drum', point = [1.0, 0.0] }; radius_a = 0.1"), "joins a body with itself"));
 }
 
 // A bob that is thrown all the way round its drum: the angle of the rope is followed up to 172° from the reference
@@ -203,15 +191,13 @@ TEST_CASE("a rope that is followed no further ends the run, and is named") {
     const Run run = run_model(Written(text).loaded());
     return run.failure ? run.failure->text : "";
   };
-  const std::string round = failure_of(
-      k_no_gravity + settings(4.0) +
-      body("bob", "mass = 1.0; inertia = 0.01; position = [0.1, -3.0]; velocity = [5.0, 0.0]") +
-      element("wound_rope", "rope", "a = 'ground'; b = 'bob'; radius_a = 0.1; stiffness = 1e5; damping = 100.0"));
+  const std::string round =
+      failure_of(k_no_gravity + settings(4.0) + body("bob", "mass = 1.0; inertia = 0.01; position = [0.1, -3.0]; velocity = [5.0, 0.0]") +
+                 element("wound_rope", "rope", "a = 'ground'; b = 'bob'; radius_a = 0.1; stiffness = 1e5; damping = 100.0"));
   CAPTURE(round);
   CHECK(has(round, "wound_rope 'rope' has turned by half a turn"));
   const std::string up = failure_of(
-      settings(4.0) + wheel("drum", 30.0, 0.8, "[0.0, 5.0]") +
-      body("load", "mass = 50.0; inertia = 1.0; position = [0.2, 4.0]") +
+      settings(4.0) + wheel("drum", 30.0, 0.8, "[0.0, 5.0]") + body("load", "mass = 50.0; inertia = 1.0; position = [0.2, 4.0]") +
       element("wound_rope", "rope", "a = 'drum'; b = 'load'; radius_a = 0.2; stiffness = 2e5; damping = 500.0") +
       signal_entry("constant", "turning", "value = 3.0") +
       element("prescribed_motion", "winch", "a = 'drum'; coordinate = 'angle'; signal = 'turning'; as = 'velocity'"));

@@ -48,9 +48,7 @@ inline Answer steplap_does(const std::vector<std::string>& arguments) {
   return {code, out.str(), err.str()};
 }
 
-inline bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 inline double last(const Run& run, const std::string& channel) {
   const auto& all = *run.result.trajectory;
@@ -58,9 +56,8 @@ inline double last(const Run& run, const std::string& channel) {
 }
 
 inline int count(const Run& run, const std::string& element, EventKind kind) {
-  return static_cast<int>(std::count_if(run.result.events.begin(), run.result.events.end(), [&](const Event& event) {
-    return event.element == element && event.kind == kind;
-  }));
+  return static_cast<int>(std::count_if(run.result.events.begin(), run.result.events.end(),
+                                        [&](const Event& event) { return event.element == element && event.kind == kind; }));
 }
 
 } // namespace steplap::testing

@@ -17,8 +17,7 @@ inline Signal made_signal(const std::string& kind_name, const FieldValues& value
     if (kind->name != kind_name) continue;
     const auto definition = kind->create();
     definition->name = "s";
-    for (const auto& [field, value] : values)
-      kind->fields.find(field)->set(definition.get(), value);
+    for (const auto& [field, value] : values) kind->fields.find(field)->set(definition.get(), value);
     return kind->build(*definition);
   }
   throw std::logic_error("no kind of signal " + kind_name);

@@ -48,8 +48,8 @@ struct File {
     int file = 0;
     std::array<double, 2> at{};
     double angle = 0.0;
-    bool is_by_formula = false;          // its x is two of the file's pitch, its angle the file's tilt
-    std::optional<double> factor;        // stiffness given from outside: so many times the file's own
+    bool is_by_formula = false;   // its x is two of the file's pitch, its angle the file's tilt
+    std::optional<double> factor; // stiffness given from outside: so many times the file's own
   };
   std::string name;
   double mass = 1.0, inertia = 1.0, stiffness = 1000.0, pitch = 0.3, tilt = 0.2;
@@ -82,7 +82,9 @@ public:
   }
 
 private:
-  static std::string head() { return "gravity = [0.7, -9.81]\n[simulation]\nend = 0.02\nintegrator = \"dop853\"\ntolerance = 1e-8\n[output]\nstep = 0.002\n"; }
+  static std::string head() {
+    return "gravity = [0.7, -9.81]\n[simulation]\nend = 0.02\nintegrator = \"dop853\"\ntolerance = 1e-8\n[output]\nstep = 0.002\n";
+  }
 
   std::array<double, 2> point(double size) {
     const double x = draw_.either(0.01, size);
@@ -131,20 +133,28 @@ private:
   }
 
   [[nodiscard]] std::string part_text(const File& f) const {
-    std::string text = "[parameters]\nstiffness = \"" + text_of(f.stiffness) + " N/m\"\npitch = \"" + text_of(f.pitch) + " m\"\ntilt = " + text_of(f.tilt) + "\n";
-    text += "[[body]]\nname = \"block\"\nmass = " + text_of(f.mass) + "\ninertia = " + text_of(f.inertia) + "\nvelocity = " + text_of(f.velocity) + "\n";
+    std::string text = "[parameters]\nstiffness = \"" + text_of(f.stiffness) + " N/m\"\npitch = \"" + text_of(f.pitch) +
+                       " m\"\ntilt = " + text_of(f.tilt) + "\n";
+    text += "[[body]]\nname = \"block\"\nmass = " + text_of(f.mass) + "\ninertia = " + text_of(f.inertia) +
+            "\nvelocity = " + text_of(f.velocity) + "\n";
     if (f.has_pose) text += "position = " + text_of(f.position) + "\nangle = " + text_of(f.angle) + "\n";
     text += "[[marker]]\nname = \"port\"\nbody = \"block\"\npoint = " + text_of(f.point) + "\n";
-    text += "[[element]]\nkind = \"spring_damper\"\nname = \"hanger\"\na = \"port\"\nb = { body = \"ground\", at = " + text_of(f.anchor) + " }\nstiffness = \"= 2*stiffness\"\ndamping = 3.0\n";
-    if (f.has_bushing) text += "[[element]]\nkind = \"bushing\"\nname = \"pad\"\na = \"block\"\nstiffness = [900.0, 400.0]\nrotational_stiffness = 12.0\n";
+    text += "[[element]]\nkind = \"spring_damper\"\nname = \"hanger\"\na = \"port\"\nb = { body = \"ground\", at = " + text_of(f.anchor) +
+            " }\nstiffness = \"= 2*stiffness\"\ndamping = 3.0\n";
+    if (f.has_bushing)
+      text += "[[element]]\nkind = \"bushing\"\nname = \"pad\"\na = \"block\"\nstiffness = [900.0, 400.0]\nrotational_stiffness = 12.0\n";
     if (f.has_arm)
-      text += "[[body]]\nname = \"arm\"\nmass = 0.3\ninertia = 0.02\n[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = \"arm\", point = [0.1, 0.0] }\nb = \"port\"\nangle = " + text_of(f.arm_angle) + "\n";
+      text += "[[body]]\nname = \"arm\"\nmass = 0.3\ninertia = 0.02\n[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = "
+              "\"arm\", point = [0.1, 0.0] }\nb = \"port\"\nangle = " +
+              text_of(f.arm_angle) + "\n";
     if (f.has_post)
       text += "[[marker]]\nname = \"post\"\nbody = \"ground\"\nat = " + text_of(f.anchor) + "\nangle = " + text_of(f.post_angle) +
-              "\n[[element]]\nkind = \"spring_damper\"\nname = \"guide\"\na = { body = \"block\", at = " + text_of(f.anchor) + " }\nb = \"post\"\naxis = [1.0, 0.0]\nstiffness = 300.0\n";
+              "\n[[element]]\nkind = \"spring_damper\"\nname = \"guide\"\na = { body = \"block\", at = " + text_of(f.anchor) +
+              " }\nb = \"post\"\naxis = [1.0, 0.0]\nstiffness = 300.0\n";
     if (f.has_push) text += "[[signal]]\nname = \"push\"\nkind = \"half_sine\"\npeak = " + text_of(f.peak) + "\nduration = 0.01\n";
     if (f.has_wind)
-      text += "[[element]]\nkind = \"load\"\nname = \"wind\"\nat = \"port\"\nforce = " + text_of(f.wind) + "\n" + (f.has_push ? "torque = \"push\"\n" : "");
+      text += "[[element]]\nkind = \"load\"\nname = \"wind\"\nat = \"port\"\nforce = " + text_of(f.wind) + "\n" +
+              (f.has_push ? "torque = \"push\"\n" : "");
     if (f.has_channel) text += "[[channel]]\nname = \"sum\"\nexpression = \"hanger.force/'1 N' + 2*block.x/'1 m'\"\n";
     for (const File::Sub& sub : f.subs) {
       text += "[[part]]\nname = \"" + sub.name + "\"\nfile = \"" + files_[static_cast<std::size_t>(sub.file)].name + "\"\n";
@@ -153,40 +163,56 @@ private:
       if (sub.factor) text += "parameters = { stiffness = \"= " + text_of(*sub.factor) + "*stiffness\" }\n";
     }
     for (const File::Sub& sub : f.subs)
-      text += "[[element]]\nkind = \"spring_damper\"\nname = \"tie " + sub.name + "\"\na = \"port\"\nb = \"" + sub.name + ".port\"\nstiffness = \"= stiffness\"\n";
+      text += "[[element]]\nkind = \"spring_damper\"\nname = \"tie " + sub.name + "\"\na = \"port\"\nb = \"" + sub.name +
+              ".port\"\nstiffness = \"= stiffness\"\n";
     return text;
   }
 
   void write_out(const File& f, const std::string& prefix, const Frame& frame, double stiffness, int depth) {
     depth_ = std::max(depth_, depth);
     const auto named = [&](const std::string& name) { return "name = \"" + prefix + name + "\"\n"; };
-    const auto point = [&](const std::string& body, const std::array<double, 2>& p) { return "{ body = \"" + prefix + body + "\", point = " + text_of(p) + " }\n"; };
-    const auto ground = [&](const std::array<double, 2>& p) { // a marker of the ground turns with the part
-      return "{ body = \"ground\", at = " + text_of(frame.placed(p)) + (frame.is_turned() ? ", angle = " + text_of(frame.angle) : std::string()) + " }\n";
+    const auto point = [&](const std::string& body, const std::array<double, 2>& p) {
+      return "{ body = \"" + prefix + body + "\", point = " + text_of(p) + " }\n";
     };
-    bodies_ += "[[body]]\n" + named("block") + "mass = " + text_of(f.mass) + "\ninertia = " + text_of(f.inertia) + "\nvelocity = " + text_of(frame.turned(f.velocity)) + "\n";
-    if (f.has_pose) bodies_ += "position = " + text_of(frame.placed(f.position)) + "\nangle = " + text_of(frame.is_turned() ? frame.angle + f.angle : f.angle) + "\n";
+    const auto ground = [&](const std::array<double, 2>& p) { // a marker of the ground turns with the part
+      return "{ body = \"ground\", at = " + text_of(frame.placed(p)) +
+             (frame.is_turned() ? ", angle = " + text_of(frame.angle) : std::string()) + " }\n";
+    };
+    bodies_ += "[[body]]\n" + named("block") + "mass = " + text_of(f.mass) + "\ninertia = " + text_of(f.inertia) +
+               "\nvelocity = " + text_of(frame.turned(f.velocity)) + "\n";
+    if (f.has_pose)
+      bodies_ += "position = " + text_of(frame.placed(f.position)) +
+                 "\nangle = " + text_of(frame.is_turned() ? frame.angle + f.angle : f.angle) + "\n";
     else bodies_ += "position = " + text_of(frame.placed({0.0, 0.0})) + "\nangle = " + text_of(frame.angle) + "\n";
     markers_ += "[[marker]]\n" + named("port") + "body = \"" + prefix + "block\"\npoint = " + text_of(f.point) + "\n";
-    elements_ += "[[element]]\nkind = \"spring_damper\"\n" + named("hanger") + "a = \"" + prefix + "port\"\nb = " + ground(f.anchor) + "stiffness = " + text_of(2 * stiffness) + "\ndamping = 3.0\n";
+    elements_ += "[[element]]\nkind = \"spring_damper\"\n" + named("hanger") + "a = \"" + prefix + "port\"\nb = " + ground(f.anchor) +
+                 "stiffness = " + text_of(2 * stiffness) + "\ndamping = 3.0\n";
     if (f.has_bushing)
-      elements_ += "[[element]]\nkind = \"bushing\"\n" + named("pad") + "a = \"" + prefix + "block\"\nstiffness = [900.0, 400.0]\nrotational_stiffness = 12.0\n" +
+      elements_ += "[[element]]\nkind = \"bushing\"\n" + named("pad") + "a = \"" + prefix +
+                   "block\"\nstiffness = [900.0, 400.0]\nrotational_stiffness = 12.0\n" +
                    (frame.is_placed() ? "b = " + ground({0.0, 0.0}) : std::string());
     if (f.has_arm) {
       bodies_ += "[[body]]\n" + named("arm") + "mass = 0.3\ninertia = 0.02\n";
-      elements_ += "[[element]]\nkind = \"revolute\"\n" + named("pin") + "a = " + point("arm", {0.1, 0.0}) + "b = \"" + prefix + "port\"\nangle = " + text_of(f.arm_angle) + "\n";
+      elements_ += "[[element]]\nkind = \"revolute\"\n" + named("pin") + "a = " + point("arm", {0.1, 0.0}) + "b = \"" + prefix +
+                   "port\"\nangle = " + text_of(f.arm_angle) + "\n";
     }
     if (f.has_post) {
-      markers_ += "[[marker]]\n" + named("post") + "body = \"ground\"\nat = " + text_of(frame.placed(f.anchor)) + "\nangle = " + text_of(frame.is_turned() ? frame.angle + f.post_angle : f.post_angle) + "\n";
-      elements_ += "[[element]]\nkind = \"spring_damper\"\n" + named("guide") + "a = { body = \"" + prefix + "block\", at = " + text_of(frame.placed(f.anchor)) + " }\nb = \"" + prefix +
+      markers_ += "[[marker]]\n" + named("post") + "body = \"ground\"\nat = " + text_of(frame.placed(f.anchor)) +
+                  "\nangle = " + text_of(frame.is_turned() ? frame.angle + f.post_angle : f.post_angle) + "\n";
+      elements_ += "[[element]]\nkind = \"spring_damper\"\n" + named("guide") + "a = { body = \"" + prefix +
+                   "block\", at = " + text_of(frame.placed(f.anchor)) + " }\nb = \"" + prefix +
                    "post\"\naxis = [1.0, 0.0]\nstiffness = 300.0\n";
     }
     if (f.has_push) signals_ += "[[signal]]\n" + named("push") + "kind = \"half_sine\"\npeak = " + text_of(f.peak) + "\nduration = 0.01\n";
     if (f.has_wind)
-      elements_ += "[[element]]\nkind = \"load\"\n" + named("wind") + "at = \"" + prefix + "port\"\nforce = " + text_of(frame.turned(f.wind)) + "\n" + (f.has_push ? "torque = \"" + prefix + "push\"\n" : "");
-    if (f.has_channel) channels_ += "[[channel]]\n" + named("sum") + "expression = \"{" + prefix + "hanger.force}/'1 N' + 2*{" + prefix + "block.x}/'1 m'\"\n";
+      elements_ += "[[element]]\nkind = \"load\"\n" + named("wind") + "at = \"" + prefix +
+                   "port\"\nforce = " + text_of(frame.turned(f.wind)) + "\n" + (f.has_push ? "torque = \"" + prefix + "push\"\n" : "");
+    if (f.has_channel)
+      channels_ +=
+          "[[channel]]\n" + named("sum") + "expression = \"{" + prefix + "hanger.force}/'1 N' + 2*{" + prefix + "block.x}/'1 m'\"\n";
     for (const File::Sub& sub : f.subs)
-      elements_ += "[[element]]\nkind = \"spring_damper\"\n" + named("tie " + sub.name) + "a = \"" + prefix + "port\"\nb = \"" + prefix + sub.name + ".port\"\nstiffness = " + text_of(stiffness) + "\n";
+      elements_ += "[[element]]\nkind = \"spring_damper\"\n" + named("tie " + sub.name) + "a = \"" + prefix + "port\"\nb = \"" + prefix +
+                   sub.name + ".port\"\nstiffness = " + text_of(stiffness) + "\n";
     for (const File::Sub& sub : f.subs) {
       ++parts_;
       const File& inner = files_[static_cast<std::size_t>(sub.file)];

@@ -47,10 +47,7 @@ inline const ElementKind& spring_kind() {
     k.fields.add("a", &Spring::a).as(FieldType::marker).required().doc("first end");
     k.fields.add("b", &Spring::b).as(FieldType::marker).required().doc("second end");
     k.fields.add("stiffness", &Spring::stiffness).in("N/m").positive().required().doc("stiffness");
-    k.fields.add("damping", &Spring::damping)
-        .in("N s/m")
-        .not_negative()
-        .doc("damper's coefficient");
+    k.fields.add("damping", &Spring::damping).in("N s/m").not_negative().doc("damper's coefficient");
     k.fields.add("preload", &Spring::preload).in("N").doc("force in the reference pose");
     k.fields.add("law", &Spring::law).one_of({"linear", "table"}).doc("how force follows stretch");
     k.fields.add("table", &Spring::table).in("m", "N").doc("stretch and force");
@@ -84,9 +81,7 @@ inline const ElementKind& pusher_kind() {
     k.holds<Pusher>();
     k.fields.add("body", &Pusher::body).as(FieldType::body).required().doc("what it pushes");
     k.fields.add("signal", &Pusher::signal).as(FieldType::signal).required().doc("force, N");
-    k.fields.add("against", &Pusher::against)
-        .as(FieldType::elements)
-        .doc("elements it works against");
+    k.fields.add("against", &Pusher::against).as(FieldType::elements).doc("elements it works against");
     k.fields.add("offsets", &Pusher::offsets).in("m").doc("lever arms");
     return k;
   }();

@@ -67,10 +67,9 @@ Count count_allocations(const System& system, SimulationOptions o, double warm) 
     if (!is_on) return count;
     const double t = simulation.state().t;
     // At a kink all modes are decided anew.
-    const bool is_kink = std::any_of(system.breakpoints.begin(), system.breakpoints.end(),
-                                     [t](double b) { return std::abs(t - b) < 1e-12; });
-    const bool is_change =
-        is_kink || simulation.events().size() != events || simulation.statistics().events != restarts;
+    const bool is_kink =
+        std::any_of(system.breakpoints.begin(), system.breakpoints.end(), [t](double b) { return std::abs(t - b) < 1e-12; });
+    const bool is_change = is_kink || simulation.events().size() != events || simulation.statistics().events != restarts;
     const bool is_after = std::exchange(is_first, is_change);
     if (t < warm || is_change || is_after) continue;
     ++count.steps;
@@ -86,8 +85,7 @@ std::string hanging_chain(int links) {
     const std::string x = std::to_string(0.1 * i - 0.1), middle = std::to_string(0.1 * i - 0.05);
     text += body(name, "mass = 1.0; inertia = 0.01; position = [" + middle + ", 0.0]") +
             element("revolute", "pin" + std::to_string(i),
-                    "a = { body = '" + name + "', at = [" + x + ", 0.0] }; b = { body = '" + last + "', at = [" + x +
-                        ", 0.0] }");
+                    "a = { body = '" + name + "', at = [" + x + ", 0.0] }; b = { body = '" + last + "', at = [" + x + ", 0.0] }");
   }
   return text + element("joint_friction", "bearing", "a = 'link1'; coordinate = 'angle'; holds = 2.0") +
          element("load", "sway", "at = 'link2'; torque = 'sway'") + "[simulation]\nstep = 1e-3\n";

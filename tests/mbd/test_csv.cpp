@@ -40,23 +40,20 @@ std::string content(const fs::path& path) {
 }
 
 std::size_t files_in(const fs::path& folder) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
 }
 
 } // namespace
 
 TEST_CASE("delimiters, comments, headers, decimal commas") {
-  const CsvTable a =
-      parse_csv("# stop\n\ntime [s], \"a, long\"\r\n0, 1.5\r\n+0.1,-2e3\r\n", "a.csv");
+  const CsvTable a = parse_csv("# stop\n\ntime [s], \"a, long\"\r\n0, 1.5\r\n+0.1,-2e3\r\n", "a.csv");
   CHECK(a.names == std::vector<std::string>{"time", "a, long"});
   CHECK(a.columns[1] == std::vector<double>{1.5, -2000.0});
   CHECK(a.lines == std::vector<int>{4, 5});
   CHECK(a.column("a, long", {}) == 1);
   CHECK(a.column("1", {}) == 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(a.column("3", {"m.toml", 4, 1})),
-                       "m.toml:4:1: error: the record 'a.csv' has no column '3'; it has 2 columns",
-                       ModelError);
+                       "m.toml:4:1: error: the record 'a.csv' has no column '3'; it has 2 columns", ModelError);
   CHECK(parse_csv("0,5;1\n1,5;2", "b.csv").columns[0] == std::vector<double>{0.5, 1.5});
   CHECK(parse_csv("0,5\t1\n1,5\t2", "c.csv").columns[0] == std::vector<double>{0.5, 1.5});
   CHECK(parse_csv("0.5\t1\n1.5\t2", "c.csv").columns[0] == std::vector<double>{0.5, 1.5});
@@ -102,8 +99,27 @@ TEST_CASE("numbers are the text that the C++ library makes of them") {
     for (const double x : {value, -value})
       if (number_text(x) != reference(x) && ++wrong < 10) CHECK(number_text(x) == reference(x));
   };
-  for (const double value : {0.0, 1.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 9007199254740993.0, 1e22, 1e23, 123456e5, 1e5, 1e4,
-                             99999.0, 100000.0, 0.001, 0.0001, 0.00012, 1e-5, 2e-4, 4.35, 0.3, std::numeric_limits<double>::infinity(),
+  for (const double value : {0.0,
+                             1.0,
+                             5e-324,
+                             2.2250738585072014e-308,
+                             1.7976931348623157e308,
+                             9007199254740993.0,
+                             1e22,
+                             1e23,
+                             123456e5,
+                             1e5,
+                             1e4,
+                             99999.0,
+                             100000.0,
+                             0.001,
+                             0.0001,
+                             0.00012,
+                             1e-5,
+                             2e-4,
+                             4.35,
+                             0.3,
+                             std::numeric_limits<double>::infinity(),
                              std::numeric_limits<double>::quiet_NaN()})
     compare(value);
   for (int exponent = -1074; exponent < 1024; ++exponent) // the interval of a power of two reaches less far down
@@ -114,7 +130,7 @@ TEST_CASE("numbers are the text that the C++ library makes of them") {
     const auto bits = random();
     compare(std::bit_cast<double>(bits)); // of all sizes
     const double of_one = static_cast<double>(bits >> 11) * 0x1p-53;
-    compare((of_one - 0.5) * 1e3); // as results are
+    compare((of_one - 0.5) * 1e3);                   // as results are
     const auto digits = static_cast<int>(bits % 17); // with few digits, and whole numbers
     const double power = std::pow(10.0, digits);
     compare(std::round(of_one * power) / power);
@@ -161,17 +177,14 @@ TEST_CASE("files are whole or absent") {
   const std::string path = (folder / "out.csv").string();
   write_file(path, "one");
   CHECK(content(path) == "one");
-  CHECK_THROWS_WITH_AS(write_file(path, "two"),
-                       ("'" + path + "' exists already and is not overwritten").c_str(), FileError);
+  CHECK_THROWS_WITH_AS(write_file(path, "two"), ("'" + path + "' exists already and is not overwritten").c_str(), FileError);
   CHECK(content(path) == "one");
   write_file(path, "two", IfExists::replace);
   CHECK(content(path) == "two");
   CHECK(files_in(folder) == 1);
 
   const std::string nowhere = (folder / "no" / "out.csv").string();
-  CHECK_THROWS_WITH_AS(write_file(nowhere, "x"),
-                       ("cannot write '" + nowhere + "': No such file or directory").c_str(),
-                       FileError);
+  CHECK_THROWS_WITH_AS(write_file(nowhere, "x"), ("cannot write '" + nowhere + "': No such file or directory").c_str(), FileError);
   fs::create_directories(folder / "taken");
   CHECK_THROWS_AS(write_file((folder / "taken").string(), "x", IfExists::replace), FileError);
   CHECK(files_in(folder) == 2);

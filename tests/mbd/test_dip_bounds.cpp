@@ -109,8 +109,10 @@ WatchedStep watched(const Wave& f, bool has_slopes, bool is_merged = false) {
   return {0, is_merged, false, {f.at(0.0), has_slopes ? f.slope(0.0) : k_unknown}, {f.at(1.0), has_slopes ? f.slope(1.0) : k_unknown}};
 }
 
-const std::vector<std::vector<double>> k_places = {
-    {dop853::c.begin() + 1, dop853::c.begin() + 11}, {tsit5::c.begin() + 1, tsit5::c.begin() + 5}, {0.27639320225002106, 0.72360679774997894}, {0.5}};
+const std::vector<std::vector<double>> k_places = {{dop853::c.begin() + 1, dop853::c.begin() + 11},
+                                                   {tsit5::c.begin() + 1, tsit5::c.begin() + 5},
+                                                   {0.27639320225002106, 0.72360679774997894},
+                                                   {0.5}};
 
 } // namespace
 
@@ -249,7 +251,8 @@ TEST_CASE("a dip before a crossing is not taken for a single crossing") {
       single += crossings.size() == 1 ? 1 : 0;
       certain += is_certain ? 1 : 0;
       if (crossings.size() > 1) { // unless a place between the first two has seen it
-        const bool is_seen = std::any_of(places.begin(), places.end(), [&](double x) { return f.at(x) < 0.0 && x < crossings[1] + 1.0 / 400.0; });
+        const bool is_seen =
+            std::any_of(places.begin(), places.end(), [&](double x) { return f.at(x) < 0.0 && x < crossings[1] + 1.0 / 400.0; });
         CHECK((is_seen || !is_certain));
       }
     }

@@ -98,7 +98,8 @@ TEST_CASE("an enclosure holds every value of random formulas") {
         CHECK(says_so);
         continue;
       }
-      const bool is_inside = all.range.holds(value) && (!all.has_polynomial() || std::abs(value - all.polynomial(u)) <= all.rest * (1.0 + 1e-9));
+      const bool is_inside =
+          all.range.holds(value) && (!all.has_polynomial() || std::abs(value - all.polynomial(u)) <= all.rest * (1.0 + 1e-9));
       outside += !is_inside;
       CHECK(is_inside);
     }
@@ -122,8 +123,8 @@ TEST_CASE("bounds of what is smooth close in by a power of the span, of a kink w
     }
     return std::max(all.range.high - most, least - all.range.low);
   };
-  for (const char* text : {"exp(-(x - 0.31)^2)", "1 / (1 + (x - 0.29)^2)", "sin(5 * x) * cos(x)", "sqrt(x) - ln(x)", "x^2.5 - x^-1.5", "atan2(x, 1 - x)",
-                           "asin(x) * acos(x)", "hypot(x, 1)", "tan(x)"}) {
+  for (const char* text : {"exp(-(x - 0.31)^2)", "1 / (1 + (x - 0.29)^2)", "sin(5 * x) * cos(x)", "sqrt(x) - ln(x)", "x^2.5 - x^-1.5",
+                           "atan2(x, 1 - x)", "asin(x) * acos(x)", "hypot(x, 1)", "tan(x)"}) {
     CAPTURE(std::string(text));
     CHECK(slack(text, 1e-2) < slack(text, 1e-1) / 100.0 + 1e-13); // of roundings
   }

@@ -81,11 +81,13 @@ std::string fault_of_script(const std::string& line) {
   for (const char* call : {"=== ", "!== ", "== ", "!= ", "startsWith(", "endsWith(", "includes(", "indexOf(", "match("})
     for (const char* quote : {"'", "\"", "`"})
       for (const EventKind kind : all_kinds())
-        if (line.find(std::string(call) + quote + words_of(kind)) != std::string::npos) return std::string("compares with '") + words_of(kind) + "'";
+        if (line.find(std::string(call) + quote + words_of(kind)) != std::string::npos)
+          return std::string("compares with '") + words_of(kind) + "'";
   for (const EventKind kind : all_kinds())
     for (const char* begin : {"/^", "/^(", "/(", "/"})
       for (const char* end : {"/", "|"})
-        if (line.find(std::string(begin) + words_of(kind) + end) != std::string::npos) return std::string("looks for '") + words_of(kind) + "'";
+        if (line.find(std::string(begin) + words_of(kind) + end) != std::string::npos)
+          return std::string("looks for '") + words_of(kind) + "'";
   return "";
 }
 

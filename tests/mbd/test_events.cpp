@@ -33,7 +33,8 @@ velocity = [0.0, 5.0]
 kind = "unilateral_contact"
 name = "ceiling"
 a = "ball"
-b = { body = "ground", at = [0.0, )" + number(apex - depth) + R"(] }
+b = { body = "ground", at = [0.0, )" +
+         number(apex - depth) + R"(] }
 normal = [0.0, -1.0]
 stiffness = 10.0
 )";
@@ -97,8 +98,10 @@ a = { body = "table", at = [0.1, 0.9] }
 b = "leaf"
 )";
   const auto feet = [](const std::string& right) {
-    return "[[element]]\nkind = \"unilateral_contact\"\nname = \"left\"\na = { body = \"table\", at = [-0.7, 0.8] }\nstiffness = 2e4\ndamping = 40.0\n"
-           "[[element]]\nkind = \"unilateral_contact\"\nname = \"right\"\na = { body = \"" + right + "\", at = [0.7, 0.8] }\nstiffness = 2e4\ndamping = 40.0\n";
+    return "[[element]]\nkind = \"unilateral_contact\"\nname = \"left\"\na = { body = \"table\", at = [-0.7, 0.8] }\nstiffness = "
+           "2e4\ndamping = 40.0\n"
+           "[[element]]\nkind = \"unilateral_contact\"\nname = \"right\"\na = { body = \"" +
+           right + "\", at = [0.7, 0.8] }\nstiffness = 2e4\ndamping = 40.0\n";
   };
   for (const std::string& text : {one + feet("table"), two + feet("leaf")})
     for (const Settings& settings : {Settings{"rk4", 1e-3, 3.0}, Settings{"dop853", 1e-10, 3.0}, Settings{"tsit5", 1e-10, 3.0}}) {
@@ -146,8 +149,10 @@ TEST_CASE("events: friction starts and lands on the foot that the pose asks for"
 name = "box"
 mass = 1.0
 inertia = 0.2
-position = [0.0, )" + number(height) + R"(]
-angle = )" + number(angle) + R"(
+position = [0.0, )" +
+           number(height) + R"(]
+angle = )" +
+           number(angle) + R"(
 [[element]]
 kind = "unilateral_contact"
 name = "rear"

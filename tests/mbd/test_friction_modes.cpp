@@ -41,8 +41,10 @@ std::string text_of(const Blocks& b) {
   for (std::size_t i = 0; i < b.count(); ++i) {
     const std::string n = std::to_string(i), name = "\"block " + n + "\"", below = "\"block " + std::to_string(i - 1) + "\"";
     const double x = b.is_stack ? 0.0 : 2.0 * static_cast<double>(i), y = b.is_stack ? static_cast<double>(i) : 0.0;
-    text += "[[body]]\nname = " + name + "\nmass = " + number(b.mass[i]) + "\ninertia = 1.0\nposition = [" + number(x) + ", " + number(y) + "]\n";
-    text += "[[element]]\nkind = \"prescribed_motion\"\nname = \"upright " + n + "\"\na = " + name + "\ncoordinate = \"angle\"\nsignal = \"still\"\n";
+    text += "[[body]]\nname = " + name + "\nmass = " + number(b.mass[i]) + "\ninertia = 1.0\nposition = [" + number(x) + ", " + number(y) +
+            "]\n";
+    text += "[[element]]\nkind = \"prescribed_motion\"\nname = \"upright " + n + "\"\na = " + name +
+            "\ncoordinate = \"angle\"\nsignal = \"still\"\n";
     const std::string on = b.is_stack && i > 0 ? "{ body = " + below + ", point = [0.0, 0.5] }" : "{ body = \"ground\", at = [0.0, -0.5] }";
     const int feet = b.rear_share > 0.0 ? 2 : 1;
     for (int foot = 0; foot < feet; ++foot) {
@@ -55,8 +57,7 @@ std::string text_of(const Blocks& b) {
               "\"]\nstatic_friction = " + number(share * b.mu[i]) + "\n";
     }
     text += "[[element]]\nkind = \"load\"\nname = \"pull " + n + "\"\nat = " + name + "\nforce = [" + number(b.force[i]) + ", 0.0]\n";
-    if (b.is_chained && i > 0)
-      text += "[[element]]\nkind = \"distance\"\nname = \"rod " + n + "\"\na = " + name + "\nb = " + below + "\n";
+    if (b.is_chained && i > 0) text += "[[element]]\nkind = \"distance\"\nname = \"rod " + n + "\"\na = " + name + "\nb = " + below + "\n";
   }
   return text;
 }
@@ -143,7 +144,8 @@ void check_against(const Blocks& b, const Answer& expected) {
   const Run r = run(scene(text_of(b)), {"rk4", 1e-4, 1e-3});
   for (const Event& event : r.result.events) CHECK(event.is_at_start()); // what slips does so from there
   for (std::size_t i = 0; i < b.count(); ++i)
-    CHECK(std::abs(r.last("block " + std::to_string(i) + ".ax") - expected.acceleration[i]) < 1e-9 * (1.0 + std::abs(expected.acceleration[i])));
+    CHECK(std::abs(r.last("block " + std::to_string(i) + ".ax") - expected.acceleration[i]) <
+          1e-9 * (1.0 + std::abs(expected.acceleration[i])));
 }
 
 } // namespace

@@ -100,8 +100,7 @@ struct Honesty {
 };
 
 // `exact` is mass.x; both errors relative to its range.
-Honesty honesty(const std::string& text, const std::function<double(double)>& exact,
-                const SimulationOptions& options) {
+Honesty honesty(const std::string& text, const std::function<double(double)>& exact, const SimulationOptions& options) {
   const auto system = compile(scene(text));
   const State initial = system->initial_state();
   const RunResult run = simulate(*system, initial, options);
@@ -115,8 +114,7 @@ Honesty honesty(const std::string& text, const std::function<double(double)>& ex
     high = std::max(high, e);
   }
   h.error /= high - low;
-  h.estimate =
-      estimate_global_error(*system, initial, options, run).error.of(ErrorKind::position).value;
+  h.estimate = estimate_global_error(*system, initial, options, run).error.of(ErrorKind::position).value;
   return h;
 }
 
@@ -129,12 +127,10 @@ TEST_CASE("an estimated global error is honest where the solution is known") {
     double (*exact)(double);
   };
   for (const Problem& p :
-       {Problem{"oscillator", k_oscillator, [](double t) { return 0.1 * std::cos(10.0 * t); }},
-        Problem{"belt", k_belt, on_belt}})
+       {Problem{"oscillator", k_oscillator, [](double t) { return 0.1 * std::cos(10.0 * t); }}, Problem{"belt", k_belt, on_belt}})
     for (const Settings& s :
-         {Settings{"tsit5", 1e-4, 10.0, 0.05}, Settings{"tsit5", 1e-7, 10.0, 0.05},
-          Settings{"dop853", 1e-4, 10.0, 0.05}, Settings{"dop853", 1e-7, 10.0, 0.05},
-          Settings{"rk4", 1e-2, 10.0, 0.05}, Settings{"rk4", 2e-3, 10.0, 0.05}}) {
+         {Settings{"tsit5", 1e-4, 10.0, 0.05}, Settings{"tsit5", 1e-7, 10.0, 0.05}, Settings{"dop853", 1e-4, 10.0, 0.05},
+          Settings{"dop853", 1e-7, 10.0, 0.05}, Settings{"rk4", 1e-2, 10.0, 0.05}, Settings{"rk4", 2e-3, 10.0, 0.05}}) {
       CAPTURE(std::string(p.name));
       CAPTURE(s.integrator);
       CAPTURE(s.step_or_tolerance);
@@ -208,7 +204,8 @@ free_length = 0.99957957142857145
 TEST_CASE("reactions that diverge at a singular position have no error that is known; those that do not have one") {
   Model model = read_model(std::string(STEPLAP_MODELS) + "/benchmarks/hard/singular_parallelogram.toml", transformer_catalog());
   const auto system = compile(model);
-  for (const Settings& settings : {Settings{"dop853", 1e-6}, Settings{"dop853", 1e-10}, Settings{"tsit5", 1e-8}, Settings{"rodas5p", 1e-8}}) {
+  for (const Settings& settings :
+       {Settings{"dop853", 1e-6}, Settings{"dop853", 1e-10}, Settings{"tsit5", 1e-8}, Settings{"rodas5p", 1e-8}}) {
     CAPTURE(settings.integrator);
     SimulationOptions o = options({settings.integrator, settings.step_or_tolerance, 3.0, 0.05});
     o.has_extremes = true;
@@ -219,7 +216,8 @@ TEST_CASE("reactions that diverge at a singular position have no error that is k
       CAPTURE(name);
       if (name.ends_with(".force_x")) CHECK((std::isnan(estimate.channels[c].low) && std::isnan(estimate.channels[c].high)));
       // Finite, however much rounding beside the position adds to them.
-      if (name.ends_with(".force_y") || name == "motor.reaction") CHECK((std::isfinite(estimate.channels[c].low) && std::isfinite(estimate.channels[c].high)));
+      if (name.ends_with(".force_y") || name == "motor.reaction")
+        CHECK((std::isfinite(estimate.channels[c].low) && std::isfinite(estimate.channels[c].high)));
     }
   }
 }
@@ -247,8 +245,7 @@ TEST_CASE("a study: cheapest setting, Pareto set, slopes, failures") {
     CHECK(e.failure.empty());
     if (study.error_of(e) <= 1e-6) CHECK(e.cpu_seconds >= cheapest->cpu_seconds);
   }
-  CHECK(std::any_of(study.entries.begin(), study.entries.end(),
-                    [](const AccuracyEntry& e) { return e.is_pareto; }));
+  CHECK(std::any_of(study.entries.begin(), study.entries.end(), [](const AccuracyEntry& e) { return e.is_pareto; }));
   CHECK(study.cheapest(1e-16) == nullptr); // no setting is better than the reference can tell
 
   study_options.ladder = {{"tsit5", 1e-8}};
@@ -285,8 +282,7 @@ force_x = "nudge"
   study_options.first_reference = {"dop853", 1e-4};
   study_options.second_reference = {"tsit5", 1e-4};
   SimulationOptions base = options({"dop853", 1e-8, 20.0, 0.01});
-  CHECK_THROWS_AS((void)study_accuracy(*system, system->initial_state(), base, study_options),
-                  NumericalFailure);
+  CHECK_THROWS_AS((void)study_accuracy(*system, system->initial_state(), base, study_options), NumericalFailure);
 }
 
 TEST_CASE("events pair so that their times differ least; what is left over has no partner") {

@@ -41,7 +41,8 @@ std::string grid(bool hangs, const std::string& more = "") {
   std::string text = k_header;
   const auto name = [&](int row, int column) { return "m" + std::to_string(row * side + column); };
   for (int r = 0; r < side; ++r)
-    for (int c = 0; c < side; ++c) text += body(name(r, c), c, -r, r == 0 && c == 3 ? "velocity = [3.0, 1.0]\nangular_velocity = 2.0\n" : "");
+    for (int c = 0; c < side; ++c)
+      text += body(name(r, c), c, -r, r == 0 && c == 3 ? "velocity = [3.0, 1.0]\nangular_velocity = 2.0\n" : "");
   for (int r = 0; r < side; ++r)
     for (int c = 0; c < side; ++c) {
       const std::string here = at(name(r, c), c + 0.1, -r + 0.05);
@@ -129,8 +130,9 @@ std::string blocks_among_linkages(int count) {
     std::ostringstream velocity;
     velocity << "velocity = [" << (i % 4 == 0 ? 3.0 : i % 4 == 1 ? 0.002 * (i + 1) : 0.0) << ", 0.0]\n";
     text += body(n, -5.0 * i, i % 4 == 3 ? 2e-4 * i : 0.0, velocity.str());
-    text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"sole" + n + "\"\na = \"" + n + "\"\nstiffness = 1e6\npreload = " +
-            (i % 4 == 3 ? "0.0" : "9.81") + "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"friction" + n + "\"\ncontacts = [\"sole" + n +
+    text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"sole" + n + "\"\na = \"" + n +
+            "\"\nstiffness = 1e6\npreload = " + (i % 4 == 3 ? "0.0" : "9.81") +
+            "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"friction" + n + "\"\ncontacts = [\"sole" + n +
             "\"]\nstatic_friction = 0.4\n";
   }
   return text;

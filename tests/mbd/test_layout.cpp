@@ -22,8 +22,8 @@ std::string joint(const std::string& kind, const std::string& a, const std::stri
 }
 
 std::string drive(const std::string& body, const std::string& coordinate) {
-  return "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive " + body + coordinate + "\"\na = \"" + body +
-         "\"\ncoordinate = \"" + coordinate + "\"\nsignal = \"still\"\n";
+  return "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive " + body + coordinate + "\"\na = \"" + body + "\"\ncoordinate = \"" +
+         coordinate + "\"\nsignal = \"still\"\n";
 }
 const char* k_still = "[[signal]]\nname = \"still\"\nkind = \"constant\"\nvalue = 0.0\n";
 

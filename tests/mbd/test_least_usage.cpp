@@ -60,8 +60,7 @@ Problem random_problem(int rows, int unknowns, bool is_integer, std::mt19937& ge
 double usage_at(const Problem& p, const VecX& z) {
   const VecX w = p.wrench + p.basis * z;
   double most = 0.0;
-  for (Eigen::Index r = 0; r < w.size(); ++r)
-    most = std::max(most, std::abs(w[r]) / p.sets.size[static_cast<std::size_t>(r)][0]);
+  for (Eigen::Index r = 0; r < w.size(); ++r) most = std::max(most, std::abs(w[r]) / p.sets.size[static_cast<std::size_t>(r)][0]);
   return most;
 }
 

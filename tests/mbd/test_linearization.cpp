@@ -149,7 +149,7 @@ TEST_CASE("linearisation: joints, welded bodies off their common centre, a drive
   Dynamics dynamics(*system);
   dynamics.set_time_limit(2.0);
   int looks = 0;
-  for (double next = 0.0; simulation.advance(); ) {
+  for (double next = 0.0; simulation.advance();) {
     const State state = simulation.current_state();
     if (state.t < next) continue;
     next = state.t + 0.2;
@@ -268,8 +268,9 @@ std::string riding_joint() {
     return "[[element]]\nkind = \"weld\"\nname = \"" + a + " on " + b + "\"\na = \"" + a + "\"\nb = \"" + b + "\"\n";
   };
   return header("end = 0.01\nintegrator = \"dop853\"\ntolerance = 1e-9", 0.01) + body("limb", 10.0, 1.0, {0.0, 0.0}, {0.5, 0.2}, 0.3) +
-         body("weight", 6.0, 0.4, {0.4, 0.3}, {0.41, 0.32}, 0.3) + body("yoke", 20.0, 3.0, {0.0, 0.0}) + body("ballast", 9.0, 0.5, {-0.5, 0.2}) +
-         weld("weight", "limb") + weld("ballast", "yoke") + joint("limb", "yoke", "tangential_stiffness = 1e6") +
+         body("weight", 6.0, 0.4, {0.4, 0.3}, {0.41, 0.32}, 0.3) + body("yoke", 20.0, 3.0, {0.0, 0.0}) +
+         body("ballast", 9.0, 0.5, {-0.5, 0.2}) + weld("weight", "limb") + weld("ballast", "yoke") +
+         joint("limb", "yoke", "tangential_stiffness = 1e6") +
          interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2);
 }
 
@@ -311,7 +312,8 @@ double inner_deviation(Dynamics& dynamics, const State& state) {
   const auto off = [](const auto& exact, const auto& difference) {
     return (exact - difference).cwiseAbs().maxCoeff() / std::max(1.0, difference.cwiseAbs().maxCoeff());
   };
-  return std::max({off(block.force, force), off(block.by_pose, by_pose), off(block.by_velocity, by_velocity), off(block.by_inner, by_inner)});
+  return std::max(
+      {off(block.force, force), off(block.by_pose, by_pose), off(block.by_velocity, by_velocity), off(block.by_inner, by_inner)});
 }
 
 } // namespace

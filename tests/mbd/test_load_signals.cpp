@@ -74,8 +74,7 @@ TEST_CASE("loads begin with nothing, go on without jumps, and their derivatives 
     CHECK(std::abs(signal.drive(0.0, DriveLevel::position).rate) < 1e-10);
     CHECK_FALSE(signal.first_jump(DriveLevel::position, -1.0, 1e3));
     double size = 0.0;
-    for (double t = 0.01; t < 6.0; t += 0.173)
-      size = std::max(size, std::abs(signal.value(t)));
+    for (double t = 0.01; t < 6.0; t += 0.173) size = std::max(size, std::abs(signal.value(t)));
     for (double t = 0.01; t < 6.0; t += 0.173) {
       constexpr double h = 2e-5;
       const SignalJet jet = signal.drive(t, DriveLevel::position);
@@ -118,7 +117,8 @@ TEST_CASE("a seed means the same signal on every machine, and another seed anoth
 }
 
 TEST_CASE("a bump may lie on a rough road, and a vibration may have an envelope of its own") {
-  const Signal rough = road(1), bump = made_signal("haversine", {{"peak", 0.04}, {"start", 1.0}, {"duration", 0.3}}), vibrating = vibration(1);
+  const Signal rough = road(1), bump = made_signal("haversine", {{"peak", 0.04}, {"start", 1.0}, {"duration", 0.3}}),
+               vibrating = vibration(1);
   const Signal both = sum_of({&rough, &bump}, {1.0, 1.0}), shaped = product_of({&vibrating, &bump});
   for (double t = 0.03; t < 3.0; t += 0.17) { // phases are counted from another start: of sines of 1e3 rad
     CHECK(std::abs(both.value(t) - rough.value(t) - bump.value(t)) < 1e-13);
@@ -160,8 +160,7 @@ TEST_CASE("axles see one road, each when it gets there, at the speed of the road
 TEST_CASE("a way behind without a speed, and one at another speed than the road's, are refused") {
   const std::string on_road = "[[signal]]\nkind = \"road\"\nname = \"r\"\nclass = \"C\"\nspeed = 10.0\n";
   CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\n" + on_road) == "");
-  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\nspeed = 11.0\n" + on_road).find("leave it out") !=
-        std::string::npos);
+  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\nspeed = 11.0\n" + on_road).find("leave it out") != std::string::npos);
   const std::string still = "[[signal]]\nkind = \"constant\"\nname = \"c\"\nvalue = 1.0\n";
   CHECK(problem_of("kind = \"scaled\"\nsignal = \"c\"\nbehind = 7.0\n" + still).find("needs a speed") != std::string::npos);
 }
@@ -312,9 +311,7 @@ TEST_CASE("methods converge with their orders on a road") {
                  fine = std::abs(height_at_end(c.integrator, 0.5 * c.coarse, 0.0) - exact);
     CAPTURE(fine);
     CHECK(fine > 1e-15);
-    CHECK(std::log2(coarse / fine) >
-          c.order - 0.5); // tsit5 comes nearer by its next order: the road is nearly all that it integrates
+    CHECK(std::log2(coarse / fine) > c.order - 0.5); // tsit5 comes nearer by its next order: the road is nearly all that it integrates
   }
-  for (const double tolerance : {1e-6, 1e-8, 1e-10})
-    CHECK(std::abs(height_at_end("dop853", 1e-3, tolerance) - exact) < 10.0 * tolerance);
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) CHECK(std::abs(height_at_end("dop853", 1e-3, tolerance) - exact) < 10.0 * tolerance);
 }

@@ -43,8 +43,7 @@ template <class Estimate> Spread spread_of(int parts, const Estimate& estimate) 
   Spread spread;
   for (int seed = 1; seed <= k_seeds; ++seed) {
     double sum = 0.0;
-    for (int k = 0; k < parts; ++k)
-      sum += estimate(seed, k) / parts;
+    for (int k = 0; k < parts; ++k) sum += estimate(seed, k) / parts;
     spread.mean += sum / k_seeds;
     if (sum < low || sum > high) spread.outside += 1.0 / k_seeds;
   }
@@ -62,8 +61,7 @@ void check(const Spread& spread, int parts) {
 
 double mean_square(const std::vector<Signal::Harmonic>& waves, bool is_rate) {
   double sum = 0.0;
-  for (const Signal::Harmonic& h : waves)
-    sum += 0.5 * std::pow(h.amplitude * (is_rate ? h.frequency : 1.0), 2);
+  for (const Signal::Harmonic& h : waves) sum += 0.5 * std::pow(h.amplitude * (is_rate ? h.frequency : 1.0), 2);
   return sum;
 }
 
@@ -119,8 +117,7 @@ const std::vector<double> k_frequencies{5.0, 20.0, 40.0, 60.0}, k_densities{0.00
 
 double tabled(double f) {
   std::size_t i = 1;
-  while (f > k_frequencies[i])
-    ++i;
+  while (f > k_frequencies[i]) ++i;
   const double slope = std::log(k_densities[i] / k_densities[i - 1]) / std::log(k_frequencies[i] / k_frequencies[i - 1]);
   return k_densities[i - 1] * std::pow(f / k_frequencies[i - 1], slope);
 }
@@ -141,8 +138,7 @@ TEST_CASE("the spectrum of a random vibration is its table's, its r.m.s. the int
   constexpr double k_length = 1.2; // s, of a window: two of its resolutions are 2.4 Hz, within which the table is nearly straight
   constexpr int k_parts = 10, k_samples = 240;
   std::vector<Signal> vibrations;
-  for (long seed = 1; seed <= k_seeds; ++seed)
-    vibrations.push_back(vibration(seed));
+  for (long seed = 1; seed <= k_seeds; ++seed) vibrations.push_back(vibration(seed));
   for (const double f : {10.0, 33.0, 50.0}) {
     CAPTURE(f);
     check(spread_of(k_parts,
@@ -154,8 +150,7 @@ TEST_CASE("the spectrum of a random vibration is its table's, its r.m.s. the int
   }
   double exact = 0.0;
   constexpr int k_steps = 20000; // the midpoint rule: 1e-8
-  for (int i = 0; i < k_steps; ++i)
-    exact += tabled(5.0 + 55.0 * (i + 0.5) / k_steps) * 55.0 / k_steps * std::pow(9.80665, 2);
+  for (int i = 0; i < k_steps; ++i) exact += tabled(5.0 + 55.0 * (i + 0.5) / k_steps) * 55.0 / k_steps * std::pow(9.80665, 2);
   double second = 0.0, fourth = 0.0;
   constexpr int k_looks = 60;
   for (const Signal& signal : vibrations)

@@ -23,19 +23,16 @@ std::vector<std::string> lines_after(const fs::path& file, const std::string& ma
 }
 
 std::string without(std::string text, const std::string& part) {
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part))
-    text.erase(at, part.size());
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part)) text.erase(at, part.size());
   return text;
 }
 
 std::vector<std::string> messages(const fs::path& file) {
   std::vector<std::string> texts;
   try {
-    static_cast<void>(
-        read_model(file.string(), testing::small_catalogue(), lines_after(file, "# set: ")));
+    static_cast<void>(read_model(file.string(), testing::small_catalogue(), lines_after(file, "# set: ")));
   } catch (const ModelError& error) {
-    for (const Diagnostic& d : error.diagnostics())
-      texts.push_back(without(d.text(), file.parent_path().string() + "/"));
+    for (const Diagnostic& d : error.diagnostics()) texts.push_back(without(d.text(), file.parent_path().string() + "/"));
   }
   return texts;
 }
@@ -68,8 +65,7 @@ TEST_CASE("a file that is not there") {
 
 TEST_CASE("very many errors are cut short") {
   std::string text = "[simulation]\nstep = 1e-3\n";
-  for (int i = 0; i < 1000; ++i)
-    text += "[[body]]\nname = \"b" + std::to_string(i) + "\"\n";
+  for (int i = 0; i < 1000; ++i) text += "[[body]]\nname = \"b" + std::to_string(i) + "\"\n";
   try {
     static_cast<void>(parse_model(text, "many.toml", testing::small_catalogue()));
     FAIL("no error");

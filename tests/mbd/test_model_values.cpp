@@ -2,13 +2,13 @@
 // values, side by side.
 #include "elements/load.h"
 #include "elements/spring_damper.h"
-#include "mbd/rest/assembly.h"
-#include "mbd/model/completion.h"
-#include "mbd/system/instance.h"
 #include "mbd/io/reader.h"
+#include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
 #include "mbd/model/model_path.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/system/instance.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
@@ -130,9 +130,9 @@ TEST_CASE("a copy of a model has elements, signals and tables of its own") {
 
 TEST_CASE("a value set by its path runs as one that --set gives, byte for byte") {
   const std::vector<std::pair<std::string, double>> values = {
-      {"gravity.1", -3.0},          {"body.arm 1.5.mass", 7.0},       {"body.arm.position.0", 3.5},  {"element.pin.angle", -0.2},
-      {"signal.push.amplitudes.1", 9.0}, {"element.tie.force_table.2.1", 500.0}, {"body.arm 1.5.cg.1", -0.7}, {"simulation.end", 0.03},
-      {"element.wind.force.0", 2.5}};
+      {"gravity.1", -3.0},         {"body.arm 1.5.mass", 7.0},        {"body.arm.position.0", 3.5},
+      {"element.pin.angle", -0.2}, {"signal.push.amplitudes.1", 9.0}, {"element.tie.force_table.2.1", 500.0},
+      {"body.arm 1.5.cg.1", -0.7}, {"simulation.end", 0.03},          {"element.wind.force.0", 2.5}};
   const Model given = parse_given_model(k_scene, "scene.toml", transformer_catalog());
   const Model plain = parse_model(k_scene, "scene.toml", transformer_catalog());
   const auto usual = run_of(*compile(plain), plain);
@@ -169,9 +169,7 @@ TEST_CASE("a core's dimensions are set in the model as given") {
 
 TEST_CASE("what is wrong with a path or a value is said") {
   Model model = parse_given_model(k_scene, "scene.toml", transformer_catalog());
-  const auto set = [&](const std::string& path, const FieldValue& value) {
-    return message_of([&] { set_value(model, path, value); });
-  };
+  const auto set = [&](const std::string& path, const FieldValue& value) { return message_of([&] { set_value(model, path, value); }); };
   CHECK(says(set("body.arm.mas", 1.0), "did you mean 'mass'?"));
   CHECK(says(set("body.amr.mass", 1.0), "did you mean 'arm'?"));
   CHECK(says(set("bodi.arm.mass", 1.0), "a model has no 'bodi'"));
@@ -225,11 +223,17 @@ TEST_CASE("a model made in code is completed as one from a file") {
   }
   using Numbers = std::vector<double>;
   for (const auto& [path, value] : std::vector<std::pair<std::string, FieldValue>>{
-           {"signal.push.amplitudes", Numbers{3.0, 1.0}}, {"signal.push.frequencies", Numbers{1.0, 7.0}},
-           {"element.pin.a", std::string("pin.a")}, {"element.pin.b", std::string("pin.b")}, {"element.pin.angle", 0.3},
-           {"element.tie.a", std::string("arm")}, {"element.tie.b", std::string("arm 1.5")},
+           {"signal.push.amplitudes", Numbers{3.0, 1.0}},
+           {"signal.push.frequencies", Numbers{1.0, 7.0}},
+           {"element.pin.a", std::string("pin.a")},
+           {"element.pin.b", std::string("pin.b")},
+           {"element.pin.angle", 0.3},
+           {"element.tie.a", std::string("arm")},
+           {"element.tie.b", std::string("arm 1.5")},
            {"element.tie.force_table", std::vector<Vec2>{{-1.0, -100.0}, {0.0, 0.0}, {2.0, 300.0}}},
-           {"element.wind.at", std::string("arm")}, {"element.wind.force", Vec2(1.0, 0.0)}, {"element.wind.force_x", std::string("push")}}) {
+           {"element.wind.at", std::string("arm")},
+           {"element.wind.force", Vec2(1.0, 0.0)},
+           {"element.wind.force_x", std::string("push")}}) {
     CAPTURE(path);
     set_value(model, path, value);
   }
@@ -293,7 +297,8 @@ std::vector<double> start_values(const System& system) {
 
 // Whatever number of whatever model: put into the completed model, or given and completed again, is one system.
 TEST_CASE("variants of a model are what instantiate makes, number by number") {
-  for (const char* name : {"paper/interference", "layouts/three_limb", "benchmarks/andrews", "benchmarks/robot_arm", "benchmarks/chain_10", "machines/ladder", "machines/crane_arm"}) {
+  for (const char* name : {"paper/interference", "layouts/three_limb", "benchmarks/andrews", "benchmarks/robot_arm", "benchmarks/chain_10",
+                           "machines/ladder", "machines/crane_arm"}) {
     const std::string file = std::string(STEPLAP_MODELS) + "/" + name + ".toml";
     if (!std::filesystem::exists(file)) FAIL(file);
     const Model given = read_given_model(file, transformer_catalog());
@@ -339,13 +344,16 @@ b = { body = "ground", at = [0.2, 3.0] }
 stiffness = 1000.0
 )",
                                         "m.toml", transformer_catalog());
-  const std::vector<std::string> paths = {"shape.disc.diameter", "shape.sheet.area_density", "shape.sheet.outline.2.1", "body.plate.position.1"};
+  const std::vector<std::string> paths = {"shape.disc.diameter", "shape.sheet.area_density", "shape.sheet.outline.2.1",
+                                          "body.plate.position.1"};
   Variants variants(given, paths);
   for (const double share : {1.0, 0.9, 1.1, 1.0}) {
     const std::vector<double> values = {0.6 * share, 100.0 * share, 1.0 / share, 1.0 * share};
-    const auto one = instantiate(given, {{paths[0], values[0]}, {paths[1], values[1]}, {paths[2], values[2]}, {paths[3], values[3]}}), other = variants.make(values);
+    const auto one = instantiate(given, {{paths[0], values[0]}, {paths[1], values[1]}, {paths[2], values[2]}, {paths[3], values[3]}}),
+               other = variants.make(values);
     CHECK(one->bodies[1].mass == other->bodies[1].mass);
-    CHECK(one->bodies[1].mass == doctest::Approx(100.0 * share * 0.5 * (1.0 + 1.0 / share) + 200.0 * 0.25 * std::numbers::pi * 0.36 * share * share));
+    CHECK(one->bodies[1].mass ==
+          doctest::Approx(100.0 * share * 0.5 * (1.0 + 1.0 / share) + 200.0 * 0.25 * std::numbers::pi * 0.36 * share * share));
     const std::vector<double> a = start_values(*one), b = start_values(*other);
     REQUIRE(a.size() == b.size());
     CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
@@ -379,10 +387,12 @@ TEST_CASE("systems of one model with different values run side by side as one af
   const Model model = completed(given);
   constexpr int k_threads = 4, k_each = 3;
   const auto run = [&](int i) {
-    const auto system = instantiate(given, {{"element.tank bottom.static_friction", 0.2 + 0.01 * i}, {"body.active part.mass", 46e3 + 100.0 * i}});
+    const auto system =
+        instantiate(given, {{"element.tank bottom.static_friction", 0.2 + 0.01 * i}, {"body.active part.mass", 46e3 + 100.0 * i}});
     RunResult result = run_of(*system, model);
     std::vector<double> last;
-    for (std::size_t k = 0; k < result.trajectory->channels().size(); ++k) last.push_back(result.trajectory->value(result.trajectory->size() - 1, k));
+    for (std::size_t k = 0; k < result.trajectory->channels().size(); ++k)
+      last.push_back(result.trajectory->value(result.trajectory->size() - 1, k));
     return last;
   };
   std::vector<std::vector<double>> together(k_threads * k_each), alone;

@@ -83,7 +83,8 @@ TEST_CASE("an overdamped mass has two real decays, a free one a rigid motion") {
   const double root = std::sqrt(25.0 * 25.0 - 100.0); // c/2m = 25 /s
   CHECK(std::abs(slow.modes[0].eigenvalue - (-25.0 + root)) < 1e-12);
   CHECK(std::abs(slow.modes[1].eigenvalue - (-25.0 - root)) < 1e-12);
-  const VibrationModes free = modes_of("gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n[[body]]\nname = \"mass\"\nmass = 4.0\ninertia = 1.0\n");
+  const VibrationModes free =
+      modes_of("gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n[[body]]\nname = \"mass\"\nmass = 4.0\ninertia = 1.0\n");
   CHECK(free.modes.empty());
   CHECK(free.rigid_motions == 3);
 }
@@ -156,16 +157,15 @@ TEST_CASE("a beam of rods with springs in their joints") {
     text += "[[body]]\nname = \"" + name + "\"\nmass = 0.7\ninertia = " + exact(inertia) + "\n";
     text += "[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(i) + "\"\n" + a + b + "angle = 0.0\n";
     if (i > 0)
-      text += "[[element]]\nkind = \"bushing\"\nname = \"joint " + std::to_string(i) + "\"\n" + a + b +
-              "rotational_stiffness = 1300.0\n";
+      text += "[[element]]\nkind = \"bushing\"\nname = \"joint " + std::to_string(i) + "\"\n" + a + b + "rotational_stiffness = 1300.0\n";
   }
   text += "[[element]]\nkind = \"point_on_line\"\nname = \"roller\"\na = { body = \"rod 9\", point = [0.1, 0.0] }\n";
   const VibrationModes found = modes_of(text);
   REQUIRE(found.modes.size() == rods - 1);
   for (int k = 1; k < rods; ++k) {
     const double s = std::sin(0.5 * k * std::numbers::pi / rods), c = std::cos(0.5 * k * std::numbers::pi / rods);
-    const double omega = std::sqrt(16.0 * stiffness / (length * length) * s * s * s * s /
-                                   (mass * c * c + 4.0 * inertia / (length * length) * s * s));
+    const double omega =
+        std::sqrt(16.0 * stiffness / (length * length) * s * s * s * s / (mass * c * c + 4.0 * inertia / (length * length) * s * s));
     CHECK(std::abs(2.0 * std::numbers::pi * found.modes[k - 1].natural_frequency() / omega - 1.0) < k_digits);
   }
 }
@@ -279,8 +279,7 @@ rotational_damping = 1e3
   }
   expected.push_back(std::sqrt(9.81 * 0.75 / (0.01 + 0.75 * 0.75)));
   std::sort(expected.begin(), expected.end());
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    CHECK(std::abs(size_of(found.modes[i].eigenvalue) / expected[i] - 1.0) < 1e-12);
+  for (std::size_t i = 0; i < expected.size(); ++i) CHECK(std::abs(size_of(found.modes[i].eigenvalue) / expected[i] - 1.0) < 1e-12);
   CHECK(std::abs(found.modes[3].damping_ratio()) < 1e-9);
 }
 
@@ -288,8 +287,9 @@ rotational_damping = 1e3
 TEST_CASE("dampers resist but do not hold") {
   std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
   for (const char* name : {"1", "2", "3"})
-    text += std::string("[[body]]\nname = \"") + name + "\"\nmass = 2.0\ninertia = 1.0\n[[element]]\nkind = \"prismatic\"\nname = \"guide " + name +
-            "\"\na = \"" + name + "\"\naxis = [1.0, 0.0]\n[[element]]\nkind = \"spring_damper\"\nname = \"damper " + name + "\"\na = \"" + name +
+    text += std::string("[[body]]\nname = \"") + name +
+            "\"\nmass = 2.0\ninertia = 1.0\n[[element]]\nkind = \"prismatic\"\nname = \"guide " + name + "\"\na = \"" + name +
+            "\"\naxis = [1.0, 0.0]\n[[element]]\nkind = \"spring_damper\"\nname = \"damper " + name + "\"\na = \"" + name +
             "\"\naxis = [1.0, 0.0]\nstiffness = 0.0\ndamping = " + name + "0.0\n";
   const VibrationModes found = modes_of(text);
   CHECK(found.rigid_motions == 3);
@@ -300,7 +300,6 @@ TEST_CASE("dampers resist but do not hold") {
 // --- large scenes ---------------------------------------------------------------------------------------------------
 
 namespace {
-
 
 VibrationModes modes_of(const std::string& text, const WantedModes& wanted, ModesAlgebra algebra = ModesAlgebra::by_size) {
   const auto system = compile(parse_model(text, "scene.toml", transformer_catalog()));
@@ -314,8 +313,9 @@ std::string apart(int held, int loose) {
     const std::string name = "m" + std::to_string(i);
     text += "[[body]]\nname = \"" + name + "\"\nmass = 4.0\ninertia = 1.0\nposition = [" + std::to_string(i) + ".0, 0.0]\n";
     if (i < held)
-      text += "[[element]]\nkind = \"bushing\"\nname = \"spring " + std::to_string(i) + "\"\na = \"" + name + "\"\nb = { body = \"ground\", at = [" +
-              std::to_string(i) + ".0, 0.0] }\nstiffness = [400.0, 900.0]\nrotational_stiffness = 1600.0\n";
+      text += "[[element]]\nkind = \"bushing\"\nname = \"spring " + std::to_string(i) + "\"\na = \"" + name +
+              "\"\nb = { body = \"ground\", at = [" + std::to_string(i) +
+              ".0, 0.0] }\nstiffness = [400.0, 900.0]\nrotational_stiffness = 1600.0\n";
   }
   return text;
 }
@@ -344,7 +344,8 @@ TEST_CASE("the slowest modes of a chain of 700 masses, and those near a frequenc
   const VibrationModes within = vibration_modes(*system, rest, {7, near});
   REQUIRE(within.modes.size() == 7);
   CHECK(within.is_counted);
-  for (int i = 0; i < 7; ++i) CHECK(std::abs(size_of(within.modes[static_cast<std::size_t>(i)].eigenvalue) / chain_rate(n, 297 + i) - 1.0) < k_digits);
+  for (int i = 0; i < 7; ++i)
+    CHECK(std::abs(size_of(within.modes[static_cast<std::size_t>(i)].eigenvalue) / chain_rate(n, 297 + i) - 1.0) < k_digits);
 }
 
 // A chain of n rods, L long, hangs from its end: as n grows a heavy rope, ω_k = (j_k/2) √(g/L) with J₀(j_k) = 0. Rods bend at
@@ -356,9 +357,11 @@ TEST_CASE("a hanging chain's modes go to those of a rope as its rods become shor
     const int n = part == 0 ? 300 : 600;
     std::string text = "[simulation]\nstep = 1e-3\n";
     for (int i = 0; i < n; ++i)
-      text += "[[body]]\nname = \"rod " + std::to_string(i) + "\"\nmass = 1.0\ninertia = 0.083333333333333333\n[[element]]\nkind = \"revolute\"\nname = \"pin " +
-              std::to_string(i) + "\"\na = { body = \"rod " + std::to_string(i) + "\", point = [-0.5, 0.0] }\nb = " +
-              (i > 0 ? "{ body = \"rod " + std::to_string(i - 1) + "\", point = [0.5, 0.0] }\nangle = 0.0\n" : std::string("\"ground\"\nangle = -1.5707963267948966\n"));
+      text += "[[body]]\nname = \"rod " + std::to_string(i) +
+              "\"\nmass = 1.0\ninertia = 0.083333333333333333\n[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(i) +
+              "\"\na = { body = \"rod " + std::to_string(i) + "\", point = [-0.5, 0.0] }\nb = " +
+              (i > 0 ? "{ body = \"rod " + std::to_string(i - 1) + "\", point = [0.5, 0.0] }\nangle = 0.0\n"
+                     : std::string("\"ground\"\nangle = -1.5707963267948966\n"));
     const VibrationModes found = modes_of(text, {3, std::nullopt}, ModesAlgebra::sparse);
     REQUIRE(found.modes.size() == 3);
     for (int k = 0; k < 3; ++k)
@@ -372,7 +375,8 @@ TEST_CASE("a hanging chain's modes go to those of a rope as its rods become shor
 
 // Damped, constrained, with friction that sticks, with what is free.
 TEST_CASE("sparse algebra finds the modes that dense algebra finds") {
-  for (const char* name : {"paper/no_interference", "paper/interference", "machines/tank_with_lid", "machines/watt_linkage", "benchmarks/grid_5"}) {
+  for (const char* name :
+       {"paper/no_interference", "paper/interference", "machines/tank_with_lid", "machines/watt_linkage", "benchmarks/grid_5"}) {
     CAPTURE(std::string(name));
     const Model model = read_model(std::string(STEPLAP_MODELS) + "/" + name + ".toml", transformer_catalog());
     const auto system = compile(model);

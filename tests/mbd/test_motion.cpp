@@ -40,9 +40,7 @@ TEST_CASE("the power of a link's force is the power of the two forces it gives")
   const BodyForce f{3.0, -5.0, 0.8};
   BodyForce on_a, on_b;
   add_link_force(f, link, b, on_a, on_b);
-  const auto power = [](const BodyForce& w, const Motion<double>& m) {
-    return w.fx * m.vx + w.fy * m.vy + w.m * m.omega;
-  };
+  const auto power = [](const BodyForce& w, const Motion<double>& m) { return w.fx * m.vx + w.fy * m.vy + w.m * m.omega; };
   // Only relative motion works: sums of a dozen products of order 10.
   CHECK(std::abs(power(on_a, a) + power(on_b, b) - power(f, link)) < 1e-14 * 100.0);
   CHECK(std::abs(on_a.fx + on_b.fx) + std::abs(on_a.fy + on_b.fy) < 1e-15);

@@ -31,7 +31,9 @@ Dense top_of(const NodePolynomial& p) {
 
 int gap_of(double theta, int level) {
   int gap = 0;
-  for (int place = NodePolynomial::spacing(level); place < NodePolynomial::k_last && NodePolynomial::theta(place) < theta; place += NodePolynomial::spacing(level)) ++gap;
+  for (int place = NodePolynomial::spacing(level); place < NodePolynomial::k_last && NodePolynomial::theta(place) < theta;
+       place += NodePolynomial::spacing(level))
+    ++gap;
   return gap;
 }
 
@@ -73,7 +75,8 @@ TEST_CASE("a polynomial that exceeds its points most is not taken for lower") {
       for (int i = 0; i <= n; ++i) {
         double basis = 1.0;
         for (int k = 0; k <= n; ++k)
-          if (k != i) basis *= (theta - NodePolynomial::theta(k * step)) / (NodePolynomial::theta(i * step) - NodePolynomial::theta(k * step));
+          if (k != i)
+            basis *= (theta - NodePolynomial::theta(k * step)) / (NodePolynomial::theta(i * step) - NodePolynomial::theta(k * step));
         values[i] = basis < 0.0 ? -1.0 : 1.0;
       }
       const NodePolynomial p(level, values);
@@ -92,7 +95,8 @@ TEST_CASE("whether parabolas through points may exceed a limit") {
   random::RandomNumber random(43);
   for (int i = 0; i < 3000; ++i) {
     const int level = 1 + i % NodePolynomial::k_levels, n = 1 << level, step = NodePolynomial::spacing(level);
-    const double bend = random.decades(-3.0, 1.0), vertex = random.between(-0.2, 1.2), height = random.between(-1.0, 1.0), sign = random.chance(0.5) ? 1.0 : -1.0;
+    const double bend = random.decades(-3.0, 1.0), vertex = random.between(-0.2, 1.2), height = random.between(-1.0, 1.0),
+                 sign = random.chance(0.5) ? 1.0 : -1.0;
     NodePolynomial::Values values{};
     double best = -1e300;
     for (int k = 0; k <= n; ++k) {

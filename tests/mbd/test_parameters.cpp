@@ -68,7 +68,9 @@ channel = "box.x"
 at_most = "= 3*width"
 )";
 
-Model given_of(const std::vector<std::string>& overrides = {}) { return parse_given_model(k_scene, "box.toml", transformer_catalog(), overrides); }
+Model given_of(const std::vector<std::string>& overrides = {}) {
+  return parse_given_model(k_scene, "box.toml", transformer_catalog(), overrides);
+}
 
 std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
@@ -118,7 +120,8 @@ TEST_CASE("a model whose parameters are set is the one that is read with these v
   random::RandomNumber draw(7);
   Model set = given_of();
   for (int trial = 0; trial < 200; ++trial) {
-    const double wall = draw.between(0.004, 0.03), bore = draw.between(0.1, 1.0), natural = draw.between(0.5, 5.0), g = draw.between(1.0, 12.0);
+    const double wall = draw.between(0.004, 0.03), bore = draw.between(0.1, 1.0), natural = draw.between(0.5, 5.0),
+                 g = draw.between(1.0, 12.0);
     std::vector<std::string> overrides;
     const auto lay = [&](const std::string& name, double value, const std::string& unit) {
       char digits[64];
@@ -142,13 +145,12 @@ TEST_CASE("a model whose parameters are set is the one that is read with these v
 TEST_CASE("variants by parameters run as models that are read anew, to the bit") {
   const Model given = given_of();
   Variants variants(given, {"parameters.bore", "parameters.natural"});
-  for (const auto& [bore, natural] : std::vector<std::pair<double, double>>{std::pair(0.3, 2.0), std::pair(0.41, 1.7), std::pair(0.2, 3.3)}) {
+  for (const auto& [bore, natural] :
+       std::vector<std::pair<double, double>>{std::pair(0.3, 2.0), std::pair(0.41, 1.7), std::pair(0.2, 3.3)}) {
     const auto varied = variants.make({bore, natural});
     const auto direct = instantiate(given, {{"parameters.bore", bore}, {"parameters.natural", natural}});
     const Model& model = variants.model();
-    const auto run = [&](const System& system) {
-      return simulate(system, system.initial_state(), options_of(model)).final_state;
-    };
+    const auto run = [&](const System& system) { return simulate(system, system.initial_state(), options_of(model)).final_state; };
     const State a = run(*varied), b = run(*direct);
     REQUIRE(a.q.size() == b.q.size());
     for (decltype(a.q.size()) i = 0; i < a.q.size(); ++i) CHECK(std::memcmp(&a.q[i], &b.q[i], sizeof(double)) == 0);
@@ -182,7 +184,8 @@ TEST_CASE("what makes no sense is refused with place and remedy") {
     const char *part, *other, *message;
   };
   const Case cases[] = {
-      {"wall + bore\"", "wal + bore\"", "m.toml:8:9: error: parameter 'width': formula: there is no parameter 'wal' (did you mean 'wall'?)"},
+      {"wall + bore\"", "wal + bore\"",
+       "m.toml:8:9: error: parameter 'width': formula: there is no parameter 'wal' (did you mean 'wall'?)"},
       {"\"= mass\"", "\"= mas\"", "there is no parameter 'mas' (did you mean 'mass'?)"},
       {"bore = \"0.3 m\"", "bore = \"= width - 2*wall\"", "parameters that need each other: bore -> width -> bore"},
       {"bore = \"0.3 m\"", "bore = \"= bore\"", "parameters that need each other: bore -> bore"},
@@ -244,7 +247,8 @@ TEST_CASE("a file that extends another changes values and keeps range and meanin
 }
 
 TEST_CASE("the text that stands alone keeps parameters and formulas") {
-  const std::string text = effective_model_text(std::string(STEPLAP_TEST_DATA) + "/parameters/box.toml", transformer_catalog(), {"parameters.wall=15 mm"});
+  const std::string text =
+      effective_model_text(std::string(STEPLAP_TEST_DATA) + "/parameters/box.toml", transformer_catalog(), {"parameters.wall=15 mm"});
   CHECK(has(text, "= 2*wall + bore"));
   const Model again = parse_given_model(text, "again.toml", transformer_catalog());
   CHECK(again.parameters.values[*again.parameters.find("wall")] == 0.015);

@@ -66,7 +66,9 @@ RunBytes run_of(const Model& given) {
   return bytes;
 }
 
-Model read(const std::string& path, const std::vector<std::string>& overrides = {}) { return read_given_model(path, transformer_catalog(), overrides); }
+Model read(const std::string& path, const std::vector<std::string>& overrides = {}) {
+  return read_given_model(path, transformer_catalog(), overrides);
+}
 
 std::string refusal_of(const std::string& path, const std::vector<std::string>& overrides = {}) {
   try {
@@ -81,7 +83,8 @@ std::string refusal_of(const std::string& path, const std::vector<std::string>& 
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-const char* const k_head = "gravity = [0.0, -9.81]\n[simulation]\nend = 0.05\nintegrator = \"dop853\"\ntolerance = 1e-9\n[output]\nstep = 0.005\n";
+const char* const k_head =
+    "gravity = [0.0, -9.81]\n[simulation]\nend = 0.05\nintegrator = \"dop853\"\ntolerance = 1e-9\n[output]\nstep = 0.005\n";
 
 // A rod that hangs: its pin is at the origin of its file.
 const char* const k_rod = R"toml([parameters]
@@ -131,12 +134,14 @@ TEST_CASE("models of parts in parts run like the same models written out, to the
 TEST_CASE("a part that is turned with gravity moves as one that is not, turned") {
   // Independent of how places are worked out: mechanics does not know the angle of the ground.
   const Folder folder;
-  folder.write("rod.toml", std::string(k_rod) + "[[element]]\nkind = \"revolute\"\nname = \"hinge\"\na = \"pin\"\n[[element]]\nkind = \"load\"\nname = \"wind\"\nat = \"end\"\nforce = [3.0, 5.0]\n");
+  folder.write("rod.toml", std::string(k_rod) + "[[element]]\nkind = \"revolute\"\nname = \"hinge\"\na = \"pin\"\n[[element]]\nkind = "
+                                                "\"load\"\nname = \"wind\"\nat = \"end\"\nforce = [3.0, 5.0]\n");
   const double turn = 0.7, c = std::cos(turn), s = std::sin(turn), x = 2.5, y = -1.25;
   const auto model = [&](bool is_turned) {
     const double gx = is_turned ? 9.81 * s : 0.0, gy = is_turned ? -9.81 * c : -9.81;
-    return "gravity = [" + std::to_string(gx) + ", " + std::to_string(gy) + "]\n" + std::string(k_head).substr(std::string(k_head).find('\n') + 1) +
-           "[[part]]\nname = \"a\"\nfile = \"rod.toml\"\n" + (is_turned ? "x = \"2.5 m\"\ny = -1.25\nangle = 0.7\n" : "");
+    return "gravity = [" + std::to_string(gx) + ", " + std::to_string(gy) + "]\n" +
+           std::string(k_head).substr(std::string(k_head).find('\n') + 1) + "[[part]]\nname = \"a\"\nfile = \"rod.toml\"\n" +
+           (is_turned ? "x = \"2.5 m\"\ny = -1.25\nangle = 0.7\n" : "");
   };
   folder.write("straight.toml", model(false));
   folder.write("turned.toml", model(true));
@@ -146,7 +151,7 @@ TEST_CASE("a part that is turned with gravity moves as one that is not, turned")
   };
   const State straight = end_of("straight.toml"), turned = end_of("turned.toml");
   // Gravity is written with six digits: 1e-6 of it for 0.05 s moves a body by 1e-9 m.
-  REQUIRE(turned.q.size() == 6); // the ground, then the rod
+  REQUIRE(turned.q.size() == 6);         // the ground, then the rod
   CHECK(std::abs(straight.q[5]) > 1e-3); // it has swung
   CHECK(turned.q[3] == doctest::Approx(x + c * straight.q[3] - s * straight.q[4]).epsilon(1e-8));
   CHECK(turned.q[4] == doctest::Approx(y + s * straight.q[3] + c * straight.q[4]).epsilon(1e-8));
@@ -176,15 +181,19 @@ repeat = 3
 )toml");
   std::string text = k_head;
   for (int i = 0; i < 4; ++i)
-    text += "[[body]]\nname = \"rod " + std::to_string(i) + "\"\nmass = " + std::to_string(1 + i) + "\ninertia = 0.1\nposition = [" + std::to_string((i + 0.5) * 0.5) + ", 0.0]\n";
+    text += "[[body]]\nname = \"rod " + std::to_string(i) + "\"\nmass = " + std::to_string(1 + i) + "\ninertia = 0.1\nposition = [" +
+            std::to_string((i + 0.5) * 0.5) + ", 0.0]\n";
   text += "[[element]]\nkind = \"revolute\"\nname = \"first\"\na = { body = \"rod 0\", at = [0.0, 0.0] }\n";
   for (int i = 0; i < 3; ++i) {
     const std::string at = ", at = [" + std::to_string((i + 1) * 0.5) + ", 0.0] }\n";
-    text += "[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(2 * i + 1) + "\"\na = { body = \"rod " + std::to_string(i) + "\"" + at + "b = { body = \"rod " + std::to_string(i + 1) + "\"" + at;
+    text += "[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(2 * i + 1) + "\"\na = { body = \"rod " + std::to_string(i) +
+            "\"" + at + "b = { body = \"rod " + std::to_string(i + 1) + "\"" + at;
   }
   CHECK(run_of(read(folder / "repeated.toml")) == run_of(parse_given_model(text, "text.toml", transformer_catalog())));
   CHECK(read(folder / "repeated.toml", {"body.rod 3.mass=9"}).bodies[3].mass == 9.0);
-  folder.write("none.toml", std::string(k_head) + "[[body]]\nname = \"b\"\nmass = 1\ninertia = 1\n[[body]]\nname = \"c {i}\"\nmass = 1\ninertia = 1\nrepeat = 0\n");
+  folder.write("none.toml",
+               std::string(k_head) +
+                   "[[body]]\nname = \"b\"\nmass = 1\ninertia = 1\n[[body]]\nname = \"c {i}\"\nmass = 1\ninertia = 1\nrepeat = 0\n");
   CHECK(read(folder / "none.toml").bodies.size() == 1);
 }
 
@@ -210,13 +219,19 @@ a = "link {i+1}.pin"
 b = "link {i}.end"
 repeat = 5
 )toml");
-  std::string bodies = k_head, elements = "[[element]]\nkind = \"revolute\"\nname = \"hook\"\na = { body = \"link 0.rod\", name = \"link 0.pin\", at = [0.0, 0.0] }\n";
+  std::string
+      bodies = k_head,
+      elements =
+          "[[element]]\nkind = \"revolute\"\nname = \"hook\"\na = { body = \"link 0.rod\", name = \"link 0.pin\", at = [0.0, 0.0] }\n";
   for (int i = 0; i < 6; ++i) {
     const double length = 0.5, mass = 1 + i * 0.25;
-    bodies += "[[body]]\nname = \"link " + std::to_string(i) + ".rod\"\nmass = " + std::to_string(mass) + "\ninertia = \"= " + std::to_string(mass) + "*'1 kg'*'0.5 m'^2/12\"\nposition = [" + std::to_string(i * length + length / 2) + ", 0.0]\n";
+    bodies += "[[body]]\nname = \"link " + std::to_string(i) + ".rod\"\nmass = " + std::to_string(mass) +
+              "\ninertia = \"= " + std::to_string(mass) + "*'1 kg'*'0.5 m'^2/12\"\nposition = [" + std::to_string(i * length + length / 2) +
+              ", 0.0]\n";
     if (i == 0) continue;
-    elements += "[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(i - 1) + "\"\na = { body = \"link " + std::to_string(i) + ".rod\", at = [" + std::to_string(i * length) + ", 0.0] }\nb = { body = \"link " +
-                std::to_string(i - 1) + ".rod\", at = [" + std::to_string((i - 1) * length + length) + ", 0.0] }\n";
+    elements += "[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(i - 1) + "\"\na = { body = \"link " + std::to_string(i) +
+                ".rod\", at = [" + std::to_string(i * length) + ", 0.0] }\nb = { body = \"link " + std::to_string(i - 1) +
+                ".rod\", at = [" + std::to_string((i - 1) * length + length) + ", 0.0] }\n";
   }
   const Model chain = read(folder / "chain.toml");
   CHECK(run_of(chain) == run_of(parse_given_model(bodies + elements, "text.toml", transformer_catalog())));
@@ -234,7 +249,8 @@ repeat = 5
 TEST_CASE("an upper file gives an inherited part another place") {
   const Folder folder;
   folder.write("rod.toml", k_rod);
-  folder.write("base.toml", std::string(k_head) + "[[part]]\nname = \"a\"\nfile = \"rod.toml\"\n[[element]]\nkind = \"weld\"\nname = \"w\"\na = \"a.rod\"\n");
+  folder.write("base.toml", std::string(k_head) +
+                                "[[part]]\nname = \"a\"\nfile = \"rod.toml\"\n[[element]]\nkind = \"weld\"\nname = \"w\"\na = \"a.rod\"\n");
   folder.write("sub/over.toml", "extends = \"../base.toml\"\n[[part]]\nname = \"a\"\ny = \"3 m\"\nparameters = { length = \"2 m\" }\n");
   CHECK(read(folder / "base.toml").bodies[0].position == Vec2(0.5, 0.0));
   CHECK(read(folder / "sub/over.toml").bodies[0].position == Vec2(1.0, 3.0));
@@ -242,7 +258,8 @@ TEST_CASE("an upper file gives an inherited part another place") {
 
 TEST_CASE("an entry with the long name of something in a part is laid over that") {
   const Folder folder;
-  folder.write("rod.toml", std::string(k_rod) + "[[element]]\nkind = \"spring_damper\"\nname = \"hanger\"\na = \"end\"\nstiffness = 100.0\npreload = 3.0\n");
+  folder.write("rod.toml", std::string(k_rod) +
+                               "[[element]]\nkind = \"spring_damper\"\nname = \"hanger\"\na = \"end\"\nstiffness = 100.0\npreload = 3.0\n");
   folder.write("frame.toml", R"toml([[body]]
 name = "beam"
 mass = 5.0
@@ -283,8 +300,10 @@ damping = 4.0
   CHECK(read(folder / "less.toml").elements.empty());
   CHECK(read(folder / "less.toml").bodies.size() == 2);
   folder.write("typing.toml", "extends = \"model.toml\"\n[[element]]\nname = \"left.rod.hangr\"\nstiffness = 1.0\n");
-  CHECK(has(refusal_of(folder / "typing.toml"), "typing.toml:3:8: error: a name with the name of a part before a point is that of something in the part, but there is no element "
-                                                "'left.rod.hangr' (did you mean 'left.rod.hanger'?)"));
+  CHECK(
+      has(refusal_of(folder / "typing.toml"),
+          "typing.toml:3:8: error: a name with the name of a part before a point is that of something in the part, but there is no element "
+          "'left.rod.hangr' (did you mean 'left.rod.hanger'?)"));
 }
 
 TEST_CASE("what a part brings to be looked at is the part's") {
@@ -320,6 +339,61 @@ end = 77.0
   CHECK(std::get<std::string>(value_of(m, "acceptance.left 0.quiet.element")) == "left 0.*");
 }
 
+namespace {
+
+struct RefusedPart {
+  const char *part, *place, *message;
+};
+
+const RefusedPart k_refused_parts[] = {
+    {"name = \"a\"\nfile = \"rood.toml\"", "m.toml:10:8", "part 'a': "},
+    {"name = \"a\"\nfile = \"\"", "m.toml:10:8", "expected the name of a model file, got an empty string"},
+    {"name = \"a\"", "m.toml:8:1", "part 'a' needs 'file'"},
+    {"file = \"rod.toml\"", "m.toml:8:1", "a part needs 'name'"},
+    {"name = \"a*\"\nfile = \"rod.toml\"", "m.toml:9:8", "is no name of a part"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nanlge = 1", "m.toml:11:1", "unknown key 'anlge' in part 'a' (did you mean 'angle'?)"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nx = \"3 kg\"", "m.toml:11:5", "'x' of part 'a'"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nx = \"= 3\"", "m.toml:11:5",
+     "'x' of part 'a': the formula gives a number without a unit, but a unit like 'm' is needed"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nx = \"= pitsch\"", "m.toml:11:5", "'x' of part 'a': formula: there is no parameter 'pitsch'"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nx = true", "m.toml:11:5", "'x' of part 'a': expected a number"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nparameters = { lenght = \"1 m\" }", "m.toml:11:16",
+     "'rod.toml' has no parameter 'lenght' (did you mean 'length'?)"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nparameters = { length = 2.0 }", "m.toml:11:25",
+     "parameter 'length' of part 'a' is a number without a unit, but has a unit like 'm' there, '1 m'"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nparameters = { length = \"5 m\" }", "m.toml:11:25",
+     "parameter 'a.length' is 5 m, above its range"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nparameters = 3", "m.toml:11:14", "'parameters' of part 'a' must be a table"},
+    {"name = \"a\"\nfile = \"bare.toml\"\nparameters = { k = 3 }", "m.toml:11:16", "has no parameter 'k', nor any other"},
+    {"name = \"a\"\nfile = \"m.toml\"", "m.toml:10:8", "parts go round in circles: m.toml -> m.toml"},
+    {"name = \"a\"\nfile = \"ring.toml\"", "back.toml:3:8", "parts go round in circles: ring.toml -> back.toml -> ring.toml"},
+    {"name = \"a\"\nfile = \"broken.toml\"", "broken.toml:2:", "part 'a': not valid TOML"},
+    {"name = \"a\"\nfile = \"twice.toml\"", "twice.toml:18:8", "a marker named 'a.end' exists already"},
+    {"name = \"a\"\nfile = \"nest.toml\"", "bare.toml:3:8", "must be greater than 0 kg, got -1 (part 'in', "},
+    {"name = \"a\"\nfile = \"nest.toml\"", "nest.toml:1:1, of part 'a', ", "m.toml:8:1"},
+    {"name = \"a\"\nfile = \"windy.toml\"\nangle = 0.1", "windy.toml:25:11",
+     "acts along an axis of the ground and cannot turn with its part"},
+    {"name = \"a\"\nfile = \"odd.toml\"", "odd.toml:17:", "unknown key 'bdy' in the file of a part (did you mean 'body'?)"},
+    {"name = \"a\"\nfile = \"sure.toml\"", "sure.toml:17:1", "[[uncertain]] is about a model as a whole"},
+    {"name = \"a\"\nfile = \"rod.toml\"\n[[part]]\nname = \"a\"\nfile = \"rod.toml\"", "m.toml:12:8",
+     "a part named 'a' exists already (line 8)"},
+    {"name = \"a\"\nfile = \"rod.toml\"\n[[element]]\nkind = \"weld\"\nname = \"w\"\na = \"a.edn\"", "m.toml:14:5",
+     "there is no marker or body 'a.edn' (did you mean 'a.end'?)"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = 1000000", "m.toml:11:10",
+     "1000000 repetitions are more than the 100000 entries that a model may have: is a digit too many?"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = 100000", ":1", "parts and repetitions make more than 100000 entries"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = -1", "m.toml:11:10", "expected a whole number, 0 or larger, got -1"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = 2.5", "m.toml:11:10", "expected a whole number"},
+    {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = \"= 3\"", "m.toml:11:10", "a formula cannot say how many there are"},
+    {"name = \"a {k}\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8",
+     "'{k}': in a name only the index i and numbers make a number, not 'k'"},
+    {"name = \"a {i/2}\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "'{i/2}' is 0.5 where i is 1: a name takes a whole number"},
+    {"name = \"a {i\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "lacks a '}'"},
+    {"name = \"a {0*i}\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "a part named 'a 0' exists already"},
+};
+
+} // namespace
+
 TEST_CASE("parts that cannot be are refused with file, line, column and remedy") {
   const Folder folder;
   folder.write("rod.toml", k_rod);
@@ -329,50 +403,11 @@ TEST_CASE("parts that cannot be are refused with file, line, column and remedy")
   folder.write("twice.toml", std::string(k_rod) + "[[marker]]\nname = \"end\"\nbody = \"rod\"\n");
   folder.write("bare.toml", "[[body]]\nname = \"b\"\nmass = -1.0\ninertia = 1.0\n");
   folder.write("nest.toml", "[[part]]\nname = \"in\"\nfile = \"bare.toml\"\n");
-  folder.write("windy.toml", std::string(k_rod) + "[[signal]]\nname = \"gust\"\nkind = \"constant\"\nvalue = 1.0\n[[element]]\nkind = \"load\"\nname = \"wind\"\nat = \"end\"\nforce_x = \"gust\"\n");
+  folder.write("windy.toml", std::string(k_rod) + "[[signal]]\nname = \"gust\"\nkind = \"constant\"\nvalue = 1.0\n[[element]]\nkind = "
+                                                  "\"load\"\nname = \"wind\"\nat = \"end\"\nforce_x = \"gust\"\n");
   folder.write("odd.toml", std::string(k_rod) + "[[bdy]]\nname = \"x\"\n");
   folder.write("sure.toml", std::string(k_rod) + "[[uncertain]]\nname = \"m\"\npaths = [\"body.rod.mass\"]\n");
-  struct Case {
-    const char *part, *place, *message;
-  };
-  const Case cases[] = {
-      {"name = \"a\"\nfile = \"rood.toml\"", "m.toml:10:8", "part 'a': "},
-      {"name = \"a\"\nfile = \"\"", "m.toml:10:8", "expected the name of a model file, got an empty string"},
-      {"name = \"a\"", "m.toml:8:1", "part 'a' needs 'file'"},
-      {"file = \"rod.toml\"", "m.toml:8:1", "a part needs 'name'"},
-      {"name = \"a*\"\nfile = \"rod.toml\"", "m.toml:9:8", "is no name of a part"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nanlge = 1", "m.toml:11:1", "unknown key 'anlge' in part 'a' (did you mean 'angle'?)"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nx = \"3 kg\"", "m.toml:11:5", "'x' of part 'a'"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nx = \"= 3\"", "m.toml:11:5", "'x' of part 'a': the formula gives a number without a unit, but a unit like 'm' is needed"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nx = \"= pitsch\"", "m.toml:11:5", "'x' of part 'a': formula: there is no parameter 'pitsch'"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nx = true", "m.toml:11:5", "'x' of part 'a': expected a number"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nparameters = { lenght = \"1 m\" }", "m.toml:11:16", "'rod.toml' has no parameter 'lenght' (did you mean 'length'?)"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nparameters = { length = 2.0 }", "m.toml:11:25", "parameter 'length' of part 'a' is a number without a unit, but has a unit like 'm' there, '1 m'"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nparameters = { length = \"5 m\" }", "m.toml:11:25", "parameter 'a.length' is 5 m, above its range"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nparameters = 3", "m.toml:11:14", "'parameters' of part 'a' must be a table"},
-      {"name = \"a\"\nfile = \"bare.toml\"\nparameters = { k = 3 }", "m.toml:11:16", "has no parameter 'k', nor any other"},
-      {"name = \"a\"\nfile = \"m.toml\"", "m.toml:10:8", "parts go round in circles: m.toml -> m.toml"},
-      {"name = \"a\"\nfile = \"ring.toml\"", "back.toml:3:8", "parts go round in circles: ring.toml -> back.toml -> ring.toml"},
-      {"name = \"a\"\nfile = \"broken.toml\"", "broken.toml:2:", "part 'a': not valid TOML"},
-      {"name = \"a\"\nfile = \"twice.toml\"", "twice.toml:18:8", "a marker named 'a.end' exists already"},
-      {"name = \"a\"\nfile = \"nest.toml\"", "bare.toml:3:8", "must be greater than 0 kg, got -1 (part 'in', "},
-      {"name = \"a\"\nfile = \"nest.toml\"", "nest.toml:1:1, of part 'a', ", "m.toml:8:1"},
-      {"name = \"a\"\nfile = \"windy.toml\"\nangle = 0.1", "windy.toml:25:11", "acts along an axis of the ground and cannot turn with its part"},
-      {"name = \"a\"\nfile = \"odd.toml\"", "odd.toml:17:", "unknown key 'bdy' in the file of a part (did you mean 'body'?)"},
-      {"name = \"a\"\nfile = \"sure.toml\"", "sure.toml:17:1", "[[uncertain]] is about a model as a whole"},
-      {"name = \"a\"\nfile = \"rod.toml\"\n[[part]]\nname = \"a\"\nfile = \"rod.toml\"", "m.toml:12:8", "a part named 'a' exists already (line 8)"},
-      {"name = \"a\"\nfile = \"rod.toml\"\n[[element]]\nkind = \"weld\"\nname = \"w\"\na = \"a.edn\"", "m.toml:14:5", "there is no marker or body 'a.edn' (did you mean 'a.end'?)"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = 1000000", "m.toml:11:10", "1000000 repetitions are more than the 100000 entries that a model may have: is a digit too many?"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = 100000", ":1", "parts and repetitions make more than 100000 entries"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = -1", "m.toml:11:10", "expected a whole number, 0 or larger, got -1"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = 2.5", "m.toml:11:10", "expected a whole number"},
-      {"name = \"a\"\nfile = \"rod.toml\"\nrepeat = \"= 3\"", "m.toml:11:10", "a formula cannot say how many there are"},
-      {"name = \"a {k}\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "'{k}': in a name only the index i and numbers make a number, not 'k'"},
-      {"name = \"a {i/2}\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "'{i/2}' is 0.5 where i is 1: a name takes a whole number"},
-      {"name = \"a {i\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "lacks a '}'"},
-      {"name = \"a {0*i}\"\nfile = \"rod.toml\"\nrepeat = 3", "m.toml:9:8", "a part named 'a 0' exists already"},
-  };
-  for (const Case& c : cases) {
+  for (const RefusedPart& c : k_refused_parts) {
     folder.write("m.toml", std::string(k_head) + "[[part]]\n" + c.part + "\n");
     const std::string text = refusal_of(folder / "m.toml");
     CAPTURE(c.part);
@@ -401,9 +436,12 @@ TEST_CASE("a chain of a thousand links is a chain, by repeat and by a part with 
   const Folder folder;
   folder.write("rod.toml", k_rod);
   const std::string ends = "repeat = 1000\n[[element]]\nkind = \"revolute\"\nname = \"pin {i}\"\na = \"link {i+1}";
-  folder.write("parts.toml", std::string(k_head) + "[parameters]\nlength = \"0.5 m\"\n[[part]]\nname = \"link\"\nfile = \"rod.toml\"\nx = \"= i*length\"\nparameters = { length = \"= length\" }\n" + ends +
-                                 ".pin\"\nb = \"link {i}.end\"\nrepeat = 999\n");
-  folder.write("repeated.toml", std::string(k_head) + "[[body]]\nname = \"link\"\nmass = 1.0\ninertia = 0.1\nposition = [\"= i*'0.5 m'\", 0.0]\n" + ends +
+  folder.write("parts.toml", std::string(k_head) +
+                                 "[parameters]\nlength = \"0.5 m\"\n[[part]]\nname = \"link\"\nfile = \"rod.toml\"\nx = \"= "
+                                 "i*length\"\nparameters = { length = \"= length\" }\n" +
+                                 ends + ".pin\"\nb = \"link {i}.end\"\nrepeat = 999\n");
+  folder.write("repeated.toml", std::string(k_head) +
+                                    "[[body]]\nname = \"link\"\nmass = 1.0\ninertia = 0.1\nposition = [\"= i*'0.5 m'\", 0.0]\n" + ends +
                                     "\"\nb = { body = \"link {i}\", point = [0.5, 0.0] }\nrepeat = 999\n");
   for (const char* const name : {"repeated.toml", "parts.toml"}) {
     double best = 1e9; // processor time: others may be at work
@@ -461,11 +499,13 @@ TEST_CASE("what the page on models written once shows is a chain") {
   const double mass = 7850.0 * 0.01 * 0.25 * 0.04;
   CHECK(last.mass == doctest::Approx(mass).epsilon(1e-13));
   CHECK(last.inertia == doctest::Approx(mass * (0.25 * 0.25 + 0.04 * 0.04) / 12).epsilon(1e-12)); // differences of squares
-  CHECK(completed(read(folder / "link.toml")).bodies.front().outline.size() == 4); // the part alone is a model
+  CHECK(completed(read(folder / "link.toml")).bodies.front().outline.size() == 4);                // the part alone is a model
   CHECK(read(folder / "chain.toml", {"body.link 7.rod.cg=[0.01, 0]"}).bodies[6].cg.x() == 0.01);
-  CHECK(read(folder / "chain.toml", {"parameters.link 7.length=0.3 m"}).bodies[6].position.x() == doctest::Approx(6 * 0.25 + 0.15).epsilon(1e-14));
+  CHECK(read(folder / "chain.toml", {"parameters.link 7.length=0.3 m"}).bodies[6].position.x() ==
+        doctest::Approx(6 * 0.25 + 0.15).epsilon(1e-14));
   CHECK(read(folder / "chain.toml", {"part.link {i+1}.repeat=60", "element.pin {i+1}.repeat=59"}).elements.size() == 60);
-  CHECK(has(refusal_of(folder / "chain.toml", {"part.link {i+1}.repeat=20"}), "there is no marker or body 'link 21.left'")); // the pins are of 40
+  CHECK(has(refusal_of(folder / "chain.toml", {"part.link {i+1}.repeat=20"}),
+            "there is no marker or body 'link 21.left'")); // the pins are of 40
   CHECK(read(folder / "rollers.toml").bodies.size() == 12);
 }
 
@@ -483,10 +523,13 @@ TEST_CASE("each field of every kind is known to turn with a part or not to") {
   for (const SignalKind* kind : transformer_catalog().signals) look(kind->name, kind->fields);
   for (const TableKind* kind : transformer_catalog().tables)
     if (can_stand_in_part(*kind)) look(kind->name, kind->fields);
-  CHECK(found == "step_lap_interface.yoke place\nstep_lap_interface.limb place\nstep_lap_interface.yoke_holes place\nstep_lap_interface.limb_holes place\n"
-                 "step_lap_interface.yoke_cutouts place\nstep_lap_interface.limb_cutouts place\nstep_lap_interface.pressure_gradient direction\n"
-                 "step_lap_interface.across direction\nrope.over name\nload.force direction\nload.force_x fixed axis\nload.force_y fixed axis\n"
-                 "beam.from place\nbeam.to place\naction.do name\nplot.channels name\nplot.bounds name\ncore.limbs name\ncore.middle_limbs name\ncore.joints name\n");
+  CHECK(found ==
+        "step_lap_interface.yoke place\nstep_lap_interface.limb place\nstep_lap_interface.yoke_holes place\nstep_lap_interface.limb_holes "
+        "place\n"
+        "step_lap_interface.yoke_cutouts place\nstep_lap_interface.limb_cutouts place\nstep_lap_interface.pressure_gradient direction\n"
+        "step_lap_interface.across direction\nrope.over name\nload.force direction\nload.force_x fixed axis\nload.force_y fixed axis\n"
+        "beam.from place\nbeam.to place\naction.do name\nplot.channels name\nplot.bounds name\ncore.limbs name\ncore.middle_limbs "
+        "name\ncore.joints name\n");
   std::string alone;
   for (const TableKind* kind : transformer_catalog().tables)
     if (!can_stand_in_part(*kind)) alone += kind->name + " ";

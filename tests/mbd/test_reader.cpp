@@ -78,14 +78,11 @@ against = ["rope", "strut"]
 offsets = [1, "2 cm"]
 )";
 
-const std::string k_two =
-    "[simulation]\nstep = 1e-3\n[[body]]\nname = \"a.b c\"\nmass = 1\ninertia = 1\n"
-    "[[element]]\nname = \"rope\"\nkind = \"spring\"\na = \"a.b c\"\n"
-    "b = { body = \"ground\", at = [1, 2] }\nstiffness = 1\n";
+const std::string k_two = "[simulation]\nstep = 1e-3\n[[body]]\nname = \"a.b c\"\nmass = 1\ninertia = 1\n"
+                          "[[element]]\nname = \"rope\"\nkind = \"spring\"\na = \"a.b c\"\n"
+                          "b = { body = \"ground\", at = [1, 2] }\nstiffness = 1\n";
 
-const Spring& spring(const Model& model, std::size_t index) {
-  return dynamic_cast<const Spring&>(*model.elements.at(index).element);
-}
+const Spring& spring(const Model& model, std::size_t index) { return dynamic_cast<const Spring&>(*model.elements.at(index).element); }
 
 const Marker& marker_named(const Model& model, const std::string& name) {
   for (const Marker& marker : model.markers)
@@ -137,8 +134,7 @@ TEST_CASE("a model file becomes a model") {
   CHECK(push.against == std::vector<std::string>{"rope", "strut"});
   CHECK(push.offsets == std::vector<double>{1.0, 0.02});
   const SignalEntry& brake = model.signals.at(0);
-  CHECK(brake.kind->build(*brake.definition).value(0.1) ==
-        doctest::Approx(-0.6 * 9.80665).epsilon(1e-14));
+  CHECK(brake.kind->build(*brake.definition).value(0.1) == doctest::Approx(-0.6 * 9.80665).epsilon(1e-14));
 }
 
 TEST_CASE("every marker of an element is there after reading, and has a place") {
@@ -151,8 +147,7 @@ TEST_CASE("every marker of an element is there after reading, and has a place") 
   CHECK(marker_named(model, "tank").body == "tank");
   CHECK(*marker_named(model, "tank").point == Vec2(0.5, 0.0));
   CHECK(*marker_named(model, "ground").point == Vec2(0.0, 0.0));
-  for (const Marker& marker : model.markers)
-    CHECK(marker.point.has_value() != marker.at.has_value());
+  for (const Marker& marker : model.markers) CHECK(marker.point.has_value() != marker.at.has_value());
 }
 
 TEST_CASE("extends lays a file over another") {
@@ -260,9 +255,8 @@ duration = 0.3
 }
 
 TEST_CASE("the command line unsets what a file gives") {
-  const Model model =
-      parse_model(k_plain, "plain.toml", small_catalogue(),
-                  {"simulation.velocity=unset", "element.rope.damping=unset", "title=unset", "output.channels=unset"});
+  const Model model = parse_model(k_plain, "plain.toml", small_catalogue(),
+                                  {"simulation.velocity=unset", "element.rope.damping=unset", "title=unset", "output.channels=unset"});
   CHECK(model.simulation.velocity == Vec2(0, 0));
   CHECK_FALSE(spring(model, 0).damping.has_value());
   CHECK(model.header.title.empty());
@@ -275,19 +269,17 @@ TEST_CASE("step and tolerance may both be given, whatever the integrator") {
   const std::string text = "[simulation]\nstep = 1e-3\ntolerance = 1e-9\n[[body]]\nname = \"a\"\n"
                            "mass = 1\ninertia = 1\n";
   for (const char* integrator : {"rk4", "tsit5", "dop853"}) {
-    const Model model = parse_model(text, "both.toml", small_catalogue(),
-                                    {std::string("simulation.integrator=") + integrator});
+    const Model model = parse_model(text, "both.toml", small_catalogue(), {std::string("simulation.integrator=") + integrator});
     CHECK(model.simulation.step == 1e-3);
     CHECK(model.simulation.tolerance == 1e-9);
   }
 }
 
 TEST_CASE("overrides from the command line") {
-  const Model model = parse_model(
-      k_two, "two.toml", small_catalogue(),
-      {"simulation.step=2e-4", "simulation.end=\"2 s\"", "body.a.b c.mass=48 t",
-       "element.rope.preload=-3", "element.rope.b.at.1=5", "element.rope.law=table",
-       "gravity=[0, 0]", "output.step=0.01", "element.rope.is_on=false", "title=x = y"});
+  const Model model = parse_model(k_two, "two.toml", small_catalogue(),
+                                  {"simulation.step=2e-4", "simulation.end=\"2 s\"", "body.a.b c.mass=48 t", "element.rope.preload=-3",
+                                   "element.rope.b.at.1=5", "element.rope.law=table", "gravity=[0, 0]", "output.step=0.01",
+                                   "element.rope.is_on=false", "title=x = y"});
   CHECK(model.simulation.step == 2e-4);
   CHECK(model.simulation.end == 2.0);
   CHECK(model.bodies[0].mass == 48000.0);
@@ -309,16 +301,12 @@ TEST_CASE("overrides that lead nowhere") {
     }
     return "";
   };
-  CHECK(message("element.rope.c.at=3") ==
-        "override element.rope.c.at=3: error: there is no 'c' to set 'at' of");
-  CHECK(message("element.rope.b.at.7=3") ==
-        "override element.rope.b.at.7=3: error: '7' is not an item of a list");
-  CHECK(message("simulation=3") ==
-        "override simulation=3: error: name a key of 'simulation', as in simulation.key=value");
+  CHECK(message("element.rope.c.at=3") == "override element.rope.c.at=3: error: there is no 'c' to set 'at' of");
+  CHECK(message("element.rope.b.at.7=3") == "override element.rope.b.at.7=3: error: '7' is not an item of a list");
+  CHECK(message("simulation=3") == "override simulation=3: error: name a key of 'simulation', as in simulation.key=value");
   CHECK(message("=3") == "override =3: error: expected path=value, for example simulation.step=1e-4");
-  CHECK(message("element.rope.stifness=3") ==
-        "override element.rope.stifness=3: error: unknown key 'stifness' in spring 'rope' (did you "
-        "mean 'stiffness'?)");
+  CHECK(message("element.rope.stifness=3") == "override element.rope.stifness=3: error: unknown key 'stifness' in spring 'rope' (did you "
+                                              "mean 'stiffness'?)");
 }
 
 TEST_CASE("tables of another room add to the model") {
@@ -334,11 +322,9 @@ TEST_CASE("tables of another room add to the model") {
 TEST_CASE("records are found beside the file that names them") {
   const Folder folder;
   folder.write("below/stop.csv", "t;a\n0;0\n0,1;-0,6\n0,2;0,3\n");
-  folder.write("below/base.toml",
-               k_two + "[[signal]]\nname = \"s\"\nkind = \"record\"\n"
-                       "file = \"stop.csv\"\nunit = \"gravity\"\noffset = \"1 s\"\n");
-  const std::string top = folder.write(
-      "top.toml", "extends = \"below/base.toml\"\n[[signal]]\nname = \"s\"\nafter = \"hold\"\n");
+  folder.write("below/base.toml", k_two + "[[signal]]\nname = \"s\"\nkind = \"record\"\n"
+                                          "file = \"stop.csv\"\nunit = \"gravity\"\noffset = \"1 s\"\n");
+  const std::string top = folder.write("top.toml", "extends = \"below/base.toml\"\n[[signal]]\nname = \"s\"\nafter = \"hold\"\n");
   const Model model = read_model(top, small_catalogue());
   const Signal s = model.signals.at(0).kind->build(*model.signals.at(0).definition);
   const double g = 9.80665;
@@ -370,10 +356,8 @@ TEST_CASE("reading is linear in the number of bodies") {
   constexpr int k_bodies = 20000;
   for (int i = 0; i < k_bodies; ++i) {
     const std::string n = std::to_string(i);
-    text +=
-        "[[body]]\nname = \"b" + n + "\"\nmass = \"1 t\"\ninertia = 1\nposition = [" + n + ", 0]\n";
-    text += "[[element]]\nname = \"e" + n + "\"\nkind = \"spring\"\na = \"b" + n +
-            "\"\nb = \"ground\"\nstiffness = 1\n";
+    text += "[[body]]\nname = \"b" + n + "\"\nmass = \"1 t\"\ninertia = 1\nposition = [" + n + ", 0]\n";
+    text += "[[element]]\nname = \"e" + n + "\"\nkind = \"spring\"\na = \"b" + n + "\"\nb = \"ground\"\nstiffness = 1\n";
   }
   const auto start = std::chrono::steady_clock::now();
   const Model model = parse_model(text, "large.toml", small_catalogue());
@@ -390,8 +374,11 @@ TEST_CASE("letters beyond ASCII are told from blanks wherever they stand") {
     const std::string letter = given;
     CAPTURE(letter);
     CHECK(parse_model("title = \"a" + letter + " " + letter + "\"\n[simulation]\nstep = 1e-3\n[[body]]\nname = \"" + letter +
-                          "\"\nmass = \"1 t\"\ninertia = 1\n", "a.toml", small_catalogue()).header.title == "a" + letter + " " + letter);
-    for (const std::string& text : {"title =" + letter + "\"a\"\n", letter + "title = \"a\"\n", "title = \"a\"" + letter + "\n", "[" + letter + "simulation]\n"})
+                          "\"\nmass = \"1 t\"\ninertia = 1\n",
+                      "a.toml", small_catalogue())
+              .header.title == "a" + letter + " " + letter);
+    for (const std::string& text :
+         {"title =" + letter + "\"a\"\n", letter + "title = \"a\"\n", "title = \"a\"" + letter + "\n", "[" + letter + "simulation]\n"})
       CHECK_THROWS_AS((void)parse_model(text, "a.toml", small_catalogue()), ModelError);
   }
 }

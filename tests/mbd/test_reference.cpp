@@ -31,8 +31,7 @@ TEST_CASE("the reference of a kind shows every field") {
 TEST_CASE("all kinds are listed") {
   const ReferenceRows list = kinds_rows(small_catalogue());
   const std::string markdown = reference_markdown(small_catalogue());
-  for (const std::string kind : {"body", "marker", "simulation", "output", "haversine", "record",
-                                 "spring", "pusher", "pair"}) {
+  for (const std::string kind : {"body", "marker", "simulation", "output", "haversine", "record", "spring", "pusher", "pair"}) {
     CHECK(std::count_if(list.begin(), list.end(), [&kind](const auto& row) { return row[1] == kind; }) == 1);
     CHECK(markdown.find(kind) != std::string::npos);
   }
@@ -49,10 +48,11 @@ TEST_CASE("the schema follows the tables") {
   CHECK(spring["properties"]["turns"]["maximum"] == 20);
   CHECK(spring["properties"]["turns"]["type"] == nlohmann::json{"integer", "string"});
   CHECK(schema["properties"]["parameters"]["additionalProperties"]["type"].size() == 3); // a number, a text, a table with range and meaning
-  CHECK(spring["additionalProperties"].contains("const")); // no other keys
+  CHECK(spring["additionalProperties"].contains("const"));                               // no other keys
   CHECK(schema["properties"]["body"]["items"]["properties"]["position"]["default"][0] == 0.0);
   CHECK(schema["properties"].contains("pair"));
-  for (const auto* entry : {&spring, &schema["properties"]["body"]["items"], &schema["properties"]["marker"]["items"], &schema["properties"]["part"]["items"]})
+  for (const auto* entry :
+       {&spring, &schema["properties"]["body"]["items"], &schema["properties"]["marker"]["items"], &schema["properties"]["part"]["items"]})
     CHECK((*entry)["properties"]["repeat"]["type"] == "integer");
   CHECK(schema["properties"]["part"]["items"]["properties"]["parameters"]["additionalProperties"]["type"].size() == 2); // a number, a text
   CHECK(!schema["properties"]["pair"]["items"]["properties"].contains("repeat"));

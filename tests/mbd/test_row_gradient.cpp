@@ -16,9 +16,8 @@ using namespace steplap;
 
 namespace {
 
-constexpr MeasureKind k_kinds[] = {MeasureKind::axis,      MeasureKind::distance,  MeasureKind::angle,
-                                   MeasureKind::roll_line, MeasureKind::roll_round, MeasureKind::slide,
-                                   MeasureKind::skate};
+constexpr MeasureKind k_kinds[] = {MeasureKind::axis,       MeasureKind::distance, MeasureKind::angle, MeasureKind::roll_line,
+                                   MeasureKind::roll_round, MeasureKind::slide,    MeasureKind::skate};
 constexpr int k_poses = 200;
 
 class Poses {
@@ -61,7 +60,9 @@ private:
 constexpr double k_rounding = 1e-12;
 
 // What a row's coordinates change it by: of a skate, which has no value, its rate by theirs.
-double gradient_at(MeasureKind kind, const MeasureValue<Dual<12>>& m, int k) { return kind == MeasureKind::skate ? m.rate.d[6 + k] : m.value.d[k]; }
+double gradient_at(MeasureKind kind, const MeasureValue<Dual<12>>& m, int k) {
+  return kind == MeasureKind::skate ? m.rate.d[6 + k] : m.value.d[k];
+}
 
 bool is_near(double found, double wanted) { return std::abs(found - wanted) <= k_rounding * (1.0 + std::abs(wanted)); }
 

@@ -100,7 +100,8 @@ TEST_CASE("text fit for a terminal; digits that matter; one is not several") {
   CHECK(shown("a\nb\t\x1b[0m\x7f") == "a\\nb\\t\\x1b[0m\\x7f");
   CHECK(shown("a\nb", true) == "a\nb");
   CHECK(shown("µ°²… ä") == "µ°²… ä"); // UTF-8 stays
-  CHECK(shown("\xc2\x9b" "31m") == "\\x9b31m"); // U+009B: what ESC [ is in one character
+  CHECK(shown("\xc2\x9b"
+              "31m") == "\\x9b31m"); // U+009B: what ESC [ is in one character
   CHECK(has_control_character("\xc2\x9b"));
   CHECK_FALSE(has_control_character("Größe µ"));
   CHECK(rounded_text(1.0000000000000001e-11) == "1e-11");

@@ -22,8 +22,7 @@ bool are_identical(const RunResult& a, const RunResult& b) {
       if (std::memcmp(&x, &y, sizeof x) != 0) return false;
     }
   for (std::size_t i = 0; i < a.events.size(); ++i)
-    if (a.events[i].t != b.events[i].t || a.events[i].kind != b.events[i].kind || a.events[i].element != b.events[i].element)
-      return false;
+    if (a.events[i].t != b.events[i].t || a.events[i].kind != b.events[i].kind || a.events[i].element != b.events[i].element) return false;
   return a.final_state.q == b.final_state.q && a.final_state.v == b.final_state.v;
 }
 
@@ -164,8 +163,8 @@ TEST_CASE("the same bodies with springs only cost the plain steps") {
   // The paper's scene without contacts and friction: no event, no search, whatever moves.
   Model model = paper_model(Condition::no_interference);
   std::erase_if(model.elements, [](const ElementEntry& entry) {
-    return entry.kind->name == "coulomb_stick" || entry.kind->name == "unilateral_contact" ||
-           entry.kind->name == "step_lap_joint" || entry.kind->name == "step_lap_interface";
+    return entry.kind->name == "coulomb_stick" || entry.kind->name == "unilateral_contact" || entry.kind->name == "step_lap_joint" ||
+           entry.kind->name == "step_lap_interface";
   });
   const auto system = compile(model);
   CHECK(system->watch_count == 0);

@@ -1,8 +1,8 @@
 // The solver of the constraint equations against dense algebra: random rows between random bodies, rows
 // that depend on others, locked coordinates, loops.
-#include "mbd/dynamics/schur.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/types.h"
+#include "mbd/dynamics/schur.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -28,8 +28,7 @@ Problem random_problem(int rows, int bodies, double locked_share, std::mt19937& 
   Problem p;
   p.j = MatX::Zero(rows, 3 * bodies);
   p.w = MatX::Zero(3 * bodies, 3 * bodies);
-  for (int i = 0; i < 3 * bodies; ++i)
-    p.w(i, i) = 0.5 * (unit(generator) + 1.0) < locked_share ? 0.0 : std::exp(2.0 * unit(generator));
+  for (int i = 0; i < 3 * bodies; ++i) p.w(i, i) = 0.5 * (unit(generator) + 1.0) < locked_share ? 0.0 : std::exp(2.0 * unit(generator));
   for (int r = 0; r < rows; ++r) {
     SchurRow row;
     do {

@@ -26,10 +26,12 @@ struct Given {
 
 Signal pulse_of(const Given& g) {
   const auto n = [](double x) { return std::to_string(x); };
-  const Model model = parse_model("[[signal]]\nname = 'meeting'\nkind = 'shunting'\nmass = " + n(g.m) + "\nother_mass = " + n(g.other) + "\nspeed = " + n(g.v) +
-                                      "\nother_speed = " + n(g.other_v) + "\nstart = " + n(g.start) + "\n" + g.curves +
-                                      "\n[[body]]\nname = 'wagon'\nmass = 1\ninertia = 1\n[[element]]\nkind = 'load'\nname = 'push'\nat = 'wagon'\nforce_x = 'meeting'\n",
-                                  "shunting.toml", element_catalog());
+  const Model model =
+      parse_model("[[signal]]\nname = 'meeting'\nkind = 'shunting'\nmass = " + n(g.m) + "\nother_mass = " + n(g.other) +
+                      "\nspeed = " + n(g.v) + "\nother_speed = " + n(g.other_v) + "\nstart = " + n(g.start) + "\n" + g.curves +
+                      "\n[[body]]\nname = 'wagon'\nmass = 1\ninertia = 1\n[[element]]\nkind = 'load'\nname = 'push'\nat = 'wagon'\nforce_x "
+                      "= 'meeting'\n",
+                  "shunting.toml", element_catalog());
   for (const SignalEntry& entry : model.signals)
     if (entry.definition->name == "meeting") return entry.kind->build(*entry.definition);
   return {};
@@ -91,7 +93,8 @@ TEST_CASE("a damped buffer follows the damped oscillator and does not pull") {
   g.curves += "\ndamping = " + std::to_string(2.0 * zeta * omega * mu); // of one buffer: as of all together
   const Signal s = pulse_of(g);
   for (int i = 0; i < 30; ++i) {
-    const double t = 0.04 / omega + i * 0.08 / omega, decay = std::exp(-zeta * omega * t), sine = std::sin(omega_d * t), cosine = std::cos(omega_d * t);
+    const double t = 0.04 / omega + i * 0.08 / omega, decay = std::exp(-zeta * omega * t), sine = std::sin(omega_d * t),
+                 cosine = std::cos(omega_d * t);
     const double x = g.v / omega_d * decay * sine, rate = g.v * decay * (cosine - zeta * omega / omega_d * sine);
     CHECK(s.value(0.1 + t) == doctest::Approx(-(k * x + 2.0 * zeta * omega * mu * rate) / g.m).epsilon(1e-7));
   }
@@ -105,7 +108,7 @@ TEST_CASE("an end stop is met at its travel and pushes with its stiffness") {
   g.curves = "buffer = [[0, 0], [0.1, 5e5]]\nstop_stiffness = 5e7";
   const Signal s = pulse_of(g);
   const double mu = reduced(g), k = 5e6, stop_k = 5.5e7; // the stop adds to the last slope
-  const double left = g.v * g.v - k * 0.2 * 0.2 / mu;  // of the closing speed's square where the stop is met
+  const double left = g.v * g.v - k * 0.2 * 0.2 / mu;    // of the closing speed's square where the stop is met
   const double omega = std::sqrt(stop_k / mu), at_stop = 1e6 / mu;
   double peak = 0.0, t_peak = 0.0;
   for (double t = 0.0; t < 0.3; t += 1e-5)
@@ -120,16 +123,20 @@ TEST_CASE("an end stop is met at its travel and pushes with its stiffness") {
 TEST_CASE("energy and momentum balance for random buffers") {
   std::mt19937 random(28);
   // Of three decimals, which the text of the model holds.
-  const auto between = [&random](double low, double high) { return std::round(1e3 * (low + (high - low) * (static_cast<double>(random()) / 4294967295.0))) / 1e3; };
+  const auto between = [&random](double low, double high) {
+    return std::round(1e3 * (low + (high - low) * (static_cast<double>(random()) / 4294967295.0))) / 1e3;
+  };
   for (int i = 0; i < 200; ++i) {
     Given g;
     g.m = between(2e4, 2e5);
     g.other = between(2e4, 2e5);
     g.v = between(0.5, 3.0);
     g.other_v = between(-0.4, 0.4);
-    const double share = between(0.2, 1.0), middle = between(0.03, 0.08), f1 = between(5e4, 2e5), f2 = f1 * between(1.0, 4.0), f0 = between(0.0, 3e4);
+    const double share = between(0.2, 1.0), middle = between(0.03, 0.08), f1 = between(5e4, 2e5), f2 = f1 * between(1.0, 4.0),
+                 f0 = between(0.0, 3e4);
     const auto curve = [&](double by) {
-      return "[[0, " + std::to_string(by * f0) + "], [" + std::to_string(middle) + ", " + std::to_string(by * f1) + "], [0.105, " + std::to_string(by * f2) + "]]";
+      return "[[0, " + std::to_string(by * f0) + "], [" + std::to_string(middle) + ", " + std::to_string(by * f1) + "], [0.105, " +
+             std::to_string(by * f2) + "]]";
     };
     g.curves = "buffer = " + curve(1.0) + "\nunloading = " + curve(share) + "\nstop_stiffness = 6e7";
     const Signal s = pulse_of(g);
@@ -138,7 +145,7 @@ TEST_CASE("energy and momentum balance for random buffers") {
     const double back = given_back(g, s);
     CAPTURE(i);
     if (most < 0.21) CHECK(back == doctest::Approx(share).epsilon(1e-7)); // the same shape, less high
-    else { // the stop gives all back
+    else {                                                                // the stop gives all back
       CHECK(back >= share * (1.0 - 1e-6));
       CHECK(back <= 1.0 + 1e-9);
     }
@@ -183,10 +190,12 @@ TEST_CASE("what is not two wagons is refused with one error") {
 TEST_CASE("the pulse is that of two wagons that are simulated") {
   Given g;
   const Signal s = pulse_of(g);
-  const Model model = parse_model("gravity = [0, 0]\n[simulation]\nend = 0.5\n[[body]]\nname = 'wagon'\nmass = 87e3\ninertia = 1\nvelocity = [2, 0]\n"
-                                  "[[body]]\nname = 'other'\nmass = 80e3\ninertia = 1\nposition = [5, 0]\n"
-                                  "[[element]]\nkind = 'unilateral_contact'\nname = 'buffers'\na = 'wagon'\nb = { body = 'other', at = [0.2, 0] }\nnormal = [-1, 0]\nstiffness = 5.6e6\n",
-                                  "wagons.toml", element_catalog());
+  const Model model =
+      parse_model("gravity = [0, 0]\n[simulation]\nend = 0.5\n[[body]]\nname = 'wagon'\nmass = 87e3\ninertia = 1\nvelocity = [2, 0]\n"
+                  "[[body]]\nname = 'other'\nmass = 80e3\ninertia = 1\nposition = [5, 0]\n"
+                  "[[element]]\nkind = 'unilateral_contact'\nname = 'buffers'\na = 'wagon'\nb = { body = 'other', at = [0.2, 0] }\nnormal "
+                  "= [-1, 0]\nstiffness = 5.6e6\n",
+                  "wagons.toml", element_catalog());
   const auto system = compile(model);
   SimulationOptions options;
   options.end = 0.5;

@@ -36,8 +36,7 @@ Signal make(const std::string& name, const Values& values) {
 
 // Composite Gauss-Legendre with four points on each of n parts of each interval between
 // breakpoints.
-double quadrature(const std::function<double(double)>& f, double from, double to,
-                  const std::vector<double>& breakpoints) {
+double quadrature(const std::function<double(double)>& f, double from, double to, const std::vector<double>& breakpoints) {
   constexpr double x[] = {0.3399810435848563, 0.8611363115940526};
   constexpr double w[] = {0.6521451548625461, 0.3478548451374538};
   std::vector<double> knots{from};
@@ -50,8 +49,7 @@ double quadrature(const std::function<double(double)>& f, double from, double to
     const double h = (knots[k + 1] - knots[k]) / n;
     for (int i = 0; i < n; ++i) {
       const double middle = knots[k] + (i + 0.5) * h;
-      for (int j = 0; j < 2; ++j)
-        sum += 0.5 * h * w[j] * (f(middle - 0.5 * h * x[j]) + f(middle + 0.5 * h * x[j]));
+      for (int j = 0; j < 2; ++j) sum += 0.5 * h * w[j] * (f(middle - 0.5 * h * x[j]) + f(middle + 0.5 * h * x[j]));
     }
   }
   return sum;
@@ -89,10 +87,8 @@ TEST_CASE("integrals agree with quadrature") {
       const SignalJet jet = signal.drive(t, DriveLevel::acceleration);
       const auto moment = [&](double u) { return (t - u) * f(u); };
       CHECK(jet.acceleration == f(t));
-      CHECK(jet.rate ==
-            doctest::Approx(quadrature(f, 0.0, t, signal.breakpoints())).epsilon(1e-12));
-      CHECK(jet.value ==
-            doctest::Approx(quadrature(moment, 0.0, t, signal.breakpoints())).epsilon(1e-11));
+      CHECK(jet.rate == doctest::Approx(quadrature(f, 0.0, t, signal.breakpoints())).epsilon(1e-12));
+      CHECK(jet.value == doctest::Approx(quadrature(moment, 0.0, t, signal.breakpoints())).epsilon(1e-11));
     }
   }
 }
@@ -122,8 +118,7 @@ TEST_CASE("the three levels belong to one motion") {
     CHECK(v.value == a.rate);
     CHECK(v.rate == a.acceleration);
     CHECK(v.acceleration == x.rate);
-    for (const DriveLevel level :
-         {DriveLevel::position, DriveLevel::velocity, DriveLevel::acceleration})
+    for (const DriveLevel level : {DriveLevel::position, DriveLevel::velocity, DriveLevel::acceleration})
       CHECK(std::abs(signal.drive(0.0, level).value) < 1e-15);
   }
 }
@@ -153,9 +148,9 @@ TEST_CASE("shapes at known times") {
     CHECK(make(kind, pulse).value(0.999) == 0.0);
     CHECK(make(kind, pulse).value(3.001) == 0.0);
   }
-  const Signal sine = make("harmonics", {{"amplitudes", std::vector<double>{2.0}},
-                                         {"frequencies", std::vector<double>{0.25}},
-                                         {"phases", std::vector<double>{-0.5 * k_pi}}});
+  const Signal sine = make(
+      "harmonics",
+      {{"amplitudes", std::vector<double>{2.0}}, {"frequencies", std::vector<double>{0.25}}, {"phases", std::vector<double>{-0.5 * k_pi}}});
   CHECK(sine.value(1.0) == doctest::Approx(2.0).epsilon(1e-15));
 }
 
@@ -165,8 +160,7 @@ TEST_CASE("small integrals keep their digits") {
   const Signal sine(std::vector<Signal::Piece>{{0.0, {0, 0, 0, 0}, {{1.0, 10.0, -0.5 * k_pi}}, {}}});
   const double t = 1e-6;
   CHECK(sine.drive(t, DriveLevel::acceleration).rate == doctest::Approx(5.0 * t * t).epsilon(1e-9));
-  CHECK(sine.drive(t, DriveLevel::acceleration).value ==
-        doctest::Approx(10.0 / 6.0 * t * t * t).epsilon(1e-8));
+  CHECK(sine.drive(t, DriveLevel::acceleration).value == doctest::Approx(10.0 / 6.0 * t * t * t).epsilon(1e-8));
 }
 
 TEST_CASE("breakpoints and jumps") {
@@ -191,13 +185,11 @@ TEST_CASE("breakpoints and jumps") {
 
 TEST_CASE("a record of 1e5 pieces") {
   std::vector<Signal::Piece> pieces;
-  for (int i = 0; i < 100000; ++i)
-    pieces.push_back({1e-3 * i, {std::sin(1e-3 * i), 0, 0, 0}, {}, {}});
+  for (int i = 0; i < 100000; ++i) pieces.push_back({1e-3 * i, {std::sin(1e-3 * i), 0, 0, 0}, {}, {}});
   const Signal signal(pieces);
   CHECK(signal.value(50.0005) == std::sin(50.0));
   double sum = 0.0;
-  for (int i = 0; i < 50000; ++i)
-    sum += 1e-3 * std::sin(1e-3 * i);
+  for (int i = 0; i < 50000; ++i) sum += 1e-3 * std::sin(1e-3 * i);
   CHECK(signal.drive(50.0, DriveLevel::velocity).value == doctest::Approx(sum).epsilon(1e-11));
 }
 
@@ -209,23 +201,17 @@ TEST_CASE("values that make no signal") {
   CHECK_THROWS_AS(Signal(Pieces{plain, plain}), std::invalid_argument);
   CHECK_THROWS_AS(Signal(Pieces{nan}), std::invalid_argument);
   CHECK_THROWS_AS(Signal(Pieces{still}), std::invalid_argument);
-  CHECK_THROWS_WITH_AS(
-      make("triangle", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 2.0}}),
-      "error: triangle 's' rises longer than it lasts: 'rise' must not exceed 'duration'",
-      ModelError);
-  CHECK_THROWS_AS(
-      make("trapezoid", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 0.6}, {"fall", 0.5}}),
-      ModelError);
-  CHECK_THROWS_AS(make("harmonics", {{"amplitudes", std::vector<double>{1.0}},
-                                     {"frequencies", std::vector<double>{1.0, 2.0}}}),
+  CHECK_THROWS_WITH_AS(make("triangle", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 2.0}}),
+                       "error: triangle 's' rises longer than it lasts: 'rise' must not exceed 'duration'", ModelError);
+  CHECK_THROWS_AS(make("trapezoid", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 0.6}, {"fall", 0.5}}), ModelError);
+  CHECK_THROWS_AS(make("harmonics", {{"amplitudes", std::vector<double>{1.0}}, {"frequencies", std::vector<double>{1.0, 2.0}}}),
                   ModelError);
 }
 
 TEST_CASE("every field of every kind is documented") {
   for (const SignalKind* kind : signal_kinds()) {
     CHECK_FALSE(kind->doc.empty());
-    for (const Field& field : kind->fields.fields())
-      CHECK_FALSE(field.doc.empty());
+    for (const Field& field : kind->fields.fields()) CHECK_FALSE(field.doc.empty());
   }
 }
 

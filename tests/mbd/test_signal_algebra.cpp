@@ -20,9 +20,7 @@ Signal haversine(double peak, double start, double duration) {
   Piece pulse{start, {0.5 * peak, 0, 0, 0}, {{-0.5 * peak, 2.0 * k_pi / duration, 0.0}}, {}};
   return Signal({pulse, Piece{start + duration, {0, 0, 0, 0}, {}, {}}});
 }
-Signal sine(double frequency, double phase) {
-  return Signal({Piece{0.0, {0, 0, 0, 0}, {{1.0, frequency, phase - 0.5 * k_pi}}, {}}});
-}
+Signal sine(double frequency, double phase) { return Signal({Piece{0.0, {0, 0, 0, 0}, {{1.0, frequency, phase - 0.5 * k_pi}}, {}}}); }
 // Rises from 0 at `start` to 1 at `end`, then stays.
 Signal ramp(double start, double end) {
   return Signal({Piece{start, {0.0, 1.0 / (end - start), 0, 0}, {}, {}}, Piece{end, {1.0, 0, 0, 0}, {}, {}}});
@@ -187,8 +185,7 @@ TEST_CASE("a product that would grow beyond bounds is refused") {
   for (const Signal& one : waves) many.push_back(&one);
   CHECK_THROWS_AS(static_cast<void>(product_of(many)), std::invalid_argument);
   CHECK_NOTHROW(static_cast<void>(product_of(std::vector<const Signal*>(k_most_power, &slope))));
-  CHECK_THROWS_AS(static_cast<void>(product_of(std::vector<const Signal*>(k_most_power + 1, &slope))),
-                  std::invalid_argument);
+  CHECK_THROWS_AS(static_cast<void>(product_of(std::vector<const Signal*>(k_most_power + 1, &slope))), std::invalid_argument);
 }
 
 // Each twice the one before: 2^60 terms if they were built anew wherever they are named.

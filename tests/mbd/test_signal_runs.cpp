@@ -63,8 +63,8 @@ std::string load(const std::string& name, const std::string& signal) {
 
 TEST_CASE("a load that is the sum of two signals moves a body as two loads do") {
   const RunResult two = run(k_block + load("first", "pulse") + load("second", "step"));
-  const RunResult one = run(k_block + load("both", "whole") +
-                            "[[signal]]\nkind = \"sum\"\nname = \"whole\"\nsignals = [\"pulse\", \"step\"]\n");
+  const RunResult one =
+      run(k_block + load("both", "whole") + "[[signal]]\nkind = \"sum\"\nname = \"whole\"\nsignals = [\"pulse\", \"step\"]\n");
   // The same breakpoints, and the same loads to rounding.
   CHECK(std::abs(two.final_state.q[3] - one.final_state.q[3]) < 1e-13);
   CHECK(std::abs(two.final_state.v[3] - one.final_state.v[3]) < 1e-12);

@@ -24,15 +24,13 @@ std::vector<Entry> random_pattern(int n, std::mt19937& random) {
   for (int i = 0; i < n; ++i) {
     entries.push_back({i, (i + 1) % n}); // a cycle: not singular by its structure
     if (i % 3 != 0) entries.push_back({i, i});
-    for (int k = 0; k < 3; ++k)
-      entries.push_back({any(random), i});
+    for (int k = 0; k < 3; ++k) entries.push_back({any(random), i});
   }
   return entries;
 }
 
 // Largest error of A x = b, relative; -1 if the matrix was found singular.
-double error(SparseLu& lu, int n, const std::vector<Entry>& entries,
-             const std::vector<double>& values) {
+double error(SparseLu& lu, int n, const std::vector<Entry>& entries, const std::vector<double>& values) {
   MatX a = MatX::Zero(n, n);
   lu.begin(n);
   for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -50,8 +48,7 @@ double error(SparseLu& lu, int n, const std::vector<Entry>& entries,
 std::vector<double> random_values(std::size_t count, std::mt19937& random) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   std::vector<double> values(count);
-  for (double& value : values)
-    value = any(random);
+  for (double& value : values) value = any(random);
   return values;
 }
 

@@ -58,8 +58,7 @@ std::vector<Vec> elementary_weights(const std::vector<Tree>& trees, const Mat& s
   std::vector<Vec> phi;
   for (const Tree& tree : trees) {
     Vec product = Vec::Ones(several.rows());
-    for (const int b : tree.branches)
-      product = product.cwiseProduct((tree.branches.size() == 1 ? single : several) * phi[b]);
+    for (const int b : tree.branches) product = product.cwiseProduct((tree.branches.size() == 1 ? single : several) * phi[b]);
     phi.push_back(product);
   }
   return phi;
@@ -102,8 +101,7 @@ struct Rosenbrock {
   Vec dense(double s) const {
     using namespace steplap::rodas5p;
     Vec m = last();
-    for (int j = 0; j < 8; ++j)
-      m[j] = s * (m[j] + (1.0 - s) * (H[0][j] + s * (H[1][j] + s * H[2][j])));
+    for (int j = 0; j < 8; ++j) m[j] = s * (m[j] + (1.0 - s) * (H[0][j] + s * (H[1][j] + s * H[2][j])));
     return gamma.transpose() * m;
   }
   static Vec last() {
@@ -170,8 +168,7 @@ TEST_CASE("DOP853: order 8, estimates of order 5 and 3, dense output of order 7"
     const Vec r0 = padded(b, 16), first = Vec::Unit(16, 0), last = Vec::Unit(16, 12);
     const Vec r1 = first - r0, r2 = 2.0 * r0 - first - last;
     const auto r = [&](int i) { return padded(d[i], 16); };
-    const Vec weights =
-        s * (r0 + u * (r1 + s * (r2 + u * (r(0) + s * (r(1) + u * (r(2) + s * r(3)))))));
+    const Vec weights = s * (r0 + u * (r1 + s * (r2 + u * (r(0) + s * (r(1) + u * (r(2) + s * r(3)))))));
     CAPTURE(s);
     CHECK(defect(trees, phi, weights, 7, s) < k_rounding);
     if (s < 1.0) CHECK(defect(trees, phi, weights, 8, s) > k_missed);

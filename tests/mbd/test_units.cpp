@@ -17,9 +17,7 @@ double value(const std::string& text, const std::string& unit) {
   return quantity.value;
 }
 
-std::string problem(const std::string& text, const std::string& unit) {
-  return parse_quantity(text, unit).problem;
-}
+std::string problem(const std::string& text, const std::string& unit) { return parse_quantity(text, unit).problem; }
 
 } // namespace
 
@@ -76,8 +74,7 @@ TEST_CASE("what is wrong is said") {
   CHECK(problem("5 kgm/s", "kg m/s") == "'5 kgm/s' has the unknown unit 'kgm/s' (did you mean 'kg m/s'?)");
   CHECK(problem("5 parsnips", "m") == "'5 parsnips' has the unknown unit 'parsnips'");
   CHECK(problem("5 10 kg", "kg") == "'5 10 kg' has the unknown unit '10 kg'");
-  CHECK(problem("5 s since 2000-01-01", "s") ==
-        "'5 s since 2000-01-01' has the unknown unit 's since 2000-01-01'");
+  CHECK(problem("5 s since 2000-01-01", "s") == "'5 s since 2000-01-01' has the unknown unit 's since 2000-01-01'");
   CHECK(problem("3 dBZ", "*") == "'3 dBZ' has the unknown unit 'dBZ'");
   CHECK(problem("nan m", "m") == "'nan m' is not finite");
   CHECK(problem("1e308 km", "m") == "'1e308 km' is not finite");

@@ -35,7 +35,8 @@ struct Trebuchet {
   double s = 0.0, t = 0.0, least_tension = 1e9;
 
   Trebuchet() {
-    const double angle = 40.0 * std::numbers::pi / 180.0, x = -0.6 + long_arm * std::cos(angle), y = 2.0 - height + long_arm * std::sin(angle);
+    const double angle = 40.0 * std::numbers::pi / 180.0, x = -0.6 + long_arm * std::cos(angle),
+                 y = 2.0 - height + long_arm * std::sin(angle);
     s = std::hypot(x, y);
     z = {angle, std::atan2(y, x), 0.0, 0.0};
   }
@@ -71,7 +72,8 @@ struct Trebuchet {
   }
   [[nodiscard]] double tension(const Motion& q) const {
     const Motion k = rate(q);
-    const double tip_x = long_arm * (k[2] * std::sin(q[0]) + q[2] * q[2] * std::cos(q[0])), tip_y = long_arm * (-k[2] * std::cos(q[0]) + q[2] * q[2] * std::sin(q[0]));
+    const double tip_x = long_arm * (k[2] * std::sin(q[0]) + q[2] * q[2] * std::cos(q[0])),
+                 tip_y = long_arm * (-k[2] * std::cos(q[0]) + q[2] * q[2] * std::sin(q[0]));
     return m * (s * q[3] * q[3] - tip_x * std::cos(q[1]) - (tip_y + k_g) * std::sin(q[1]));
   }
   /// Up to where the sling opens, by steps of the classical method of Runge and Kutta, the last one halved to rounding.
@@ -113,7 +115,8 @@ TEST_CASE("a trebuchet lets go where its ball flies as it is told to, and throws
 TEST_CASE("a crane that drops its load swings by what the load had bent it, until the load lands") {
   const Run r = run_machine("crane_drops_load", {"simulation.tolerance=1e-11"});
   CHECK(r.result.ended_by == "landing");
-  const double k = 4e5, omega = std::sqrt(k / 800.0), bent = 500.0 * k_g / k, rest = 8.0 - 800.0 * k_g / k, height = 4.0 - 1300.0 * k_g / k - 0.4;
+  const double k = 4e5, omega = std::sqrt(k / 800.0), bent = 500.0 * k_g / k, rest = 8.0 - 800.0 * k_g / k,
+               height = 4.0 - 1300.0 * k_g / k - 0.4;
   const double lands = 2.0 + std::sqrt(2.0 * height / k_g);
   CHECK(std::abs(r.times().back() - lands) < 1e-8);
   const std::vector<double> height_of_head = r.series("jib head.y");

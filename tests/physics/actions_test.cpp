@@ -23,14 +23,17 @@ constexpr const char* k_exact_methods[] = {"dop853", "rodas5p", "tsit5", "auto"}
 std::string action(const std::string& name, const std::string& fields) { return table_text("action", "name = \"" + name + "\"\n", fields); }
 std::string also(const std::string& names) { return "[output]\nalso = [" + names + "]\n"; }
 
-double balance(const Run& r) { return r.last("whole.kinetic") + r.last("whole.potential") + r.last("whole.dissipated") - r.last("whole.work"); }
+double balance(const Run& r) {
+  return r.last("whole.kinetic") + r.last("whole.potential") + r.last("whole.dissipated") - r.last("whole.work");
+}
 constexpr const char* k_energies = "\"whole.*\"";
 
 // A jib's head of 3 kg on a spring of 300 N/m, with 2 kg hanging from it, both at rest: the spring is drawn out by 5 g/300.
 std::string crane(const std::string& hanger, const std::string& rest) {
   return body("head", "mass = 3; inertia = 1; position = [0, 0]") + body("load", "mass = 2; inertia = 1; position = [0, -1]") +
          element("prismatic", "rail", "a = \"head\"; axis = [0, 1]") +
-         element("spring_damper", "jib", "a = \"head\"; b = { body = \"ground\", at = [0, 4] }; stiffness = 300; preload = -49.05") + hanger + rest;
+         element("spring_damper", "jib", "a = \"head\"; b = { body = \"ground\", at = [0, 4] }; stiffness = 300; preload = -49.05") +
+         hanger + rest;
 }
 
 // Around its new rest, from where it is: y = A (1 − cos ω t), A = m g / k.
@@ -43,14 +46,16 @@ void check_crane(const Run& r, double released, double end) {
 // Two discs on their shaft, at 10 and 4 rad/s.
 constexpr double k_i1 = 2.0, k_i2 = 3.0, k_w1 = 10.0, k_w2 = 4.0;
 std::string discs() {
-  return k_no_gravity + body("one", "mass = 1; inertia = 2; angular_velocity = 10") + body("other", "mass = 1; inertia = 3; angular_velocity = 4") +
-         element("revolute", "bearing", "a = \"one\"") + element("revolute", "other bearing", "a = \"other\"; b = \"one\"");
+  return k_no_gravity + body("one", "mass = 1; inertia = 2; angular_velocity = 10") +
+         body("other", "mass = 1; inertia = 3; angular_velocity = 4") + element("revolute", "bearing", "a = \"one\"") +
+         element("revolute", "other bearing", "a = \"other\"; b = \"one\"");
 }
 
 } // namespace
 
 TEST_CASE("a condition that a blow makes true happens in the same instant") {
-  const std::string text = k_no_gravity + body("one", "mass = 1; inertia = 1; velocity = [1.0, 0.0]") + body("other", "mass = 1; inertia = 1; position = [2.0, 0.0]") +
+  const std::string text = k_no_gravity + body("one", "mass = 1; inertia = 1; velocity = [1.0, 0.0]") +
+                           body("other", "mass = 1; inertia = 1; position = [2.0, 0.0]") +
                            element("weld", "lock", "a = \"one\"; b = \"other\"; active = false") +
                            "[[action]]\nname = \"caught\"\nwhen = \"0.5 s\"\ndo = [\"hold lock\"]\n"
                            "[[action]]\nname = \"end\"\nwhen = \"one.vx < '0.75 m/s'\"\ndo = [\"stop\"]\n"; // together they go at 0.5 m/s
@@ -75,13 +80,15 @@ TEST_CASE("a condition that a signal's jump makes true happens at the jump") {
 }
 
 TEST_CASE("a crane that drops its load swings about its new rest, whatever the load hung from") {
-  const std::string hangers[] = {element("distance", "rope", "a = \"load\"; b = \"head\""), element("rope", "rope", "a = \"load\"; b = \"head\"; inextensible = true"),
+  const std::string hangers[] = {element("distance", "rope", "a = \"load\"; b = \"head\""),
+                                 element("rope", "rope", "a = \"load\"; b = \"head\"; inextensible = true"),
                                  element("weld", "rope", "a = \"load\"; b = \"head\"")};
   for (const std::string& hanger : hangers)
     for (const char* method : k_exact_methods) {
       CAPTURE(hanger);
       CAPTURE(std::string(method));
-      const Run r = run(crane(hanger, action("drop", "when = \"0.3 s\"; do = [\"release rope\"]") + also(k_energies)), {method, 1e-12, 1.0, 0.05});
+      const Run r =
+          run(crane(hanger, action("drop", "when = \"0.3 s\"; do = [\"release rope\"]") + also(k_energies)), {method, 1e-12, 1.0, 0.05});
       check_crane(r, 0.3, 1.0);
       REQUIRE(r.event_times("drop", "happens").size() == 1);
       CHECK(r.event_times("drop").at(0) == 0.3);
@@ -92,9 +99,12 @@ TEST_CASE("a crane that drops its load swings about its new rest, whatever the l
 }
 
 TEST_CASE("channels of what is released are zero from there on, and their extremes are those of the whole run") {
-  const Run r = run(crane(element("distance", "rope", "a = \"load\"; b = \"head\""), action("drop", "when = \"0.3 s\"; do = [\"release rope\"]")), {"dop853", 1e-12, 1.0, 0.05});
+  const Run r =
+      run(crane(element("distance", "rope", "a = \"load\"; b = \"head\""), action("drop", "when = \"0.3 s\"; do = [\"release rope\"]")),
+          {"dop853", 1e-12, 1.0, 0.05});
   const std::vector<double> force = r.series("rope.force");
-  for (std::size_t i = 0; i < force.size(); ++i) CHECK(std::abs(force[i] - (r.times()[i] < 0.31 ? -2.0 * k_g : 0.0)) < 1e-7); // at the instant it is what was before
+  for (std::size_t i = 0; i < force.size(); ++i)
+    CHECK(std::abs(force[i] - (r.times()[i] < 0.31 ? -2.0 * k_g : 0.0)) < 1e-7); // at the instant it is what was before
   SimulationOptions o = options({"dop853", 1e-12, 1.0});
   o.has_extremes = true;
   const RunResult result = simulate(*r.system, r.system->initial_state(), o);
@@ -111,13 +121,15 @@ TEST_CASE("channels of what is released are zero from there on, and their extrem
 }
 
 TEST_CASE("a clutch that closes at once makes two discs one, and loses what the closed form says") {
-  const double together = (k_i1 * k_w1 + k_i2 * k_w2) / (k_i1 + k_i2), lost = 0.5 * k_i1 * k_i2 / (k_i1 + k_i2) * (k_w1 - k_w2) * (k_w1 - k_w2);
+  const double together = (k_i1 * k_w1 + k_i2 * k_w2) / (k_i1 + k_i2),
+               lost = 0.5 * k_i1 * k_i2 / (k_i1 + k_i2) * (k_w1 - k_w2) * (k_w1 - k_w2);
   for (const char* method : k_exact_methods)
     for (const Coordinates coordinates : {Coordinates::absolute, Coordinates::joint}) {
       CAPTURE(std::string(method));
       Run r;
-      r.system = compile(scene(discs() + element("weld", "clutch", "a = \"other\"; b = \"one\"; active = false") +
-                               action("engage", "when = \"0.5 s\"; do = [\"hold clutch\"]") + also(k_energies) + "[simulation]\nstep = 1e-3\n"));
+      r.system =
+          compile(scene(discs() + element("weld", "clutch", "a = \"other\"; b = \"one\"; active = false") +
+                        action("engage", "when = \"0.5 s\"; do = [\"hold clutch\"]") + also(k_energies) + "[simulation]\nstep = 1e-3\n"));
       SimulationOptions o = options({method, 1e-12, 1.0});
       o.coordinates = coordinates;
       r.result = simulate(*r.system, r.system->initial_state(), o);
@@ -134,13 +146,16 @@ TEST_CASE("two bodies that dock go on with their momenta together") {
   const Vec2 centre = (Vec2(0.5, 0.0) + 3.0 * Vec2(1.5, 1.25)) / 4.0, v = (Vec2(1.0, 0.0) + 3.0 * Vec2(-1.0, 0.5)) / 4.0;
   const Vec2 r1 = Vec2(0.5, 0.0) - centre, r2 = Vec2(1.5, 1.25) - centre, v1 = Vec2(1.0, 0.0), v2 = Vec2(-1.0, 0.5);
   const double inertia = 2.0 + 1.0 + r1.squaredNorm() + 3.0 * r2.squaredNorm();
-  const double omega = (2.0 + r1.x() * v1.y() - r1.y() * v1.x() + 3.0 * (r2.x() * v2.y() - r2.y() * v2.x())) / inertia; // 1 kg m² · 2 rad/s, and of the masses
+  const double omega = (2.0 + r1.x() * v1.y() - r1.y() * v1.x() + 3.0 * (r2.x() * v2.y() - r2.y() * v2.x())) /
+                       inertia; // 1 kg m² · 2 rad/s, and of the masses
   const double before = 0.5 + 1.5 * 1.25 + 2.0, after = 2.0 * v.squaredNorm() + 0.5 * inertia * omega * omega;
   for (const char* method : k_exact_methods)
     for (const char* joint : {"weld", "prismatic"}) {
       CAPTURE(std::string(method));
-      const Run r = run(k_no_gravity + body("one", "mass = 1; inertia = 2; velocity = [1, 0]") + body("other", "mass = 3; inertia = 1; position = [2, 1]; velocity = [-1, 0.5]; angular_velocity = 2") +
-                            element(joint, "latch", "a = \"one\"; b = \"other\"; active = false") + action("dock", "when = \"0.5 s\"; do = [\"hold latch\"]") + also(k_energies),
+      const Run r = run(k_no_gravity + body("one", "mass = 1; inertia = 2; velocity = [1, 0]") +
+                            body("other", "mass = 3; inertia = 1; position = [2, 1]; velocity = [-1, 0.5]; angular_velocity = 2") +
+                            element(joint, "latch", "a = \"one\"; b = \"other\"; active = false") +
+                            action("dock", "when = \"0.5 s\"; do = [\"hold latch\"]") + also(k_energies),
                         {method, 1e-12, 1.5});
       const Vec2 momentum = Vec2(r.last("one.vx"), r.last("one.vy")) + 3.0 * Vec2(r.last("other.vx"), r.last("other.vy"));
       CHECK((momentum - 4.0 * v).norm() < k_tolerance);
@@ -150,7 +165,8 @@ TEST_CASE("two bodies that dock go on with their momenta together") {
       if (std::string(joint) == "prismatic") continue;
       CHECK(std::abs(r.last("one.omega") - omega) < k_tolerance);
       CHECK(std::abs(r.last("whole.dissipated") - (before - after)) < k_tolerance);
-      CHECK(std::abs(Vec2(r.last("other.x") - r.last("one.x"), r.last("other.y") - r.last("one.y")).norm() - std::sqrt(1.0 + 1.25 * 1.25)) < k_tolerance);
+      CHECK(std::abs(Vec2(r.last("other.x") - r.last("one.x"), r.last("other.y") - r.last("one.y")).norm() - std::sqrt(1.0 + 1.25 * 1.25)) <
+            k_tolerance);
     }
 }
 
@@ -162,7 +178,8 @@ TEST_CASE("a clutch that slips brings both discs to one speed in the time that i
   for (const char* method : k_exact_methods) {
     CAPTURE(std::string(method));
     const Run r = run(discs() + element("joint_friction", "clutch", "a = \"one\"; b = \"other\"; coordinate = \"angle\"; holds = 0.001") +
-                          action("engage", "when = \"0.25 s\"; do = [\"set clutch.holds = 12 N m\"]") + action("gone", "when = \"clutch sticks\"; do = [\"stop\"]"),
+                          action("engage", "when = \"0.25 s\"; do = [\"set clutch.holds = 12 N m\"]") +
+                          action("gone", "when = \"clutch sticks\"; do = [\"stop\"]"),
                       {method, 1e-12, 2.0});
     CHECK(r.result.ended_by == "gone");
     CHECK(r.result.stop_reason.empty());
@@ -176,12 +193,13 @@ TEST_CASE("a latch keeps what a spring has stored, and gives all of it back") {
   const double omega = 5.0, furthest = 3.0 / omega, arrives = std::numbers::pi / 2.0 / omega;
   for (const char* method : k_exact_methods) {
     CAPTURE(std::string(method));
-    const Run r = run(k_no_gravity + body("block", "mass = 2; inertia = 1; velocity = [3, 0]") + element("prismatic", "rail", "a = \"block\"") +
-                          element("spring_damper", "spring", "a = \"block\"; b = { body = \"ground\", at = [5, 0] }; stiffness = 50") +
-                          element("weld", "latch", "a = \"block\"; active = false") +
-                          action("catch", "when = \"block.vx < '0 m/s'\"; do = [\"hold latch\", \"arm shoot\"]") +
-                          action("shoot", "when = \"2 s\"; do = [\"release latch\"]; armed = false") + also(k_energies),
-                      {method, 1e-12, 2.4, 0.1});
+    const Run r =
+        run(k_no_gravity + body("block", "mass = 2; inertia = 1; velocity = [3, 0]") + element("prismatic", "rail", "a = \"block\"") +
+                element("spring_damper", "spring", "a = \"block\"; b = { body = \"ground\", at = [5, 0] }; stiffness = 50") +
+                element("weld", "latch", "a = \"block\"; active = false") +
+                action("catch", "when = \"block.vx < '0 m/s'\"; do = [\"hold latch\", \"arm shoot\"]") +
+                action("shoot", "when = \"2 s\"; do = [\"release latch\"]; armed = false") + also(k_energies),
+            {method, 1e-12, 2.4, 0.1});
     REQUIRE(r.event_times("catch").size() == 1);
     CHECK(std::abs(r.event_times("catch").at(0) - arrives) < k_tolerance);
     CHECK(r.event_times("shoot").at(0) == 2.0);
@@ -194,14 +212,16 @@ TEST_CASE("a latch keeps what a spring has stored, and gives all of it back") {
 }
 
 TEST_CASE("what a spring has stored is lost with it, and made stiffer it has taken work") {
-  const std::string block = k_no_gravity + body("block", "mass = 2; inertia = 1; velocity = [3, 0]") + element("prismatic", "rail", "a = \"block\"") +
-                            element("spring_damper", "spring", "a = \"block\"; b = { body = \"ground\", at = [5, 0] }; stiffness = 50") + also(k_energies);
+  const std::string block =
+      k_no_gravity + body("block", "mass = 2; inertia = 1; velocity = [3, 0]") + element("prismatic", "rail", "a = \"block\"") +
+      element("spring_damper", "spring", "a = \"block\"; b = { body = \"ground\", at = [5, 0] }; stiffness = 50") + also(k_energies);
   const double x = 0.6 * std::sin(5.0 * 0.1);
   const Run lost = run(block + action("snap", "when = \"0.1 s\"; do = [\"release spring\"]"), {"dop853", 1e-12, 1.0});
   CHECK(std::abs(lost.last("whole.dissipated") - 25.0 * x * x) < k_tolerance);
   CHECK(std::abs(lost.last("block.vx") - 3.0 * std::cos(0.5)) < k_tolerance);
   CHECK(std::abs(balance(lost) - 9.0) < k_tolerance);
-  const Run stiffer = run(block + action("stiffen", "when = \"0.1 s\"; do = [\"set spring.stiffness = 0.2 N/mm\"]"), {"dop853", 1e-12, 0.1 + std::numbers::pi / 10.0});
+  const Run stiffer = run(block + action("stiffen", "when = \"0.1 s\"; do = [\"set spring.stiffness = 0.2 N/mm\"]"),
+                          {"dop853", 1e-12, 0.1 + std::numbers::pi / 10.0});
   CHECK(std::abs(stiffer.last("whole.work") - 75.0 * x * x) < k_tolerance);
   CHECK(std::abs(stiffer.last("block.x") + x) < k_tolerance); // half a period of √(200/2) later
   CHECK(std::abs(balance(stiffer) - 9.0) < k_tolerance);
@@ -210,7 +230,9 @@ TEST_CASE("what a spring has stored is lost with it, and made stiffer it has tak
 TEST_CASE("a run stops at the instant that a comparison comes true") {
   for (const char* method : k_exact_methods) {
     CAPTURE(std::string(method));
-    const Run r = run(body("ball", "mass = 1; inertia = 1; position = [0, 2]") + action("ground", "when = \"ball.y < '0.5 m'\"; do = [\"stop\"]"), {method, 1e-12, 5.0, 0.1});
+    const Run r =
+        run(body("ball", "mass = 1; inertia = 1; position = [0, 2]") + action("ground", "when = \"ball.y < '0.5 m'\"; do = [\"stop\"]"),
+            {method, 1e-12, 5.0, 0.1});
     const double t = std::sqrt(2.0 * 1.5 / k_g);
     CHECK(std::abs(r.result.final_state.t - t) < k_tolerance);
     CHECK(std::abs(r.times().back() - t) < k_tolerance);
@@ -224,10 +246,12 @@ TEST_CASE("a run stops at the instant that a comparison comes true") {
 
 TEST_CASE("each time counts every rise of a condition, once the first alone") {
   // A mass on a spring swings with 1 Hz from +1: x < 0 comes true at 1/4, 5/4, 9/4 … s.
-  const std::string text = k_no_gravity + body("mass", "mass = 1; inertia = 1; position = [1, 0]") + element("prismatic", "rail", "a = { body = \"mass\", point = [-1, 0] }") +
-                           element("spring_damper", "spring", "a = \"mass\"; axis = [1, 0]; stiffness = 39.47841760435743; free_length = 0") +
-                           action("each", "when = \"mass.x < '0 m'\"; do = [\"set push.couple = 0\"]; once = false") + action("first", "when = \"mass.x < '0 m'\"; do = [\"set push.couple = 0\"]") +
-                           element("load", "push", "at = \"mass\"");
+  const std::string text =
+      k_no_gravity + body("mass", "mass = 1; inertia = 1; position = [1, 0]") +
+      element("prismatic", "rail", "a = { body = \"mass\", point = [-1, 0] }") +
+      element("spring_damper", "spring", "a = \"mass\"; axis = [1, 0]; stiffness = 39.47841760435743; free_length = 0") +
+      action("each", "when = \"mass.x < '0 m'\"; do = [\"set push.couple = 0\"]; once = false") +
+      action("first", "when = \"mass.x < '0 m'\"; do = [\"set push.couple = 0\"]") + element("load", "push", "at = \"mass\"");
   const Run r = run(text, {"dop853", 1e-12, 5.1});
   REQUIRE(r.event_times("each").size() == 5);
   for (int k = 0; k < 5; ++k) CHECK(std::abs(r.event_times("each")[static_cast<std::size_t>(k)] - (0.25 + k)) < k_tolerance);
@@ -236,11 +260,13 @@ TEST_CASE("each time counts every rise of a condition, once the first alone") {
 
 TEST_CASE("actions arm each other: brakes that are interlocked take their turns, each once the other has let go") {
   // A disc of 2 kg m² at 10 rad/s. The first brake takes 4 N m down to 6 rad/s, the second 8 N m down to 2, the first again to rest.
-  const std::string text = k_no_gravity + body("disc", "mass = 1; inertia = 2; angular_velocity = 10") + element("revolute", "bearing", "a = \"disc\"") +
+  const std::string text = k_no_gravity + body("disc", "mass = 1; inertia = 2; angular_velocity = 10") +
+                           element("revolute", "bearing", "a = \"disc\"") +
                            element("joint_friction", "one", "a = \"disc\"; coordinate = \"angle\"; holds = 4") +
                            element("joint_friction", "two", "a = \"disc\"; coordinate = \"angle\"; holds = 8; active = false") +
                            action("over", "when = \"disc.omega < '6 rad/s'\"; do = [\"release one\", \"hold two\", \"arm back\"]") +
-                           action("back", "when = \"disc.omega < '2 rad/s'\"; do = [\"release two\", \"hold one\"]; armed = false") + action("rest", "when = \"one sticks\"; do = [\"stop\"]");
+                           action("back", "when = \"disc.omega < '2 rad/s'\"; do = [\"release two\", \"hold one\"]; armed = false") +
+                           action("rest", "when = \"one sticks\"; do = [\"stop\"]");
   for (const char* method : k_exact_methods) {
     CAPTURE(std::string(method));
     const Run r = run(text + also(k_energies), {method, 1e-12, 20.0, 0.1});
@@ -259,7 +285,8 @@ TEST_CASE("actions arm each other: brakes that are interlocked take their turns,
 
 TEST_CASE("what is due at one instant happens in the order of the file, and the last value that is set holds") {
   const std::string text = k_no_gravity + body("mass", "mass = 2; inertia = 1") + element("load", "push", "at = \"mass\"; couple = 0") +
-                           action("b", "when = \"1 s\"; do = [\"set push.couple = 3\", \"disarm never\"]") + action("a", "when = \"1 s\"; do = [\"set push.couple = 5 N m\"]") +
+                           action("b", "when = \"1 s\"; do = [\"set push.couple = 3\", \"disarm never\"]") +
+                           action("a", "when = \"1 s\"; do = [\"set push.couple = 5 N m\"]") +
                            action("never", "when = \"t > '1 s'\"; do = [\"stop\"]");
   const Run r = run(text, {"dop853", 1e-12, 2.0});
   REQUIRE(r.result.events.size() == 2);
@@ -270,10 +297,11 @@ TEST_CASE("what is due at one instant happens in the order of the file, and the 
 
 TEST_CASE("what is true as a run begins happens at its start, behind the equilibrium that it begins from") {
   // 2 kg hang at rest from 100 N/m; at t = 0 half of the spring is let go.
-  const std::string text = body("mass", "mass = 2; inertia = 1") + element("prismatic", "rail", "a = \"mass\"; axis = [0, 1]") +
-                           element("spring_damper", "one", "a = \"mass\"; b = { body = \"ground\", at = [0, 2] }; stiffness = 50; free_length = 2") +
-                           element("spring_damper", "two", "a = \"mass\"; b = { body = \"ground\", at = [0, 2] }; stiffness = 50; free_length = 2") +
-                           action("snap", "when = \"mass.y < '0 m'\"; do = [\"release two\"]");
+  const std::string text =
+      body("mass", "mass = 2; inertia = 1") + element("prismatic", "rail", "a = \"mass\"; axis = [0, 1]") +
+      element("spring_damper", "one", "a = \"mass\"; b = { body = \"ground\", at = [0, 2] }; stiffness = 50; free_length = 2") +
+      element("spring_damper", "two", "a = \"mass\"; b = { body = \"ground\", at = [0, 2] }; stiffness = 50; free_length = 2") +
+      action("snap", "when = \"mass.y < '0 m'\"; do = [\"release two\"]");
   const Model model = scene(text + "[simulation]\ninitial = \"equilibrium\"\n");
   Run r;
   r.system = compile(model);
@@ -285,9 +313,10 @@ TEST_CASE("what is true as a run begins happens at its start, behind the equilib
 }
 
 TEST_CASE("events of elements set actions off: a ball that lands lets another one fall") {
-  const std::string text = body("ball", "mass = 1; inertia = 1; position = [0, 1]") + body("other", "mass = 1; inertia = 1; position = [3, 5]") +
-                           element("unilateral_contact", "floor", "a = \"ball\"; b = \"ground\"; normal = [0, 1]; stiffness = 1e6; damping = 100") +
-                           element("weld", "hook", "a = \"other\"") + action("landed", "when = \"floor closes\"; do = [\"release hook\"]");
+  const std::string text =
+      body("ball", "mass = 1; inertia = 1; position = [0, 1]") + body("other", "mass = 1; inertia = 1; position = [3, 5]") +
+      element("unilateral_contact", "floor", "a = \"ball\"; b = \"ground\"; normal = [0, 1]; stiffness = 1e6; damping = 100") +
+      element("weld", "hook", "a = \"other\"") + action("landed", "when = \"floor closes\"; do = [\"release hook\"]");
   for (const char* method : k_exact_methods) {
     const Run r = run(text, {method, 1e-12, 1.0});
     const double lands = std::sqrt(2.0 / k_g);
@@ -298,10 +327,11 @@ TEST_CASE("events of elements set actions off: a ball that lands lets another on
 }
 
 TEST_CASE("a floor that is taken away lets fall what stood on it, friction and all") {
-  const std::string text = body("box", "mass = 3; inertia = 1; position = [0, 0.0]; velocity = [1, 0]") +
-                           element("unilateral_contact", "floor", "a = \"box\"; normal = [0, 1]; stiffness = 1e5; damping = 100; preload = 29.43") +
-                           element("coulomb_stick", "grip", "contacts = [\"floor\"]; static_friction = 0.5; kinetic_friction = 0.5") +
-                           action("gone", "when = \"0.1 s\"; do = [\"release floor\"]");
+  const std::string text =
+      body("box", "mass = 3; inertia = 1; position = [0, 0.0]; velocity = [1, 0]") +
+      element("unilateral_contact", "floor", "a = \"box\"; normal = [0, 1]; stiffness = 1e5; damping = 100; preload = 29.43") +
+      element("coulomb_stick", "grip", "contacts = [\"floor\"]; static_friction = 0.5; kinetic_friction = 0.5") +
+      action("gone", "when = \"0.1 s\"; do = [\"release floor\"]");
   const Run r = run(text, {"dop853", 1e-12, 0.5, 0.1});
   CHECK(std::abs(r.last("box.vx") - (1.0 - 0.5 * k_g * 0.1)) < 1e-7);
   CHECK(std::abs(r.last("box.vy") + k_g * 0.4) < 1e-6);
@@ -310,9 +340,10 @@ TEST_CASE("a floor that is taken away lets fall what stood on it, friction and a
 
 TEST_CASE("a rope that begins to act is slack, or catches what falls into it") {
   // From 1 m above its end a mass falls; the rope of 2 m from (0, 2) is hung in at 0.1 s and becomes taut where the mass is at 0.
-  const std::string text = body("mass", "mass = 2; inertia = 1; position = [0, 1]") +
-                           element("rope", "rope", "a = \"mass\"; b = { body = \"ground\", at = [0, 2] }; inextensible = true; length = 2; active = false") +
-                           action("hang in", "when = \"0.1 s\"; do = [\"hold rope\"]");
+  const std::string text =
+      body("mass", "mass = 2; inertia = 1; position = [0, 1]") +
+      element("rope", "rope", "a = \"mass\"; b = { body = \"ground\", at = [0, 2] }; inextensible = true; length = 2; active = false") +
+      action("hang in", "when = \"0.1 s\"; do = [\"hold rope\"]");
   const Run r = run(text + also(k_energies), {"dop853", 1e-12, 1.0});
   REQUIRE(r.event_times("rope", "closes its gap").size() == 1);
   CHECK(std::abs(r.event_times("rope", "closes its gap").at(0) - std::sqrt(2.0 / k_g)) < k_tolerance);
@@ -321,9 +352,11 @@ TEST_CASE("a rope that begins to act is slack, or catches what falls into it") {
 }
 
 TEST_CASE("a drive that gets another signal goes on from where it is") {
-  const std::string text = k_no_gravity + signal_entry("constant", "slow", "value = 1") + signal_entry("constant", "fast", "value = 3") + body("cart", "mass = 2; inertia = 1") +
+  const std::string text = k_no_gravity + signal_entry("constant", "slow", "value = 1") + signal_entry("constant", "fast", "value = 3") +
+                           body("cart", "mass = 2; inertia = 1") +
                            element("prescribed_motion", "drive", "a = \"cart\"; coordinate = \"x\"; as = \"velocity\"; signal = \"slow\"") +
-                           action("faster", "when = \"1 s\"; do = [\"set drive.signal = fast\"]") + action("off", "when = \"cart.x > '2.5 m'\"; do = [\"release drive\"]");
+                           action("faster", "when = \"1 s\"; do = [\"set drive.signal = fast\"]") +
+                           action("off", "when = \"cart.x > '2.5 m'\"; do = [\"release drive\"]");
   for (const char* method : k_exact_methods) {
     const Run r = run(text + also(k_energies), {method, 1e-12, 3.0});
     REQUIRE(r.event_times("off").size() == 1);
@@ -337,7 +370,9 @@ TEST_CASE("a drive that gets another signal goes on from where it is") {
 
 TEST_CASE("fixed steps are cut where an action is due, and keep their order") {
   const auto error = [](double step) {
-    const Run r = run(crane(element("distance", "rope", "a = \"load\"; b = \"head\""), action("drop", "when = \"0.3003 s\"; do = [\"release rope\"]")), {"rk4", step, 1.0});
+    const Run r = run(
+        crane(element("distance", "rope", "a = \"load\"; b = \"head\""), action("drop", "when = \"0.3003 s\"; do = [\"release rope\"]")),
+        {"rk4", step, 1.0});
     return std::abs(r.last("head.y") - 2.0 * k_g / 300.0 * (1.0 - std::cos(10.0 * (1.0 - 0.3003))));
   };
   const double order = error(0.02) / error(0.01); // 2^4, but for what the first step behind the action is shorter by
@@ -347,8 +382,10 @@ TEST_CASE("fixed steps are cut where an action is due, and keep their order") {
 
 TEST_CASE("what an element has dissipated stays as it is when it acts no more, and goes on when it acts again") {
   // A damper of 2 N s/m on 1 kg at 3 m/s: v = 3 exp(-2 t) but between 0.2 and 0.7 s, when nothing acts.
-  const std::string text = k_no_gravity + body("block", "mass = 1; inertia = 1; velocity = [3, 0]") + element("prismatic", "rail", "a = \"block\"") +
-                           element("spring_damper", "damper", "a = \"block\"; axis = [1, 0]; damping = 2") + action("off", "when = \"0.2 s\"; do = [\"release damper\"]") +
+  const std::string text = k_no_gravity + body("block", "mass = 1; inertia = 1; velocity = [3, 0]") +
+                           element("prismatic", "rail", "a = \"block\"") +
+                           element("spring_damper", "damper", "a = \"block\"; axis = [1, 0]; damping = 2") +
+                           action("off", "when = \"0.2 s\"; do = [\"release damper\"]") +
                            action("on", "when = \"0.7 s\"; do = [\"hold damper\"]") + also("\"damper.dissipated\", \"whole.*\"");
   for (const char* method : k_exact_methods) {
     const Run r = run(text, {method, 1e-12, 1.0, 0.1});
@@ -361,7 +398,8 @@ TEST_CASE("what an element has dissipated stays as it is when it acts no more, a
 }
 
 TEST_CASE("time stepping does what is due at the ends of its steps, with its own order") {
-  const std::string text = crane(element("distance", "rope", "a = \"load\"; b = \"head\""), action("drop", "when = \"load.y > '-2 m' && t > '0.3003 s'\"; do = [\"release rope\"]"));
+  const std::string text = crane(element("distance", "rope", "a = \"load\"; b = \"head\""),
+                                 action("drop", "when = \"load.y > '-2 m' && t > '0.3003 s'\"; do = [\"release rope\"]"));
   const auto error = [&](double step) {
     SimulationOptions o = options({"moreau", 1e-9, 1.0, 1.0});
     o.settings.step = step;
@@ -379,7 +417,8 @@ TEST_CASE("time stepping does what is due at the ends of its steps, with its own
 }
 
 TEST_CASE("a second run of one system begins as the first one, and is the same to the bit") {
-  const std::string text = discs() + element("weld", "clutch", "a = \"other\"; b = \"one\"; active = false") + action("engage", "when = \"one.theta > '3 rad'\"; do = [\"hold clutch\"]") +
+  const std::string text = discs() + element("weld", "clutch", "a = \"other\"; b = \"one\"; active = false") +
+                           action("engage", "when = \"one.theta > '3 rad'\"; do = [\"hold clutch\"]") +
                            action("let go", "when = \"one.theta > '6 rad'\"; do = [\"release clutch\"]");
   const auto system = compile(scene(text + "[simulation]\nstep = 1e-3\n"));
   const RunResult one = simulate(*system, system->initial_state(), options({"dop853", 1e-10, 2.0, 0.1}));
@@ -393,8 +432,10 @@ TEST_CASE("a second run of one system begins as the first one, and is the same t
 }
 
 TEST_CASE("actions that set each other off without end are told with their ring") {
-  const std::string ring = body("ball", "mass = 1; inertia = 1; position = [0, 1]") + action("a", "when = \"ball.y < '0.5 m'\"; do = [\"arm b\"]; armed = true") +
-                           action("b", "when = \"ball.y < '0.5 m'\"; do = [\"arm c\"]; armed = false") + action("c", "when = \"ball.y < '0.6 m'\"; do = [\"arm b\"]; armed = false");
+  const std::string ring = body("ball", "mass = 1; inertia = 1; position = [0, 1]") +
+                           action("a", "when = \"ball.y < '0.5 m'\"; do = [\"arm b\"]; armed = true") +
+                           action("b", "when = \"ball.y < '0.5 m'\"; do = [\"arm c\"]; armed = false") +
+                           action("c", "when = \"ball.y < '0.6 m'\"; do = [\"arm b\"]; armed = false");
   std::string said;
   try {
     (void)run(ring, {"dop853", 1e-10, 2.0});
@@ -413,16 +454,24 @@ TEST_CASE("what cannot close says how much is missing") {
     }
     return std::string();
   };
-  const std::string ball = body("ball", "mass = 1; inertia = 1; position = [0, 1]"), close = action("close", "when = \"0.1 s\"; do = [\"hold it\"]");
-  CHECK(message(ball + element("revolute", "it", "a = \"ball\"; active = false") + close).find("'it' cannot close: its markers would have to move by 0.9509 m") != std::string::npos);
-  CHECK(message(ball + element("rope", "it", "a = \"ball\"; b = { body = \"ground\", at = [0, 1.2] }; length = 0.24; inextensible = true; active = false") + close).find("farther apart than its length") != std::string::npos);
+  const std::string ball = body("ball", "mass = 1; inertia = 1; position = [0, 1]"),
+                    close = action("close", "when = \"0.1 s\"; do = [\"hold it\"]");
+  CHECK(message(ball + element("revolute", "it", "a = \"ball\"; active = false") + close)
+            .find("'it' cannot close: its markers would have to move by 0.9509 m") != std::string::npos);
+  CHECK(message(ball +
+                element("rope", "it",
+                        "a = \"ball\"; b = { body = \"ground\", at = [0, 1.2] }; length = 0.24; inextensible = true; active = false") +
+                close)
+            .find("farther apart than its length") != std::string::npos);
 }
 
 TEST_CASE("what is wrong with an action is said with its place") {
   const auto says = [](const std::string& fields, const std::string& expected) {
     std::string said;
     try {
-      (void)run(body("load", "mass = 2; inertia = 1") + element("revolute", "hook", "a = \"load\"") + element("load", "push", "at = \"load\"; couple = 1") + action("drop", fields), {});
+      (void)run(body("load", "mass = 2; inertia = 1") + element("revolute", "hook", "a = \"load\"") +
+                    element("load", "push", "at = \"load\"; couple = 1") + action("drop", fields),
+                {});
     } catch (const ModelError& error) {
       said = error.diagnostics().front().message;
     }
@@ -461,5 +510,6 @@ TEST_CASE("actions of a part are about its own elements, and may be repeated") {
     CHECK(std::abs(r.last(name + ".y") - (1.0 - 0.5 * k_g * (2.0 - falls) * (2.0 - falls))) < 1e-8);
   }
   CHECK(r.event_times("check 1").size() == 1);
-  CHECK(std::abs(r.last("rack 1.switch.omega") - (1.0 + 20.0 * (2.0 - 0.75 - std::sqrt(1.0 / k_g)))) < 1e-8); // 2 N m on 0.1 kg m² since its ball is 0.5 m lower
+  CHECK(std::abs(r.last("rack 1.switch.omega") - (1.0 + 20.0 * (2.0 - 0.75 - std::sqrt(1.0 / k_g)))) <
+        1e-8); // 2 N m on 0.1 kg m² since its ball is 0.5 m lower
 }

@@ -15,22 +15,28 @@ using steplap::random::RandomNumber;
 namespace {
 
 constexpr int k_scenes = 100;
-constexpr double k_worse = 4.0;          // an explicit method that is tried now and then, and trials of the implicit one
-constexpr long k_some = 3000;            // evaluations, before anything can be known
-constexpr long k_most = 200000;          // a method that needs more is not the better one
+constexpr double k_worse = 4.0; // an explicit method that is tried now and then, and trials of the implicit one
+constexpr long k_some = 3000;   // evaluations, before anything can be known
+constexpr long k_most = 200000; // a method that needs more is not the better one
 
 // A light pad, pressed on a wagon that goes to and fro: its mode is as fast as the motion or up to 10⁶ times as fast, and damped.
 std::string pad_on_wagon(RandomNumber& r) {
   const auto number = [](double value) { return random::number(value); };
   const double mass = r.decades(-7.0, 1.0), stiffness = r.decades(3.0, 7.0), damping = std::sqrt(mass * stiffness) * r.decades(-1.0, 1.0);
   return "[[body]]\nname = \"wagon\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"wagon\"\n"
-         "[[element]]\nkind = \"spring_damper\"\nname = \"buffer\"\na = \"wagon\"\naxis = [1.0, 0.0]\nstiffness = " + number(r.decades(2.0, 4.0)) +
-         "\n[[signal]]\nname = \"shove\"\nkind = \"harmonics\"\namplitudes = [5.0]\nfrequencies = [" + number(r.between(1.0, 9.0)) +
+         "[[element]]\nkind = \"spring_damper\"\nname = \"buffer\"\na = \"wagon\"\naxis = [1.0, 0.0]\nstiffness = " +
+         number(r.decades(2.0, 4.0)) + "\n[[signal]]\nname = \"shove\"\nkind = \"harmonics\"\namplitudes = [5.0]\nfrequencies = [" +
+         number(r.between(1.0, 9.0)) +
          "]\n[[element]]\nkind = \"load\"\nname = \"shover\"\nat = \"wagon\"\nforce_x = \"shove\"\n"
-         "[[body]]\nname = \"pad\"\nmass = " + number(mass) + "\ninertia = 1.0\nposition = [0.0, " + number(r.between(-2.0, 2.0)) + "]\n"
+         "[[body]]\nname = \"pad\"\nmass = " +
+         number(mass) + "\ninertia = 1.0\nposition = [0.0, " + number(r.between(-2.0, 2.0)) +
+         "]\n"
          "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"pad\"\nb = \"wagon\"\naxis = [0.0, 1.0]\n"
-         "[[element]]\nkind = \"unilateral_contact\"\nname = \"press\"\na = \"pad\"\nb = \"wagon\"\nnormal = [0.0, 1.0]\npreload = 20.0\nstiffness = " + number(stiffness) + "\ndamping = " + number(damping) +
-         "\n[[signal]]\nname = \"push\"\nkind = \"constant\"\nvalue = -20.0\n[[element]]\nkind = \"load\"\nname = \"pusher\"\nat = \"pad\"\nforce_y = \"push\"\n";
+         "[[element]]\nkind = \"unilateral_contact\"\nname = \"press\"\na = \"pad\"\nb = \"wagon\"\nnormal = [0.0, 1.0]\npreload = "
+         "20.0\nstiffness = " +
+         number(stiffness) + "\ndamping = " + number(damping) +
+         "\n[[signal]]\nname = \"push\"\nkind = \"constant\"\nvalue = -20.0\n[[element]]\nkind = \"load\"\nname = \"pusher\"\nat = "
+         "\"pad\"\nforce_y = \"push\"\n";
 }
 
 // Of a run to its end; infinite where it needs more than k_most or stops.
@@ -54,7 +60,8 @@ TEST_CASE("auto costs a few times the better method at most, at all tolerances")
     RandomNumber r(static_cast<std::uint64_t>(seed));
     const auto system = compile(scene(pad_on_wagon(r) + "\n[simulation]\nstep = 1e-3\n"));
     const double tolerance = r.decades(-11.5, -5.0), end = r.between(0.1, 0.6);
-    const double forward = evaluations(*system, "dop853", tolerance, end, k_most), implicit = evaluations(*system, "rodas5p", tolerance, end, k_most);
+    const double forward = evaluations(*system, "dop853", tolerance, end, k_most),
+                 implicit = evaluations(*system, "rodas5p", tolerance, end, k_most);
     const double better = std::min(forward, implicit);
     if (!(better < k_most)) continue;
     ++(implicit < forward ? stiff : soft);

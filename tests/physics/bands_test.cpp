@@ -16,11 +16,14 @@ constexpr double k_mu = 0.25;
 // A load hangs from a rope that lies half round a fixed drum; at the other end another load. Both go straight up and down.
 std::string bollard(double first, double second, const std::string& more = "") {
   const auto hung = [](const char* name, double mass, double x) {
-    return body(name, "mass = " + number(mass) + "; inertia = 0.1; position = " + point(x, -3.0)) + element("prismatic", std::string("guide of ") + name, std::string("a = '") + name + "'; axis = [0.0, 1.0]");
+    return body(name, "mass = " + number(mass) + "; inertia = 0.1; position = " + point(x, -3.0)) +
+           element("prismatic", std::string("guide of ") + name, std::string("a = '") + name + "'; axis = [0.0, 1.0]");
   };
   // From the first load, on the right, counter-clockwise over the drum to the second.
   return hung("first", first, 0.2) + hung("second", second, -0.2) +
-         element("band", "rope", "a = 'first'; b = 'second'; radius = 0.2; friction = 0.25; stiffness = 2e5; damping = 400.0; pretension = " + number(9.81 * first) + more);
+         element("band", "rope",
+                 "a = 'first'; b = 'second'; radius = 0.2; friction = 0.25; stiffness = 2e5; damping = 400.0; pretension = " +
+                     number(9.81 * first) + more);
 }
 
 } // namespace
@@ -29,7 +32,9 @@ TEST_CASE("two loads on a rope over a fixed drum rest while their ratio is withi
   const double grip = std::exp(k_mu * k_pi); // 2.193
   // At rest nothing swings: the bound is met to three digits. Beyond it the loads run on until the lighter one is above the drum.
   for (const bool is_first_heavier : {false, true}) {
-    const auto moved = [&](double heavy) { return std::abs(settle(is_first_heavier ? bollard(heavy, 10.0) : bollard(10.0, heavy)).q(1, 1) + 3.0); };
+    const auto moved = [&](double heavy) {
+      return std::abs(settle(is_first_heavier ? bollard(heavy, 10.0) : bollard(10.0, heavy)).q(1, 1) + 3.0);
+    };
     CHECK(moved(21.9) < 0.01);
     CHECK(moved(22.0) > 1.0);
   }
@@ -40,7 +45,8 @@ TEST_CASE("two loads on a rope over a fixed drum rest while their ratio is withi
       const double light = 10.0, heavy = light * ratio, first = is_first_heavier ? heavy : light, second = is_first_heavier ? light : heavy;
       const std::string text = bollard(first, second);
       const Run r = run(text, {"dop853", 1e-10, 1.0, 0.5});
-      const double fell = r.last(is_first_heavier ? "first.y" : "second.y") + 3.0, rose = r.last(is_first_heavier ? "second.y" : "first.y") + 3.0;
+      const double fell = r.last(is_first_heavier ? "first.y" : "second.y") + 3.0,
+                   rose = r.last(is_first_heavier ? "second.y" : "first.y") + 3.0;
       if (ratio < grip) { // the rope stretches a little and swings there; nothing slides
         CHECK(r.event_times("rope", is_first_heavier ? "slips backward" : "slips forward").size() <= 4); // as it is let go
         CHECK(std::abs(fell) < 0.05);
@@ -71,18 +77,25 @@ TEST_CASE("pulled at one end a held rope sticks, slides at T e^{μα}, and stick
     for (int n = 0; n < 100; ++n) (f(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
     return low;
   };
-  const std::string text = k_no_gravity + body("slide", "mass = 1.0; inertia = 0.1; position = [-0.2, -1.0]") + signal_entry("haversine", "way", "peak = 2e-3; duration = 4.0") +
+  const std::string text = k_no_gravity + body("slide", "mass = 1.0; inertia = 0.1; position = [-0.2, -1.0]") +
+                           signal_entry("haversine", "way", "peak = 2e-3; duration = 4.0") +
                            element("prismatic", "guide", "a = 'slide'; axis = [0.0, -1.0]") +
-                           element("prescribed_motion", "pull", "a = 'slide'; b = { body = 'ground', at = [-0.2, -1.0], angle = -1.5707963267948966 }; coordinate = 'x'; signal = 'way'; as = 'position'") +
-                           element("band", "rope", "a = { body = 'ground', at = [0.2, -1.0] }; b = 'slide'; radius = 0.2; friction = 0.25; stiffness = 1e5; damping = 10.0; pretension = 50.0");
+                           element("prescribed_motion", "pull",
+                                   "a = 'slide'; b = { body = 'ground', at = [-0.2, -1.0], angle = -1.5707963267948966 }; coordinate = "
+                                   "'x'; signal = 'way'; as = 'position'") +
+                           element("band", "rope",
+                                   "a = { body = 'ground', at = [0.2, -1.0] }; b = 'slide'; radius = 0.2; friction = 0.25; stiffness = "
+                                   "1e5; damping = 10.0; pretension = 50.0");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(text, {method, 1e-11, 4.0, 0.1});
-    const std::vector<double> slips = r.event_times("rope", "slips forward"), back = r.event_times("rope", "slips backward"), sticks = r.event_times("rope", "sticks");
+    const std::vector<double> slips = r.event_times("rope", "slips forward"), back = r.event_times("rope", "slips backward"),
+                              sticks = r.event_times("rope", "sticks");
     REQUIRE(slips.size() == 1);
     REQUIRE(back.size() == 1);
     REQUIRE(sticks.size() >= 1);
-    CHECK(std::abs(slips[0] - root(0.0, 2.0, [&](double t) { return pretension + k * x(t) + c * v(t) - grip * pretension; })) < 1e-8); // what 1e-12 m stretch is slack: 6e-7 N of 100 N/s
+    CHECK(std::abs(slips[0] - root(0.0, 2.0, [&](double t) { return pretension + k * x(t) + c * v(t) - grip * pretension; })) <
+          1e-8); // what 1e-12 m stretch is slack: 6e-7 N of 100 N/s
     // τ ṡ = (k x + c x' − P (E − 1))/(k (1 + E)) − s with τ = c/k = 0.1 ms: s follows x, and has its most where x has, but for 1e-7 of it.
     CHECK(std::abs(sticks[0] - 2.0) < 1e-6);
     const double slid = (k * x(2.0) - pretension * (grip - 1.0)) / (k * (1.0 + grip));
@@ -93,16 +106,21 @@ TEST_CASE("pulled at one end a held rope sticks, slides at T e^{μα}, and stick
     }
     CHECK(b[15] / a[15] == doctest::Approx(grip).epsilon(1e-9));
     const double held = pretension + k * slip[21];
-    CHECK(std::abs(back[0] - root(2.0, 4.0, [&](double t) { return held - grip * (pretension + k * (x(t) - slip[21]) + c * v(t)); })) < 1e-8);
+    CHECK(std::abs(back[0] - root(2.0, 4.0, [&](double t) { return held - grip * (pretension + k * (x(t) - slip[21]) + c * v(t)); })) <
+          1e-8);
     CHECK(a[39] / b[39] == doctest::Approx(grip).epsilon(1e-9));
   }
 }
 
 TEST_CASE("what a slide takes from the drum's motion is heat: energies balance, by all methods alike") {
-  const std::string text = k_no_gravity + body("drum", "mass = 5.0; inertia = 0.4; angular_velocity = 30.0") + element("revolute", "axle", "a = 'drum'") +
-                           body("weight", "mass = 2.0; inertia = 0.1; position = [0.3, -2.0]") + element("prismatic", "guide", "a = 'weight'; axis = [0.0, 1.0]") +
-                           element("spring_damper", "spring", "a = 'weight'; b = { body = 'ground', at = [0.3, -4.0] }; stiffness = 900.0") +
-                           element("band", "band", "a = 'weight'; b = { body = 'ground', at = [-0.3, -1.0] }; drum = 'drum'; radius = 0.3; friction = 0.3; stiffness = 3e4; damping = 60.0; pretension = 40.0");
+  const std::string text =
+      k_no_gravity + body("drum", "mass = 5.0; inertia = 0.4; angular_velocity = 30.0") + element("revolute", "axle", "a = 'drum'") +
+      body("weight", "mass = 2.0; inertia = 0.1; position = [0.3, -2.0]") +
+      element("prismatic", "guide", "a = 'weight'; axis = [0.0, 1.0]") +
+      element("spring_damper", "spring", "a = 'weight'; b = { body = 'ground', at = [0.3, -4.0] }; stiffness = 900.0") +
+      element("band", "band",
+              "a = 'weight'; b = { body = 'ground', at = [-0.3, -1.0] }; drum = 'drum'; radius = 0.3; friction = 0.3; stiffness = 3e4; "
+              "damping = 60.0; pretension = 40.0");
   double before = 0.0;
   for (const char* method : k_methods) {
     CAPTURE(method);
@@ -118,11 +136,15 @@ TEST_CASE("a band brake that grips itself, and one that does not: their couples 
   // A lever pulls one end with F; the other is fastened. Turning away from the fastened end its pull is F E: M = F r (E − 1); the other way F/E.
   const double grip = std::exp(0.3 * k_pi), pull = 100.0, r = 0.15;
   const auto couple = [&](double spin) {
-    const std::string text = k_no_gravity + body("drum", "mass = 10.0; inertia = 50.0; angular_velocity = " + number(spin)) + element("revolute", "axle", "a = 'drum'") +
-                             body("slide", "mass = 1.0; inertia = 0.1; position = [-0.15, -1.0]") + element("prismatic", "guide", "a = 'slide'; axis = [0.0, 1.0]") +
+    const std::string text = k_no_gravity + body("drum", "mass = 10.0; inertia = 50.0; angular_velocity = " + number(spin)) +
+                             element("revolute", "axle", "a = 'drum'") +
+                             body("slide", "mass = 1.0; inertia = 0.1; position = [-0.15, -1.0]") +
+                             element("prismatic", "guide", "a = 'slide'; axis = [0.0, 1.0]") +
                              element("spring_damper", "calm", "a = 'slide'; axis = [0.0, 1.0]; damping = 300.0") +
                              element("load", "lever", "at = 'slide'; force = [0.0, -100.0]") +
-                             element("band", "brake", "a = { body = 'ground', at = [0.15, -1.0] }; b = 'slide'; drum = 'drum'; radius = 0.15; friction = 0.3; stiffness = 2e5; damping = 100.0; pretension = 100.0");
+                             element("band", "brake",
+                                     "a = { body = 'ground', at = [0.15, -1.0] }; b = 'slide'; drum = 'drum'; radius = 0.15; friction = "
+                                     "0.3; stiffness = 2e5; damping = 100.0; pretension = 100.0");
     const Run run_of = run(text, {"dop853", 1e-9, 3.0, 1.0});
     CHECK(run_of.last("brake.mode") == 2.0);
     return run_of.last("brake.couple");
@@ -144,9 +166,12 @@ TEST_CASE("a belt drive transmits r (T_1 − T_2) until the smaller wheel slides
       const std::string text = k_no_gravity + body("small", "mass = 1.0; inertia = 0.01") + element("revolute", "axle", "a = 'small'") +
                                body("large", "mass = 5.0; inertia = 0.3; position = [1.0, 0.0]") + element("weld", "brake", "a = 'large'") +
                                signal_entry("triangle", "rise", "duration = 2.0; peak = " + number(share * most)) +
-                               element("load", "motor", "at = 'small'; torque = 'rise'") + element("rotational_spring_damper", "calm", "a = 'small'; damping = 0.02") +
-                               element("belt", "belt", "a = 'small'; b = 'large'; radius_a = 0.1; radius_b = 0.3; friction_a = 0.35; friction_b = 0.35; stiffness = 1e5; damping = 200.0; pretension = 200.0" +
-                                                           std::string(is_crossed ? "; crossed = true" : ""));
+                               element("load", "motor", "at = 'small'; torque = 'rise'") +
+                               element("rotational_spring_damper", "calm", "a = 'small'; damping = 0.02") +
+                               element("belt", "belt",
+                                       "a = 'small'; b = 'large'; radius_a = 0.1; radius_b = 0.3; friction_a = 0.35; friction_b = 0.35; "
+                                       "stiffness = 1e5; damping = 200.0; pretension = 200.0" +
+                                           std::string(is_crossed ? "; crossed = true" : ""));
       const Run r = run(text, {"dop853", 1e-10, 1.0, 0.1});
       CHECK(r.last("belt.tension_1") + r.last("belt.tension_2") == doctest::Approx(2.0 * pretension).epsilon(1e-9));
       CHECK((r.event_times("belt").empty()) == (share < 1.0));
@@ -160,11 +185,14 @@ TEST_CASE("a belt drive transmits r (T_1 − T_2) until the smaller wheel slides
 
 TEST_CASE("a belt without slide turns its wheels as their radii stand; crossed against each other") {
   for (const bool is_crossed : {false, true}) {
-    const std::string text = k_no_gravity + body("small", "mass = 1.0; inertia = 0.01; angular_velocity = 30.0") + element("revolute", "axle", "a = 'small'") +
-                             body("large", "mass = 5.0; inertia = 0.3; position = [1.0, 0.0]; angular_velocity = " + number(is_crossed ? -10.0 : 10.0)) +
-                             element("revolute", "other axle", "a = 'large'; b = { body = 'ground', at = [1.0, 0.0] }") +
-                             element("belt", "belt", "a = 'small'; b = 'large'; radius_a = 0.1; radius_b = 0.3; friction_a = 0.35; friction_b = 0.35; stiffness = 1e5; damping = 200.0; pretension = 200.0" +
-                                                         std::string(is_crossed ? "; crossed = true" : ""));
+    const std::string text =
+        k_no_gravity + body("small", "mass = 1.0; inertia = 0.01; angular_velocity = 30.0") + element("revolute", "axle", "a = 'small'") +
+        body("large", "mass = 5.0; inertia = 0.3; position = [1.0, 0.0]; angular_velocity = " + number(is_crossed ? -10.0 : 10.0)) +
+        element("revolute", "other axle", "a = 'large'; b = { body = 'ground', at = [1.0, 0.0] }") +
+        element("belt", "belt",
+                "a = 'small'; b = 'large'; radius_a = 0.1; radius_b = 0.3; friction_a = 0.35; friction_b = 0.35; stiffness = 1e5; damping "
+                "= 200.0; pretension = 200.0" +
+                    std::string(is_crossed ? "; crossed = true" : ""));
     const Run r = run(text, {"dop853", 1e-11, 2.0, 1.0});
     CHECK(r.last("small.omega") == doctest::Approx(30.0).epsilon(1e-9)); // nothing brakes: no creep, no drag
     CHECK(r.last("large.omega") == doctest::Approx(is_crossed ? -10.0 : 10.0).epsilon(1e-9));
@@ -201,7 +229,8 @@ TEST_CASE("what is wrong with a band is told") {
     const std::string text = complaint(fields);
     CHECK_MESSAGE(text.find(part) != std::string::npos, text);
   };
-  const std::string rest = "; friction = 0.2; stiffness = 1e4; damping = 10.0", ends = "a = 'load'; b = { body = 'ground', at = [-0.2, -1.0] }";
+  const std::string rest = "; friction = 0.2; stiffness = 1e4; damping = 10.0",
+                    ends = "a = 'load'; b = { body = 'ground', at = [-0.2, -1.0] }";
   CHECK(complaint(ends + "; radius = 0.2" + rest) == "nothing");
   says(ends + "; radius = 0.0" + rest, "a point holds nothing by friction");
   says(ends + "; radius = 2.0" + rest, "a straight part takes more than 2 m");

@@ -24,12 +24,14 @@ constexpr double k_length = 4.0, k_bending = 2e4, k_area = 1e-2, k_per_length = 
 constexpr double k_second_moment = 1.6e-10;
 
 std::string beam(int n, const std::string& more = "") {
-  return "[[beam]]\nname = \"beam\"\nfrom = [0.0, 0.0]\nto = [4.0, 0.0]\nsegments = " + std::to_string(n) + "\nmodulus = " + number(k_bending / k_second_moment) +
-         "\nsecond_moment = " + number(k_second_moment) + "\narea = " + number(k_area) + "\nmass_per_length = 8.0\n" + more;
+  return "[[beam]]\nname = \"beam\"\nfrom = [0.0, 0.0]\nto = [4.0, 0.0]\nsegments = " + std::to_string(n) +
+         "\nmodulus = " + number(k_bending / k_second_moment) + "\nsecond_moment = " + number(k_second_moment) +
+         "\narea = " + number(k_area) + "\nmass_per_length = 8.0\n" + more;
 }
 const std::string k_clamp = element("weld", "clamp", "a = 'beam.start'; b = { body = 'ground', at = [0.0, 0.0] }");
-const std::string k_pins = element("revolute", "pin", "a = 'beam.start'; b = { body = 'ground', at = [0.0, 0.0] }") +
-                           element("point_on_line", "roller", "a = 'beam.end'; b = { body = 'ground', at = [4.0, 0.0] }; axis = [1.0, 0.0]");
+const std::string k_pins =
+    element("revolute", "pin", "a = 'beam.start'; b = { body = 'ground', at = [0.0, 0.0] }") +
+    element("point_on_line", "roller", "a = 'beam.end'; b = { body = 'ground', at = [4.0, 0.0] }; axis = [1.0, 0.0]");
 
 Found rest_of(const std::string& text) { return settle(scene(text + k_head)); }
 
@@ -56,7 +58,8 @@ std::vector<double> frequencies(const std::string& text, int count) {
 TEST_CASE("masses and moments of inertia of the segments add up to the beam's") {
   for (const int n : {1, 2, 7, 40}) {
     CAPTURE(n);
-    const Model model = scene(k_head + "[[beam]]\nname = \"beam\"\nfrom = [1.0, 2.0]\nto = [-2.0, 6.0]\nsegments = " + std::to_string(n) + "\nmaterial = \"steel\"\nwidth = 0.1\nheight = 0.3\n" +
+    const Model model = scene(k_head + "[[beam]]\nname = \"beam\"\nfrom = [1.0, 2.0]\nto = [-2.0, 6.0]\nsegments = " + std::to_string(n) +
+                              "\nmaterial = \"steel\"\nwidth = 0.1\nheight = 0.3\n" +
                               element("weld", "clamp", "a = 'beam.start'; b = { body = 'ground', at = [1.0, 2.0] }"));
     const double mass = 7850.0 * 0.03 * 5.0, inertia = mass * 25.0 / 12.0 + 7850.0 * 0.1 * 0.027 / 12.0 * 5.0;
     REQUIRE(model.bodies.size() == static_cast<std::size_t>(n) + 1);
@@ -80,7 +83,8 @@ TEST_CASE("a cantilever under a force or a couple at its end bends as the elasti
   const double force = 0.1, couple = 0.1;
   for (const int n : {1, 2, 5, 16}) {
     CAPTURE(n);
-    const Tip by_force = tip_of(rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "pull", "at = 'beam.end'; force = [0.0, 0.1]")), n);
+    const Tip by_force =
+        tip_of(rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "pull", "at = 'beam.end'; force = [0.0, 0.1]")), n);
     CHECK(by_force.y == doctest::Approx(force * std::pow(k_length, 3) / (3.0 * k_bending)).epsilon(1e-7));
     CHECK(by_force.angle == doctest::Approx(force * k_length * k_length / (2.0 * k_bending)).epsilon(1e-7));
     const Tip by_couple = tip_of(rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "turn", "at = 'beam.end'; couple = 0.1")), n);
@@ -90,7 +94,9 @@ TEST_CASE("a cantilever under a force or a couple at its end bends as the elasti
 }
 
 TEST_CASE("shear adds P L over its stiffness, and a pull stretches by P L/(E A)") {
-  const Tip sheared = tip_of(rest_of(k_no_gravity + beam(5, "shear_stiffness = 3e4\n") + k_clamp + element("load", "pull", "at = 'beam.end'; force = [0.0, 0.1]")), 5);
+  const Tip sheared = tip_of(
+      rest_of(k_no_gravity + beam(5, "shear_stiffness = 3e4\n") + k_clamp + element("load", "pull", "at = 'beam.end'; force = [0.0, 0.1]")),
+      5);
   CHECK(sheared.y == doctest::Approx(0.1 * std::pow(k_length, 3) / (3.0 * k_bending) + 0.1 * k_length / 3e4).epsilon(1e-7));
   const double stretch = 1e6 * k_length / (k_bending / k_second_moment * k_area);
   const Tip pulled = tip_of(rest_of(k_no_gravity + beam(5) + k_clamp + element("load", "pull", "at = 'beam.end'; force = [1e6, 0.0]")), 5);
@@ -149,14 +155,17 @@ TEST_CASE("a force along it lowers its frequency and would buckle it at Euler's 
 TEST_CASE("a couple bends it into an arc: each part turns by M h/(E I), however far") {
   const int n = 12;
   const double turn = 0.5 * k_pi / n, couple = turn * k_bending * n / k_length, h = k_length / n;
-  const Tip tip = tip_of(rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "turn", "at = 'beam.end'; couple = " + number(couple))), n);
-  const double chord = h * (std::cos(0.5 * turn) + turn * turn / 12.0); // what the part stretches by in its middle, so that the bent line does not
+  const Tip tip =
+      tip_of(rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "turn", "at = 'beam.end'; couple = " + number(couple))), n);
+  const double chord =
+      h * (std::cos(0.5 * turn) + turn * turn / 12.0); // what the part stretches by in its middle, so that the bent line does not
   Vec2 node(-k_length, 0.0);
   for (int i = 0; i < n; ++i) node += chord * Vec2(std::cos((i + 0.5) * turn), std::sin((i + 0.5) * turn));
   CHECK(tip.angle == doctest::Approx(0.5 * k_pi).epsilon(1e-9));
   CHECK(std::abs(tip.x - node.x()) < 1e-8);
   CHECK(std::abs(tip.y - node.y()) < 1e-8);
-  CHECK(tip.y == doctest::Approx(2.0 * k_length / k_pi).epsilon(std::pow(turn, 4) / 400.0)); // the arc's radius: chords are off by turn⁴/480
+  CHECK(tip.y ==
+        doctest::Approx(2.0 * k_length / k_pi).epsilon(std::pow(turn, 4) / 400.0)); // the arc's radius: chords are off by turn⁴/480
 }
 
 TEST_CASE("a pull stiffens it as it stiffens the elastic line, also far beyond what its parts hold across") {
@@ -166,8 +175,10 @@ TEST_CASE("a pull stiffens it as it stiffens the elastic line, also far beyond w
     double before = 0.0;
     for (const int n : {5, 10, 20, 40}) {
       CAPTURE(n);
-      const Tip tip = tip_of(rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "pull", "at = 'beam.end'; force = [" + number(pull) + ", 0.1]")), n);
-      const double k = std::sqrt(pull / k_bending), expected = 0.1 / pull * (k_length - std::tanh(k * k_length) / k), off = std::abs(tip.y / expected - 1.0);
+      const Tip tip = tip_of(
+          rest_of(k_no_gravity + beam(n) + k_clamp + element("load", "pull", "at = 'beam.end'; force = [" + number(pull) + ", 0.1]")), n);
+      const double k = std::sqrt(pull / k_bending), expected = 0.1 / pull * (k_length - std::tanh(k * k_length) / k),
+                   off = std::abs(tip.y / expected - 1.0);
       CHECK(off < 2e-3 * std::pow(k * k_length / n, 4) + 1e-6); // the order h⁴, above what rest is found to
       if (pull == 1e5 && n > 5) CHECK(before / off > 10.0);
       before = off;
@@ -195,7 +206,9 @@ TEST_CASE("damping: a mode has the ratio that is asked for at its frequency, oth
 TEST_CASE("other values of a beam are those of a model that was written with them") {
   const auto text = [&](const char* span, const char* thick) {
     return k_head + "[parameters]\nspan = \"" + span + "\"\nthick = \"" + thick + "\"\n" +
-           "[[beam]]\nname = \"beam\"\nfrom = [0.0, 0.0]\nto = [\"= span\", 0.0]\nmaterial = \"steel\"\nwidth = 0.1\nheight = \"= thick\"\nsegments = 6\n" + k_clamp;
+           "[[beam]]\nname = \"beam\"\nfrom = [0.0, 0.0]\nto = [\"= span\", 0.0]\nmaterial = \"steel\"\nwidth = 0.1\nheight = \"= "
+           "thick\"\nsegments = 6\n" +
+           k_clamp;
   };
   const Model given = parse_given_model(text("4 m", "0.2 m"), "scene.toml", transformer_catalog());
   Variants variants(given, {"parameters.span", "parameters.thick"});
@@ -212,9 +225,13 @@ TEST_CASE("other values of a beam are those of a model that was written with the
 TEST_CASE("a beam in a part lies where the part lies, and is made of the same") {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "steplap_beam_part";
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "jib.toml") << k_head << "[[beam]]\nname = \"arm\"\nfrom = [0.0, 0.0]\nto = [2.0, 0.0]\nsegments = 4\nmaterial = \"steel\"\nwidth = 0.1\nheight = 0.2\n" << element("weld", "clamp", "a = 'arm.start'");
+  std::ofstream(folder / "jib.toml")
+      << k_head
+      << "[[beam]]\nname = \"arm\"\nfrom = [0.0, 0.0]\nto = [2.0, 0.0]\nsegments = 4\nmaterial = \"steel\"\nwidth = 0.1\nheight = 0.2\n"
+      << element("weld", "clamp", "a = 'arm.start'");
   std::ofstream(folder / "crane.toml") << k_head << "[[part]]\nname = \"jib\"\nfile = \"jib.toml\"\nx = 1.0\ny = 3.0\nangle = \"90 deg\"\n";
-  const Model alone = read_model((folder / "jib.toml").string(), transformer_catalog()), part = read_model((folder / "crane.toml").string(), transformer_catalog());
+  const Model alone = read_model((folder / "jib.toml").string(), transformer_catalog()),
+              part = read_model((folder / "crane.toml").string(), transformer_catalog());
   REQUIRE(part.bodies.size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     CHECK(part.bodies[i].name == "jib." + alone.bodies[i].name);
@@ -228,8 +245,9 @@ TEST_CASE("a beam in a part lies where the part lies, and is made of the same") 
 
 TEST_CASE("rolled sections have the values of the tables of EN 10365") {
   // cm², cm⁴ as printed, with three and four digits.
-  const std::vector<std::array<double, 2>> printed = {{7.64, 80.1}, {10.3, 171}, {13.2, 318}, {16.4, 541}, {20.1, 869}, {23.9, 1317}, {28.5, 1943}, {33.4, 2772}, {39.1, 3892},
-                                                      {45.9, 5790}, {53.8, 8356}, {62.6, 11770}, {72.7, 16270}, {84.5, 23130}, {98.8, 33740}, {116, 48200}, {134, 67120}, {156, 92080}};
+  const std::vector<std::array<double, 2>> printed = {
+      {7.64, 80.1}, {10.3, 171},  {13.2, 318},   {16.4, 541},   {20.1, 869},   {23.9, 1317},  {28.5, 1943}, {33.4, 2772}, {39.1, 3892},
+      {45.9, 5790}, {53.8, 8356}, {62.6, 11770}, {72.7, 16270}, {84.5, 23130}, {98.8, 33740}, {116, 48200}, {134, 67120}, {156, 92080}};
   const std::vector<std::string> names = profile_names();
   REQUIRE(names.size() == printed.size());
   for (std::size_t i = 0; i < names.size(); ++i) {

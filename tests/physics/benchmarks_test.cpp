@@ -41,11 +41,10 @@ Vec2 free_end(const Run& r) { return {2.0 * r.last("rod 0.x"), 2.0 * r.last("rod
 } // namespace
 
 TEST_CASE("Andrews' squeezer, start of the test set") {
-  const std::vector<double> exact = {15.8107711951537, -15.7563710584118, 0.0408222401196458, -0.534730116342080,
+  const std::vector<double> exact = {15.8107711951537,  -15.7563710584118, 0.0408222401196458, -0.534730116342080,
                                      0.524409965879954, 0.534730116342080, 1.04808074104194};
-  const std::vector<double> published = {15.81077119629904, -15.75637105984298, 0.04082224013073101,
-                                         -0.5347301163226948, 0.5244099658805304, 0.5347301163226948,
-                                         1.048080741042263};
+  const std::vector<double> published = {15.81077119629904,  -15.75637105984298, 0.04082224013073101, -0.5347301163226948,
+                                         0.5244099658805304, 0.5347301163226948, 1.048080741042263};
   const std::vector<double> angles = squeezer_angles(run_file("andrews", 1e-13, 0.03));
   for (std::size_t i = 0; i < exact.size(); ++i) {
     CAPTURE(i);
@@ -56,9 +55,9 @@ TEST_CASE("Andrews' squeezer, start of the test set") {
 }
 
 TEST_CASE("Andrews' squeezer, start of IFToMM A03, after one and after many turns of the crank") {
-  const std::vector<double> early = {15.8001746706622, -15.7431293809670, 0.0407336971253818, -0.534884952845811,
+  const std::vector<double> early = {15.8001746706622,  -15.7431293809670, 0.0407336971253818, -0.534884952845811,
                                      0.524405359380725, 0.534884952845811, 1.04807815813403};
-  const std::vector<double> late = {33.8153407213602, -33.5711553782194, 0.115158527591552, -0.404764941308129,
+  const std::vector<double> late = {33.8153407213602,  -33.5711553782194, 0.115158527591552, -0.404764941308129,
                                     0.526051256322152, 0.404764941308129, 1.05727175590757};
   for (const bool is_late : {false, true}) {
     const std::vector<double>& exact = is_late ? late : early;
@@ -114,8 +113,7 @@ TEST_CASE("stick-slip on a belt: first stick, first slip, the grazing motion at 
 TEST_CASE("Den Hartog's oscillator: phases and the state at 10 s") {
   const Run r = run_file("den_hartog", 1e-13, 10.0);
   const std::vector<double> events = r.event_times("friction");
-  const std::vector<double> expected = {0.279920279335179, 0.851888409415235, 1.45131468114814, 1.97262699328603,
-                                        2.41252234708784};
+  const std::vector<double> expected = {0.279920279335179, 0.851888409415235, 1.45131468114814, 1.97262699328603, 2.41252234708784};
   std::vector<double> ends;
   for (const double t : events)
     if (t > 1e-6) ends.push_back(t);
@@ -181,8 +179,7 @@ TEST_CASE("double pendulum against Lagrange's equations in two angles") {
   constexpr double h = 1.0 / k_steps;
   Four y = {0.5 * std::numbers::pi, 0.5 * std::numbers::pi, 0.0, 0.0};
   for (int n = 0; n < k_steps; ++n) {
-    const Four k1 = rates(y), k2 = rates(along(y, 0.5 * h, k1)), k3 = rates(along(y, 0.5 * h, k2)),
-               k4 = rates(along(y, h, k3));
+    const Four k1 = rates(y), k2 = rates(along(y, 0.5 * h, k1)), k3 = rates(along(y, 0.5 * h, k2)), k4 = rates(along(y, h, k3));
     for (int i = 0; i < 4; ++i) y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
   }
   const Run r = run_file("double_pendulum", 1e-12, 1.0);

@@ -30,12 +30,11 @@ stiffness = 1e5
 } // namespace
 
 TEST_CASE("a bouncing mass whose contact never pulls") {
-  for (const Settings& settings : {Settings{"dop853", 1e-12, 10.0, 5.0}, Settings{"tsit5", 1e-12, 10.0, 5.0},
-                                   Settings{"rk4", 1e-4, 10.0, 5.0}}) {
+  for (const Settings& settings :
+       {Settings{"dop853", 1e-12, 10.0, 5.0}, Settings{"tsit5", 1e-12, 10.0, 5.0}, Settings{"rk4", 1e-4, 10.0, 5.0}}) {
     CAPTURE(settings.integrator);
     const Run r = run(dropped("damping = 20.0\n"), settings);
-    const std::vector<double> closes = r.event_times("floor", "closes"),
-                              leaves = r.event_times("floor", "force reaches zero");
+    const std::vector<double> closes = r.event_times("floor", "closes"), leaves = r.event_times("floor", "force reaches zero");
     REQUIRE(closes.size() == 43);
     // An error at one contact grows with the number of bounces after it, about forty times in all.
     const double tolerance = settings.integrator == "rk4" ? 2e-9 : 1e-11;
@@ -45,8 +44,8 @@ TEST_CASE("a bouncing mass whose contact never pulls") {
     CHECK(std::abs(r.series("ball.y")[1] - 0.173031311957123) < 100.0 * tolerance);
     CHECK(std::abs(r.series("ball.vy")[1] - 0.803729314210234) < 1000.0 * tolerance);
     CHECK(std::abs(closes.back() - 9.3013309499589) < 1000.0 * tolerance); // it rests from here on
-    CHECK(std::abs(r.last("ball.y") + 9.81e-5) < 1e-5); // at rest, the contact compressed by its weight
-    CHECK(leaves.size() == 42); // the last contact never ends
+    CHECK(std::abs(r.last("ball.y") + 9.81e-5) < 1e-5);                    // at rest, the contact compressed by its weight
+    CHECK(leaves.size() == 42);                                            // the last contact never ends
     const RunStatistics& s = r.result.statistics;
     CHECK(s.energy_residual < (settings.integrator == "rk4" ? 1e-7 : 1e-10) * s.energy_exchanged);
   }

@@ -56,10 +56,11 @@ TEST_CASE("a brake whose pressure grows stops a wheel where its work is the whee
   const double inertia = 0.5, speed = 10.0, drags = 8.0, rise = 0.2;
   for (const char* method : k_methods) {
     CAPTURE(method);
-    const Run r = run(wheel("wheel", inertia, speed) +
-                          "[[signal]]\nkind = \"trapezoid\"\nname = \"pressure\"\npeak = 1.0\nstart = 0.0\nduration = 6.0\nrise = 0.2\nfall = 1.0\n" +
-                          friction("holds = 10.0\ndrags = 8.0\nsignal = \"pressure\"\n"),
-                      {method, 1e-11, 2.0});
+    const Run r =
+        run(wheel("wheel", inertia, speed) +
+                "[[signal]]\nkind = \"trapezoid\"\nname = \"pressure\"\npeak = 1.0\nstart = 0.0\nduration = 6.0\nrise = 0.2\nfall = 1.0\n" +
+                friction("holds = 10.0\ndrags = 8.0\nsignal = \"pressure\"\n"),
+            {method, 1e-11, 2.0});
     const std::vector<double> stops = r.event_times("brake", "sticks");
     REQUIRE(stops.size() == 1);
     CHECK(std::abs(stops[0] - (0.5 * rise + inertia * speed / drags)) < k_close);
@@ -121,7 +122,8 @@ TEST_CASE("Stribeck's friction: a coasting block stops when the integral of m/f 
   const double stop = mass * stribeck * (u / drags + (1.0 - holds / drags) / root * std::atan(u * std::sqrt(drags / holds)));
   for (const char* method : k_methods) {
     CAPTURE(method);
-    const Run r = run(k_block + "velocity = [1.5, 0.0]\n" + k_guide + "holds = 6.0\ndrags = 2.0\nstribeck_velocity = 0.3\n", {method, 1e-11, 2.0});
+    const Run r =
+        run(k_block + "velocity = [1.5, 0.0]\n" + k_guide + "holds = 6.0\ndrags = 2.0\nstribeck_velocity = 0.3\n", {method, 1e-11, 2.0});
     const std::vector<double> stops = r.event_times("seal", "sticks");
     REQUIRE(stops.size() == 1);
     CHECK(std::abs(stops[0] - stop) < k_close);
@@ -131,16 +133,18 @@ TEST_CASE("Stribeck's friction: a coasting block stops when the integral of m/f 
 
 TEST_CASE("load and brake that one signal begins: it slips from there on, also where another element's event cuts the first step") {
   // Pushed by 17 s, held by 9 s and dragged by 8 s: m v = 9 ∫ s. At the beginning all are zero, and nothing holds a hair later.
-  const std::string pushed = k_block + k_guide +
-                             "holds = 9.0\ndrags = 8.0\nsignal = \"s\"\n[[signal]]\nkind = \"triangle\"\nname = \"s\"\npeak = 1.0\nstart = 0.3\nduration = 1.0\n"
-                             "[[signal]]\nkind = \"scaled\"\nname = \"f\"\nsignal = \"s\"\nfactor = 17.0\n"
-                             "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"block\"\nforce_x = \"f\"\n";
+  const std::string pushed =
+      k_block + k_guide +
+      "holds = 9.0\ndrags = 8.0\nsignal = \"s\"\n[[signal]]\nkind = \"triangle\"\nname = \"s\"\npeak = 1.0\nstart = 0.3\nduration = 1.0\n"
+      "[[signal]]\nkind = \"scaled\"\nname = \"f\"\nsignal = \"s\"\nfactor = 17.0\n"
+      "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"block\"\nforce_x = \"f\"\n";
   for (int i = 0; i < 40; ++i) {
     // A second mass meets a spring some time after the beginning, sooner or later than the first step would have ended.
     const double meets = 0.3 + 0.05 * std::pow(10.0, -0.1 * i);
-    const std::string other = "[[body]]\nname = \"other\"\nmass = 1.0\ninertia = 1.0\nposition = [0.0, 9.0]\nvelocity = [-1.0, 0.0]\n"
-                              "[[element]]\nkind = \"unilateral_contact\"\nname = \"stop\"\na = \"other\"\nnormal = [1.0, 0.0]\nstiffness = 1e4\ngap = " +
-                              std::to_string(meets) + "\n";
+    const std::string other =
+        "[[body]]\nname = \"other\"\nmass = 1.0\ninertia = 1.0\nposition = [0.0, 9.0]\nvelocity = [-1.0, 0.0]\n"
+        "[[element]]\nkind = \"unilateral_contact\"\nname = \"stop\"\na = \"other\"\nnormal = [1.0, 0.0]\nstiffness = 1e4\ngap = " +
+        std::to_string(meets) + "\n";
     for (const char* method : k_methods) {
       CAPTURE(method);
       CAPTURE(meets);
@@ -151,9 +155,10 @@ TEST_CASE("load and brake that one signal begins: it slips from there on, also w
 }
 
 TEST_CASE("time stepping brakes as the methods that follow events do, with the error of its order") {
-  const std::string text = wheel("wheel", 0.5, 10.0) +
-                           "[[signal]]\nkind = \"trapezoid\"\nname = \"pressure\"\npeak = 1.0\nstart = 0.1\nduration = 6.0\nrise = 0.2\nfall = 1.0\n" +
-                           friction("holds = 10.0\ndrags = 6.0\nstribeck_velocity = 2.0\nviscous = 0.1\nsignal = \"pressure\"\n");
+  const std::string text =
+      wheel("wheel", 0.5, 10.0) +
+      "[[signal]]\nkind = \"trapezoid\"\nname = \"pressure\"\npeak = 1.0\nstart = 0.1\nduration = 6.0\nrise = 0.2\nfall = 1.0\n" +
+      friction("holds = 10.0\ndrags = 6.0\nstribeck_velocity = 2.0\nviscous = 0.1\nsignal = \"pressure\"\n");
   const Run exact = run(text, {"dop853", 1e-12, 0.5});
   double before = 0.0;
   for (const double step : {1e-3, 1e-4, 1e-5}) {
@@ -166,10 +171,12 @@ TEST_CASE("time stepping brakes as the methods that follow events do, with the e
 
 TEST_CASE("a pressure that swings between zero and twice its mean takes from a wheel what its integral says") {
   // 1 + cos touches zero once a period, without a corner: J Δω = D ∫ (1 + cos) dt.
-  const std::string swinging = "[[signal]]\nkind = \"harmonics\"\nname = \"pressure\"\nfrequencies = [2.0]\namplitudes = [1.0]\noffset = 1.0\n";
+  const std::string swinging =
+      "[[signal]]\nkind = \"harmonics\"\nname = \"pressure\"\nfrequencies = [2.0]\namplitudes = [1.0]\noffset = 1.0\n";
   for (const char* method : k_methods) {
     CAPTURE(method);
-    const Run r = run(wheel("wheel", 0.5, 30.0) + swinging + friction("holds = 8.0\ndrags = 6.0\nsignal = \"pressure\"\n"), {method, 1e-11, 1.75});
+    const Run r =
+        run(wheel("wheel", 0.5, 30.0) + swinging + friction("holds = 8.0\ndrags = 6.0\nsignal = \"pressure\"\n"), {method, 1e-11, 1.75});
     CHECK(std::abs(r.last("wheel.omega") - (30.0 - 6.0 / 0.5 * 1.75)) < k_close); // at the end of half a period the sine is zero
   }
 }
@@ -188,8 +195,10 @@ TEST_CASE("what cannot be is refused") {
   CHECK_NOTHROW(pressed("frequencies = [40.0]\namplitudes = [1.0]\noffset = 1.0\n"));
   // Of pieces without harmonics the least value is a corner or where the slope is zero, wherever that lies.
   const auto table = [&](double low) {
-    (void)compile(scene(text("holds = 5.0\nsignal = \"s\"\n[[signal]]\nkind = \"trapezoid\"\nname = \"up\"\npeak = 1.0\nduration = 0.7\nrise = 0.1\nfall = 0.013\n"
-                             "[[signal]]\nkind = \"scaled\"\nname = \"s\"\nsignal = \"up\"\nfactor = -1.0\noffset = " + std::to_string(low) + "\n")));
+    (void)compile(scene(text("holds = 5.0\nsignal = \"s\"\n[[signal]]\nkind = \"trapezoid\"\nname = \"up\"\npeak = 1.0\nduration = "
+                             "0.7\nrise = 0.1\nfall = 0.013\n"
+                             "[[signal]]\nkind = \"scaled\"\nname = \"s\"\nsignal = \"up\"\nfactor = -1.0\noffset = " +
+                             std::to_string(low) + "\n")));
   };
   CHECK_THROWS_AS(table(0.999999), ModelError);
   CHECK_NOTHROW(table(1.0));

@@ -22,8 +22,9 @@ std::string digits(double x) {
 }
 
 std::string wagon(const std::string& name, double mass, double x, double vx) {
-  return "[[body]]\nname = \"" + name + "\"\nmass = " + digits(mass) + "\ninertia = 1.0\nposition = [" + digits(x) + ", 0.0]\nvelocity = [" + digits(vx) +
-         ", 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"rails of " + name + "\"\na = \"" + name + "\"\naxis = [1.0, 0.0]\n";
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + digits(mass) + "\ninertia = 1.0\nposition = [" + digits(x) +
+         ", 0.0]\nvelocity = [" + digits(vx) + ", 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"rails of " + name + "\"\na = \"" +
+         name + "\"\naxis = [1.0, 0.0]\n";
 }
 
 std::string buffer(const std::string& fields) { return "[[element]]\nkind = \"buffer\"\nname = \"buffer\"\n" + fields; }
@@ -35,7 +36,8 @@ TEST_CASE("a mass that runs against straight curves comes back with the root of 
   const double k = 4e6, q = 1e6, m = 1e4, v = 2.0;
   const std::string text = wagon("mass", m, 0.5, -v) +
                            buffer("a = \"mass\"\nloading = [[0.0, 0.0], [1.0, 4e6]]\nunloading = [[0.0, 0.0], [1.0, 1e6]]\ngap = 0.5\n");
-  const double pi = 3.14159265358979323846, touch = 0.25, deepest = touch + 0.5 * pi * std::sqrt(m / k), parts = deepest + 0.5 * pi * std::sqrt(m / q);
+  const double pi = 3.14159265358979323846, touch = 0.25, deepest = touch + 0.5 * pi * std::sqrt(m / k),
+               parts = deepest + 0.5 * pi * std::sqrt(m / q);
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(text, {method, 1e-11, 1.0});
@@ -51,12 +53,11 @@ TEST_CASE("a mass that runs against straight curves comes back with the root of 
 
 TEST_CASE("pressed in and held, it sticks until the load falls below the unloading curve, to the digit") {
   // The load rises to 30 kN and falls again. Depth 30e3/4e6 stays until the load is 30 kN·q/k, then it follows q.
-  const std::string text =
-      "gravity = [0.0, 0.0]\n" + wagon("mass", 10.0, 0.0, 0.0) +
-      "[[signal]]\nkind = \"triangle\"\nname = \"load\"\npeak = -30e3\nduration = 20.0\n"
-      "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"mass\"\nforce_x = \"load\"\n"
-      "[[element]]\nkind = \"spring_damper\"\nname = \"calm\"\na = \"mass\"\naxis = [1.0, 0.0]\ndamping = 2e3\n" +
-      buffer("a = \"mass\"\nloading = [[0.0, 0.0], [1.0, 4e6]]\nunloading = [[0.0, 0.0], [1.0, 1e6]]\n");
+  const std::string text = "gravity = [0.0, 0.0]\n" + wagon("mass", 10.0, 0.0, 0.0) +
+                           "[[signal]]\nkind = \"triangle\"\nname = \"load\"\npeak = -30e3\nduration = 20.0\n"
+                           "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"mass\"\nforce_x = \"load\"\n"
+                           "[[element]]\nkind = \"spring_damper\"\nname = \"calm\"\na = \"mass\"\naxis = [1.0, 0.0]\ndamping = 2e3\n" +
+                           buffer("a = \"mass\"\nloading = [[0.0, 0.0], [1.0, 4e6]]\nunloading = [[0.0, 0.0], [1.0, 1e6]]\n");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(text, {method, 1e-10, 20.0, 0.5});
@@ -77,21 +78,24 @@ TEST_CASE("pressed in and held, it sticks until the load falls below the unloadi
 
 TEST_CASE("two wagons that meet: the pulse is that of the signal which integrates the same curves by itself") {
   // Two buffers in series at each of two places: one element of twice the travel, count 2.
-  const std::string curves[] = {
-      "[[0.0, 0.0], [0.002, 30e3], [0.06, 250e3], [0.105, 590e3]]", "[[0.0, 0.0], [0.002, 15e3], [0.105, 295e3]]",
-      "[[0.0, 0.0], [0.004, 30e3], [0.12, 250e3], [0.21, 590e3]]", "[[0.0, 0.0], [0.004, 15e3], [0.21, 295e3]]"};
-  const auto pulse = run("gravity = [0.0, 0.0]\n" + wagon("wagon", 87e3, 0.0, 2.0) +
-                             "[[signal]]\nkind = \"shunting\"\nname = \"pulse\"\nmass = 87e3\nother_mass = 80e3\nspeed = 2.0\nbuffer = " + curves[0] +
-                             "\nunloading = " + curves[1] + "\nstart = 0.1\n[[signal]]\nkind = \"scaled\"\nname = \"force\"\nsignal = \"pulse\"\nfactor = 87e3\n"
-                             "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"wagon\"\nforce_x = \"force\"\n",
-                         {"dop853", 1e-11, 1.0, 0.01});
+  const std::string curves[] = {"[[0.0, 0.0], [0.002, 30e3], [0.06, 250e3], [0.105, 590e3]]", "[[0.0, 0.0], [0.002, 15e3], [0.105, 295e3]]",
+                                "[[0.0, 0.0], [0.004, 30e3], [0.12, 250e3], [0.21, 590e3]]", "[[0.0, 0.0], [0.004, 15e3], [0.21, 295e3]]"};
+  const auto pulse =
+      run("gravity = [0.0, 0.0]\n" + wagon("wagon", 87e3, 0.0, 2.0) +
+              "[[signal]]\nkind = \"shunting\"\nname = \"pulse\"\nmass = 87e3\nother_mass = 80e3\nspeed = 2.0\nbuffer = " + curves[0] +
+              "\nunloading = " + curves[1] +
+              "\nstart = 0.1\n[[signal]]\nkind = \"scaled\"\nname = \"force\"\nsignal = \"pulse\"\nfactor = 87e3\n"
+              "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"wagon\"\nforce_x = \"force\"\n",
+          {"dop853", 1e-11, 1.0, 0.01});
   for (const char* method : k_methods) {
     CAPTURE(method);
-    const Run r = run("gravity = [0.0, 0.0]\n" + wagon("wagon", 87e3, 0.0, 2.0) + wagon("other", 80e3, 10.0, 0.0) +
-                          buffer("a = \"other\"\nb = \"wagon\"\nloading = " + curves[2] + "\nunloading = " + curves[3] + "\ngap = 0.2\ncount = 2\n"),
-                      {method, 1e-11, 1.0, 0.01});
+    const Run r =
+        run("gravity = [0.0, 0.0]\n" + wagon("wagon", 87e3, 0.0, 2.0) + wagon("other", 80e3, 10.0, 0.0) +
+                buffer("a = \"other\"\nb = \"wagon\"\nloading = " + curves[2] + "\nunloading = " + curves[3] + "\ngap = 0.2\ncount = 2\n"),
+            {method, 1e-11, 1.0, 0.01});
     const std::vector<double> expected = pulse.series("wagon.vx"), found = r.series("wagon.vx");
-    for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - expected[i]) < 1e-6); // 7e-9 of the peak acceleration, for 0.3 s
+    for (std::size_t i = 0; i < found.size(); ++i)
+      CHECK(std::abs(found[i] - expected[i]) < 1e-6); // 7e-9 of the peak acceleration, for 0.3 s
     CHECK(std::abs(87e3 * r.last("wagon.vx") + 80e3 * r.last("other.vx") - 87e3 * 2.0) < 1e-5);
   }
 }

@@ -25,11 +25,14 @@ struct Eccentric {
   [[nodiscard]] double held() const { return k_g + k_pressed / k_mass; }
   [[nodiscard]] double start() const { return k_radius - amplitude() - held() / natural(); }
   [[nodiscard]] std::string text() const {
-    return body("follower", "mass = 0.5; inertia = 0.01; position = [0.0, 1.0]") + element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
-           body("shaft", "mass = 1.0; inertia = 0.01; angular_velocity = " + number(omega)) + element("revolute", "bearing", "a = 'shaft'") +
-           signal_entry("constant", "speed", "value = " + number(omega)) + element("prescribed_motion", "drive", "a = 'shaft'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
+    return body("follower", "mass = 0.5; inertia = 0.01; position = [0.0, 1.0]") +
+           element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
+           body("shaft", "mass = 1.0; inertia = 0.01; angular_velocity = " + number(omega)) +
+           element("revolute", "bearing", "a = 'shaft'") + signal_entry("constant", "speed", "value = " + number(omega)) +
+           element("prescribed_motion", "drive", "a = 'shaft'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
            element("load", "spring", "at = 'follower'; force = [0.0, -20.0]") +
-           element("cam", "cam", "a = 'follower'; cam = 'shaft'; formula = \"'10 mm' * (1 - cos(value))\"; stiffness = 1e7; gap = " + number(start()));
+           element("cam", "cam",
+                   "a = 'follower'; cam = 'shaft'; formula = \"'10 mm' * (1 - cos(value))\"; stiffness = 1e7; gap = " + number(start()));
   }
 };
 
@@ -42,7 +45,8 @@ double jump_speed() {
 } // namespace
 
 TEST_CASE("a follower leaves an eccentric above the jump speed and never below, where the force of the steady motion is zero") {
-  CHECK(jump_speed() == doctest::Approx(std::sqrt((k_g + k_pressed / k_mass) / k_radius)).epsilon(2e-4)); // the rigid cam's: ω² r = g + F₀/m
+  CHECK(jump_speed() ==
+        doctest::Approx(std::sqrt((k_g + k_pressed / k_mass) / k_radius)).epsilon(2e-4)); // the rigid cam's: ω² r = g + F₀/m
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Eccentric slow{0.999 * jump_speed()}, fast{1.01 * jump_speed()};
@@ -71,11 +75,17 @@ TEST_CASE("a follower leaves an eccentric above the jump speed and never below, 
 TEST_CASE("a cam and its follower exchange energy without loss, and what damps is told as heat") {
   for (const double damping : {0.0, 300.0}) {
     CAPTURE(damping);
-    const std::string text = body("follower", "mass = 2.0; inertia = 0.1; position = [0.1, 1.0]") + element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
-                             body("shaft", "mass = 3.0; inertia = 0.05; angular_velocity = 20.0") + element("revolute", "bearing", "a = 'shaft'") +
-                             element("spring_damper", "spring", "a = 'follower'; b = { body = 'ground', at = [0.1, 2.0] }; stiffness = 500.0; preload = -100.0") +
-                             element("cam", "cam", "a = 'follower'; cam = 'shaft'; lift = [[0.0, 0.0], [1.0, 0.01], [2.2, 0.03], [3.5, 0.04], [5.0, 0.015], [6.283185307179586, 0.0]]; "
-                                                   "stiffness = 2e5; damping = " + number(damping));
+    const std::string text = body("follower", "mass = 2.0; inertia = 0.1; position = [0.1, 1.0]") +
+                             element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
+                             body("shaft", "mass = 3.0; inertia = 0.05; angular_velocity = 20.0") +
+                             element("revolute", "bearing", "a = 'shaft'") +
+                             element("spring_damper", "spring",
+                                     "a = 'follower'; b = { body = 'ground', at = [0.1, 2.0] }; stiffness = 500.0; preload = -100.0") +
+                             element("cam", "cam",
+                                     "a = 'follower'; cam = 'shaft'; lift = [[0.0, 0.0], [1.0, 0.01], [2.2, 0.03], [3.5, 0.04], [5.0, "
+                                     "0.015], [6.283185307179586, 0.0]]; "
+                                     "stiffness = 2e5; damping = " +
+                                         number(damping));
     double before = 0.0;
     for (const char* method : k_methods) {
       CAPTURE(method);
@@ -91,10 +101,14 @@ TEST_CASE("a cam and its follower exchange energy without loss, and what damps i
 
 TEST_CASE("a groove holds the follower both ways: it follows at any speed, pushed and pulled by m h'' ω²") {
   const double omega = 300.0;
-  const std::string text = k_no_gravity + body("follower", "mass = 0.5; inertia = 0.01; position = [0.0, 1.0]; velocity = [0.0, 0.0]") + element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
-                           body("shaft", "mass = 1.0; inertia = 0.01; angular_velocity = 300.0") + element("revolute", "bearing", "a = 'shaft'") +
-                           signal_entry("constant", "speed", "value = 300.0") + element("prescribed_motion", "drive", "a = 'shaft'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
-                           element("cam", "cam", "a = 'follower'; cam = 'shaft'; holds = true; formula = \"'10 mm' * (1 - cos(value))\"; stiffness = 1e8; damping = 2e3");
+  const std::string text =
+      k_no_gravity + body("follower", "mass = 0.5; inertia = 0.01; position = [0.0, 1.0]; velocity = [0.0, 0.0]") +
+      element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
+      body("shaft", "mass = 1.0; inertia = 0.01; angular_velocity = 300.0") + element("revolute", "bearing", "a = 'shaft'") +
+      signal_entry("constant", "speed", "value = 300.0") +
+      element("prescribed_motion", "drive", "a = 'shaft'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
+      element("cam", "cam",
+              "a = 'follower'; cam = 'shaft'; holds = true; formula = \"'10 mm' * (1 - cos(value))\"; stiffness = 1e8; damping = 2e3");
   const Run r = run(text, {"dop853", 1e-10, 0.2, 0.001});
   const std::vector<double> t = r.times(), y = r.series("follower.y"), force = r.series("cam.force");
   CHECK(r.event_times("cam").empty());
@@ -133,7 +147,8 @@ TEST_CASE("curves through points: periodic without a seam, with the order of a c
 TEST_CASE("what is wrong with a cam is told") {
   const auto complaint = [](const std::string& fields) {
     try {
-      (void)compile(scene(body("follower", "mass = 1.0; inertia = 0.1") + body("shaft", "mass = 1.0; inertia = 0.1") + element("cam", "cam", "a = 'follower'; stiffness = 1e4; " + fields) + k_head));
+      (void)compile(scene(body("follower", "mass = 1.0; inertia = 0.1") + body("shaft", "mass = 1.0; inertia = 0.1") +
+                          element("cam", "cam", "a = 'follower'; stiffness = 1e4; " + fields) + k_head));
     } catch (const ModelError& error) {
       return std::string(error.what());
     }

@@ -290,7 +290,8 @@ b = { body = "ground", at = [0.0, -1.0] }
 damping = 7.0
 )";
   // y = t²: F = m (g + 2) + 7 · 2t, work ∫ F 2t dt = 5 · 11.81 t² + 28/3 t³; the damper takes 28/3 t³.
-  for (const auto& [method, step, bound] : {std::tuple{"dop853", 1e-11, 1e-9}, {"rk4", 1e-3, 1e-9}, {"rodas5p", 1e-10, 1e-8}, {"moreau", 1e-3, 1e-2}}) {
+  for (const auto& [method, step, bound] :
+       {std::tuple{"dop853", 1e-11, 1e-9}, {"rk4", 1e-3, 1e-9}, {"rodas5p", 1e-10, 1e-8}, {"moreau", 1e-3, 1e-2}}) {
     CAPTURE(method);
     Model model = scene(text + "\n[simulation]\nstep = 1e-3\n");
     SimulationOptions options = testing::options({method, step, 1.0, 0.05});
@@ -346,7 +347,8 @@ static_friction = 0.2
 }
 
 TEST_CASE("models with friction, contacts and joints that part: shares add up through all events") {
-  for (const char* file : {"benchmarks/stick_slip_belt.toml", "benchmarks/den_hartog.toml", "layouts/joint_apart.toml", "paper/weak_clamping.toml"}) {
+  for (const char* file :
+       {"benchmarks/stick_slip_belt.toml", "benchmarks/den_hartog.toml", "layouts/joint_apart.toml", "paper/weak_clamping.toml"}) {
     CAPTURE(file);
     Model model = read_model(std::string(STEPLAP_MODELS) + "/" + file, transformer_catalog());
     model.output.also = {"*"};

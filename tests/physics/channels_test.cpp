@@ -1,11 +1,11 @@
 // What channels are called and mean: every one that any kind of element or any model can make has a unit that formulas
 // know, a meaning, and a sign or codes where its value has any; and formulas of channels.
 #include "elements/catalog.h"
-#include "mbd/rest/start.h"
+#include "mbd/formula/unit_dimension.h"
 #include "mbd/io/kind_channels.h"
 #include "mbd/io/units.h"
 #include "mbd/model/completion.h"
-#include "mbd/formula/unit_dimension.h"
+#include "mbd/rest/start.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>
@@ -19,16 +19,20 @@ using steplap::testing::scene;
 
 namespace {
 
-bool has_value_of_either_sign(const std::string& unit) { return !unit.empty() && unit != "J" && unit != "m^2" && unit != "Pa" && unit != "N/m"; }
+bool has_value_of_either_sign(const std::string& unit) {
+  return !unit.empty() && unit != "J" && unit != "m^2" && unit != "Pa" && unit != "N/m";
+}
 
-void check_text(const std::string& name, const std::string& unit, const std::string& meaning, const std::string& sign, const std::string& codes) {
+void check_text(const std::string& name, const std::string& unit, const std::string& meaning, const std::string& sign,
+                const std::string& codes) {
   CAPTURE(name);
   CHECK(meaning.size() >= 5);
   CHECK_MESSAGE(dimension_of(unit), unit);
   // A mode is told by codes; what is measured in a unit says which way it counts, or that it means no error at all.
   const bool is_code = name.ends_with("mode");
   CHECK(codes.empty() == !is_code);
-  const bool tells = !sign.empty() || meaning.find("none but error") != std::string::npos || name.ends_with("length") || name.starts_with("edge_force");
+  const bool tells =
+      !sign.empty() || meaning.find("none but error") != std::string::npos || name.ends_with("length") || name.starts_with("edge_force");
   if (has_value_of_either_sign(unit) && !is_code) CHECK_MESSAGE(tells, "no sign");
 }
 
@@ -136,7 +140,9 @@ TEST_CASE("every channel of every model has a meaning, and is listed for its kin
       const auto kind = kind_of.find(c.name.substr(0, dot));
       const std::string part = c.name.substr(dot + 1);
       if (kind == kind_of.end() || part.starts_with("edge_")) continue; // numbered
-      if (names.size() > 0 && listed[kind->second].count(part) == 0 && (part == "x" || part == "y" || part == "vx" || part == "vy" || part == "ax" || part == "ay")) continue; // a marker of that name
+      if (names.size() > 0 && listed[kind->second].count(part) == 0 &&
+          (part == "x" || part == "y" || part == "vx" || part == "vy" || part == "ax" || part == "ay"))
+        continue; // a marker of that name
       CHECK_MESSAGE(listed[kind->second].count(part) == 1, kind->second << " makes " << part << ", which its list lacks");
     }
   }
@@ -144,8 +150,10 @@ TEST_CASE("every channel of every model has a meaning, and is listed for its kin
 }
 
 TEST_CASE("units that formulas know are those of UDUNITS") {
-  for (const std::string unit : {"m", "mm", "cm", "s", "ms", "kg", "t", "N", "kN", "MN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "deg",
-                           "min", "h", "gravity", "km/h", "m/s^2", "N m", "N/m", "kN s/m", "N m/rad", "percent", "kg m2 s-2", "rad/s", "%", "mrad"}) { // NOLINT
+  for (const std::string unit :
+       {"m",     "mm",  "cm",  "s",      "ms",      "kg",      "t",         "N",     "kN",  "MN",  "J",       "kJ",
+        "W",     "kW",  "Pa",  "kPa",    "MPa",     "GPa",     "bar",       "deg",   "min", "h",   "gravity", "km/h",
+        "m/s^2", "N m", "N/m", "kN s/m", "N m/rad", "percent", "kg m2 s-2", "rad/s", "%",   "mrad"}) { // NOLINT
     CAPTURE(unit);
     const auto mine = dimension_of(unit);
     REQUIRE(mine);
@@ -160,11 +168,14 @@ TEST_CASE("units that formulas know are those of UDUNITS") {
   for (const char* unit : {"A", "mA", "K", "C", "V", "kV", "ohm", "H", "mH", "uF", "Wb"}) {
     CAPTURE(unit);
     REQUIRE(dimension_of(unit));
-    CHECK(dimension_of(unit)->factor == doctest::Approx(parse_quantity("1 " + std::string(unit), "*", UnitSource::database).value).epsilon(1e-14));
+    CHECK(dimension_of(unit)->factor ==
+          doctest::Approx(parse_quantity("1 " + std::string(unit), "*", UnitSource::database).value).epsilon(1e-14));
   }
-  for (const auto& [one, other] : {std::pair("V A", "W"), std::pair("V/A", "ohm"), std::pair("V s/A", "H"), std::pair("A s/V", "F"), std::pair("A s", "C"), std::pair("N m/A", "Wb")})
+  for (const auto& [one, other] : {std::pair("V A", "W"), std::pair("V/A", "ohm"), std::pair("V s/A", "H"), std::pair("A s/V", "F"),
+                                   std::pair("A s", "C"), std::pair("N m/A", "Wb")})
     CHECK(dimension_of(one)->powers == dimension_of(other)->powers);
-  for (const char* unit : {"Hz", "rpm", "g", "stone", "m/", "/s", "m^", "kkg", "m//s", "furlong", "m^123", "k"}) CHECK_MESSAGE(!dimension_of(unit), unit);
+  for (const char* unit : {"Hz", "rpm", "g", "stone", "m/", "/s", "m^", "kkg", "m//s", "furlong", "m^123", "k"})
+    CHECK_MESSAGE(!dimension_of(unit), unit);
 }
 
 TEST_CASE("formulas compute what the same by hand does") {
@@ -173,7 +184,7 @@ TEST_CASE("formulas compute what the same by hand does") {
   CHECK(value_of("2 * tip.x + {tip.y} - tip.y") == doctest::Approx(1.8).epsilon(1e-15));
   CHECK(value_of("{tip.x [m]} / '10 cm'") == doctest::Approx(9.0).epsilon(1e-15));
   CHECK(value_of("-tip.x^2") == doctest::Approx(-0.81).epsilon(1e-15)); // the power first
-  CHECK(value_of("2^3^2") == 512.0);                                     // from the right
+  CHECK(value_of("2^3^2") == 512.0);                                    // from the right
   CHECK(value_of("1 - 2 - 3") == -4.0);
   CHECK(value_of("8 / 4 / 2") == 1.0);
   CHECK(value_of("2^-1") == 0.5);
@@ -190,7 +201,8 @@ TEST_CASE("formulas compute what the same by hand does") {
 }
 
 TEST_CASE("formulas of formulas, and those without a value") {
-  const std::string text = with_formula("{half of it} * 2", "[[channel]]\nname = \"half of it\"\nexpression = \"tip.x / 2\"\nunit = \"mm\"\nmeaning = \"half\"\n");
+  const std::string text = with_formula(
+      "{half of it} * 2", "[[channel]]\nname = \"half of it\"\nexpression = \"tip.x / 2\"\nunit = \"mm\"\nmeaning = \"half\"\n");
   const auto run = testing::run(scene(text), {"rk4", 1e-3, 1e-2});
   CHECK(run.series("it").front() == doctest::Approx(0.9).epsilon(1e-15)); // of an operand in mm
   CHECK(run.system->find_channel("half of it")->doc == "half");
@@ -205,8 +217,7 @@ TEST_CASE("formulas of formulas, and those without a value") {
   options.has_extremes = true;
   const auto system = compile(scene(with_formula("'1 m/s' / pin.rate")));
   const RunResult result = simulate(*system, system->initial_state(), options);
-  for (const ChannelRange& range : result.ranges)
-    CHECK(range.had_no_value == (range.channel->name == "it"));
+  for (const ChannelRange& range : result.ranges) CHECK(range.had_no_value == (range.channel->name == "it"));
 }
 
 TEST_CASE("what no formula can be is refused where it stands") {
@@ -234,7 +245,8 @@ TEST_CASE("what no formula can be is refused where it stands") {
   CHECK(says(message_of(with_formula("{it} + 1")), "leads back to itself"));
   CHECK(says(message_of(with_formula("{that}", "[[channel]]\nname = \"that\"\nexpression = \"{it}\"\n")), "leads back to itself"));
   CHECK(says(message_of(with_formula("tip.x", "[[channel]]\nname = \"it\"\nexpression = \"1\"\n")), "exists already"));
-  CHECK(says(message_of(std::string(k_pendulum) + "[[channel]]\nname = \"tip.x\"\nexpression = \"1\"\n"), "two channels are called 'tip.x'"));
+  CHECK(
+      says(message_of(std::string(k_pendulum) + "[[channel]]\nname = \"tip.x\"\nexpression = \"1\"\n"), "two channels are called 'tip.x'"));
   // Thirty thousand brackets end in words, not in a crash.
   CHECK(says(message_of(with_formula(std::string(30000, '(') + "1")), "too deep"));
   CHECK(says(message_of(with_formula(std::string(30000, '-') + "1")), "too deep"));

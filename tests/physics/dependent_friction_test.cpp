@@ -22,13 +22,13 @@ std::string number(double x) {
   return text;
 }
 
-const std::vector<Settings> k_methods = {{"auto", 1e-10, 0.5}, {"tsit5", 1e-10, 0.5}, {"dop853", 1e-10, 0.5}, {"rodas5p", 1e-10, 0.5}, {"rk4", 1e-4, 0.5}};
+const std::vector<Settings> k_methods = {
+    {"auto", 1e-10, 0.5}, {"tsit5", 1e-10, 0.5}, {"dop853", 1e-10, 0.5}, {"rodas5p", 1e-10, 0.5}, {"rk4", 1e-4, 0.5}};
 
 // A wheel turned by a drive at cos(2π f t + phase) rad/s, with bearing friction of 1 N m.
 std::string driven_wheel(double frequency, double phase) {
-  return "[[signal]]\nname = \"turn\"\nkind = \"harmonics\"\namplitudes = [1.0]\nfrequencies = [" + number(frequency) +
-         "]\nphases = [" + number(phase) + "]\n[[body]]\nname = \"wheel\"\nmass = 1.0\ninertia = 1.0\nangular_velocity = " +
-         number(std::cos(phase)) + R"(
+  return "[[signal]]\nname = \"turn\"\nkind = \"harmonics\"\namplitudes = [1.0]\nfrequencies = [" + number(frequency) + "]\nphases = [" +
+         number(phase) + "]\n[[body]]\nname = \"wheel\"\nmass = 1.0\ninertia = 1.0\nangular_velocity = " + number(std::cos(phase)) + R"(
 [[element]]
 kind = "revolute"
 name = "pin"
@@ -134,9 +134,10 @@ std::string rocking(const std::vector<Foot>& feet) {
   std::string text = "[[body]]\nname = \"box\"\nmass = 10.0\ninertia = 0.6\nposition = [0.0, 0.25]\nangular_velocity = 0.05\n";
   for (std::size_t i = 0; i < feet.size(); ++i) {
     const std::string of = std::to_string(i), at = "[" + number(feet[i].x) + ", 0.0]";
-    text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot " + of + "\"\na = { body = \"box\", at = " + at + " }\nb = { body = \"ground\", at = " + at +
-            " }\nstiffness = 6e4\npreload = " + number(feet[i].preload) + "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"friction " + of +
-            "\"\ncontacts = [\"foot " + of + "\"]\nstatic_friction = " + number(feet[i].friction) + "\n";
+    text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot " + of + "\"\na = { body = \"box\", at = " + at +
+            " }\nb = { body = \"ground\", at = " + at + " }\nstiffness = 6e4\npreload = " + number(feet[i].preload) +
+            "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"friction " + of + "\"\ncontacts = [\"foot " + of +
+            "\"]\nstatic_friction = " + number(feet[i].friction) + "\n";
   }
   return text;
 }
@@ -191,7 +192,8 @@ TEST_CASE("dependent friction: a box that rocks on two feet goes on rocking, as 
 // that all stick to the next.
 TEST_CASE("dependent friction: a box that rocks on three feet goes on rocking, as with smoothed friction in the limit") {
   const std::vector<Foot> feet = {{-0.3, 32.7, 0.5}, {0.0, 32.7, 0.4}, {0.3, 32.7, 0.3}};
-  const double end = 0.2, coarse = regularised(feet, end, 1e-6, 4e-7), fine = regularised(feet, end, 5e-7, 2e-7), limit = 2.0 * fine - coarse;
+  const double end = 0.2, coarse = regularised(feet, end, 1e-6, 4e-7), fine = regularised(feet, end, 5e-7, 2e-7),
+               limit = 2.0 * fine - coarse;
   CHECK(std::abs(fine - coarse) < 5e-5);
   for (const Settings& s : k_methods) {
     CAPTURE(s.integrator);
@@ -259,7 +261,8 @@ angular_velocity = 3.0
 [[body]]
 name = "b"
 mass = 1.0
-inertia = )" + number(inertia_b) + R"(
+inertia = )" +
+         number(inertia_b) + R"(
 position = [0.5, 0.0]
 angular_velocity = -4.5
 [[element]]
@@ -310,9 +313,10 @@ TEST_CASE("dependent friction: geared bearings turn round together, at the same 
         const double j = 2.0 + 2.25 * inertia, drag = 3.5, stop = 3.0 * j / (30.0 + drag), after = 0.6 - stop;
         CHECK(std::abs(r.last("a.omega") + (30.0 - drag) / j * after) < (tolerance < 1e-6 || s.integrator == "rk4" ? 1e-9 : 1e-4));
         for (const char* bearing : {"bearing a", "bearing b"}) {
-          const std::vector<double> friction = r.series(std::string(bearing) + ".friction"), rate = r.series(std::string(bearing) + ".slip_rate");
+          const std::vector<double> friction = r.series(std::string(bearing) + ".friction"),
+                                    rate = r.series(std::string(bearing) + ".slip_rate");
           for (std::size_t i = 0; i < rate.size(); ++i) CHECK(friction[i] * rate[i] <= 0.0); // never drives
-          REQUIRE(r.event_times(bearing).size() == 2); // it slides from the start, and turns round
+          REQUIRE(r.event_times(bearing).size() == 2);                                       // it slides from the start, and turns round
           CHECK(r.event_times(bearing)[0] == 0.0);
           CHECK(std::abs(r.event_times(bearing)[1] - stop) < (tolerance < 1e-6 || s.integrator == "rk4" ? 1e-9 : 1e-4));
         }
@@ -322,7 +326,8 @@ TEST_CASE("dependent friction: geared bearings turn round together, at the same 
 TEST_CASE("dependent friction: work of a machine in which everything is driven is the closed form, with every method") {
   // 1000 kg at sin(2π 2.2 t): the drive's work is the kinetic energy.
   for (const double end : {1.0, 0.8, 0.31})
-    for (const Settings& s : {Settings{"auto", 1e-9}, Settings{"tsit5", 1e-9}, Settings{"dop853", 1e-9}, Settings{"rodas5p", 1e-9}, Settings{"rk4", 1e-3}}) {
+    for (const Settings& s :
+         {Settings{"auto", 1e-9}, Settings{"tsit5", 1e-9}, Settings{"dop853", 1e-9}, Settings{"rodas5p", 1e-9}, Settings{"rk4", 1e-3}}) {
       CAPTURE(s.integrator);
       CAPTURE(end);
       const Run r = run(R"(
@@ -346,7 +351,8 @@ name = "drive"
 a = "cart"
 signal = "v"
 as = "velocity"
-)", {s.integrator, s.step_or_tolerance, end});
+)",
+                        {s.integrator, s.step_or_tolerance, end});
       const double speed = std::sin(2.0 * k_pi * 2.2 * end);
       // Of 500 J to and fro; a hundred steps of an error of 1e-9 each; rk4: h⁴ (2ω)⁵/2880 · 500 J.
       CHECK(std::abs(r.result.statistics.work - 500.0 * speed * speed) < 1e-4);
@@ -404,7 +410,8 @@ std::array<double, 4> rocks_on_shaken_deck(double end) {
   const auto rates = [](double t, const Vector& s) {
     const double left = 6.5 - 4300.0 * (s[0] - l * s[1]), right = 6.5 - 7400.0 * (s[0] + l * s[1]) - 30.0 * (s[2] + l * s[3]);
     const double pull = 0.02 * (std::cos(w * t) - 1.0); // the deck's acceleration
-    return Vector{s[2], s[3], (left + right) / m - 9.81, (l * (right - left) + h * s[1] * (left + right) + m * h * pull) / (inertia + m * h * h)};
+    return Vector{s[2], s[3], (left + right) / m - 9.81,
+                  (l * (right - left) + h * s[1] * (left + right) + m * h * pull) / (inertia + m * h * h)};
   };
   const auto moved = [](const Vector& s, double by, const Vector& k) {
     return Vector{s[0] + by * k[0], s[1] + by * k[1], s[2] + by * k[2], s[3] + by * k[3]};
@@ -427,7 +434,8 @@ std::array<double, 4> rocks_on_shaken_deck(double end) {
 TEST_CASE("dependent friction: a box on two feet on a shaken deck goes on rocking, at every tolerance") {
   const double end = 0.5;
   const std::array<double, 4> held = rocks_on_shaken_deck(end);
-  for (const Settings& s : {Settings{"dop853", 1e-10}, Settings{"dop853", 1e-6}, Settings{"tsit5", 1e-8}, Settings{"rodas5p", 1e-8}, Settings{"rodas5p", 1e-6}}) {
+  for (const Settings& s : {Settings{"dop853", 1e-10}, Settings{"dop853", 1e-6}, Settings{"tsit5", 1e-8}, Settings{"rodas5p", 1e-8},
+                            Settings{"rodas5p", 1e-6}}) {
     CAPTURE(s.integrator);
     CAPTURE(s.step_or_tolerance);
     const Run r = run(on_shaken_deck(), {s.integrator, s.step_or_tolerance, end, 0.01});

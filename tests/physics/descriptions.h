@@ -1,8 +1,8 @@
 // One scene in absolute and in joint coordinates: two ways to the same motion.
 #pragma once
 
-#include "mbd/rest/assembly.h"
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/rest/assembly.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

@@ -137,8 +137,9 @@ Harmonics random_load(RandomNumber& random) {
 }
 
 std::string signal_of(const Harmonics& load) {
-  return signal_entry("harmonics", "s", "offset = " + digits(load.offset) + "; amplitudes = " + list(load.amplitude) +
-                                            "; frequencies = " + list(load.frequency) + "; phases = " + list(load.phase));
+  return signal_entry("harmonics", "s",
+                      "offset = " + digits(load.offset) + "; amplitudes = " + list(load.amplitude) +
+                          "; frequencies = " + list(load.frequency) + "; phases = " + list(load.phase));
 }
 
 const char* const k_body = "mass = 10.0; inertia = 1.0";
@@ -210,7 +211,8 @@ DipCase oscillating(Hair hair, RandomNumber& random, double depth) {
              signal_entry("constant", "s", "value = " + digits(stiffness * middle)) + element("load", "pull", "at = 'b'; force_x = 's'");
   if (hair == Hair::gap)
     dip.text += element("unilateral_contact", "end",
-                        "a = 'b'; b = { body = 'ground', at = [" + digits(reach) + ", 0.0] }; normal = [-1.0, 0.0]; stiffness = " + digits(1e-3 * stiffness));
+                        "a = 'b'; b = { body = 'ground', at = [" + digits(reach) +
+                            ", 0.0] }; normal = [-1.0, 0.0]; stiffness = " + digits(1e-3 * stiffness));
   else
     dip.text += element("rope", "end", "a = 'b'; b = { body = 'ground', at = [-1.0, 0.0] }; inextensible = true; slack = " + digits(reach));
   return dip;

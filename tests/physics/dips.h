@@ -15,15 +15,15 @@ enum class Hair { friction, step_lap, gap, rope };
 
 struct DipCase {
   Hair hair = Hair::friction;
-  std::string text;           ///< of the model
-  std::string element;        ///< whose events count
-  std::string begins;         ///< first words of its events
-  std::vector<double> begin;  ///< their times, s, in closed form
+  std::string text;             ///< of the model
+  std::string element;          ///< whose events count
+  std::string begins;           ///< first words of its events
+  std::vector<double> begin;    ///< their times, s, in closed form
   std::vector<double> rounding; ///< of each, s: that of the watched value, over its rate
   std::vector<double> motion;   ///< of each, s: a motion that is off by all of its range, over its rate
-  double end = 1.0;           ///< of the run, s
-  double fastest = 1.0;       ///< rad/s
-  bool counts_all = true;     ///< false: only the first event is known
+  double end = 1.0;             ///< of the run, s
+  double fastest = 1.0;         ///< rad/s
+  bool counts_all = true;       ///< false: only the first event is known
 };
 
 /// One case of its kind. `depth`: share of the range; negative: the peak is below.

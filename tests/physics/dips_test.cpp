@@ -35,7 +35,8 @@ void check_all(Hair hair) {
     for (int i = 0; i < k_cases; ++i) {
       const auto seed = static_cast<std::uint64_t>(i + 1);
       const double setting = settings[static_cast<std::size_t>(i) % settings.size()];
-      const DipOutcome o = outcome(random_dip(hair, seed, dip_depth(hair, seed, m.has_fixed_step ? k_motion_of_fixed_steps : setting)), m.name, setting);
+      const DipOutcome o =
+          outcome(random_dip(hair, seed, dip_depth(hair, seed, m.has_fixed_step ? k_motion_of_fixed_steps : setting)), m.name, setting);
       CAPTURE(std::string(m.name));
       CAPTURE(seed);
       CAPTURE(setting);
@@ -77,7 +78,8 @@ TEST_CASE("time stepping slips where a peak between the ends of its steps is abo
       options.integrator = "moreau";
       options.settings.step = share * 2.0 * std::numbers::pi / dip.fastest;
       const RunResult result = simulate(*system, system->initial_state(), options);
-      const auto first = std::find_if(result.events.begin(), result.events.end(), [&](const Event& e) { return e.element == dip.element && e.words().starts_with(dip.begins); });
+      const auto first = std::find_if(result.events.begin(), result.events.end(),
+                                      [&](const Event& e) { return e.element == dip.element && e.words().starts_with(dip.begins); });
       CAPTURE(seed);
       CAPTURE(share);
       CAPTURE(depth);
@@ -100,11 +102,15 @@ TEST_CASE("time stepping slips in a dip of the clamping pressure between the end
     const double phase = random.between(1.0, 2.0 * std::numbers::pi - 1.0);
     // 2000 N of pressure by a friction of 0.5 hold 1000 N, of which the least is 200 N.
     const std::string number = std::to_string(200.0 * (1.0 + depth));
-    const std::string text = k_no_gravity + body("b", "mass = 10.0; inertia = 1.0") +
-        signal_entry("harmonics", "press", "offset = 0.6; amplitudes = [0.4]; frequencies = [1.0]; phases = [" + std::to_string(phase) + "]") +
+    const std::string text =
+        k_no_gravity + body("b", "mass = 10.0; inertia = 1.0") +
+        signal_entry("harmonics", "press",
+                     "offset = 0.6; amplitudes = [0.4]; frequencies = [1.0]; phases = [" + std::to_string(phase) + "]") +
         element("step_lap_joint", "held", "limb = 'b'; active_part = 'ground'; pressure_signal = 'press'") +
-        element("step_lap_interface", "sheets", "joint = 'held'; yoke = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]; "
-                "limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]]; pressure = 1e5; static_friction = 0.5; kinetic_friction = 0.5") +
+        element("step_lap_interface", "sheets",
+                "joint = 'held'; yoke = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]; "
+                "limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]]; pressure = 1e5; static_friction = 0.5; kinetic_friction "
+                "= 0.5") +
         signal_entry("constant", "s", "value = " + number) + element("load", "pull", "at = 'b'; force_x = 's'");
     const Model model = scene(text + "\n[simulation]\nstep = 1e-3\n");
     const auto system = compile(model);
@@ -113,7 +119,8 @@ TEST_CASE("time stepping slips in a dip of the clamping pressure between the end
     options.integrator = "moreau";
     options.settings.step = share;
     const RunResult result = simulate(*system, system->initial_state(), options);
-    const bool has_slipped = std::any_of(result.events.begin(), result.events.end(), [](const Event& e) { return e.element == "held" && e.words().starts_with("slips"); });
+    const bool has_slipped = std::any_of(result.events.begin(), result.events.end(),
+                                         [](const Event& e) { return e.element == "held" && e.words().starts_with("slips"); });
     CAPTURE(i);
     CAPTURE(share);
     CAPTURE(depth);
@@ -131,15 +138,20 @@ TEST_CASE("a dip of the clamping pressure lets a joint slide forward, by as litt
   for (const char* integrator : {"auto", "dop853", "tsit5", "rodas5p"})
     for (int i = 0; i < k_cases; ++i) {
       steplap::random::RandomNumber random(static_cast<std::uint64_t>(i) + 6666);
-      const double depth = random.decades(-6.0, -2.0), phase = std::numbers::pi + random.either(0.3, 2.5), tolerance = k_tolerances[static_cast<std::size_t>(i) % k_tolerances.size()];
+      const double depth = random.decades(-6.0, -2.0), phase = std::numbers::pi + random.either(0.3, 2.5),
+                   tolerance = k_tolerances[static_cast<std::size_t>(i) % k_tolerances.size()];
       const double load = 200.0 * (1.0 + depth);
       char number[40];
       std::snprintf(number, sizeof number, "%.17g", load);
-      const std::string text = k_no_gravity + body("b", "mass = 10.0; inertia = 1.0") +
-          signal_entry("harmonics", "press", "offset = 0.6; amplitudes = [0.4]; frequencies = [1.0]; phases = [" + std::to_string(phase) + "]") +
+      const std::string text =
+          k_no_gravity + body("b", "mass = 10.0; inertia = 1.0") +
+          signal_entry("harmonics", "press",
+                       "offset = 0.6; amplitudes = [0.4]; frequencies = [1.0]; phases = [" + std::to_string(phase) + "]") +
           element("step_lap_joint", "held", "limb = 'b'; active_part = 'ground'; pressure_signal = 'press'") +
-          element("step_lap_interface", "sheets", "joint = 'held'; yoke = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]; "
-                  "limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]]; pressure = 1e5; static_friction = 0.5; kinetic_friction = 0.5") +
+          element("step_lap_interface", "sheets",
+                  "joint = 'held'; yoke = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]; "
+                  "limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]]; pressure = 1e5; static_friction = 0.5; "
+                  "kinetic_friction = 0.5") +
           signal_entry("constant", "s", std::string("value = ") + number) + element("load", "pull", "at = 'b'; force_x = 's'");
       CAPTURE(std::string(integrator));
       CAPTURE(i);
@@ -159,7 +171,8 @@ TEST_CASE("a dip of the clamping pressure lets a joint slide forward, by as litt
       }
       REQUIRE(slid.event_times("held", "slips").size() == 1);
       REQUIRE(slid.event_times("held", "sticks").size() == 1);
-      const double end_time = std::clamp(1e-2 * tolerance, 1e-11, 1e-8), onset_time = std::clamp(2.5e-4 * std::cbrt(tolerance), 5e-8, 2.5e-6);
+      const double end_time = std::clamp(1e-2 * tolerance, 1e-11, 1e-8),
+                   onset_time = std::clamp(2.5e-4 * std::cbrt(tolerance), 5e-8, 2.5e-6);
       const double back = k_grip * std::max(end_time, 2e-3 * onset_time);
       const double known = 2.0 * back * back / (2.0 * slowing) + tolerance * 1e-3 * 0.32 + 1e-12; // beside what positions are known to
       CHECK(std::abs(slid.last("b.x") - x) < known + 1e-2 * x);

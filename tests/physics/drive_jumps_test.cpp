@@ -20,8 +20,7 @@ std::string arm(const std::string& signal, const std::string& level, const std::
   return k_no_gravity + "[simulation]\nend = " + end + "\n" + signal +
          body("upper", "mass = 2.0; inertia = 0.1; position = " + at(0.5) + turned) +
          body("fore", "mass = 1.0; inertia = 0.1; position = " + at(1.5) + turned) +
-         element("revolute", "shoulder",
-                 "a = { body = 'upper', at = [0.0, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
+         element("revolute", "shoulder", "a = { body = 'upper', at = [0.0, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
          element("revolute", "elbow", "a = { body = 'fore', at = " + at(1.0) + " }; b = { body = 'upper', at = " + at(1.0) + " }") +
          element("prescribed_motion", "drive", "a = 'upper'; coordinate = 'angle'; signal = 's'; as = '" + level + "'");
 }
@@ -43,8 +42,7 @@ const std::vector<Kind> k_kinds = {
     {"harmonics", "amplitudes = [0.2]; frequencies = [2.0]", true, true, 0.2},
     // 0.2 (1 − cos): two whole periods begin and end at rest
     {"harmonics", "offset = 0.2; amplitudes = [-0.2]; frequencies = [10.0]; start = 0.1; duration = 0.2", true, true},
-    {"harmonics", "offset = 0.2; amplitudes = [-0.2]; frequencies = [10.0]; start = 0.1; duration = 0.17", false,
-     false},
+    {"harmonics", "offset = 0.2; amplitudes = [-0.2]; frequencies = [10.0]; start = 0.1; duration = 0.17", false, false},
     {"harmonics", "amplitudes = [0.2]; frequencies = [10.0]; phases = [-1.5707963267948966]; start = 0.1", false, true},
     {"harmonics", "amplitudes = [0.2]; frequencies = [10.0]; start = 0.1", false, false}};
 
@@ -62,17 +60,16 @@ TEST_CASE("every kind of signal at every level: refused where a velocity would j
         CHECK_THROWS_AS(static_cast<void>(compile(scene(text))), ModelError);
         continue;
       }
-      for (const Settings& settings : {Settings{"dop853", 1e-11, 0.4, 0.005}, Settings{"rodas5p", 1e-10, 0.4, 0.005},
-                                       Settings{"auto", 1e-11, 0.4, 0.005}}) {
+      for (const Settings& settings :
+           {Settings{"dop853", 1e-11, 0.4, 0.005}, Settings{"rodas5p", 1e-10, 0.4, 0.005}, Settings{"auto", 1e-11, 0.4, 0.005}}) {
         CAPTURE(settings.integrator);
         const Run r = run(scene(text), settings);
-        const std::vector<double> x = r.series("upper.x"), y = r.series("upper.y"), a = r.series("upper.theta"),
-                                  fx = r.series("fore.x"), fy = r.series("fore.y"), b = r.series("fore.theta");
+        const std::vector<double> x = r.series("upper.x"), y = r.series("upper.y"), a = r.series("upper.theta"), fx = r.series("fore.x"),
+                                  fy = r.series("fore.y"), b = r.series("fore.theta");
         // Projected to 1e-12 at the ends of steps; between them dense output is as good as the tolerance.
         for (std::size_t i = 0; i < x.size(); ++i) {
           CHECK(std::hypot(x[i] - 0.5 * std::cos(a[i]), y[i] - 0.5 * std::sin(a[i])) < 1e-9);
-          CHECK(std::hypot(fx[i] - 0.5 * std::cos(b[i]) - std::cos(a[i]),
-                           fy[i] - 0.5 * std::sin(b[i]) - std::sin(a[i])) < 1e-9);
+          CHECK(std::hypot(fx[i] - 0.5 * std::cos(b[i]) - std::cos(a[i]), fy[i] - 0.5 * std::sin(b[i]) - std::sin(a[i])) < 1e-9);
         }
         CHECK(r.result.statistics.energy_residual < 1e-7 * std::max(1.0, r.result.statistics.energy_exchanged));
       }

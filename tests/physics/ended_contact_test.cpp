@@ -49,7 +49,8 @@ TEST_CASE("a foot that runs past the end of its face falls from there, its strai
 
 TEST_CASE("what comes from beside the face is not lifted onto it; from above it is caught between the ends only") {
   const auto drop = [](double x, double vx) {
-    return body("ball", "mass = 1; inertia = 1; position = [" + std::to_string(x) + ", 0.2]; velocity = [" + std::to_string(vx) + ", 0.0]") +
+    return body("ball",
+                "mass = 1; inertia = 1; position = [" + std::to_string(x) + ", 0.2]; velocity = [" + std::to_string(vx) + ", 0.0]") +
            element("unilateral_contact", "face", "a = \"ball\"; stiffness = 1e5; damping = 100.0; ends = [-1.0, 1.0]");
   };
   const Settings settings{"dop853", 1e-9, 1.0};
@@ -57,17 +58,19 @@ TEST_CASE("what comes from beside the face is not lifted onto it; from above it 
   CHECK(caught.last("ball.y") > -1e-2);
   for (const Run* r : {&beside, &under}) {
     CHECK(r->last("ball.y") == doctest::Approx(0.2 - 0.5 * k_g));
-    CHECK(r->result.events.empty()); // that it is off is no event
+    CHECK(r->result.events.empty());                           // that it is off is no event
     CHECK(r->result.statistics.energy_residual < 1e-9 * 10.0); // m g h = 10 J
-    CHECK(r->result.final_state.dissipated < 1e-20); // what rounding of a projection books
+    CHECK(r->result.final_state.dissipated < 1e-20);           // what rounding of a projection books
   }
 }
 
 TEST_CASE("a plank on two feet, one of which runs off, tips over the other") {
   const std::string text =
       body("plank", "mass = 20; inertia = 2.0; position = [0.0, 0.1]; velocity = [1.0, 0.0]") +
-      element("unilateral_contact", "front", "a = { body = \"plank\", point = [0.5, -0.1] }; stiffness = 1e6; damping = 1e3; preload = 98.1; ends = [-3.0, 0.6]") +
-      element("unilateral_contact", "rear", "a = { body = \"plank\", point = [-0.5, -0.1] }; stiffness = 1e6; damping = 1e3; preload = 98.1; ends = [-3.0, 0.6]") +
+      element("unilateral_contact", "front",
+              "a = { body = \"plank\", point = [0.5, -0.1] }; stiffness = 1e6; damping = 1e3; preload = 98.1; ends = [-3.0, 0.6]") +
+      element("unilateral_contact", "rear",
+              "a = { body = \"plank\", point = [-0.5, -0.1] }; stiffness = 1e6; damping = 1e3; preload = 98.1; ends = [-3.0, 0.6]") +
       element("coulomb_stick", "soles", "contacts = [\"front\", \"rear\"]; static_friction = 0.01");
   const Run r = run(text, {"auto", 1e-8, 0.4});
   REQUIRE(r.event_times("front", "opens").size() == 1);
@@ -76,7 +79,8 @@ TEST_CASE("a plank on two feet, one of which runs off, tips over the other") {
 }
 
 TEST_CASE("ends in the wrong order are refused") {
-  CHECK_THROWS_AS(run(body("ball", "mass = 1; inertia = 1") + element("unilateral_contact", "f", "a = \"ball\"; stiffness = 1e5; ends = [1.0, -1.0]"),
-                      {"dop853", 1e-6, 0.1}),
-                  ModelError);
+  CHECK_THROWS_AS(
+      run(body("ball", "mass = 1; inertia = 1") + element("unilateral_contact", "f", "a = \"ball\"; stiffness = 1e5; ends = [1.0, -1.0]"),
+          {"dop853", 1e-6, 0.1}),
+      ModelError);
 }

@@ -82,11 +82,10 @@ std::string stop_of(double told, double push, const Settings& settings) {
     c.elements.push_back(&faulty_kind());
     return c;
   }();
-  const Model model = parse_model(k_no_gravity + "[simulation]\nstep = 1e-3\n" +
-                                      body("mass", "mass = 1; inertia = 1; velocity = [1.0, 0.0]") +
-                                      element("faulty", "spring", "body = \"mass\""),
-                                  "a.toml", catalogue,
-                                  {"element.spring.told=" + std::to_string(told), "element.spring.push=" + std::to_string(push)});
+  const Model model =
+      parse_model(k_no_gravity + "[simulation]\nstep = 1e-3\n" + body("mass", "mass = 1; inertia = 1; velocity = [1.0, 0.0]") +
+                      element("faulty", "spring", "body = \"mass\""),
+                  "a.toml", catalogue, {"element.spring.told=" + std::to_string(told), "element.spring.push=" + std::to_string(push)});
   try {
     (void)run(model, settings);
   } catch (const NumericalFailure& failure) {

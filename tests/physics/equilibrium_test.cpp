@@ -85,7 +85,9 @@ TEST_CASE("a chain of n rods between two supports takes the catenary's shape") {
                             (i == 0 ? "{ body = 'ground', point = [0.0, 0.0] }"
                                     : "{ body = 'rod " + std::to_string(i - 1) + "', point = [0.5, 0.0] }"));
       }
-      text += element("revolute", "end", "a = { body = 'rod " + std::to_string(n - 1) + "', point = [0.5, 0.0] }; b = { body = 'ground', point = " + point(span, 0.0) + " }");
+      text += element("revolute", "end",
+                      "a = { body = 'rod " + std::to_string(n - 1) +
+                          "', point = [0.5, 0.0] }; b = { body = 'ground', point = " + point(span, 0.0) + " }");
       for (char& c : text)
         if (c == '\'') c = '"';
       const Found found = settle(text);
@@ -110,12 +112,12 @@ TEST_CASE("a crane arm gives way to its load, which swings down from anywhere") 
   for (const double swung : {0.0, 1.5, -3.0}) {
     CAPTURE(swung);
     const double tx = length * std::cos(start), ty = length * std::sin(start);
-    const Found found = settle(
-        body("boom", "mass = 300; inertia = 225; position = " + point(0.5 * tx, 0.5 * ty) + "; angle = " + number(start)) +
-        body("load", "mass = 500; inertia = 40; position = " + point(tx + 2.0 * std::sin(swung), ty - 2.0 * std::cos(swung))) +
-        element("revolute", "foot", "a = { body = \"boom\", point = [-1.5, 0.0] }") +
-        element("motor", "servo", "a = \"boom\"; coordinate = \"angle\"; proportional = 4e4; derivative = 100.0") +
-        element("distance", "hoist", "a = \"load\"; b = { body = \"boom\", point = [1.5, 0.0] }; length = 2.0"));
+    const Found found =
+        settle(body("boom", "mass = 300; inertia = 225; position = " + point(0.5 * tx, 0.5 * ty) + "; angle = " + number(start)) +
+               body("load", "mass = 500; inertia = 40; position = " + point(tx + 2.0 * std::sin(swung), ty - 2.0 * std::cos(swung))) +
+               element("revolute", "foot", "a = { body = \"boom\", point = [-1.5, 0.0] }") +
+               element("motor", "servo", "a = \"boom\"; coordinate = \"angle\"; proportional = 4e4; derivative = 100.0") +
+               element("distance", "hoist", "a = \"load\"; b = { body = \"boom\", point = [1.5, 0.0] }; length = 2.0"));
     CHECK(std::abs(found.rest.state.q[5] - theta) < 1e-12); // rounding of a radian
     CHECK(std::abs(found.rest.state.q[6] - length * std::cos(theta)) < 1e-11);
     CHECK(std::abs(found.rest.state.q[7] - length * std::sin(theta) + 2.0) < 1e-11);
@@ -129,14 +131,16 @@ TEST_CASE("a crane arm gives way to its load, which swings down from anywhere") 
 // for small angles: 4 k δ = (M + m) g, and the lid hangs straight down.
 TEST_CASE("a tank on four springs with a bushing and a hanging lid settles") {
   const double m_tank = 4000.0, m_lid = 200.0, k = 2e6;
-  std::string text = body("tank", "mass = 4000; inertia = 3000; position = [0.0, 1.0]") +
-                     body("lid", "mass = 200; inertia = 20; position = [1.9, 1.7]") +
-                     element("revolute", "hinge", "a = { body = \"lid\", point = [-0.7, 0.0] }; b = { body = \"tank\", point = [1.2, 0.7] }") +
-                     element("bushing", "guide", "a = { body = \"tank\", point = [0.0, 0.0] }; b = { body = \"ground\", at = [0.0, 1.0] }; "
-                             "stiffness = [1e6, 0.0]; damping = [1e3, 0.0]; rotational_stiffness = 3e8");
+  std::string text =
+      body("tank", "mass = 4000; inertia = 3000; position = [0.0, 1.0]") + body("lid", "mass = 200; inertia = 20; position = [1.9, 1.7]") +
+      element("revolute", "hinge", "a = { body = \"lid\", point = [-0.7, 0.0] }; b = { body = \"tank\", point = [1.2, 0.7] }") +
+      element("bushing", "guide",
+              "a = { body = \"tank\", point = [0.0, 0.0] }; b = { body = \"ground\", at = [0.0, 1.0] }; "
+              "stiffness = [1e6, 0.0]; damping = [1e3, 0.0]; rotational_stiffness = 3e8");
   for (const double at : {-1.5, -0.5, 0.5, 1.5})
-    text += element("spring_damper", "spring " + number(at), "a = { body = \"tank\", point = [" + number(at) + ", -1.0] }; b = { body = \"ground\", at = [" +
-                    number(at) + ", 0.0] }; axis = [0.0, 1.0]; stiffness = 2e6; damping = 1e4; free_length = 0.0");
+    text += element("spring_damper", "spring " + number(at),
+                    "a = { body = \"tank\", point = [" + number(at) + ", -1.0] }; b = { body = \"ground\", at = [" + number(at) +
+                        ", 0.0] }; axis = [0.0, 1.0]; stiffness = 2e6; damping = 1e4; free_length = 0.0");
   const Found found = settle(text);
   const double* tank = &found.rest.state.q[3];
   // The lid's weight turns the tank by m g x/(Σ k x² + K) about 7e-6 rad: its square and δ/L ≈ 3e-3 of it are left out.
@@ -153,8 +157,9 @@ TEST_CASE("a ladder holds from the friction of the closed form on, however it wa
   const auto ladder = [&](double friction, const std::string& start) {
     std::string text = body("ladder", "mass = 20; inertia = 26.666666666666668; position = " + point(x, y));
     const auto end = [&](const std::string& name, double ex, double ey, const std::string& normal) {
-      return element("unilateral_contact", name, "a = { body = \"ladder\", point = " + point(ex, ey) + " }; normal = " + normal +
-                     "; stiffness = 1e7; damping = 2e3; " + start) +
+      return element("unilateral_contact", name,
+                     "a = { body = \"ladder\", point = " + point(ex, ey) + " }; normal = " + normal + "; stiffness = 1e7; damping = 2e3; " +
+                         start) +
              element("coulomb_stick", name + " friction", "contacts = [\"" + name + "\"]; static_friction = " + number(friction));
     };
     return text + end("foot", x, -y, "[0.0, 1.0]") + end("top", -x, y, "[1.0, 0.0]");
@@ -185,12 +190,13 @@ TEST_CASE("a ladder holds from the friction of the closed form on, however it wa
 }
 
 TEST_CASE("a block on a slope that is too steep does not rest, and the share is told") {
-  const std::string text =
-      body("block", "mass = 100; inertia = 10; position = [0.0, 0.2]") +
-      element("unilateral_contact", "upper", "a = { body = \"block\", point = [-0.5, -0.2] }; stiffness = 1e6; damping = 1e3; preload = 490.0") +
-      element("unilateral_contact", "lower", "a = { body = \"block\", point = [0.5, -0.2] }; stiffness = 1e6; damping = 1e3; preload = 490.0") +
-      element("coulomb_stick", "friction", "contacts = [\"upper\", \"lower\"]; static_friction = 0.4") +
-      element("load", "tilt", "at = \"block\"; force = [588.6, 0.0]"); // 0.6 of the weight
+  const std::string text = body("block", "mass = 100; inertia = 10; position = [0.0, 0.2]") +
+                           element("unilateral_contact", "upper",
+                                   "a = { body = \"block\", point = [-0.5, -0.2] }; stiffness = 1e6; damping = 1e3; preload = 490.0") +
+                           element("unilateral_contact", "lower",
+                                   "a = { body = \"block\", point = [0.5, -0.2] }; stiffness = 1e6; damping = 1e3; preload = 490.0") +
+                           element("coulomb_stick", "friction", "contacts = [\"upper\", \"lower\"]; static_friction = 0.4") +
+                           element("load", "tilt", "at = \"block\"; force = [588.6, 0.0]"); // 0.6 of the weight
   const std::string why = reason(text);
   CAPTURE(why);
   CHECK(has(why, "'friction'"));
@@ -219,21 +225,19 @@ TEST_CASE("a pose that balances without holding is left, and told") {
 // said must not deny it. Beside the top there is none to speak of. In a valley beyond it would come to rest.
 TEST_CASE("a bead on a smooth hill has an unstable rest, and that is said") {
   const auto bead = [](double x) {
-    return body("bead", "mass = 1.0; inertia = 0.004; position = [" + std::to_string(x) + ", " +
-                            std::to_string(std::sqrt(1.21 - x * x)) + "]") +
+    return body("bead",
+                "mass = 1.0; inertia = 0.004; position = [" + std::to_string(x) + ", " + std::to_string(std::sqrt(1.21 - x * x)) + "]") +
            element("circle_contact", "hill", "a = \"bead\"; radius_a = 0.1; radius_b = 1.0; stiffness = 1e6");
   };
   const std::string on_top = reason(bead(0.0));
-  CHECK(has(on_top,
-            "no stable equilibrium: a pose on the way balances, but not stably: a nudge of 'bead' along +x leaves it"));
+  CHECK(has(on_top, "no stable equilibrium: a pose on the way balances, but not stably: a nudge of 'bead' along +x leaves it"));
   CHECK(has(on_top, "downhill from there 'bead' along -y goes on without end"));
   CHECK_FALSE(has(on_top, "no static equilibrium"));
   const std::string aside = reason(bead(0.05));
   CHECK(has(aside, "no static equilibrium: 'bead' along -y goes on without end"));
   CHECK_FALSE(has(aside, "balances"));
-  const Found caught =
-      settle(bead(0.0) + element("circle_contact", "valley",
-                                 "a = \"bead\"; radius_a = 0.1; radius_b = 3.0; inside = true; stiffness = 1e6"));
+  const Found caught = settle(
+      bead(0.0) + element("circle_contact", "valley", "a = \"bead\"; radius_a = 0.1; radius_b = 3.0; inside = true; stiffness = 1e6"));
   CHECK(caught.rest.left.size() == 1);
   CHECK(std::abs(caught.rest.state.q[4] + 2.9) < 1e-4); // m g/k of 1e-5 deeper
 }
@@ -253,8 +257,7 @@ TEST_CASE("a pendulum with dry friction in its pin sinks to where that holds it"
 TEST_CASE("a drive that moves is held for the search, and told") {
   const auto cart = [](const std::string& signal) {
     return signal + body("cart", "mass = 10; inertia = 1; position = [0.0, 0.0]") +
-           body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +
-           element("prismatic", "road", "a = \"cart\"; axis = [1.0, 0.0]") +
+           body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") + element("prismatic", "road", "a = \"cart\"; axis = [1.0, 0.0]") +
            element("prescribed_motion", "drive", "a = \"cart\"; coordinate = \"x\"; signal = \"go\"; as = \"acceleration\"") +
            element("revolute", "pin", "a = { body = \"bob\", point = [-1.0, 0.0] }; b = \"cart\"");
   };
@@ -294,9 +297,10 @@ TEST_CASE("boxes dropped at any angle come to lie, and stacks stand") {
     const std::string on = i == 0 ? "\"ground\"" : "{ body = \"box " + std::to_string(i - 1) + "\", point = [0.0, 0.5] }";
     stack += box(name, 0.6 + 1.1 * i, i % 2 == 0 ? 0.04 : -0.03);
     for (const auto& [foot, x] : {std::pair{left, -0.5}, {right, 0.5}})
-      stack += element("unilateral_contact", foot, "a = { body = \"" + name + "\", point = " + point(x, -0.5) + " }; b = " + on +
-                       "; stiffness = 1e7; damping = 1e3");
-    stack += element("coulomb_stick", "friction " + std::to_string(i), "contacts = [\"" + left + "\", \"" + right + "\"]; static_friction = 0.4");
+      stack += element("unilateral_contact", foot,
+                       "a = { body = \"" + name + "\", point = " + point(x, -0.5) + " }; b = " + on + "; stiffness = 1e7; damping = 1e3");
+    stack += element("coulomb_stick", "friction " + std::to_string(i),
+                     "contacts = [\"" + left + "\", \"" + right + "\"]; static_friction = 0.4");
   }
   const Found found = settle(stack);
   double y = -0.5;
@@ -314,8 +318,10 @@ TEST_CASE("a ball falls into a groove and stays in it, from however high") {
   for (const double height : {2.0, 40.0}) {
     CAPTURE(height);
     std::string text = body("ball", "mass = 5; inertia = 0.5; position = " + point(0.1, height));
-    for (const auto& [name, ends] : {std::pair{"left", "from = [-3.0, 3.0]; to = [0.0, 0.0]"}, {"right", "from = [0.0, 0.0]; to = [3.0, 3.0]"}})
-      text += element("segment_contact", name, std::string("a = \"ball\"; b = \"ground\"; radius = 0.5; stiffness = 1e8; damping = 1e3; ") + ends);
+    for (const auto& [name, ends] :
+         {std::pair{"left", "from = [-3.0, 3.0]; to = [0.0, 0.0]"}, {"right", "from = [0.0, 0.0]; to = [3.0, 3.0]"}})
+      text += element("segment_contact", name,
+                      std::string("a = \"ball\"; b = \"ground\"; radius = 0.5; stiffness = 1e8; damping = 1e3; ") + ends);
     const Found found = settle(text);
     // 1e8 N/m gives way by 3.5e-7 m on each side.
     const double depth = 5.0 * k_g * std::sqrt(0.5) / 1e8;
@@ -330,7 +336,8 @@ TEST_CASE("a forklift with too much on its fork tips over, and is said to") {
                        body("load", "mass = " + number(load) + "; inertia = 20; position = [1.6, 0.8]") +
                        element("weld", "fork", "a = \"load\"; b = { body = \"truck\", at = [1.0, 0.8] }");
     for (const auto& [name, x] : {std::pair{"rear", -0.8}, {"front", 0.8}})
-      text += element("unilateral_contact", name, "a = { body = \"truck\", point = " + point(x, -0.8) + " }; stiffness = 1e7; damping = 1e4");
+      text +=
+          element("unilateral_contact", name, "a = { body = \"truck\", point = " + point(x, -0.8) + " }; stiffness = 1e7; damping = 1e4");
     return text + element("coulomb_stick", "tyres", "contacts = [\"rear\", \"front\"]; static_friction = 0.7");
   };
   // It stands while 0.8 m · 1000 kg of its own exceed 0.8 m of the load.
@@ -360,6 +367,5 @@ TEST_CASE("a limb rests on its elastic joint, and beyond its bound on what stand
   CHECK(sunk({"element.tie plate.stiffness=5e7", "element.top corner.pressure=5e4", "element.bottom corner.pressure=5e4"}) ==
         doctest::Approx(left).epsilon(1e-6));
   // With as good as nothing beside it the limb falls.
-  CHECK_THROWS_AS((void)sunk({"element.top corner.pressure=5e4", "element.bottom corner.pressure=5e4"}),
-                  NumericalFailure);
+  CHECK_THROWS_AS((void)sunk({"element.top corner.pressure=5e4", "element.bottom corner.pressure=5e4"}), NumericalFailure);
 }

@@ -63,7 +63,8 @@ TEST_CASE("the extremes of many channels take no more evaluations than those of 
         const std::string below = j > 0 ? "'" + name(j - 1) + "'" : "{ body = 'ground', point = [" + std::to_string(i) + ".0, 0.0] }";
         text += body(name(j), "mass = 1.0; inertia = 0.01; position = [" + std::to_string(i) + ".0, " + std::to_string(j + 1) + ".0]");
         for (const auto& [kind, axis] : {std::pair{"up ", "[0.0, 1.0]"}, {"shear ", "[1.0, 0.0]"}})
-          text += element("spring_damper", kind + name(j), "a = '" + name(j) + "'; b = " + below + "; axis = " + axis + "; stiffness = 1e4; damping = 1.0");
+          text += element("spring_damper", kind + name(j),
+                          "a = '" + name(j) + "'; b = " + below + "; axis = " + axis + "; stiffness = 1e4; damping = 1.0");
       }
     const auto system = compile(scene(text));
     SimulationOptions o = unlooked("tsit5", 1e-7, 0.05);
@@ -131,20 +132,21 @@ TEST_CASE("a step that an event is looked for in is withdrawn where its dense ou
   const double omega = 0.5 * std::numbers::pi;
   for (const char* integrator : {"dop853", "auto"})
     for (const auto& [met, across] : std::vector<std::pair<double, const char*>>{
-           {1e-4, "1e-9"}, {1e-4, "1e-18"}, {1e-4, "1e-19"}, {1e-4, "1e-20"}, {3e-4, "1e-17"}, {3e-4, "1e-18"}, {1e-3, "1e-18"}}) {
+             {1e-4, "1e-9"}, {1e-4, "1e-18"}, {1e-4, "1e-19"}, {1e-4, "1e-20"}, {3e-4, "1e-17"}, {3e-4, "1e-18"}, {1e-3, "1e-18"}}) {
       const double way = 1e3 * (met - std::sin(omega * met) / omega) / omega;
       const Model model = scene(k_no_gravity + body("sledge", "mass = 1.0; inertia = 1.0; position = [0.0, 0.0]") +
                                 element("bushing", "rail", "a = 'sledge'; damping = [0.0, 1e5]") +
                                 element("load", "push", "at = 'sledge'; force_x = 'along'; force_y = 'across'") +
                                 signal_entry("half_sine", "along", "peak = 1e3; duration = 2.0") +
                                 signal_entry("half_sine", "across", "peak = " + std::string(across) + "; duration = 2.0") +
-                                element("unilateral_contact", "buffer", "a = { body = 'sledge', at = [0.0, 0.0] }; b = { body = 'ground', at = "
-                                        "[0.0, 0.0] }; normal = [-1.0, 0.0]; stiffness = 1e3; gap = " + std::to_string(1e6 * way) + "e-6") +
+                                element("unilateral_contact", "buffer",
+                                        "a = { body = 'sledge', at = [0.0, 0.0] }; b = { body = 'ground', at = "
+                                        "[0.0, 0.0] }; normal = [-1.0, 0.0]; stiffness = 1e3; gap = " +
+                                            std::to_string(1e6 * way) + "e-6") +
                                 "[simulation]\nstep = 1e-3\n");
       const auto system = compile(model);
       Simulation simulation(*system, system->initial_state(), unlooked(integrator, 1e-8, 0.06));
-      while (simulation.events().empty() && simulation.advance()) {
-      }
+      while (simulation.events().empty() && simulation.advance()) {}
       CAPTURE(std::string(integrator));
       CAPTURE(met);
       CAPTURE(std::string(across));

@@ -18,13 +18,9 @@ constexpr double k_g = 9.81, k_mile_per_hour = 0.44704, k_first_runs = 20.0;
 
 using Overrides = std::vector<std::string>;
 
-std::string set(const std::string& path, double value) {
-  return path + "=" + number_text(value);
-}
+std::string set(const std::string& path, double value) { return path + "=" + number_text(value); }
 
-std::string set(const std::string& path, double x, double y) {
-  return path + "=[" + number_text(x) + ", " + number_text(y) + "]";
-}
+std::string set(const std::string& path, double x, double y) { return path + "=[" + number_text(x) + ", " + number_text(y) + "]"; }
 
 Run run_of(const std::string& model, const Overrides& overrides = {}) {
   Run run = run_model(load_model(STEPLAP_MODELS "/experiments/" + model + ".toml", overrides));
@@ -45,9 +41,7 @@ double time_at(const Run& run, const std::string& channel, double level) {
 // Rows of a data file, by columns.
 struct Data {
   explicit Data(const std::string& name) : table(read_csv(STEPLAP_TEST_DATA "/experiments/" + name + ".csv", {})) {}
-  [[nodiscard]] double value(std::size_t row, const std::string& column) const {
-    return table.columns[table.column(column, {})][row];
-  }
+  [[nodiscard]] double value(std::size_t row, const std::string& column) const { return table.columns[table.column(column, {})][row]; }
   [[nodiscard]] std::vector<double> values(const std::string& column, const std::function<bool(std::size_t)>& wants) const {
     std::vector<double> found;
     for (std::size_t row = 0; row < table.lines.size(); ++row)
@@ -64,8 +58,7 @@ double mean(const std::vector<double>& values) {
 double deviation(const std::vector<double>& values) {
   const double middle = mean(values);
   double sum = 0.0;
-  for (const double value : values)
-    sum += (value - middle) * (value - middle);
+  for (const double value : values) sum += (value - middle) * (value - middle);
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
@@ -110,8 +103,7 @@ std::vector<Compared> bounces(const std::string& ball, double fitted_height) {
         return data.value(row, "height") == height && data.value(row, "bounce") == bounce && data.value(row, "used") == 1.0;
       };
       const auto i = static_cast<std::size_t>(bounce);
-      Compared c =
-          compared(ball, "interval between bounces", height, data.values("interval", wants), touches.at(i) - touches.at(i - 1));
+      Compared c = compared(ball, "interval between bounces", height, data.values("interval", wants), touches.at(i) - touches.at(i - 1));
       c.number = bounce;
       c.is_fitted = height == fitted_height;
       all.push_back(c);
@@ -126,8 +118,7 @@ std::vector<Compared> flywheel_trolley() {
   const auto all = [](std::size_t) { return true; };
   Compared free = compared("flywheel_trolley", "flywheels free", 0.0, data.values("free", all), time_at(run, "free.x", 1.0));
   free.is_fitted = true;
-  return {free,
-          compared("flywheel_trolley", "flywheels locked", 1.0, data.values("locked", all), time_at(run, "flywheels.x", 1.0))};
+  return {free, compared("flywheel_trolley", "flywheels locked", 1.0, data.values("locked", all), time_at(run, "flywheels.x", 1.0))};
 }
 
 std::vector<Compared> balls_on_rail() {
@@ -135,9 +126,7 @@ std::vector<Compared> balls_on_rail() {
   const auto time = [](double friction) {
     return time_at(run_of("inclined_rail_ball", {set("element.grip.static_friction", friction)}), "ball.x", 1.279);
   };
-  const auto runs_of = [&](double body) {
-    return data.values("time", [&](std::size_t row) { return data.value(row, "body") == body; });
-  };
+  const auto runs_of = [&](double body) { return data.values("time", [&](std::size_t row) { return data.value(row, "body") == body; }); };
   const std::vector<double> metal = runs_of(4), rubber = runs_of(5);
   const double friction = zero_between(0.01, 0.18, [&](double mu) { return time(mu) - mean(metal); });
   Compared slides = compared("inclined_rail", "metal ball", friction, metal, time(friction));
@@ -154,9 +143,8 @@ std::vector<Compared> cylinders_on_rail() {
   std::vector<Compared> all;
   for (const auto& [body, name] : {std::pair{1.0, "plastic cylinder"}, {2.0, "metal cylinder 1"}, {3.0, "metal cylinder 2"}}) {
     const auto half = [&](bool is_first) {
-      return data.values("time", [&](std::size_t row) {
-        return data.value(row, "body") == body && (data.value(row, "run") <= k_first_runs) == is_first;
-      });
+      return data.values(
+          "time", [&](std::size_t row) { return data.value(row, "body") == body && (data.value(row, "run") <= k_first_runs) == is_first; });
     };
     const std::vector<double> first = half(true), last = half(false);
     const double friction = zero_between(0.05, 0.64, [&](double mu) { return time(mu) - mean(first); });
@@ -179,8 +167,8 @@ std::vector<Compared> air_track(bool is_ideal) {
     const Run run = run_of("air_track", overrides);
     const double start = is_ideal ? 0.0 : time_at(run, "trolley.x", 0.0), end = time_at(run, "trolley.x", 0.67);
     const auto wants = [&](std::size_t row) { return data.value(row, "hanging mass") == mass; };
-    Compared c = compared("air_track", is_ideal ? "from masses and way alone" : "with offset and drag", mass,
-                          data.values("time", wants), end - start);
+    Compared c = compared("air_track", is_ideal ? "from masses and way alone" : "with offset and drag", mass, data.values("time", wants),
+                          end - start);
     c.is_fitted = !is_ideal && (mass == masses.front() || mass == masses.back());
     all.push_back(c);
   }
@@ -228,9 +216,8 @@ double housner_ratio(const RockingBlock& block) {
 std::vector<double> rocking_ratios(const RockingBlock& block, std::size_t impacts) {
   const double w = block.width, h = block.height, m = block.density * w * w * h, a = std::atan2(w, h), r = 0.5 * std::hypot(w, h),
                tilt = block.tilt * a;
-  Overrides overrides = {
-      set("body.block.mass", m), set("body.block.inertia", m * (w * w + h * h) / 12.0), set("body.block.angle", -tilt),
-      set("body.block.position", 0.5 * w - r * std::sin(a - tilt), r * std::cos(a - tilt) - m * k_g / block.stiffness)};
+  Overrides overrides = {set("body.block.mass", m), set("body.block.inertia", m * (w * w + h * h) / 12.0), set("body.block.angle", -tilt),
+                         set("body.block.position", 0.5 * w - r * std::sin(a - tilt), r * std::cos(a - tilt) - m * k_g / block.stiffness)};
   for (const auto& [corner, side] : {std::pair{"left corner", -0.5}, {"right corner", 0.5}}) {
     const std::string element = std::string("element.") + corner;
     overrides.push_back(set(element + ".stiffness", block.stiffness));
@@ -248,8 +235,7 @@ std::vector<double> rocking_ratios(const RockingBlock& block, std::size_t impact
   }
   const auto energy = [&](double angle) { return std::cos(a - angle) - std::cos(a); };
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < impacts && i + 1 < swings.size(); ++i)
-    ratios.push_back(std::sqrt(energy(swings[i + 1]) / energy(swings[i])));
+  for (std::size_t i = 0; i < impacts && i + 1 < swings.size(); ++i) ratios.push_back(std::sqrt(energy(swings[i + 1]) / energy(swings[i])));
   return ratios;
 }
 

@@ -12,9 +12,7 @@ using namespace steplap::testing;
 namespace {
 
 // Standard error of the mean.
-double error_of(const Compared& c) {
-  return c.scatter / std::sqrt(static_cast<double>(c.count));
-}
+double error_of(const Compared& c) { return c.scatter / std::sqrt(static_cast<double>(c.count)); }
 
 // Intervals of a ball that keeps a share of its speed at each bounce and is held back by the air, in closed form: against a drag
 // of m g v^2/u^2 it rises for u/g atan(v/u) to u^2/(2 g) ln(1 + v^2/u^2), and falls from a height h to the speed u sqrt(1 -
@@ -58,12 +56,9 @@ TEST_CASE("a table tennis ball's bounces are missed: too long from above the fit
   for (const Compared& c : bounces("table_tennis_ball", 0.18)) {
     CAPTURE(c.setting);
     CAPTURE(c.number);
-    if (c.is_fitted)
-      CHECK(std::abs(c.miss()) < 2.0 * c.scatter);
-    else if (c.setting > 0.18)
-      CHECK(c.miss() > 2.0 * c.scatter);
-    else
-      CHECK(c.miss() < -2.0 * c.scatter);
+    if (c.is_fitted) CHECK(std::abs(c.miss()) < 2.0 * c.scatter);
+    else if (c.setting > 0.18) CHECK(c.miss() > 2.0 * c.scatter);
+    else CHECK(c.miss() < -2.0 * c.scatter);
     CHECK(std::abs(c.miss()) < 0.1 * c.measured);
   }
 }
@@ -105,8 +100,7 @@ TEST_CASE("a rubber ball rolls down a rail with 5/7 of g sin a, and a metal ball
 
 // Runs of a cylinder scatter by 5 to 20 %. What was found from the first twenty describes a single later run within its scatter.
 // The mean of the third body's later runs is three standard errors off: its friction changed while it was measured.
-TEST_CASE(
-    "friction of a cylinder's first runs describes its last ones within their scatter, not always within that of their mean") {
+TEST_CASE("friction of a cylinder's first runs describes its last ones within their scatter, not always within that of their mean") {
   const std::vector<Compared> all = cylinders_on_rail();
   std::vector<double> drift;
   for (std::size_t i = 1; i < all.size(); i += 2) {
@@ -121,14 +115,11 @@ TEST_CASE(
 
 TEST_CASE("a trolley on an air track is missed from masses alone, and predicted once its start and its drag are known from two "
           "of five masses") {
-  for (const Compared& c : air_track(true))
-    CHECK(c.miss() > 10.0 * c.scatter); // all 4 to 6 % slower than measured: it moves already
+  for (const Compared& c : air_track(true)) CHECK(c.miss() > 10.0 * c.scatter); // all 4 to 6 % slower than measured: it moves already
   for (const Compared& c : air_track(false)) {
     CAPTURE(c.setting);
-    if (c.is_fitted)
-      CHECK(std::abs(c.miss()) < 1e-4); // a tenth of the clock's digit
-    else
-      CHECK(std::abs(c.miss()) < 2.0 * c.scatter);
+    if (c.is_fitted) CHECK(std::abs(c.miss()) < 1e-4); // a tenth of the clock's digit
+    else CHECK(std::abs(c.miss()) < 2.0 * c.scatter);
   }
 }
 
@@ -140,8 +131,7 @@ TEST_CASE("two cars: the change of speed of the one that strikes lies within the
   const std::vector<Compared> low = car_to_car(0.2),
                               high = car_to_car(0.4); // ends of the published range of the coefficient of restitution
   CHECK(770.0 * low[0].measured / (950.0 * low[1].measured) == doctest::Approx(1.0 - 0.085).epsilon(1e-3));
-  for (const Compared& c : low)
-    CHECK(std::abs(c.miss()) < 0.05 * c.measured);
+  for (const Compared& c : low) CHECK(std::abs(c.miss()) < 0.05 * c.measured);
   CHECK(low[1].predicted < low[1].measured);
   CHECK(high[1].predicted > high[1].measured);
   CHECK(low[0].miss() > 2.0 * low[0].scatter);
@@ -157,8 +147,7 @@ TEST_CASE("a toppling brick falls faster than was measured") {
 }
 
 // "approximately 0.97", written to 0.01: within 0.02, and below Housner's value, as measured.
-TEST_CASE(
-    "a base found from a slender rocking block moves a short one's loss the right way, by about half of what was measured") {
+TEST_CASE("a base found from a slender rocking block moves a short one's loss the right way, by about half of what was measured") {
   for (const double tilt : {0.3, 0.5, 0.8}) {
     CAPTURE(tilt);
     const std::vector<Compared> all = rocking_blocks(tilt);
@@ -182,8 +171,7 @@ TEST_CASE("a damped corner that becomes stiff loses what Housner's formula says"
       for (const double stiffness : {1e7, 1e8, 1e9}) {
         const RockingBlock block{.height = 0.2 * aspect, .stiffness = stiffness, .damping_ratio = damping_ratio};
         double worst = 0.0;
-        for (const double ratio : rocking_ratios(block, 4))
-          worst = std::max(worst, std::abs(ratio / housner_ratio(block) - 1.0));
+        for (const double ratio : rocking_ratios(block, 4)) worst = std::max(worst, std::abs(ratio / housner_ratio(block) - 1.0));
         CHECK(worst < 0.4 * worst_before);
         worst_before = worst;
       }
@@ -199,8 +187,7 @@ TEST_CASE("a corner that rebounds: slender blocks still lose what Housner says, 
   const auto spread = [](double aspect) {
     const RockingBlock block{.height = 0.2 * aspect, .stiffness = 1e9, .damping_ratio = 0.02};
     double worst = 0.0;
-    for (const double ratio : rocking_ratios(block, 4))
-      worst = std::max(worst, std::abs(ratio / housner_ratio(block) - 1.0));
+    for (const double ratio : rocking_ratios(block, 4)) worst = std::max(worst, std::abs(ratio / housner_ratio(block) - 1.0));
     return worst;
   };
   CHECK(spread(5.0) < 0.002);

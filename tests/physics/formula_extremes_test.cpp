@@ -20,7 +20,8 @@ TEST_CASE("peaks and kinks of formulas are found, whatever the method, its toler
 
 TEST_CASE("an extreme that no bound can be closed to is said to be unknown") {
   // A pole passed inside a step, and one whose sign does not change; a value that holds at one instant only.
-  for (const char* expression : {"1 / (b.x / '1 m' - 0.5123)", "1 / (b.x / '1 m' - 0.5123)^2", "b.x == '0.5123 m' ? 1 : 0", "tan(b.x / '1 m' * 5)"}) {
+  for (const char* expression :
+       {"1 / (b.x / '1 m' - 0.5123)", "1 / (b.x / '1 m' - 0.5123)^2", "b.x == '0.5123 m' ? 1 : 0", "tan(b.x / '1 m' * 5)"}) {
     CAPTURE(expression);
     for (const char* method : {"dop853", "rk4", "moreau"}) {
       CAPTURE(method);

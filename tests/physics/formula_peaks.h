@@ -18,14 +18,15 @@ inline std::string exactly(double value) {
 
 /// A body 'b' that moves along x from 0.
 inline std::string moving(double speed) {
-  return "gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\nstep = 1e-3\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nvelocity = [" + exactly(speed).substr(1, exactly(speed).size() - 2) +
-         ", 0.0]\n";
+  return "gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\nstep = 1e-3\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nvelocity = [" +
+         exactly(speed).substr(1, exactly(speed).size() - 2) + ", 0.0]\n";
 }
 
 /// A body 'b' that swings between −1 m and 1 m on a spring, from 1 m.
 inline std::string swinging(double frequency) {
   const std::string stiffness = exactly(frequency * frequency);
-  return "gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\nstep = 1e-3\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nposition = [1.0, 0.0]\n"
+  return "gravity = [0.0, 0.0]\n[simulation]\nend = 1.0\nstep = 1e-3\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nposition = [1.0, "
+         "0.0]\n"
          "[[element]]\nkind = \"spring_damper\"\nname = \"spring\"\na = \"b\"\naxis = [1.0, 0.0]\nfree_length = 0.0\nstiffness = " +
          stiffness.substr(1, stiffness.size() - 2) + "\n";
 }
@@ -122,8 +123,8 @@ private:
     const double found = peak.is_turned ? -range.low.value : range.high.value;
     std::ostringstream text;
     text.precision(12);
-    text << settings.integrator << " " << settings.step_or_tolerance << ", seed " << seed << ": " << found << " for " << peak.top << " ± " << range.resolution
-         << ", " << peak.expression;
+    text << settings.integrator << " " << settings.step_or_tolerance << ", seed " << seed << ": " << found << " for " << peak.top << " ± "
+         << range.resolution << ", " << peak.expression;
     // Two roundings of the formula itself beside the resolution.
     if (!(std::abs(found - peak.top) <= range.resolution + 1e-15)) wrong.push_back(text.str());
     // A millionth of the range, or of 1 where that is less, and what the text of the formula is evaluated to.

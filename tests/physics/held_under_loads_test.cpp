@@ -37,8 +37,7 @@ struct Torque {
   }
   [[nodiscard]] double integral(double t) const {
     double sum = 0.0;
-    for (const Tone& x : tones)
-      sum += x.amplitude / (2.0 * k_pi * x.frequency) * std::sin(2.0 * k_pi * x.frequency * t + x.phase);
+    for (const Tone& x : tones) sum += x.amplitude / (2.0 * k_pi * x.frequency) * std::sin(2.0 * k_pi * x.frequency * t + x.phase);
     return sum;
   }
 };
@@ -91,8 +90,8 @@ std::string wheel(const Torque& torque, double hold, double slow_speed, const st
   std::string text = "gravity = [0.0, 0.0]\n[[signal]]\nname = \"" + name + "\"\nkind = \"harmonics\"\namplitudes = [" + amplitudes +
                      "]\nfrequencies = [" + frequencies + "]\nphases = [" + phases + "]\n";
   text += "[[body]]\nname = \"wheel\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = \"wheel\"\n"
-          "[[element]]\nkind = \"joint_friction\"\nname = \"bearing\"\na = \"wheel\"\nholds = " + number(hold) +
-          "\n[[element]]\nkind = \"load\"\nname = \"load\"\nat = \"wheel\"\ntorque = \"" + name + "\"\n";
+          "[[element]]\nkind = \"joint_friction\"\nname = \"bearing\"\na = \"wheel\"\nholds = " +
+          number(hold) + "\n[[element]]\nkind = \"load\"\nname = \"load\"\nat = \"wheel\"\ntorque = \"" + name + "\"\n";
   if (slow_speed > 0.0)
     text += "[[body]]\nname = \"slow\"\nmass = 1.0\ninertia = 1.0\nposition = [3.0, 0.0]\nvelocity = [" + number(slow_speed) +
             ", 0.0]\n[[element]]\nkind = \"spring_damper\"\nname = \"spring\"\na = \"slow\"\nb = { body = \"ground\", at = [2.0, 0.0] }\n"
@@ -122,8 +121,8 @@ struct Random {
   }
 };
 
-const std::vector<Settings> k_methods = {{"auto", 1e-9, 2.0},    {"dop853", 1e-9, 2.0}, {"dop853", 1e-4, 2.0}, {"tsit5", 1e-9, 2.0},
-                                         {"tsit5", 1e-3, 2.0},   {"rodas5p", 1e-9, 2.0}, {"rk4", 1e-3, 2.0},    {"rk4", 0.1, 2.0}};
+const std::vector<Settings> k_methods = {{"auto", 1e-9, 2.0},  {"dop853", 1e-9, 2.0},  {"dop853", 1e-4, 2.0}, {"tsit5", 1e-9, 2.0},
+                                         {"tsit5", 1e-3, 2.0}, {"rodas5p", 1e-9, 2.0}, {"rk4", 1e-3, 2.0},    {"rk4", 0.1, 2.0}};
 
 // A slip found is in place; where it ends is as exact as the run: rates to the tolerance over decelerations of some N m.
 double within(const Settings& s) { return s.step_or_tolerance < 1e-6 ? 1e-7 : 2e-3; }
@@ -192,7 +191,8 @@ TEST_CASE("held under loads: a margin that only grazes its bound between two end
   const std::vector<Change> exact = exact_changes(torque, 10.0, 1.0);
   REQUIRE(exact.size() == 2);
   CHECK(exact[1].t - exact[0].t < 6e-3);
-  for (const Settings& s : {Settings{"auto", 1e-9, 1.0}, Settings{"dop853", 1e-5, 1.0}, Settings{"tsit5", 1e-9, 1.0}, Settings{"rk4", 0.05, 1.0}}) {
+  for (const Settings& s :
+       {Settings{"auto", 1e-9, 1.0}, Settings{"dop853", 1e-5, 1.0}, Settings{"tsit5", 1e-9, 1.0}, Settings{"rk4", 0.05, 1.0}}) {
     CAPTURE(s.integrator);
     check_changes(run(wheel(torque, 10.0, 0.0), s), exact, s.integrator == "rk4" ? 3e-3 : 1e-6); // rk4: a twelfth of a period a step
   }

@@ -47,7 +47,8 @@ static_friction = 0.4
 kind = "load"
 name = "push"
 at = { body = "block", at = [0.0, -0.2] }
-force = [)" + std::to_string(force) + R"(, 0.0]
+force = [)" +
+         std::to_string(force) + R"(, 0.0]
 )";
 }
 
@@ -57,8 +58,7 @@ Model stiff_feet() {
     overrides.push_back("element." + foot + ".stiffness=1.6e13");
     overrides.push_back("element." + foot + ".damping=1.5e9");
   }
-  for (const std::string joint : {"front joint", "back joint"})
-    overrides.push_back("element." + joint + ".mode=\"monitor\"");
+  for (const std::string joint : {"front joint", "back joint"}) overrides.push_back("element." + joint + ".mode=\"monitor\"");
   return read_model(std::string(STEPLAP_MODELS) + "/paper/no_interference.toml", transformer_catalog(), overrides);
 }
 
@@ -136,7 +136,8 @@ TEST_CASE("what nothing excites stays at rest within steps that are longer than 
                         "[[element]]\nkind = \"bushing\"\nname = \"rail\"\na = \"sledge\"\ndamping = [0.0, 1e5]\n"
                         "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"sledge\"\nforce_x = \"along\"\nforce_y = \"across\"\n"
                         "[[signal]]\nname = \"along\"\nkind = \"half_sine\"\npeak = 1.0\nduration = 2.0\n"
-                        "[[signal]]\nname = \"across\"\nkind = \"half_sine\"\nduration = 2.0\npeak = " + std::string(across) + "\n",
+                        "[[signal]]\nname = \"across\"\nkind = \"half_sine\"\nduration = 2.0\npeak = " +
+                            std::string(across) + "\n",
                         {integrator, 1e-8, 0.05, 2e-5});
       double fastest = 0.0;
       for (const double v : r.series("sledge.vy")) fastest = std::max(fastest, std::abs(v));

@@ -65,9 +65,9 @@ TEST_CASE("Andrews' squeezer by its seven angles is where its poses put it") {
     const auto angle = [&posed](const char* body) { return posed.find_body(body)->angle; };
     const auto set = [](const std::string& pin, double value) { return "element." + pin + ".angle=" + number(value); };
     const std::string bare = without_poses(text);
-    const Model turned = with(bare, {set("O", angle("K1")), set("F", angle("K2") - angle("K1")), set("B", angle("K3")),
-                                     set("A of K5", angle("K5")), set("A of K7", angle("K7")),
-                                     set("G", angle("K4") - angle("K5")), set("H", angle("K6") - angle("K7"))});
+    const Model turned =
+        with(bare, {set("O", angle("K1")), set("F", angle("K2") - angle("K1")), set("B", angle("K3")), set("A of K5", angle("K5")),
+                    set("A of K7", angle("K7")), set("G", angle("K4") - angle("K5")), set("H", angle("K6") - angle("K7"))});
     check_same_start(turned, posed);
     // The three pins left over close the loops: nothing to do but rounding.
     const auto system = compile(turned);
@@ -141,8 +141,12 @@ angular_velocity = 0.6
     const double* v = &state.v[3 * body];
     const Body& b = model.bodies[body - 1];
     const Vec2 lever = rotated(point - b.cg, q[2]);
-    struct { Vec2 p; double angle; Vec2 v; double w; } f{Vec2(q[0], q[1]) + lever, q[2] + angle,
-        Vec2(v[0] - v[2] * lever.y(), v[1] + v[2] * lever.x()), v[2]};
+    struct {
+      Vec2 p;
+      double angle;
+      Vec2 v;
+      double w;
+    } f{Vec2(q[0], q[1]) + lever, q[2] + angle, Vec2(v[0] - v[2] * lever.y(), v[1] + v[2] * lever.x()), v[2]};
     return f;
   };
   const auto slide_a = frame(1, {0.0, 0.3}, 0.2), slide_b = frame(3, {0.5, 0.0}, -0.7);
@@ -178,7 +182,8 @@ name = "bolts"
 a = { body = "tool", point = [0.0, -0.1] }
 b = { body = "flange", point = [0.2, 0.0] }
 angle = "90 deg"
-)", {});
+)",
+                           {});
   const Body& tool = *model.find_body("tool");
   CHECK(std::abs(tool.angle - 0.3 - 0.5 * M_PI) < k_rounding);
   CHECK((tool.position + rotated(Vec2(0.0, -0.1), tool.angle) - (Vec2(1.0, 2.0) + rotated(Vec2(0.2, 0.0), 0.3))).norm() < k_rounding);
@@ -205,7 +210,8 @@ name = "pin"
 a = { body = "arm", point = [-1.0, 0.0] }
 b = { body = "base", at = [1.0, 0.5] }
 angle = "-90 deg"
-)", {});
+)",
+                           {});
   CHECK((model.find_body("arm")->position - Vec2(1.0, -0.5)).norm() < k_rounding);
   CHECK(model.find_body("by itself")->position.norm() == 0.0);
 }

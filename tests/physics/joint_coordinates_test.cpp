@@ -21,40 +21,31 @@ std::string everything() {
   return "gravity = [1.0, -9.0]\n[simulation]\nstep = 1e-3\n" +
          body("post", "mass = 3; inertia = 0.4; position = [0.2, 0.5]; angle = 0.3; angular_velocity = 0.4") +
          body("arm", "mass = 2; inertia = 0.3; position = [0.9, 0.8]; velocity = [0.3, -0.2]; angular_velocity = 0.7") +
-         body("tip",
-              "mass = 1; inertia = 0.1; position = [1.6, 0.3]; velocity = [-0.5, 0.4]; angular_velocity = -1.1") +
+         body("tip", "mass = 1; inertia = 0.1; position = [1.6, 0.3]; velocity = [-0.5, 0.4]; angular_velocity = -1.1") +
          body("tail", "mass = 0.7; inertia = 0.05; position = [2.0, 0.7]") +
          body("strut", "mass = 0.9; inertia = 0.08; position = [1.2, -0.1]; angular_velocity = 0.5") +
          body("cart", "mass = 1.4; inertia = 0.2; position = [0.4, 1.5]; velocity = [0.2, 0.1]") +
-         body("bob",
-              "mass = 0.6; inertia = 0.02; position = [2.2, -0.2]; velocity = [0.1, -0.3]; angular_velocity = 2.0") +
-         body("kite",
-              "mass = 1.1; inertia = 0.15; position = [3.0, 2.0]; velocity = [0.4, 0.2]; angular_velocity = 0.6") +
+         body("bob", "mass = 0.6; inertia = 0.02; position = [2.2, -0.2]; velocity = [0.1, -0.3]; angular_velocity = 2.0") +
+         body("kite", "mass = 1.1; inertia = 0.15; position = [3.0, 2.0]; velocity = [0.4, 0.2]; angular_velocity = 0.6") +
          body("string", "mass = 0.5; inertia = 0.05; position = [3.4, 1.7]") +
          element("revolute", "foot", "a = { body = 'post', at = [0.0, 0.1] }") +
-         element("revolute", "shoulder",
-                 "a = { body = 'arm', at = [0.5, 0.9] }; b = { body = 'post', at = [0.5, 0.9] }") +
+         element("revolute", "shoulder", "a = { body = 'arm', at = [0.5, 0.9] }; b = { body = 'post', at = [0.5, 0.9] }") +
          element("revolute", "wrist", "a = { body = 'arm', at = [1.3, 0.6] }; b = { body = 'tip', at = [1.3, 0.6] }") +
          element("weld", "tail weld", "a = 'tail'; b = 'tip'") +
-         element("revolute", "strut top",
-                 "a = { body = 'strut', at = [1.7, 0.1] }; b = { body = 'tail', at = [1.7, 0.1] }") +
-         element("revolute", "strut foot",
-                 "a = { body = 'strut', at = [0.8, -0.3] }; b = { body = 'ground', at = [0.8, -0.3] }") +
+         element("revolute", "strut top", "a = { body = 'strut', at = [1.7, 0.1] }; b = { body = 'tail', at = [1.7, 0.1] }") +
+         element("revolute", "strut foot", "a = { body = 'strut', at = [0.8, -0.3] }; b = { body = 'ground', at = [0.8, -0.3] }") +
          element("prismatic", "guide", "a = 'cart'; b = { body = 'post', at = [0.4, 1.2] }; axis = [0.6, 0.8]") +
          element("distance", "rod", "a = { body = 'bob', at = [2.3, -0.1] }; b = { body = 'tail', at = [2.2, 0.6] }") +
-         element("revolute", "kite pin",
-                 "a = { body = 'string', at = [3.2, 1.8] }; b = { body = 'kite', at = [3.2, 1.8] }") +
+         element("revolute", "kite pin", "a = { body = 'string', at = [3.2, 1.8] }; b = { body = 'kite', at = [3.2, 1.8] }") +
          element("spring_damper", "tie",
                  "a = { body = 'kite', at = [2.8, 1.9] }; b = { body = 'tip', at = [1.8, 0.2] }; stiffness = 90; "
                  "damping = 4") +
-         element("spring_damper", "return",
-                 "a = 'cart'; b = { body = 'bob', at = [2.1, -0.2] }; stiffness = 40; damping = 2") +
+         element("spring_damper", "return", "a = 'cart'; b = { body = 'bob', at = [2.1, -0.2] }; stiffness = 40; damping = 2") +
          element("bushing", "mount",
                  "a = { body = 'post', at = [0.1, 0.4] }; b = 'ground'; stiffness = [50, 90]; damping = [2, 3]; "
                  "rotational_stiffness = 60; rotational_damping = 2") +
          element("motor", "elbow", "a = 'arm'; b = 'post'; constant_effort = 3; derivative = 0.7") +
-         element("joint_friction", "stiff pin",
-                 "a = 'string'; b = 'kite'; coordinate = 'angle'; holds = 0.4; drags = 0.3");
+         element("joint_friction", "stiff pin", "a = 'string'; b = 'kite'; coordinate = 'angle'; holds = 0.4; drags = 0.3");
 }
 
 struct Outcome {
@@ -74,8 +65,7 @@ Outcome outcome_at(const System& system, const State& state, Coordinates coordin
   Outcome outcome;
   Dynamics::Candidates candidates;
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
-    if (state.friction[f].phase == FrictionPhase::slip)
-      candidates.rows.push_back(system.frictions[f].friction->rows(state.friction[f]));
+    if (state.friction[f].phase == FrictionPhase::slip) candidates.rows.push_back(system.frictions[f].friction->rows(state.friction[f]));
   dynamics.respond(candidates, dy.data());
   outcome.compliance = candidates.compliance;
   outcome.along = candidates.acceleration;
@@ -119,8 +109,7 @@ TEST_CASE("joint coordinates: the same accelerations and reactions in one state"
 
 // Of one mechanism, of two, of a free body and of the ground: the answers fill a matrix whose rows mix both descriptions.
 TEST_CASE("joint coordinates: friction between whatever hangs where") {
-  const std::string all = everything() +
-                          element("joint_friction", "arm on strut", "a = 'arm'; b = 'strut'; coordinate = 'x'; holds = 2") +
+  const std::string all = everything() + element("joint_friction", "arm on strut", "a = 'arm'; b = 'strut'; coordinate = 'x'; holds = 2") +
                           element("joint_friction", "tip on kite", "a = 'tip'; b = 'kite'; coordinate = 'y'; holds = 2") +
                           element("joint_friction", "cart on string", "a = 'cart'; b = 'string'; coordinate = 'x'; holds = 2") +
                           element("joint_friction", "kite on ground", "a = 'kite'; coordinate = 'y'; holds = 2") +
@@ -203,11 +192,14 @@ TEST_CASE("joint coordinates: the same motion, reactions and energies") {
     double end;
     double bound;
   };
-  for (const Case& c : {Case{"simple_pendulum", 3.0, 1e-8}, {"double_pendulum", 2.0, 1e-7}, {"andrews", 0.03, 1e-7},
-                        {"four_bar_2", 0.6, 1e-8}, {"robot_arm", 1.0, 1e-8}, {"chain_10", 0.5, 1e-7}}) {
+  for (const Case& c : {Case{"simple_pendulum", 3.0, 1e-8},
+                        {"double_pendulum", 2.0, 1e-7},
+                        {"andrews", 0.03, 1e-7},
+                        {"four_bar_2", 0.6, 1e-8},
+                        {"robot_arm", 1.0, 1e-8},
+                        {"chain_10", 0.5, 1e-7}}) {
     CAPTURE(std::string(c.model));
-    const Model model =
-        read_model(std::string(STEPLAP_MODELS) + "/benchmarks/" + c.model + ".toml", transformer_catalog());
+    const Model model = read_model(std::string(STEPLAP_MODELS) + "/benchmarks/" + c.model + ".toml", transformer_catalog());
     const auto system = compile(model);
     const RunResult absolute = run_in(model, *system, Coordinates::absolute, 1e-11, c.end);
     const RunResult joint = run_in(model, *system, Coordinates::joint, 1e-11, c.end);
@@ -263,15 +255,14 @@ TEST_CASE("joint coordinates: a crank and its piston") {
 // A bead without weight on a rod that turns at ω: r = r0 cosh ωt, the rod presses with 2 m ω ṙ. 1e-9: the tolerance is 1e-12.
 TEST_CASE("a bead on a turning rod, by its closed form") {
   constexpr double k_omega = 2.0, k_mass = 0.8, k_start = 0.3, k_end = 1.2;
-  const std::string text =
-      k_no_gravity + "[simulation]\nstep = 1e-3\n" +
-      body("rod", "mass = 3; inertia = 0.4; position = [0, 0]; angular_velocity = 2") +
-      body("bead", "mass = 0.8; inertia = 0.01; position = [0.3, 0]; velocity = [0, 0.6]; angular_velocity = 2") +
-      signal_entry("constant", "zero", "value = 0") + signal_entry("constant", "speed", "value = 2") +
-      element("prescribed_motion", "x", "a = 'rod'; coordinate = 'x'; signal = 'zero'; as = 'velocity'") +
-      element("prescribed_motion", "y", "a = 'rod'; coordinate = 'y'; signal = 'zero'; as = 'velocity'") +
-      element("prescribed_motion", "motor", "a = 'rod'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
-      element("prismatic", "guide", "a = 'bead'; b = 'rod'; axis = [1.0, 0.0]");
+  const std::string text = k_no_gravity + "[simulation]\nstep = 1e-3\n" +
+                           body("rod", "mass = 3; inertia = 0.4; position = [0, 0]; angular_velocity = 2") +
+                           body("bead", "mass = 0.8; inertia = 0.01; position = [0.3, 0]; velocity = [0, 0.6]; angular_velocity = 2") +
+                           signal_entry("constant", "zero", "value = 0") + signal_entry("constant", "speed", "value = 2") +
+                           element("prescribed_motion", "x", "a = 'rod'; coordinate = 'x'; signal = 'zero'; as = 'velocity'") +
+                           element("prescribed_motion", "y", "a = 'rod'; coordinate = 'y'; signal = 'zero'; as = 'velocity'") +
+                           element("prescribed_motion", "motor", "a = 'rod'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
+                           element("prismatic", "guide", "a = 'bead'; b = 'rod'; axis = [1.0, 0.0]");
   const Model model = scene(text);
   const auto system = compile(model);
   const RunResult result = run_in(model, *system, Coordinates::automatic, 1e-12, k_end);
@@ -310,28 +301,24 @@ TEST_CASE("joint coordinates: chosen for what hangs on the ground, not for drive
     dynamics.set_state(state);
     return dynamics.coordinate_count();
   };
-  const std::string two = body("upper", "mass = 2; inertia = 0.3; position = [0.5, 0]") +
-                          body("lower", "mass = 1; inertia = 0.1; position = [1.5, 0]");
-  const std::string elbow =
-      element("revolute", "elbow", "a = { body = 'lower', at = [1, 0] }; b = { body = 'upper', at = [1, 0] }");
+  const std::string two =
+      body("upper", "mass = 2; inertia = 0.3; position = [0.5, 0]") + body("lower", "mass = 1; inertia = 0.1; position = [1.5, 0]");
+  const std::string elbow = element("revolute", "elbow", "a = { body = 'lower', at = [1, 0] }; b = { body = 'upper', at = [1, 0] }");
   const std::string shoulder = element("revolute", "shoulder", "a = { body = 'upper', at = [0, 0] }");
   CHECK(count(two + elbow + shoulder, Coordinates::automatic) == 2);
   CHECK(count(two + elbow + shoulder, Coordinates::absolute) == 6);
   CHECK(count(two + elbow, Coordinates::automatic) == 6);
   CHECK(count(two + elbow, Coordinates::joint) == 4);
-  const std::string motor =
-      signal_entry("constant", "speed", "value = 1") +
-      element("prescribed_motion", "motor", "a = 'upper'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'");
+  const std::string motor = signal_entry("constant", "speed", "value = 1") +
+                            element("prescribed_motion", "motor", "a = 'upper'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'");
   CHECK(count(two + elbow + shoulder + motor, Coordinates::joint) == 6);
   std::string chain = two;
   for (int i = 0; i < 16; ++i) chain += body("b" + std::to_string(i), "mass = 1; inertia = 0.1; position = [0, 0]");
   for (int i = 0; i + 1 < 16; ++i)
-    chain += element("revolute", "j" + std::to_string(i),
-                     "a = 'b" + std::to_string(i + 1) + "'; b = 'b" + std::to_string(i) + "'");
+    chain += element("revolute", "j" + std::to_string(i), "a = 'b" + std::to_string(i + 1) + "'; b = 'b" + std::to_string(i) + "'");
   chain += element("revolute", "first", "a = 'b0'");
   CHECK(count(chain, Coordinates::automatic) == 16 + 6);
-  CHECK(count(chain + elbow + shoulder + element("revolute", "last", "a = 'upper'; b = 'b15'"),
-              Coordinates::automatic) == 54);
+  CHECK(count(chain + elbow + shoulder + element("revolute", "last", "a = 'upper'; b = 'b15'"), Coordinates::automatic) == 54);
 }
 
 // The implicit method's steps use the linearisation; 1e-7 is a hundred times its tolerance.

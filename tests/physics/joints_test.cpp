@@ -14,9 +14,7 @@ namespace {
 // B3: point mass on 1 m from the horizontal, x(10 s), y(10 s); the period by elliptic integrals.
 constexpr double k_x = -0.275087462576117, k_y = -0.961419205099125, k_period = 2.36784194757624;
 
-std::string body(const std::string& name, const std::string& rest) {
-  return "[[body]]\nname = \"" + name + "\"\n" + rest + "\n";
-}
+std::string body(const std::string& name, const std::string& rest) { return "[[body]]\nname = \"" + name + "\"\n" + rest + "\n"; }
 
 // Momentum, and angular momentum about the origin, of all bodies.
 Vec3 momentum(const System& system, const State& state) {
@@ -202,8 +200,8 @@ TEST_CASE("a chain of welded bodies moves as the one body they make") {
   const auto place = [&](const Vec2& at) { return "position = [" + number(at.x()) + ", " + number(at.y()) + "]"; };
   std::string chain, springs;
   for (int i = 0; i < 3; ++i)
-    chain += body(std::string(1, static_cast<char>('a' + i)), "mass = " + number(m[i]) + "\ninertia = " + number(j[i]) + "\nangle = 0." +
-                                                                  std::to_string(i) + "\n" + place(p[i]));
+    chain += body(std::string(1, static_cast<char>('a' + i)),
+                  "mass = " + number(m[i]) + "\ninertia = " + number(j[i]) + "\nangle = 0." + std::to_string(i) + "\n" + place(p[i]));
   chain += "[[element]]\nkind = \"weld\"\nname = \"first\"\na = \"a\"\nb = \"b\"\n"
            "[[element]]\nkind = \"weld\"\nname = \"second\"\na = { body = \"c\", at = [1.0, 0.1] }\nb = \"b\"\n";
   const std::string one = body("a", "mass = " + number(mass) + "\ninertia = " + number(inertia) + "\n" + place(centre));
@@ -224,8 +222,7 @@ TEST_CASE("a chain of welded bodies moves as the one body they make") {
     const Vec2 force(2.0 * merged.series("a.ax")[i], 2.0 * (merged.series("a.ay")[i] + 9.81));
     const double angle = merged.series("b.theta")[i];
     const Vec2 carried = rotated({merged.series("first.force_x")[i], merged.series("first.force_y")[i]}, angle);
-    const Vec2 hook = Vec2(merged.series("a.x")[i], merged.series("a.y")[i]) +
-                      rotated(Vec2(0.1, 0.2), merged.series("a.theta")[i]);
+    const Vec2 hook = Vec2(merged.series("a.x")[i], merged.series("a.y")[i]) + rotated(Vec2(0.1, 0.2), merged.series("a.theta")[i]);
     const Vec2 away = (hook - Vec2(0.5, 2.0)).normalized();
     const Vec2 pull = merged.series("s 0.1, 0.2.force")[i] * away;
     CHECK((carried + pull - force).norm() < 1e-9);
@@ -240,8 +237,8 @@ TEST_CASE("a long chain takes four evaluations for a step of four stages") {
   std::string text;
   for (int i = 0; i < rods; ++i) {
     const std::string name = std::to_string(i), before = std::to_string(i - 1);
-    text += body(name, "mass = 1.0\ninertia = 0.083\ncg = [0.5, 0.0]") + "[[element]]\nkind = \"revolute\"\nname = \"pin " +
-            name + "\"\na = { body = \"" + name + "\", point = [0.0, 0.0] }\nangle = 0.0\n";
+    text += body(name, "mass = 1.0\ninertia = 0.083\ncg = [0.5, 0.0]") + "[[element]]\nkind = \"revolute\"\nname = \"pin " + name +
+            "\"\na = { body = \"" + name + "\", point = [0.0, 0.0] }\nangle = 0.0\n";
     if (i > 0) text += "b = { body = \"" + before + "\", point = [1.0, 0.0] }\n";
   }
   const Run r = run(text, {"rk4", 1e-4, steps * 1e-4});
@@ -260,11 +257,12 @@ TEST_CASE("cranks under a bar pass their flat positions with every method, as we
   text.precision(17);
   text << "[[body]]\nname = \"bar\"\nmass = 1.0\ninertia = 0.1\nposition = [" << 2.0 + c << ", " << s << "]\n";
   for (int i = 0; i < 3; ++i) {
-    text << "[[body]]\nname = \"crank " << i << "\"\nmass = 1.0\ninertia = 0.1\nposition = [" << 2.0 * i + 0.5 * c << ", " << 0.5 * s << "]\n";
+    text << "[[body]]\nname = \"crank " << i << "\"\nmass = 1.0\ninertia = 0.1\nposition = [" << 2.0 * i + 0.5 * c << ", " << 0.5 * s
+         << "]\n";
     text << "[[element]]\nkind = \"revolute\"\nname = \"foot " << i << "\"\na = { body = \"crank " << i << "\", at = [" << 2.0 * i
          << ", 0.0] }\nb = { body = \"ground\", at = [" << 2.0 * i << ", 0.0] }\n";
-    text << "[[element]]\nkind = \"revolute\"\nname = \"head " << i << "\"\na = { body = \"crank " << i << "\", at = [" << 2.0 * i + c << ", " << s
-         << "] }\nb = { body = \"bar\", at = [" << 2.0 * i + c << ", " << s << "] }\n";
+    text << "[[element]]\nkind = \"revolute\"\nname = \"head " << i << "\"\na = { body = \"crank " << i << "\", at = [" << 2.0 * i + c
+         << ", " << s << "] }\nb = { body = \"bar\", at = [" << 2.0 * i + c << ", " << s << "] }\n";
   }
   double theta = std::acos(c), omega = 0.0;
   const auto pull = [](double angle) { return -2.5 * 9.81 / 2.05 * std::cos(angle); };
@@ -274,8 +272,8 @@ TEST_CASE("cranks under a bar pass their flat positions with every method, as we
     theta += h * omega + h * h / 6.0 * (a1 + a2 + a3);
     omega += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4);
   }
-  for (const Settings& method : {Settings{"dop853", 1e-8}, Settings{"tsit5", 1e-8}, Settings{"auto", 1e-8}, Settings{"rodas5p", 1e-6}, Settings{"rodas5p", 1e-8},
-                                 Settings{"rodas5p", 1e-10}}) {
+  for (const Settings& method : {Settings{"dop853", 1e-8}, Settings{"tsit5", 1e-8}, Settings{"auto", 1e-8}, Settings{"rodas5p", 1e-6},
+                                 Settings{"rodas5p", 1e-8}, Settings{"rodas5p", 1e-10}}) {
     CAPTURE(method.integrator);
     CAPTURE(method.step_or_tolerance);
     const Run r = run(text.str(), {method.integrator, method.step_or_tolerance, end});

@@ -24,8 +24,8 @@ std::string number(double x) {
 
 std::string end_text(const std::string& name, double x, double y, const std::string& normal, double friction) {
   return element("unilateral_contact", name,
-                 "a = { body = 'ladder', point = [" + number(x) + ", " + number(y) + "] }; b = 'ground'; gap = 0.0; normal = " +
-                     normal + "; stiffness = " + number(k_stiffness) + "; damping = " + number(k_damping)) +
+                 "a = { body = 'ladder', point = [" + number(x) + ", " + number(y) + "] }; b = 'ground'; gap = 0.0; normal = " + normal +
+                     "; stiffness = " + number(k_stiffness) + "; damping = " + number(k_damping)) +
          element("coulomb_stick", name + " friction", "contacts = ['" + name + "']; static_friction = " + number(friction));
 }
 
@@ -33,8 +33,8 @@ std::string end_text(const std::string& name, double x, double y, const std::str
 std::string ladder(double degrees, double at_wall, double at_floor, double speed = 0.0) {
   const double angle = degrees * k_pi / 180.0, x = 0.5 * k_length * std::cos(angle), y = 0.5 * k_length * std::sin(angle);
   std::string text = "gravity = [0.0, -9.81]\n" +
-                     body("ladder", "mass = 20.0; inertia = " + number(k_mass * k_length * k_length / 12.0) + "; position = [" +
-                                        number(x) + ", " + number(y) + "]; velocity = [" + number(speed) + ", 0.0]") +
+                     body("ladder", "mass = 20.0; inertia = " + number(k_mass * k_length * k_length / 12.0) + "; position = [" + number(x) +
+                                        ", " + number(y) + "]; velocity = [" + number(speed) + ", 0.0]") +
                      end_text("foot", x, -y, "[0.0, 1.0]", at_floor) + end_text("top", -x, y, "[1.0, 0.0]", at_wall);
   std::replace(text.begin(), text.end(), '\'', '"');
   return text;

@@ -21,9 +21,10 @@ std::string at(const std::string& name, double x, double y) { return "{ body = "
 // A rod of 1 m on the end of the one before; the first on the ground's origin.
 std::string rod(int i, double x, double y, double angle, double mass) {
   const std::string name = numbered("rod", i);
-  return body(name, "mass = " + number(mass) + "; inertia = " + number(mass / 12.0) + "; position = " + point(x, y) + "; angle = " + number(angle)) +
-         element("revolute", numbered("pin", i), "a = " + at(name, -0.5, 0.0) + "; b = " +
-                 (i == 0 ? at("ground", 0.0, 0.0) : at(numbered("rod", i - 1), 0.5, 0.0)));
+  return body(name, "mass = " + number(mass) + "; inertia = " + number(mass / 12.0) + "; position = " + point(x, y) +
+                        "; angle = " + number(angle)) +
+         element("revolute", numbered("pin", i),
+                 "a = " + at(name, -0.5, 0.0) + "; b = " + (i == 0 ? at("ground", 0.0, 0.0) : at(numbered("rod", i - 1), 0.5, 0.0)));
 }
 
 // Foot i on what carries it: two contacts and their friction.
@@ -31,16 +32,18 @@ std::string feet(int i, const std::string& on, double width, double height, doub
   const std::string name = numbered("block", i), left = numbered("left", i), right = numbered("right", i);
   std::string text;
   for (const auto& [foot, x] : {std::pair{left, -width}, {right, width}})
-    text += element("unilateral_contact", foot, "a = " + at(name, x, -height) + "; b = " + on + "; stiffness = " + number(stiffness) + "; damping = 1e3");
-  return text + element("coulomb_stick", numbered("friction", i), "contacts = [" + quoted(left) + ", " + quoted(right) + "]; static_friction = 0.4");
+    text += element("unilateral_contact", foot,
+                    "a = " + at(name, x, -height) + "; b = " + on + "; stiffness = " + number(stiffness) + "; damping = 1e3");
+  return text + element("coulomb_stick", numbered("friction", i),
+                        "contacts = [" + quoted(left) + ", " + quoted(right) + "]; static_friction = 0.4");
 }
 
 } // namespace
 
 TEST_CASE("sparse algebra finds the rests that dense algebra finds") {
-  for (const char* name : {"benchmarks/double_pendulum", "benchmarks/chain_10", "benchmarks/slider_crank", "benchmarks/robot_arm",
-                           "benchmarks/four_bar_2", "benchmarks/andrews", "paper/no_interference", "paper/interference",
-                           "layouts/rail_wagon_humping"}) {
+  for (const char* name :
+       {"benchmarks/double_pendulum", "benchmarks/chain_10", "benchmarks/slider_crank", "benchmarks/robot_arm", "benchmarks/four_bar_2",
+        "benchmarks/andrews", "paper/no_interference", "paper/interference", "layouts/rail_wagon_humping"}) {
     CAPTURE(std::string(name));
     const Model model = read_model(std::string(STEPLAP_MODELS) + "/" + name + ".toml", transformer_catalog());
     const Found dense = settle(model, RestAlgebra::dense), sparse = settle(model, RestAlgebra::sparse);
@@ -78,7 +81,8 @@ TEST_CASE("a long chain between two supports takes the catenary's shape from far
     double x = 0.0, y = 0.0, worst = 0.0, worst_angle = 0.0;
     for (int i = 0; i < n; ++i) {
       const double angle = std::atan(slope(i, low));
-      worst = std::max({worst, std::abs(found.q(i + 1, 0) - x - 0.5 * std::cos(angle)), std::abs(found.q(i + 1, 1) - y - 0.5 * std::sin(angle))});
+      worst = std::max(
+          {worst, std::abs(found.q(i + 1, 0) - x - 0.5 * std::cos(angle)), std::abs(found.q(i + 1, 1) - y - 0.5 * std::sin(angle))});
       worst_angle = std::max(worst_angle, std::abs(found.q(i + 1, 2) - angle));
       x += std::cos(angle);
       y += std::sin(angle);
@@ -112,9 +116,11 @@ TEST_CASE("a grid of masses on springs settles by the weight above each spring")
     for (int j = 0; j < n; ++j) {
       const std::string name = numbered(numbered("mass", i), j);
       text += body(name, "mass = 1.5; inertia = 0.1; position = " + point(i, j + 1));
-      text += element("bushing", "up " + name, "a = " + quoted(name) + "; b = " +
-                      (j > 0 ? quoted(numbered(numbered("mass", i), j - 1)) : at("ground", i, 0.0)) + stiff);
-      if (i > 0) text += element("bushing", "side " + name, "a = " + quoted(name) + "; b = " + quoted(numbered(numbered("mass", i - 1), j)) + stiff);
+      text +=
+          element("bushing", "up " + name,
+                  "a = " + quoted(name) + "; b = " + (j > 0 ? quoted(numbered(numbered("mass", i), j - 1)) : at("ground", i, 0.0)) + stiff);
+      if (i > 0)
+        text += element("bushing", "side " + name, "a = " + quoted(name) + "; b = " + quoted(numbered(numbered("mass", i - 1), j)) + stiff);
     }
   const Found found = settle(text);
   double worst = 0.0;
@@ -134,8 +140,10 @@ TEST_CASE("a large scene that nothing holds is said to have no rest") {
   std::string text;
   for (int i = 0; i < n; ++i) {
     text += body(numbered("mass", i), "mass = 2; inertia = 0.1; position = " + point(i, 0.0));
-    if (i > 0) text += element("bushing", numbered("side", i), "a = " + quoted(numbered("mass", i)) + "; b = " + quoted(numbered("mass", i - 1)) +
-                               "; stiffness = [1e4, 1e4]; rotational_stiffness = 1e3");
+    if (i > 0)
+      text += element("bushing", numbered("side", i),
+                      "a = " + quoted(numbered("mass", i)) + "; b = " + quoted(numbered("mass", i - 1)) +
+                          "; stiffness = [1e4, 1e4]; rotational_stiffness = 1e3");
   }
   const std::string why = reason(text);
   CAPTURE(why);
@@ -147,10 +155,12 @@ TEST_CASE("a row of 200 blocks comes to rest on a deck that gives way under them
   const int n = 200;
   std::string text = body("deck", "mass = 1000; inertia = 1e5");
   for (const double x : {-120.0, 120.0})
-    text += element("bushing", x < 0.0 ? "rear" : "front", "a = " + at("deck", x, 0.0) + "; b = " + at("ground", x, 0.0) + "; stiffness = [1e7, 1e7]");
+    text += element("bushing", x < 0.0 ? "rear" : "front",
+                    "a = " + at("deck", x, 0.0) + "; b = " + at("ground", x, 0.0) + "; stiffness = [1e7, 1e7]");
   for (int i = 0; i < n; ++i)
-    text += body(numbered("block", i), "mass = 10; inertia = 1.67; position = " + point(1.2 * (i - 0.5 * (n - 1)), 0.52 + 0.001 * (i % 7))) +
-            feet(i, quoted("deck"), 0.5, 0.5, 1e6);
+    text +=
+        body(numbered("block", i), "mass = 10; inertia = 1.67; position = " + point(1.2 * (i - 0.5 * (n - 1)), 0.52 + 0.001 * (i % 7))) +
+        feet(i, quoted("deck"), 0.5, 0.5, 1e6);
   const Found found = settle(text);
   CHECK(found.rest.iterations < 20); // they land in one step, each where it touches, not one after another
   const double deck = -(1000.0 + 10.0 * n) * k_g / 2e7;
@@ -173,7 +183,8 @@ TEST_CASE("sixty blocks slide until springs and friction hold them") {
   for (int i = 0; i < n; ++i) {
     const std::string name = numbered("block", i);
     text += body(name, "mass = 100; inertia = 10; position = " + point(3.0 * i, 0.2)) + feet(i, quoted("ground"), 0.5, 0.2, 1e6) +
-            element("bushing", numbered("spring", i), "a = " + quoted(name) + "; b = " + at("ground", 3.0 * i, 0.2) + "; stiffness = [1e4, 0.0]") +
+            element("bushing", numbered("spring", i),
+                    "a = " + quoted(name) + "; b = " + at("ground", 3.0 * i, 0.2) + "; stiffness = [1e4, 0.0]") +
             element("load", numbered("push", i), "at = " + quoted(name) + "; force = [588.6, 0.0]");
   }
   const Found found = settle(text);

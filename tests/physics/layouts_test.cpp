@@ -76,13 +76,19 @@ struct Load {
   const char* drive; ///< its prescribed motion along x
   double end;        ///< s: the load and what follows at once
 };
-const Load k_loads[] = {{"single_phase_two_limb", "drive", 0.6}, {"single_phase_two_limb_humping", "drive", 0.2},
-                        {"single_phase_two_limb_bump", "drive", 0.6}, {"three_limb", "drive", 0.6},
-                        {"three_limb_humping", "drive", 0.2}, {"three_limb_bump", "drive", 0.6},
+const Load k_loads[] = {{"single_phase_two_limb", "drive", 0.6},
+                        {"single_phase_two_limb_humping", "drive", 0.2},
+                        {"single_phase_two_limb_bump", "drive", 0.6},
+                        {"three_limb", "drive", 0.6},
+                        {"three_limb_humping", "drive", 0.2},
+                        {"three_limb_bump", "drive", 0.6},
                         {"three_limb_stepped", "drive", 0.2},
-                        {"five_limb", "drive", 0.6}, {"five_limb_humping", "drive", 0.2},
-                        {"five_limb_bump", "drive", 0.6}, {"rail_wagon", "brake", 0.6},
-                        {"rail_wagon_bump", "brake", 0.4}, {"rail_wagon_humping", "", 0.4}};
+                        {"five_limb", "drive", 0.6},
+                        {"five_limb_humping", "drive", 0.2},
+                        {"five_limb_bump", "drive", 0.6},
+                        {"rail_wagon", "brake", 0.6},
+                        {"rail_wagon_bump", "brake", 0.4},
+                        {"rail_wagon_humping", "", 0.4}};
 
 } // namespace
 
@@ -107,8 +113,7 @@ TEST_CASE("layouts rest as they stand, and their supports carry their weight") {
     dynamics.rates(0.0, y.data(), dy.data());
     const Snapshot snapshot = dynamics.snapshot(dy.data());
     double carried = 0.0;
-    for (const std::string& support : supports(*system))
-      carried += system->find_channel(support + ".force")->value(snapshot);
+    for (const std::string& support : supports(*system)) carried += system->find_channel(support + ".force")->value(snapshot);
     CHECK(carried == doctest::Approx(carried_mass(*system) * k_g).epsilon(1e-12));
   }
 }
@@ -123,16 +128,14 @@ TEST_CASE("layouts under their loads: momentum and energy balance, joints hold")
     const std::vector<double> up = inertia_force(r, "ay"), support = sum_of(r, supports(*r.system));
     for (std::size_t k = 0; k < up.size(); ++k) CHECK(std::abs(up[k] - (support[k] - weight)) < 1e-11 * weight);
     const std::vector<double> forward = inertia_force(r, "ax");
-    const std::vector<double> pull = *load.drive ? r.series(std::string(load.drive) + ".reaction")
-                                                 : r.series("buffers.force");
+    const std::vector<double> pull = *load.drive ? r.series(std::string(load.drive) + ".reaction") : r.series("buffers.force");
     const double sign = *load.drive ? 1.0 : -1.0;
     for (std::size_t k = 0; k < pull.size(); ++k) CHECK(std::abs(forward[k] - sign * pull[k]) < 1e-11 * weight);
     // What the method leaves at tolerance 1e-9, a hundred steps: far below the figures that anybody reads.
     CHECK(r.result.statistics.energy_residual < 1e-7 * r.result.statistics.energy_exchanged);
     for (const Event& event : r.result.events) CHECK(event.element.find("joint") == std::string::npos);
     for (const std::string& name : r.system->element_names)
-      if (name.size() > 6 && name.rfind(" joint") == name.size() - 6)
-        CHECK(largest(r.series(name + ".p_req")) < 0.1e6);
+      if (name.size() > 6 && name.rfind(" joint") == name.size() - 6) CHECK(largest(r.series(name + ".p_req")) < 0.1e6);
   }
 }
 
@@ -144,11 +147,10 @@ TEST_CASE("layouts: a load in the other direction gives the mirrored motion") {
     std::vector<std::string> reversed;
     double end;
   };
-  const Case cases[] = {
-      {"single_phase_two_limb", {"signal.road braking.peak=0.8 gravity", "simulation.velocity=[-3.138128, 0.0]"}, 0.4},
-      {"three_limb", {"signal.road braking.peak=0.8 gravity", "simulation.velocity=[-3.138128, 0.0]"}, 0.4},
-      {"five_limb_humping", {"signal.rail humping.peak=2 gravity", "simulation.velocity=[-0.749173, 0.0]"}, 0.2},
-      {"rail_wagon", {"signal.train braking.peak=1.4", "simulation.velocity=[-1.4, 0.0]"}, 0.6}};
+  const Case cases[] = {{"single_phase_two_limb", {"signal.road braking.peak=0.8 gravity", "simulation.velocity=[-3.138128, 0.0]"}, 0.4},
+                        {"three_limb", {"signal.road braking.peak=0.8 gravity", "simulation.velocity=[-3.138128, 0.0]"}, 0.4},
+                        {"five_limb_humping", {"signal.rail humping.peak=2 gravity", "simulation.velocity=[-0.749173, 0.0]"}, 0.2},
+                        {"rail_wagon", {"signal.train braking.peak=1.4", "simulation.velocity=[-1.4, 0.0]"}, 0.6}};
   for (const Case& c : cases) {
     CAPTURE(std::string(c.model));
     const Run r = run_layout(c.model, c.end), mirror = run_layout(c.model, c.end, c.reversed);
@@ -179,10 +181,10 @@ TEST_CASE("layouts: braking ends at rest, with the forces that a hand calculatio
     CHECK(std::abs(r.last("trailer.vx")) < 1e-12);
     const double mass = carried_mass(*r.system);
     const double push = largest(r.series("drive.reaction"));
-    CHECK(push > 0.8 * k_g * mass);       // more than the whole as one body
-    CHECK(push < 1.6 * k_g * mass);       // less than a step load on an undamped spring
+    CHECK(push > 0.8 * k_g * mass); // more than the whole as one body
+    CHECK(push < 1.6 * k_g * mass); // less than a step load on an undamped spring
     const std::vector<double> slide = r.series("feet.slide");
-    CHECK(largest(slide) > 1e-4);         // 0.8 g is more than mu = 0.3: it slides until the devices bear
+    CHECK(largest(slide) > 1e-4); // 0.8 g is more than mu = 0.3: it slides until the devices bear
     CHECK(largest(slide) < 10e-3);
   }
 }
@@ -198,7 +200,7 @@ TEST_CASE("layouts: a humped wagon hands its momentum over and keeps the rest") 
   CHECK(momentum == doctest::Approx(m1 * v0).epsilon(1e-12)); // linear: kept by every Runge-Kutta method
   const double after = r.last("standing wagon.vx");
   const double e = (after - (momentum - m2 * after) / m1) / v0; // coefficient of restitution
-  CHECK((e > 0.4 && e < 0.9));                            // "about half of the energy": e² about 0.5
+  CHECK((e > 0.4 && e < 0.9));                                  // "about half of the energy": e² about 0.5
   // A rigid wagon on undamped buffers: F = v0 √(k m), m the reduced mass. Damping and a cargo that gives
   // change it by less than a fifth.
   const double force = largest(r.series("buffers.force"));

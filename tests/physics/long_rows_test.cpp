@@ -1,8 +1,8 @@
 // Rows over several bodies in random poses: gradients and second rates against differences, whatever their bodies are merged
 // into, driven by or held by, and the rows that are counted.
+#include "mbd/dynamics/linearization.h"
 #include "mbd/rest/freedom.h"
 #include "mbd/rest/statics.h"
-#include "mbd/dynamics/linearization.h"
 #include "mbd/system/one_sided_row.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
@@ -21,20 +21,23 @@ std::string body_at(const std::string& name, double x, double y) {
 }
 
 std::string marker_at(const std::string& name, const std::string& of, double x, double y) {
-  return table_text("marker", "name = \"" + name + "\"\n", "body = \"" + of + "\"; point = [" + std::to_string(x) + ", " + std::to_string(y) + "]");
+  return table_text("marker", "name = \"" + name + "\"\n",
+                    "body = \"" + of + "\"; point = [" + std::to_string(x) + ", " + std::to_string(y) + "]");
 }
 
 // From a hook over a block that is welded to a lump (twice, with a part within it), the ground, a driven block and a link on a
 // pin, to a weight. Every point is off its body's centre.
-const std::string k_scene = body_at("hook", -1.0, -1.0) + body_at("block", -0.5, 0.3) + body_at("lump", -0.1, 0.8) + body_at("driven", 0.7, 0.4) +
-                            body_at("link", 1.2, 0.1) + body_at("weight", 1.5, -1.2) + marker_at("p0", "hook", 0.1, 0.2) + marker_at("p1", "block", -0.2, 0.1) +
-                            marker_at("p2", "lump", 0.3, -0.1) + marker_at("p3", "ground", 0.2, 0.1) + marker_at("p4", "driven", -0.1, 0.25) +
-                            marker_at("p5", "driven", 0.15, 0.2) + marker_at("p6", "link", 0.2, -0.1) + marker_at("p7", "weight", -0.1, 0.3) +
-                            element("weld", "bolt", "a = \"lump\"; b = \"block\"") + element("revolute", "pin", "a = { body = \"link\", at = [1.0, 0.4] }; b = { body = \"hook\", at = [1.0, 0.4] }") +
-                            element("prescribed_motion", "drive", "a = \"driven\"; coordinate = \"x\"; signal = \"wave\"; as = \"velocity\"") +
-                            signal_entry("harmonics", "wave", "amplitudes = [0.5]; frequencies = [0.8]") +
-                            element("rope", "rope", "a = \"p0\"; b = \"p7\"; over = [\"p1\", \"p2\", \"p3\", \"p4\", \"p5\", \"p6\"]; inextensible = true") +
-                            "[simulation]\nstep = 1e-3\n";
+const std::string k_scene =
+    body_at("hook", -1.0, -1.0) + body_at("block", -0.5, 0.3) + body_at("lump", -0.1, 0.8) + body_at("driven", 0.7, 0.4) +
+    body_at("link", 1.2, 0.1) + body_at("weight", 1.5, -1.2) + marker_at("p0", "hook", 0.1, 0.2) + marker_at("p1", "block", -0.2, 0.1) +
+    marker_at("p2", "lump", 0.3, -0.1) + marker_at("p3", "ground", 0.2, 0.1) + marker_at("p4", "driven", -0.1, 0.25) +
+    marker_at("p5", "driven", 0.15, 0.2) + marker_at("p6", "link", 0.2, -0.1) + marker_at("p7", "weight", -0.1, 0.3) +
+    element("weld", "bolt", "a = \"lump\"; b = \"block\"") +
+    element("revolute", "pin", "a = { body = \"link\", at = [1.0, 0.4] }; b = { body = \"hook\", at = [1.0, 0.4] }") +
+    element("prescribed_motion", "drive", "a = \"driven\"; coordinate = \"x\"; signal = \"wave\"; as = \"velocity\"") +
+    signal_entry("harmonics", "wave", "amplitudes = [0.5]; frequencies = [0.8]") +
+    element("rope", "rope", "a = \"p0\"; b = \"p7\"; over = [\"p1\", \"p2\", \"p3\", \"p4\", \"p5\", \"p6\"]; inextensible = true") +
+    "[simulation]\nstep = 1e-3\n";
 
 struct Bench {
   std::unique_ptr<System> system = compile(scene(k_scene));
@@ -79,7 +82,7 @@ TEST_CASE("gradients of a rope over many bodies are those of differences") {
     const MatX j = linear.dense(linear.gradient(), linear.rows());
     for (int c = 0; c < b.n; ++c) {
       if (b.dynamics.layout().inverse_mass[c] == 0.0) continue; // driven: it does not follow y
-      constexpr double k_step = 1e-5; // leaves its square, 1e-10, times third derivatives near 1
+      constexpr double k_step = 1e-5;                           // leaves its square, 1e-10, times third derivatives near 1
       std::vector<double> ahead = b.y, behind = b.y;
       ahead[c] += k_step;
       behind[c] -= k_step;

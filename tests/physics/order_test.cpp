@@ -76,8 +76,7 @@ State final_state(const System& system, const SimulationOptions& options) {
 
 double distance(const State& a, const State& b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.q.size(); ++i)
-    sum += std::pow(a.q[i] - b.q[i], 2) + std::pow(a.v[i] - b.v[i], 2);
+  for (std::size_t i = 0; i < a.q.size(); ++i) sum += std::pow(a.q[i] - b.q[i], 2) + std::pow(a.v[i] - b.v[i], 2);
   return std::sqrt(sum);
 }
 
@@ -93,7 +92,8 @@ TEST_CASE("rk4, tsit5, dop853, rodas5p and moreau converge with orders 4, 5, 8, 
   };
   // dop853's leading coefficients are so small that its order shows only over one halving above rounding: 8.19, of which the
   // next term makes some 12 over the steps a second (8.31 at 48, 8.26 at 56), and rounding 0.04.
-  for (const Case& c : {Case{"rk4", 4.0, 1.0, 256, 0.1}, Case{"tsit5", 5.0, 1.0, 256, 0.1}, Case{"dop853", 8.0, 0.5, 64, 0.2}, Case{"rodas5p", 5.0, 1.0, 128, 0.2}, Case{"moreau", 1.0, 1.0, 256, 0.1}}) {
+  for (const Case& c : {Case{"rk4", 4.0, 1.0, 256, 0.1}, Case{"tsit5", 5.0, 1.0, 256, 0.1}, Case{"dop853", 8.0, 0.5, 64, 0.2},
+                        Case{"rodas5p", 5.0, 1.0, 128, 0.2}, Case{"moreau", 1.0, 1.0, 256, 0.1}}) {
     const State exact = final_state(*system, with_step("dop853", 1.0 / 512, c.end));
     const double coarse = distance(final_state(*system, with_step(c.integrator, 1.0 / c.coarse, c.end)), exact);
     const double fine = distance(final_state(*system, with_step(c.integrator, 0.5 / c.coarse, c.end)), exact);
@@ -113,8 +113,8 @@ TEST_CASE("dense output: one step's error inside it falls with the order it clai
   };
   // rk4: h⁵ is its own local error; in the velocities the quintic's slope divides it by h, which is still the
   // order of the method. tsit5: dense output of order 4; dop853: of order 7; rodas5p: of order 4.
-  for (const Case& c : {Case{"rk4", 5.0, 4.0, 0.05}, Case{"tsit5", 5.0, 5.0, 0.05}, Case{"dop853", 8.0, 8.0, 0.1},
-                        Case{"rodas5p", 5.0, 5.0, 0.05}}) {
+  for (const Case& c :
+       {Case{"rk4", 5.0, 4.0, 0.05}, Case{"tsit5", 5.0, 5.0, 0.05}, Case{"dop853", 8.0, 8.0, 0.1}, Case{"rodas5p", 5.0, 5.0, 0.05}}) {
     CAPTURE(std::string(c.integrator));
     double error[2][2] = {};
     for (int i = 0; i < 2; ++i) {

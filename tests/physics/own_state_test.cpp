@@ -51,7 +51,9 @@ struct HeldMass {
 
   [[nodiscard]] static std::string text() {
     return body("load", "mass = 2; inertia = 1") + state("integral", "unit = \"m s\"; scale = 0.1;" + rate("'0.5 m' - load.y")) +
-           element("force", "controller", "a = \"load\"; coordinate = \"y\";" + formula("'50 N/m' * ('0.5 m' - value) + '40 N/m/s' * integral - '14 N s/m' * rate"));
+           element("force", "controller",
+                   "a = \"load\"; coordinate = \"y\";" +
+                       formula("'50 N/m' * ('0.5 m' - value) + '40 N/m/s' * integral - '14 N s/m' * rate"));
   }
   // (y, y', integral)
   [[nodiscard]] VecX at(double t) const {
@@ -134,7 +136,8 @@ TEST_CASE("states have the order of their method: fixed steps of rk4, and time s
 TEST_CASE("a stiff filter costs an implicit method no more steps than a slow one: its derivatives are exact") {
   // A filter of 1 µs, thousands of times faster than the motion that it follows.
   const auto text = [](const char* time) {
-    return k_no_gravity + body("a", "mass = 1; inertia = 1; position = [1.0, 0.0]") + state("filtered", "unit = \"m\"; start = 1.0;" + rate("(a.x - filtered) / " + std::string(time))) +
+    return k_no_gravity + body("a", "mass = 1; inertia = 1; position = [1.0, 0.0]") +
+           state("filtered", "unit = \"m\"; start = 1.0;" + rate("(a.x - filtered) / " + std::string(time))) +
            element("force", "spring", "a = \"a\";" + formula("-'40 N/m' * filtered - '1 N s/m' * rate"));
   };
   const Run fast = run(text("'1e-6 s'"), {"rodas5p", 1e-8, 10.0, 10.0}), slow = run(text("'1e-2 s'"), {"rodas5p", 1e-8, 10.0, 10.0});
@@ -146,8 +149,10 @@ TEST_CASE("a stiff filter costs an implicit method no more steps than a slow one
 
 TEST_CASE("states follow each other, whatever their units: a temperature that a current heats, with a switch") {
   // i' = (1 - i)/τ; T' = 5 i² - (T - 300)/2 while T is below 302, without heating from there on: located, then an exponential.
-  const std::string text = k_no_gravity + body("a", "mass = 1; inertia = 1") + state("warm", "unit = \"K\"; start = 300; scale = 10;" + rate("(warm < 302 ? 5 * amps^2 : 0) / '1 s' - (warm - 300) / '2 s'")) +
-                           state("amps", "unit = \"A\"; start = 1;" + rate("(1 - amps) / '0.1 s'"));
+  const std::string text =
+      k_no_gravity + body("a", "mass = 1; inertia = 1") +
+      state("warm", "unit = \"K\"; start = 300; scale = 10;" + rate("(warm < 302 ? 5 * amps^2 : 0) / '1 s' - (warm - 300) / '2 s'")) +
+      state("amps", "unit = \"A\"; start = 1;" + rate("(1 - amps) / '0.1 s'"));
   // i = 1 throughout: T = 300 + 10 (1 - exp(-t/2)) reaches 302 at t1 = -2 ln 0.8.
   const double t1 = -2.0 * std::log(0.8);
   const Run r = run(text, {"dop853", 1e-10, 0.9 * t1, 0.9 * t1});
@@ -202,9 +207,11 @@ TEST_CASE("formulas in parts and repetitions are those written out") {
 
 TEST_CASE("studies vary what formulas name, also where they want a few channels only") {
   const auto text = [](const char* stiffness, const char* start) {
-    return "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n[parameters]\nk = \"" + std::string(stiffness) + "\"\n" + body("a", "mass = 1; inertia = 1; position = [1.0, 0.0]") +
+    return "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n[parameters]\nk = \"" + std::string(stiffness) + "\"\n" +
+           body("a", "mass = 1; inertia = 1; position = [1.0, 0.0]") +
            element("spring_damper", "wire", "a = \"a\"; axis = [1.0, 0.0]; stiffness = 2.0; free_length = 0.4") +
-           state("seen", "unit = \"m\"; rate = \"(wire.elongation - seen) / '0.2 s'\"; start = " + std::string(start)) + element("force", "pull", "a = \"a\";" + formula("-k * seen"));
+           state("seen", "unit = \"m\"; rate = \"(wire.elongation - seen) / '0.2 s'\"; start = " + std::string(start)) +
+           element("force", "pull", "a = \"a\";" + formula("-k * seen"));
   };
   const Model given = parse_given_model(text("40 N/m", "0.1"), "scene.toml", transformer_catalog());
   const std::vector<std::string> wanted = {"a.x"};
@@ -217,10 +224,13 @@ TEST_CASE("studies vary what formulas name, also where they want a few channels 
 }
 
 TEST_CASE("derivatives of states and by states are those of differences") {
-  const std::string text = k_no_gravity + body("other", "mass = 1; inertia = 1; position = [-2.0, 0.0]") + // so that a's coordinates are not the first
-                           body("a", "mass = 2; inertia = 0.5; position = [0.3, 0.2]; angle = 0.4; velocity = [0.5, -0.7]; angular_velocity = 1.1") +
-                           state("one", "unit = \"m\"; start = 0.3;" + rate("(tip.x * tip.vy / '1 m/s' - one * two) / '0.2 s'")) + state("two", "start = 0.7;" + rate("(sin(a.theta) - two^2 * one / '1 m') / '0.5 s'")) +
-                           table_text("marker", "name = \"tip\"\n", "body = \"a\"; point = [0.2, -0.3]") + element("force", "pull", "a = \"tip\"; coordinate = \"y\";" + formula("-'5 N/m' * value * two - '3 N/m' * one * two"));
+  const std::string text =
+      k_no_gravity + body("other", "mass = 1; inertia = 1; position = [-2.0, 0.0]") + // so that a's coordinates are not the first
+      body("a", "mass = 2; inertia = 0.5; position = [0.3, 0.2]; angle = 0.4; velocity = [0.5, -0.7]; angular_velocity = 1.1") +
+      state("one", "unit = \"m\"; start = 0.3;" + rate("(tip.x * tip.vy / '1 m/s' - one * two) / '0.2 s'")) +
+      state("two", "start = 0.7;" + rate("(sin(a.theta) - two^2 * one / '1 m') / '0.5 s'")) +
+      table_text("marker", "name = \"tip\"\n", "body = \"a\"; point = [0.2, -0.3]") +
+      element("force", "pull", "a = \"tip\"; coordinate = \"y\";" + formula("-'5 N/m' * value * two - '3 N/m' * one * two"));
   const std::unique_ptr<System> system = compile(scene(text + "[simulation]\nstep = 1e-3\n"));
   Dynamics dynamics(*system);
   const State state = system->initial_state();
@@ -248,9 +258,12 @@ TEST_CASE("derivatives of states and by states are those of differences") {
     const auto slope = [&](int i) { return (ahead[static_cast<std::size_t>(i)] - behind[static_cast<std::size_t>(i)]) / (2.0 * k_step); };
     const auto& parts = linear.states();
     for (int z = 0; z < 2; ++z) {
-      const double expected = c < n ? sum(parts.by_pose, z, c) : c < 2 * n ? sum(parts.by_velocity, z, c - n) : sum(parts.by_state, z, c - 2 * n);
+      const double expected = c < n       ? sum(parts.by_pose, z, c)
+                              : c < 2 * n ? sum(parts.by_velocity, z, c - n)
+                                          : sum(parts.by_state, z, c - 2 * n);
       CHECK(std::abs(slope(2 * n + z) - expected) < 1e-8);
     }
-    for (int i = 0; i < n && c >= 2 * n; ++i) CHECK(std::abs(slope(n + i) - linear.inverse_mass()[static_cast<std::size_t>(i)] * sum(parts.forces, i, c - 2 * n)) < 1e-8);
+    for (int i = 0; i < n && c >= 2 * n; ++i)
+      CHECK(std::abs(slope(n + i) - linear.inverse_mass()[static_cast<std::size_t>(i)] * sum(parts.forces, i, c - 2 * n)) < 1e-8);
   }
 }

@@ -25,10 +25,8 @@ struct Observed {
 
 Observed observe(Condition condition, double friction_factor = 1.0) {
   std::vector<std::string> overrides;
-  if (friction_factor != 1.0)
-    overrides.push_back("element.tank bottom.static_friction=" + std::to_string(0.35 * friction_factor));
-  const Model model = read_model(std::string(STEPLAP_MODELS) + "/paper/" + name_of(condition) + ".toml",
-                                 transformer_catalog(), overrides);
+  if (friction_factor != 1.0) overrides.push_back("element.tank bottom.static_friction=" + std::to_string(0.35 * friction_factor));
+  const Model model = read_model(std::string(STEPLAP_MODELS) + "/paper/" + name_of(condition) + ".toml", transformer_catalog(), overrides);
   Observed o;
   o.run = run(model, {"dop853", 1e-9, 0.8, 1e-3});
   o.t = o.run.times();
@@ -131,8 +129,7 @@ TEST_CASE("4. in the first window the active part slides on the floor and sticks
 TEST_CASE("5. the second window comes when a foot that had lifted touches down again") {
   for (const Observed* o : {&without(), &with()}) {
     const std::vector<Phase> w = windows(o->slips);
-    const std::vector<double> lifts = o->run.event_times("rear foot", "opens"),
-                              lands = o->run.event_times("rear foot", "closes");
+    const std::vector<double> lifts = o->run.event_times("rear foot", "opens"), lands = o->run.event_times("rear foot", "closes");
     REQUIRE(lifts.size() == 1);
     REQUIRE(lands.size() == 1);
     CHECK(lifts[0] < w[0].end);

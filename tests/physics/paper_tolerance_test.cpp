@@ -27,8 +27,7 @@ double worst_error(const Run& r, const CsvTable& reference) {
 
 } // namespace
 
-TEST_CASE(
-    "errors of the adaptive methods follow the tolerance over six decades, down to 1e-8 of range") {
+TEST_CASE("errors of the adaptive methods follow the tolerance over six decades, down to 1e-8 of range") {
   for (const Condition condition : {Condition::no_interference, Condition::interference})
     for (const char* integrator : {"tsit5", "dop853"}) {
       CAPTURE(name_of(condition));

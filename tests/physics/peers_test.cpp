@@ -77,9 +77,8 @@ double planar_four_bar() {
     // Centres of gravity in the axes along and across the bodies' chords (0.1, 1.1) and (0.65, 0.1).
     const PathPoint c2 = pin + ((0.05 * 0.1 + 0.55 * 1.1) / a) * e2 + ((0.55 * 0.1 - 0.05 * 1.1) / a) * left_of(e2);
     const PathPoint c4 = ground + ((0.325 * 0.65 + 0.05 * 0.1) / b) * e4 + ((0.05 * 0.65 - 0.325 * 0.1) / b) * left_of(e4);
-    return std::vector<Weight>{{7.7, 0.2 * crank, true},          {0.10427083333333337, crank, false},
-                               {21.26231995808548, c2, true},     {2.166098845729958, e2, false},
-                               {12.659710946542186, c4, true},    {0.4589145218121543, e4, false}};
+    return std::vector<Weight>{{7.7, 0.2 * crank, true},       {0.10427083333333337, crank, false}, {21.26231995808548, c2, true},
+                               {2.166098845729958, e2, false}, {12.659710946542186, c4, true},      {0.4589145218121543, e4, false}};
   };
   return integrate(m, 0.0, 0.0, 5.0, 40000);
 }
@@ -111,8 +110,10 @@ double line_force() {
   };
   m.weights = [line](double q) {
     const PathPoint box = direction(q), e = unit(line(q));
-    return std::vector<Weight>{{6.602749999999999, 0.35 * box, true}, {0.2702863223958332, box, false},
-                               {1.0, 0.2 * e, true},                  {1.0, 0.7 * box - 0.2 * e, true},
+    return std::vector<Weight>{{6.602749999999999, 0.35 * box, true},
+                               {0.2702863223958332, box, false},
+                               {1.0, 0.2 * e, true},
+                               {1.0, 0.7 * box - 0.2 * e, true},
                                {2e-9, e, false}};
   };
   return integrate(m, 0.0, 0.0, 3.0, 40000);
@@ -252,10 +253,10 @@ struct Peer {
   const char* channel;
   double end;
   double (*truth)();
-  double within;     ///< of the truth
-  double theirs;     ///< what the other program keeps as its reference; NaN where none is noted here
-  double off;        ///< most by which theirs differs from the truth: what its fixed step, or its tolerance of
-                     ///< 1e-4 to 1e-6, is worth, as a power of ten above the difference found
+  double within; ///< of the truth
+  double theirs; ///< what the other program keeps as its reference; NaN where none is noted here
+  double off;    ///< most by which theirs differs from the truth: what its fixed step, or its tolerance of
+                 ///< 1e-4 to 1e-6, is worth, as a power of ten above the difference found
   const char* integrator = "dop853";
   double tolerance = 1e-12;
 };
@@ -267,7 +268,7 @@ constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<Peer>& peers() {
   static const std::vector<Peer> list = {
-      {"iftomm_four_bar", "b0.x", 4.0, iftomm_four_bar, k_within, 0.05815092990659491, 1e-3},         // step 0.01 s
+      {"iftomm_four_bar", "b0.x", 4.0, iftomm_four_bar, k_within, 0.05815092990659491, 1e-3},             // step 0.01 s
       {"exudyn_undamped_contact", "ball.y", 0.5, undamped_contact, k_within, 0.057286638346409235, 5e-3}, // step 5 ms
       {"exudyn_damped_contact", "ball.y", 0.25, damped_contact, k_within, 0.0553131995062827, 5e-4},
       {"exudyn_four_bar", "n1.y", 2.0, exudyn_four_bar, k_within, 2.0 - 2.376335780518213, 1e-3}, // step 1 ms
@@ -317,9 +318,7 @@ TEST_CASE("the sum that stands for a rigid body's pose") {
 // Modelica's gap holds its damper's force within the spring's, either way; ours, only their sum above zero. With its
 // own law the same integration gives its number: the two programs differ in the law and not in how they solve it.
 TEST_CASE("the second mass of ElastoGap under the law of its own program") {
-  const auto push = [](double depth, double rate) {
-    return 10.0 * depth + std::clamp(1.5 * rate, -10.0 * depth, 10.0 * depth);
-  };
+  const auto push = [](double depth, double rate) { return 10.0 * depth + std::clamp(1.5 * rate, -10.0 * depth, 10.0 * depth); };
   const auto rate = [push](double, const Unknowns<2>& y) {
     return Unknowns<2>{y[1], y[0] > 0.5 ? -push(y[0] - 0.5, y[1]) : y[0] < -0.5 ? push(-0.5 - y[0], -y[1]) : 0.0};
   };

@@ -20,7 +20,7 @@ template <std::size_t n> Unknowns<n> plus(Unknowns<n> y, double factor, const Un
 /// One step; `rate(t, y)` gives the derivative.
 template <std::size_t n, class Rate> Unknowns<n> rk4_step(const Rate& rate, double t, const Unknowns<n>& y, double h) {
   const Unknowns<n> a = rate(t, y), b = rate(t + 0.5 * h, plus(y, 0.5 * h, a)), c = rate(t + 0.5 * h, plus(y, 0.5 * h, b)),
-                 d = rate(t + h, plus(y, h, c));
+                    d = rate(t + h, plus(y, h, c));
   Unknowns<n> next = y;
   for (std::size_t i = 0; i < n; ++i) next[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
   return next;
@@ -38,9 +38,7 @@ template <std::size_t n, class Mode, class Rate>
 Unknowns<n> integrate_piecewise(const Mode& mode, const Rate& rate, Unknowns<n> y, double end, int steps) {
   int now = mode(y);
   double t = 0.0;
-  const auto step = [&](double h) {
-    return rk4_step<n>([&](double, const Unknowns<n>& x) { return rate(now, x); }, t, y, h);
-  };
+  const auto step = [&](double h) { return rk4_step<n>([&](double, const Unknowns<n>& x) { return rate(now, x); }, t, y, h); };
   while (t < end) {
     const double h = std::min(end / steps, end - t);
     Unknowns<n> next = step(h);

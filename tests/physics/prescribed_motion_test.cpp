@@ -25,8 +25,10 @@ frequencies = [1.5]
 name = "body"
 mass = 3.0
 inertia = 0.6
-position = [)" + std::string(level == "position" ? "0.2" : "0.0") + R"(, 0.0]
-velocity = [)" + std::to_string(speed) + R"(, 0.0]
+position = [)" +
+         std::string(level == "position" ? "0.2" : "0.0") + R"(, 0.0]
+velocity = [)" +
+         std::to_string(speed) + R"(, 0.0]
 [[element]]
 kind = "spring_damper"
 name = "spring"
@@ -46,7 +48,8 @@ rotational_damping = 0.5
 [[element]]
 kind = "prescribed_motion"
 name = "drive"
-a = )" + at + "\ncoordinate = \"" + coordinate + "\"\nsignal = \"motion\"\nas = \"" + level + "\"\n";
+a = )" + at +
+         "\ncoordinate = \"" + coordinate + "\"\nsignal = \"motion\"\nas = \"" + level + "\"\n";
 }
 
 struct Jet {
@@ -72,9 +75,8 @@ TEST_CASE("x of a body follows its signal as position, velocity and acceleration
         CAPTURE(settings.integrator);
         const bool is_locked = at == "\"body\"";
         const Run r = run(driven("x", level, at, 0.5), settings);
-        const std::vector<double> x = r.series("body.x"), v = r.series("body.vx"), a = r.series("body.ax"),
-                                  theta = r.series("body.theta"), w = r.series("body.omega"),
-                                  reaction = r.series("drive.reaction"), spring = r.series("spring.force");
+        const std::vector<double> x = r.series("body.x"), v = r.series("body.vx"), a = r.series("body.ax"), theta = r.series("body.theta"),
+                                  w = r.series("body.omega"), reaction = r.series("drive.reaction"), spring = r.series("spring.force");
         for (std::size_t i = 0; i < x.size(); ++i) {
           const Jet e = expected(level, r.times()[i], 0.5);
           // The marker's place: x − 0.1 sin θ. At a step's end the row holds to 1e-12, between them the

@@ -10,9 +10,8 @@ namespace {
 
 void print(const std::vector<Compared>& all) {
   for (const Compared& c : all)
-    std::printf("%s,%s,%g,%d,%d,%.6g,%.2g,%.6g,%.3g,%.2f,%s\n", c.experiment.c_str(), c.what.c_str(), c.setting, c.number,
-                c.count, c.measured, c.scatter, c.predicted, c.miss(), c.miss() / c.scatter,
-                c.is_fitted ? "fitted" : "predicted");
+    std::printf("%s,%s,%g,%d,%d,%.6g,%.2g,%.6g,%.3g,%.2f,%s\n", c.experiment.c_str(), c.what.c_str(), c.setting, c.number, c.count,
+                c.measured, c.scatter, c.predicted, c.miss(), c.miss() / c.scatter, c.is_fitted ? "fitted" : "predicted");
 }
 
 } // namespace
@@ -34,12 +33,10 @@ int main(int argc, char** argv) {
     print(air_track(false));
   }
   if (wants("car_to_car"))
-    for (const double restitution : {0.2, 0.3, 0.4})
-      print(car_to_car(restitution));
+    for (const double restitution : {0.2, 0.3, 0.4}) print(car_to_car(restitution));
   if (wants("toppling_brick")) print(toppling_brick());
   if (wants("rocking_blocks"))
-    for (const double tilt : {0.3, 0.5, 0.8})
-      print(rocking_blocks(tilt));
+    for (const double tilt : {0.3, 0.5, 0.8}) print(rocking_blocks(tilt));
   if (wanted == "housner_limit") {
     std::printf("aspect,damping ratio,stiffness,share of Housner's ratio at impacts 1 to 4\n");
     for (const double aspect : {2.0, 3.0, 5.0})
@@ -47,8 +44,7 @@ int main(int argc, char** argv) {
         for (const double stiffness : {1e6, 1e7, 1e8, 1e9}) {
           const RockingBlock block{.height = 0.2 * aspect, .stiffness = stiffness, .damping_ratio = ratio};
           std::printf("%g,%g,%g", aspect, ratio, stiffness);
-          for (const double e : rocking_ratios(block, 4))
-            std::printf(",%.5f", e / housner_ratio(block));
+          for (const double e : rocking_ratios(block, 4)) std::printf(",%.5f", e / housner_ratio(block));
           std::printf("\n");
         }
   }

@@ -2,10 +2,10 @@
 //
 // Tolerances: runs at 1e-11 over some hundred steps leave 1e-9 of values near 1; accelerations and tensions of the first
 // instant, and what a blow does to given velocities, are exact to rounding.
+#include "mbd/base/diagnostics.h"
 #include "mbd/rest/equilibrium.h"
 #include "mbd/rest/freedom.h"
 #include "mbd/vibration/modes.h"
-#include "mbd/base/diagnostics.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 
@@ -112,10 +112,10 @@ TEST_CASE("models/machines/atwood.toml is its closed form") {
 TEST_CASE("over a pulley on a carriage that is free to move") {
   const double block = 2.0, weight = 1.5, carriage = 5.0, t = 0.4;
   const double tension = k_g / (1.0 / block + 1.0 / weight + 1.0 / (carriage + weight));
-  const std::string text = point_body("carriage", carriage, 0.0, -0.5) + point_body("block", block, -1.0, 0.0) + point_body("weight", weight, 0.5, -1.0) +
-                           body_marker("pulley", "carriage", 0.5, 0.5) + guide("carriage", "ground", "[1.0, 0.0]", 0.0, 0.0) +
-                           guide("block", "carriage", "[1.0, 0.0]", 0.0, 0.0) + guide("weight", "carriage", "[0.0, 1.0]", 0.5, 0.0) +
-                           rope("a = \"block\"; b = \"weight\"; over = [\"pulley\"]");
+  const std::string text = point_body("carriage", carriage, 0.0, -0.5) + point_body("block", block, -1.0, 0.0) +
+                           point_body("weight", weight, 0.5, -1.0) + body_marker("pulley", "carriage", 0.5, 0.5) +
+                           guide("carriage", "ground", "[1.0, 0.0]", 0.0, 0.0) + guide("block", "carriage", "[1.0, 0.0]", 0.0, 0.0) +
+                           guide("weight", "carriage", "[0.0, 1.0]", 0.5, 0.0) + rope("a = \"block\"; b = \"weight\"; over = [\"pulley\"]");
   for (const Coordinates coordinates : k_both)
     for (const char* method : {"dop853", "rodas5p"}) {
       const Run r = run_in(text, coordinates, t, method);
@@ -130,9 +130,10 @@ TEST_CASE("over a pulley on a carriage that is free to move") {
 // 2 T − M g = M a_B, T − m g = m a, a = −2 a_B.
 TEST_CASE("gun tackle: half the load and twice the way") {
   const double load = 30.0, weight = 12.0, t = 0.3, a = (2.0 * weight - load) * k_g / (load + 4.0 * weight);
-  const std::string text = point_body("load", load, 0.0, -1.0) + point_body("weight", weight, 1.0, -1.0) + body_marker("near", "load", -0.2, 0.1) +
-                           body_marker("far", "load", 0.2, 0.1) + ground_marker("beam", 0.2, 0.0) + ground_marker("end", 1.0, 0.0) +
-                           rope("a = { body = \"ground\", at = [-0.2, 0.0] }; over = [\"near\", \"far\", \"beam\", \"end\"]; b = \"weight\"");
+  const std::string text =
+      point_body("load", load, 0.0, -1.0) + point_body("weight", weight, 1.0, -1.0) + body_marker("near", "load", -0.2, 0.1) +
+      body_marker("far", "load", 0.2, 0.1) + ground_marker("beam", 0.2, 0.0) + ground_marker("end", 1.0, 0.0) +
+      rope("a = { body = \"ground\", at = [-0.2, 0.0] }; over = [\"near\", \"far\", \"beam\", \"end\"]; b = \"weight\"");
   for (const char* method : {"dop853", "rodas5p"}) {
     const Run r = run_in(text, Coordinates::absolute, t, method);
     CHECK(std::abs(r.last("load.y") + 1.0 - 0.5 * a * t * t) < 1e-10);
@@ -147,10 +148,10 @@ TEST_CASE("gun tackle: half the load and twice the way") {
 TEST_CASE("over two pulleys on different bodies") {
   const double m1 = 1.0, m2 = 1.4, b1 = 3.0, b2 = 4.0, t = 0.3;
   const double tension = 2.0 * k_g / (1.0 / m1 + 1.0 / m2 + 1.0 / (b1 + m1) + 1.0 / (b2 + m2));
-  const std::string text = point_body("left block", b1, -1.0, 0.0) + point_body("right block", b2, 1.0, 0.0) + point_body("one", m1, -1.0, -1.0) +
-                           point_body("two", m2, 1.0, -1.2) + guide("left block", "ground", "[1.0, 0.0]", -1.0, 0.0) +
-                           guide("right block", "ground", "[1.0, 0.0]", 1.0, 0.0) + guide("one", "left block", "[0.0, 1.0]", -1.0, 0.0) +
-                           guide("two", "right block", "[0.0, 1.0]", 1.0, 0.0) +
+  const std::string text = point_body("left block", b1, -1.0, 0.0) + point_body("right block", b2, 1.0, 0.0) +
+                           point_body("one", m1, -1.0, -1.0) + point_body("two", m2, 1.0, -1.2) +
+                           guide("left block", "ground", "[1.0, 0.0]", -1.0, 0.0) + guide("right block", "ground", "[1.0, 0.0]", 1.0, 0.0) +
+                           guide("one", "left block", "[0.0, 1.0]", -1.0, 0.0) + guide("two", "right block", "[0.0, 1.0]", 1.0, 0.0) +
                            rope("a = \"one\"; over = [\"left block\", \"right block\"]; b = \"two\"");
   for (const Coordinates coordinates : k_both) {
     const Run r = run_in(text, coordinates, t); // eight rows of guides and the rope's: the sparse way
@@ -167,18 +168,22 @@ TEST_CASE("over two pulleys on different bodies") {
 // and joins bears 2 T.
 TEST_CASE("what holds the pulley bears twice the tension") {
   const double m1 = 3.0, m2 = 2.0, up = 2.0, t = 0.4, tension = 2.0 * m1 * m2 * (k_g + up) / (m1 + m2), frame = 4.0, sheave = 1.0;
-  const std::string lift = signal_entry("constant", "up", "value = 2.0") + point_body("frame", frame, 0.0, 0.0) +
-                           element("prescribed_motion", "x", "a = \"frame\"; coordinate = \"x\"; signal = \"still\"") + signal_entry("constant", "still", "value = 0.0") +
-                           element("prescribed_motion", "turn", "a = \"frame\"; coordinate = \"angle\"; signal = \"still\"") +
-                           element("prescribed_motion", "motor", "a = \"frame\"; coordinate = \"y\"; signal = \"up\"; as = \"acceleration\"");
+  const std::string lift =
+      signal_entry("constant", "up", "value = 2.0") + point_body("frame", frame, 0.0, 0.0) +
+      element("prescribed_motion", "x", "a = \"frame\"; coordinate = \"x\"; signal = \"still\"") +
+      signal_entry("constant", "still", "value = 0.0") +
+      element("prescribed_motion", "turn", "a = \"frame\"; coordinate = \"angle\"; signal = \"still\"") +
+      element("prescribed_motion", "motor", "a = \"frame\"; coordinate = \"y\"; signal = \"up\"; as = \"acceleration\"");
   const std::string weights = point_body("one", m1, -0.5, -1.0) + point_body("two", m2, 0.5, -1.5);
   for (const bool is_welded : {false, true}) {
     CAPTURE(is_welded);
     const std::string on = is_welded ? "sheave" : "frame";
-    const std::string text = lift + weights + (is_welded ? point_body("sheave", sheave, 0.3, 0.2) + element("weld", "bolt", "a = \"sheave\"; b = \"frame\"") : "") +
-                             table_text("marker", "name = \"left\"\n", "body = \"" + on + "\"; at = [-0.5, 0.0]") +
-                             table_text("marker", "name = \"right\"\n", "body = \"" + on + "\"; at = [0.5, 0.0]") +
-                             rope("a = \"one\"; b = \"two\"; over = [\"left\", \"right\"]");
+    const std::string text =
+        lift + weights +
+        (is_welded ? point_body("sheave", sheave, 0.3, 0.2) + element("weld", "bolt", "a = \"sheave\"; b = \"frame\"") : "") +
+        table_text("marker", "name = \"left\"\n", "body = \"" + on + "\"; at = [-0.5, 0.0]") +
+        table_text("marker", "name = \"right\"\n", "body = \"" + on + "\"; at = [0.5, 0.0]") +
+        rope("a = \"one\"; b = \"two\"; over = [\"left\", \"right\"]");
     const Run r = run_in(text, Coordinates::automatic, t);
     CHECK(std::abs(r.last("rope.tension") - tension) < 1e-9);
     CHECK(std::abs(r.last("motor.reaction") - ((frame + (is_welded ? sheave : 0.0)) * (k_g + up) + 2.0 * tension)) < 1e-8);
@@ -193,8 +198,8 @@ TEST_CASE("what holds the pulley bears twice the tension") {
 TEST_CASE("a blow moves all bodies of the rope, and keeps their momentum") {
   const double m1 = 2.0, m2 = 1.0, pulley = 4.0, v1 = 1.5, v2 = 0.5, slack = 0.2, u = v1 + v2;
   const double impulse = u / (1.0 / m1 + 1.0 / m2 + 2.0 / pulley);
-  const std::string text = k_no_gravity + point_body("one", m1, -1.0, 0.0, -v1, 0.0) + point_body("pulley", pulley, 0.0, 0.0) + point_body("two", m2, 0.0, -1.0, 0.0, -v2) +
-                           rope("a = \"one\"; b = \"two\"; over = [\"pulley\"]; slack = 0.2");
+  const std::string text = k_no_gravity + point_body("one", m1, -1.0, 0.0, -v1, 0.0) + point_body("pulley", pulley, 0.0, 0.0) +
+                           point_body("two", m2, 0.0, -1.0, 0.0, -v2) + rope("a = \"one\"; b = \"two\"; over = [\"pulley\"]; slack = 0.2");
   for (const Coordinates coordinates : k_both) {
     const Run r = run_in(text, coordinates, slack / u + 1e-9); // velocities change by some 10 m/s² behind it
     REQUIRE(r.event_times("rope", "closes its gap").size() == 1);
@@ -218,10 +223,11 @@ TEST_CASE("a blow is shared with the rope that holds the pulley, and with a join
   const double m1 = 3.0, m2 = 1.0, u = 1.0, impulse = u / (1.0 / m1 + 1.0 / m2);
   for (const bool is_hung : {true, false}) {
     CAPTURE(is_hung);
-    const std::string holder = is_hung ? element("rope", "hanger", "a = \"pulley\"; b = { body = \"ground\", at = [0.0, 1.0] }; inextensible = true")
-                                       : element("revolute", "hanger", "a = \"pulley\"");
-    const Run r = run_in(k_no_gravity + point_body("pulley", 2.0, 0.0, 0.0) + point_body("one", m1, 0.0, -1.0, 0.0, -u) + point_body("two", m2, 0.0, -1.2) +
-                             holder + rope("a = \"one\"; b = \"two\"; over = [\"pulley\"]; slack = 0.1"),
+    const std::string holder =
+        is_hung ? element("rope", "hanger", "a = \"pulley\"; b = { body = \"ground\", at = [0.0, 1.0] }; inextensible = true")
+                : element("revolute", "hanger", "a = \"pulley\"");
+    const Run r = run_in(k_no_gravity + point_body("pulley", 2.0, 0.0, 0.0) + point_body("one", m1, 0.0, -1.0, 0.0, -u) +
+                             point_body("two", m2, 0.0, -1.2) + holder + rope("a = \"one\"; b = \"two\"; over = [\"pulley\"]; slack = 0.1"),
                          Coordinates::automatic, 0.2);
     REQUIRE(r.event_times("rope", "closes its gap").size() == 1);
     CHECK(std::abs(r.event_times("rope")[0] - 0.1) < 1e-10);
@@ -274,8 +280,9 @@ TEST_CASE("a swinging Atwood machine follows its two equations") {
     for (int c = 0; c < 4; ++c) y[c] += h / 6.0 * (k1[c] + 2.0 * k2[c] + 2.0 * k3[c] + k4[c]);
   }
   REQUIRE(y[0] > 0.1); // it does not run onto the pulley
-  const std::string text = ground_marker("left", 0.0, 0.0) + ground_marker("right", -1.0, 0.0) + point_body("ball", m, r0 * std::sin(theta0), -r0 * std::cos(theta0)) +
-                           point_body("heavy", heavy, -1.0, -3.0) + rope("a = \"ball\"; b = \"heavy\"; over = [\"left\", \"right\"]");
+  const std::string text = ground_marker("left", 0.0, 0.0) + ground_marker("right", -1.0, 0.0) +
+                           point_body("ball", m, r0 * std::sin(theta0), -r0 * std::cos(theta0)) + point_body("heavy", heavy, -1.0, -3.0) +
+                           rope("a = \"ball\"; b = \"heavy\"; over = [\"left\", \"right\"]");
   for (const char* method : {"dop853", "rodas5p"}) {
     CAPTURE(std::string(method));
     const Run r = run_in(text, Coordinates::automatic, end, method);
@@ -309,10 +316,12 @@ TEST_CASE("a stiff rope over pulleys tends to the inextensible one as 1/k") {
 TEST_CASE("a hoist at rest, and its slow vibration") {
   const double weight = 21.0, load = 40.0, k = 100.0, down = (weight - 0.5 * load) * k_g / k;
   const auto hoist = [&](const char* law) {
-    return ground_marker("block", 0.0, 0.0) + ground_marker("turn", 1.0, 0.0) + point_body("load", load, 0.0, -2.0) + point_body("weight", weight, 1.0, -1.0) +
-                           guide("load", "ground", "[0.0, 1.0]", 0.0, 0.0) + guide("weight", "ground", "[0.0, 1.0]", 1.0, 0.0) +
-                           element("spring_damper", "peg", "a = \"weight\"; b = { body = \"ground\", at = [1.0, -1.0] }; axis = [0.0, 1.0]; stiffness = 100.0; free_length = 0.0") +
-                           rope("a = { body = \"ground\", at = [0.0, 0.0] }; b = \"weight\"; over = [\"load\", \"block\", \"turn\"]" + std::string(law)) +
+    return ground_marker("block", 0.0, 0.0) + ground_marker("turn", 1.0, 0.0) + point_body("load", load, 0.0, -2.0) +
+           point_body("weight", weight, 1.0, -1.0) + guide("load", "ground", "[0.0, 1.0]", 0.0, 0.0) +
+           guide("weight", "ground", "[0.0, 1.0]", 1.0, 0.0) +
+           element("spring_damper", "peg",
+                   "a = \"weight\"; b = { body = \"ground\", at = [1.0, -1.0] }; axis = [0.0, 1.0]; stiffness = 100.0; free_length = 0.0") +
+           rope("a = { body = \"ground\", at = [0.0, 0.0] }; b = \"weight\"; over = [\"load\", \"block\", \"turn\"]" + std::string(law)) +
            "[simulation]\nstep = 1e-3\n";
   };
   // From where it is slack, too; by either algebra.
@@ -348,8 +357,9 @@ TEST_CASE("with a chain at its end: as many rows as the sparse equations begin w
     const std::string name = "rod" + std::to_string(i);
     text += body(name, "mass = 0.5; inertia = 0.002; position = [-0.5, " + exact(-1.1 - 0.2 * i) + "]");
     if (i > 0)
-      text += element("revolute", "pin" + std::to_string(i), "a = { body = \"" + name + "\", at = [-0.5, " + exact(-1.0 - 0.2 * i) + "] }; b = { body = \"rod" + std::to_string(i - 1) +
-                      "\", at = [-0.5, " + exact(-1.0 - 0.2 * i) + "] }");
+      text += element("revolute", "pin" + std::to_string(i),
+                      "a = { body = \"" + name + "\", at = [-0.5, " + exact(-1.0 - 0.2 * i) + "] }; b = { body = \"rod" +
+                          std::to_string(i - 1) + "\", at = [-0.5, " + exact(-1.0 - 0.2 * i) + "] }");
   }
   text += rope("a = { body = \"rod0\", at = [-0.5, -1.0] }; b = \"two\"; over = [\"left\", \"right\"]");
   for (const char* method : {"dop853", "rodas5p"}) {
@@ -377,7 +387,8 @@ TEST_CASE("with a chain at its end: as many rows as the sparse equations begin w
 TEST_CASE("friction holds against a rope, or gives way") {
   for (const double weight : {1.9, 2.6}) {
     CAPTURE(weight);
-    const std::string text = point_body("block", 4.0, 0.0, 0.0) + point_body("weight", weight, 1.0, -1.0) + ground_marker("edge", 1.0, 0.0) +
+    const std::string text = point_body("block", 4.0, 0.0, 0.0) + point_body("weight", weight, 1.0, -1.0) +
+                             ground_marker("edge", 1.0, 0.0) +
                              element("unilateral_contact", "sole", "a = \"block\"; stiffness = 1e6; damping = 4000.0; preload = 39.24") +
                              element("coulomb_stick", "friction", "contacts = [\"sole\"]; static_friction = 0.5") +
                              rope("a = \"block\"; b = \"weight\"; over = [\"edge\"]");
@@ -400,8 +411,9 @@ TEST_CASE("two ropes side by side share the load") {
 }
 
 TEST_CASE("what cannot be done with a rope over pulleys is told, and where") {
-  const std::string bodies = k_sheaves + point_body("one", 3.0, -0.5, -1.0) + point_body("two", 2.0, 0.5, -2.0) + body_marker("hook", "one", 0.2, 0.0) +
-                             body_marker("eye", "one", -0.2, 0.0) + ground_marker("same", -0.5, -1.0);
+  const std::string bodies = k_sheaves + point_body("one", 3.0, -0.5, -1.0) + point_body("two", 2.0, 0.5, -2.0) +
+                             body_marker("hook", "one", 0.2, 0.0) + body_marker("eye", "one", -0.2, 0.0) +
+                             ground_marker("same", -0.5, -1.0);
   const auto message = [&](const std::string& fields, const std::string& simulation = "step = 1e-3") {
     try {
       (void)compile(scene(bodies + rope(fields) + "[simulation]\n" + simulation + "\n"));
@@ -420,8 +432,7 @@ TEST_CASE("what cannot be done with a rope over pulleys is told, and where") {
   says(message("a = \"one\"; b = \"two\"; over = [\"left\", \"right\"]", "step = 1e-3\nintegrator = \"moreau\""), "does not locate where");
   // The lighter one runs up to its sheave: nothing is left of that part then, √(2 s/a) from the start.
   const double a = k_g / 5.0;
-  for (const char* method : {"dop853", "rodas5p"})
-    try {
+  for (const char* method : {"dop853", "rodas5p"}) try {
       (void)run_in(atwood(3.0, 2.0, -1.0, -0.5, ""), Coordinates::absolute, 2.0, method);
       CHECK(false);
     } catch (const NumericalFailure& failure) {
@@ -453,15 +464,13 @@ Told told_of(const std::string& text, double end, const std::string& method, dou
     (void)simulate(*r.system, r.system->initial_state(), o);
   } catch (const NumericalFailure& failure) {
     Told told{failure.what()};
-    if (const std::size_t at = told.text.find("t = "); at != std::string::npos)
-      told.t = std::stod(told.text.substr(at + 4));
+    if (const std::size_t at = told.text.find("t = "); at != std::string::npos) told.t = std::stod(told.text.substr(at + 4));
     return told;
   }
   return {};
 }
 
-constexpr const char* k_met =
-    "have met: nothing is left of rope 'rope' between them, what it pulled has run onto its pulley";
+constexpr const char* k_met = "have met: nothing is left of rope 'rope' between them, what it pulled has run onto its pulley";
 
 } // namespace
 
@@ -473,15 +482,14 @@ TEST_CASE("an elastic rope: a load that is pulled up to its pulley ends the run,
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4", "moreau"}) {
     CAPTURE(std::string(method));
     const double step = 1e-4;
-    const Told told = told_of(atwood(3.0, 2.0, -1.0, -0.5, "")
-                                  .replace(atwood(3.0, 2.0, -1.0, -0.5, "").find("inextensible = true"), 19,
-                                           "stiffness = 1e6\ndamping = 1e3"),
-                              2.0, method, step);
+    const Told told =
+        told_of(atwood(3.0, 2.0, -1.0, -0.5, "")
+                    .replace(atwood(3.0, 2.0, -1.0, -0.5, "").find("inextensible = true"), 19, "stiffness = 1e6\ndamping = 1e3"),
+                2.0, method, step);
     CAPTURE(told.text);
     CHECK(told.text.find("'right' and 'two' ") != std::string::npos);
     CHECK(told.text.find(k_met) != std::string::npos);
-    CHECK(std::abs(told.t - arrives) <
-          (std::string(method) == "moreau" ? 2.0 * step : 5e-5)); // it looks at ends of steps only
+    CHECK(std::abs(told.t - arrives) < (std::string(method) == "moreau" ? 2.0 * step : 5e-5)); // it looks at ends of steps only
   }
 }
 
@@ -494,14 +502,12 @@ TEST_CASE("a winch that pulls its load up to the pulley, on a rope that stretche
         CAPTURE(std::string(law));
         CAPTURE(aside);
         CAPTURE(std::string(method));
-        const Told told = told_of(
-            point_body("winch", 10.0, -2.0, 0.0) + point_body("load", 200.0, aside, -2.0) +
-                ground_marker("pulley", 0.0, 0.0) + guide("winch", "ground", "[1.0, 0.0]", -2.0, 0.0) +
-                signal_entry("constant", "speed", "value = -0.5") +
-                element("prescribed_motion", "hoist",
-                        "a = \"winch\"; coordinate = \"x\"; signal = \"speed\"; as = \"velocity\"") +
-                element("rope", "rope", "a = \"winch\"; b = \"load\"; over = [\"pulley\"]; " + std::string(law)),
-            5.0, method);
+        const Told told =
+            told_of(point_body("winch", 10.0, -2.0, 0.0) + point_body("load", 200.0, aside, -2.0) + ground_marker("pulley", 0.0, 0.0) +
+                        guide("winch", "ground", "[1.0, 0.0]", -2.0, 0.0) + signal_entry("constant", "speed", "value = -0.5") +
+                        element("prescribed_motion", "hoist", "a = \"winch\"; coordinate = \"x\"; signal = \"speed\"; as = \"velocity\"") +
+                        element("rope", "rope", "a = \"winch\"; b = \"load\"; over = [\"pulley\"]; " + std::string(law)),
+                    5.0, method);
         CAPTURE(told.text);
         CHECK(told.text.find("'pulley' and 'load' ") != std::string::npos);
         CHECK(told.text.find(k_met) != std::string::npos);

@@ -34,7 +34,8 @@ private:
       const char* kind = draw_.one_of(std::vector<const char*>{"rectangle", "trapezoid", "triangle", "haversine", "half_sine"});
       const double start = draw_.chance(0.3) ? 0.0 : draw_.between(0.0, 1.0);
       const double duration = draw_.between(0.1, 1.5);
-      text_ << "[[signal]]\nkind = \"" << kind << "\"\nname = \"s" << i << "\"\nstart = " << start << "\nduration = " << duration << "\npeak = 1.0\n";
+      text_ << "[[signal]]\nkind = \"" << kind << "\"\nname = \"s" << i << "\"\nstart = " << start << "\nduration = " << duration
+            << "\npeak = 1.0\n";
       if (std::string(kind) == "trapezoid") text_ << "rise = " << 0.3 * duration << "\nfall = " << 0.2 * duration << "\n";
     }
     text_ << "[[signal]]\nkind = \"sum\"\nname = \"s3\"\nsignals = [\"s0\", \"s1\"]\n";
@@ -42,13 +43,13 @@ private:
   void add_mass(int i) {
     const double mass = draw_.decades(0.0, 1.0);
     const double speed = draw_.chance(0.3) ? 0.0 : draw_.either(0.2, 2.0);
-    text_ << "[[body]]\nname = \"m" << i << "\"\nmass = " << mass << "\ninertia = 1.0\nposition = [" << -i << ", 0.0]\nvelocity = [" << speed
-          << ", 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"rails " << i << "\"\na = \"m" << i << "\"\naxis = [1.0, 0.0]\n";
+    text_ << "[[body]]\nname = \"m" << i << "\"\nmass = " << mass << "\ninertia = 1.0\nposition = [" << -i << ", 0.0]\nvelocity = ["
+          << speed << ", 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"rails " << i << "\"\na = \"m" << i << "\"\naxis = [1.0, 0.0]\n";
     if (!draw_.chance(0.7)) return;
     const double holds = mass * draw_.decades(-1.0, 1.0);
     const double drags = holds * draw_.between(0.3, 1.0);
-    text_ << "[[element]]\nkind = \"joint_friction\"\nname = \"brake " << i << "\"\na = \"m" << i << "\"\ncoordinate = \"x\"\nholds = " << holds
-          << "\ndrags = " << drags << "\n";
+    text_ << "[[element]]\nkind = \"joint_friction\"\nname = \"brake " << i << "\"\na = \"m" << i
+          << "\"\ncoordinate = \"x\"\nholds = " << holds << "\ndrags = " << drags << "\n";
     if (draw_.chance(0.3)) text_ << "stribeck_velocity = " << draw_.decades(-2.0, 0.0) << "\n";
     if (draw_.chance(0.3)) text_ << "viscous = " << mass * draw_.decades(-2.0, 0.0) << "\n";
     if (draw_.chance(0.7)) text_ << "signal = \"s" << draw_.below(4) << "\"\n";
@@ -64,8 +65,9 @@ private:
     if (!draw_.chance(0.4)) return;
     const double pull = draw_.decades(2.0, 3.5);
     const double slack = draw_.between(0.0, 0.2);
-    text_ << "[[element]]\nkind = \"buffer\"\nname = \"gear " << i << "\"\na = \"m" << i << "\"\nb = \"m" << i + 1 << "\"\naxis = [-1.0, 0.0]\ngap = "
-          << slack << "\nloading = [[0.0, 0.0], [1.0, " << pull << "]]\nunloading = [[0.0, 0.0], [1.0, " << 0.4 * pull << "]]\n";
+    text_ << "[[element]]\nkind = \"buffer\"\nname = \"gear " << i << "\"\na = \"m" << i << "\"\nb = \"m" << i + 1
+          << "\"\naxis = [-1.0, 0.0]\ngap = " << slack << "\nloading = [[0.0, 0.0], [1.0, " << pull << "]]\nunloading = [[0.0, 0.0], [1.0, "
+          << 0.4 * pull << "]]\n";
   }
   void add_push() {
     const double force = draw_.either(0.5, 20.0);

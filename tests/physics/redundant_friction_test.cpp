@@ -52,11 +52,13 @@ struct Guided {
     const Vec2 up(std::cos(turn), std::sin(turn));
     const double g = 9.81;
     out << "gravity = [" << -g * up.x() << ", " << -g * up.y() << "]\n[[body]]\nname = \"mass\"\nmass = " << mass << "\ninertia = " << mass
-        << "\nposition = [" << drop * up.x() << ", " << drop * up.y() << "]\n[[marker]]\nname = \"way\"\nbody = \"ground\"\nangle = " << turn + lean
+        << "\nposition = [" << drop * up.x() << ", " << drop * up.y()
+        << "]\n[[marker]]\nname = \"way\"\nbody = \"ground\"\nangle = " << turn + lean
         << "\n[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = { body = \"mass\", at = [0.0, 0.0] }\nb = \"way\"\n"
         << "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"mass\"\nnormal = [" << up.x() << ", " << up.y()
         << "]\ngap = " << drop << "\nstiffness = " << mass * frequency * frequency << "\n";
-    if (rubs) out << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rubs\"\ncontacts = [\"floor\"]\nstatic_friction = " << friction << "\n";
+    if (rubs)
+      out << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rubs\"\ncontacts = [\"floor\"]\nstatic_friction = " << friction << "\n";
     out << "[simulation]\nstep = 1e-3\n";
     return out.str();
   }
@@ -70,7 +72,8 @@ struct ShakenSlide {
 
   [[nodiscard]] std::string text(bool is_single) const {
     std::ostringstream out = precise();
-    out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"mass\"\nmass = " << mass << "\ninertia = " << mass << "\n[[marker]]\nname = \"way\"\nbody = \"ground\"\nangle = " << turn
+    out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"mass\"\nmass = " << mass << "\ninertia = " << mass
+        << "\n[[marker]]\nname = \"way\"\nbody = \"ground\"\nangle = " << turn
         << "\n[[signal]]\nname = \"shake\"\nkind = \"harmonics\"\namplitudes = [" << shake << "]\nfrequencies = [" << frequency
         << "]\n[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"mass\"\nb = \"way\"\n"
         << "[[marker]]\nname = \"along\"\nbody = \"mass\"\nangle = " << turn
@@ -79,16 +82,20 @@ struct ShakenSlide {
     std::string feet;
     for (std::size_t i = 0; i < preload.size(); ++i) {
       const double along = 0.1 * static_cast<double>(i);
-      out << "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot" << i << "\"\na = { body = \"mass\", at = [" << along * std::cos(turn) << ", " << along * std::sin(turn)
-          << "] }\nb = { body = \"ground\", at = [" << along * std::cos(turn) << ", " << along * std::sin(turn) << "] }\nnormal = [" << -std::sin(turn) << ", " << std::cos(turn)
+      out << "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot" << i << "\"\na = { body = \"mass\", at = ["
+          << along * std::cos(turn) << ", " << along * std::sin(turn) << "] }\nb = { body = \"ground\", at = [" << along * std::cos(turn)
+          << ", " << along * std::sin(turn) << "] }\nnormal = [" << -std::sin(turn) << ", " << std::cos(turn)
           << "]\nstiffness = 1e6\npreload = " << preload[i] << (is_damped ? "\ndamping = 1e3\n" : "\n");
       bound += preload[i] * coefficient[i];
       pressed += preload[i];
       feet += (i == 0 ? "\"foot" : ", \"foot") + std::to_string(i) + "\"";
       if (!is_single)
-        out << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rub" << i << "\"\ncontacts = [\"foot" << i << "\"]\nstatic_friction = " << coefficient[i] << "\n";
+        out << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rub" << i << "\"\ncontacts = [\"foot" << i
+            << "\"]\nstatic_friction = " << coefficient[i] << "\n";
     }
-    if (is_single) out << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rub\"\ncontacts = [" << feet << "]\nstatic_friction = " << bound / pressed << "\n";
+    if (is_single)
+      out << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rub\"\ncontacts = [" << feet << "]\nstatic_friction = " << bound / pressed
+          << "\n";
     out << "[simulation]\nstep = 1e-3\n";
     return out.str();
   }
@@ -103,16 +110,25 @@ std::string pair_of_bodies(Random& random, bool has_tables, int held_by) {
     p << "[" << px + far << ", " << py << "]";
     return p.str();
   };
-  const auto ends = [&](double px, double py, double qx, double qy) { return "a = { body = \"rider\", at = " + at(px, py) + " }\nb = { body = \"carrier\", at = " + at(qx, qy) + " }\n"; };
-  out << "[[body]]\nname = \"carrier\"\nmass = " << random.power(0.0, 3.0) << "\ninertia = 20.0\nposition = " << at(0.0, 0.0) << "\nvelocity = [" << random.between(-2.0, 2.0)
-      << ", 0.5]\nangular_velocity = 0.0\n[[body]]\nname = \"rider\"\nmass = " << random.power(0.0, 2.0) << "\ninertia = 5.0\nposition = " << at(x, y) << "\nvelocity = [0.0, 0.0]\n"
-      << "[[element]]\nkind = \"bushing\"\nname = \"bed\"\na = { body = \"carrier\", at = " << at(0.1, -0.3) << " }\nb = { body = \"ground\", at = " << at(0.1, -0.3)
-      << " }\nstiffness = [" << random.power(3.0, 6.0) << ", " << random.power(3.0, 6.0) << "]\n";
+  const auto ends = [&](double px, double py, double qx, double qy) {
+    return "a = { body = \"rider\", at = " + at(px, py) + " }\nb = { body = \"carrier\", at = " + at(qx, qy) + " }\n";
+  };
+  out << "[[body]]\nname = \"carrier\"\nmass = " << random.power(0.0, 3.0) << "\ninertia = 20.0\nposition = " << at(0.0, 0.0)
+      << "\nvelocity = [" << random.between(-2.0, 2.0)
+      << ", 0.5]\nangular_velocity = 0.0\n[[body]]\nname = \"rider\"\nmass = " << random.power(0.0, 2.0)
+      << "\ninertia = 5.0\nposition = " << at(x, y) << "\nvelocity = [0.0, 0.0]\n"
+      << "[[element]]\nkind = \"bushing\"\nname = \"bed\"\na = { body = \"carrier\", at = " << at(0.1, -0.3)
+      << " }\nb = { body = \"ground\", at = " << at(0.1, -0.3) << " }\nstiffness = [" << random.power(3.0, 6.0) << ", "
+      << random.power(3.0, 6.0) << "]\n";
   if (held_by == 0) out << "[[element]]\nkind = \"weld\"\nname = \"hold\"\n" << ends(x, y, x, y);
   if (held_by == 1) // two pins: one row too many
-    out << "[[element]]\nkind = \"revolute\"\nname = \"pin1\"\n" << ends(x, y, x, y) << "[[element]]\nkind = \"revolute\"\nname = \"pin2\"\n" << ends(x + 0.3, y - 0.2, x + 0.3, y - 0.2);
+    out << "[[element]]\nkind = \"revolute\"\nname = \"pin1\"\n"
+        << ends(x, y, x, y) << "[[element]]\nkind = \"revolute\"\nname = \"pin2\"\n"
+        << ends(x + 0.3, y - 0.2, x + 0.3, y - 0.2);
   if (held_by == 2)
-    out << "[[element]]\nkind = \"revolute\"\nname = \"pin\"\n" << ends(x, y, x, y) << "[[element]]\nkind = \"distance\"\nname = \"rod\"\n" << ends(x + 0.3, y, x - 0.2, y - 0.4);
+    out << "[[element]]\nkind = \"revolute\"\nname = \"pin\"\n"
+        << ends(x, y, x, y) << "[[element]]\nkind = \"distance\"\nname = \"rod\"\n"
+        << ends(x + 0.3, y, x - 0.2, y - 0.4);
   if (has_tables) {
     const double kink = random.power(0.0, 4.0);
     out << "[[element]]\nkind = \"spring_damper\"\nname = \"kinked\"\n" << ends(x + 0.1, y + 0.2, x - 0.4, y - 0.1);
@@ -134,9 +150,10 @@ std::string box_on_feet(Random& random, int feet, bool rubs) {
   std::ostringstream friction = precise();
   for (int k = 0; k < feet; ++k) {
     const double x = -0.5 + static_cast<double>(k) / (feet - 1) + (k == 0 || k == feet - 1 ? 0.0 : random.between(-0.1, 0.1));
-    out << "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot" << k << "\"\na = { body = \"box\", at = [" << x << ", 0.0] }\nstiffness = "
-        << random.between(1.0, 5.0) * mass * 9.81 / sag << "\n";
-    friction << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rub" << k << "\"\ncontacts = [\"foot" << k << "\"]\nstatic_friction = " << random.between(0.2, 0.9) << "\n";
+    out << "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot" << k << "\"\na = { body = \"box\", at = [" << x
+        << ", 0.0] }\nstiffness = " << random.between(1.0, 5.0) * mass * 9.81 / sag << "\n";
+    friction << "[[element]]\nkind = \"coulomb_stick\"\nname = \"rub" << k << "\"\ncontacts = [\"foot" << k
+             << "\"]\nstatic_friction = " << random.between(0.2, 0.9) << "\n";
   }
   if (rubs) out << friction.str();
   out << "[simulation]\nstep = 1e-3\n";
@@ -151,7 +168,8 @@ TEST_CASE("a box comes to rest on feet that rub each by itself") {
     CAPTURE(i);
     const int feet = 2 + i % 4;
     const auto with = compile(scene(box_on_feet(first, feet, true))), without = compile(scene(box_on_feet(again, feet, false)));
-    const State rest = find_equilibrium(*with, with->initial_state()).state, free = find_equilibrium(*without, without->initial_state()).state;
+    const State rest = find_equilibrium(*with, with->initial_state()).state,
+                free = find_equilibrium(*without, without->initial_state()).state;
     CHECK(std::abs(rest.q[4] - free.q[4]) < 1e-9);
     CHECK(std::abs(rest.q[5] - free.q[5]) < 1e-9);
   }
@@ -160,7 +178,8 @@ TEST_CASE("a box comes to rest on feet that rub each by itself") {
 TEST_CASE("friction across a guide changes nothing, however nearly across it is") {
   Random random(5380);
   for (int i = 0; i < 200; ++i) {
-    Guided g{random.power(-1.0, 3.0), random.power(1.5, 4.0), 0.0, random.between(-3.0, 3.0), random.power(-2.5, -1.0), random.between(0.05, 0.8)};
+    Guided g{random.power(-1.0, 3.0),   random.power(1.5, 4.0),   0.0,
+             random.between(-3.0, 3.0), random.power(-2.5, -1.0), random.between(0.05, 0.8)};
     g.lean = random.below(5) == 0 ? 0.0 : (random.below(2) == 0 ? 1.0 : -1.0) * random.power(-16.0, -6.0);
     if (random.below(3) == 0) g.turn = 0.5 * std::numbers::pi; // where nothing but the lean is rounded
     Settings s = k_methods[i % 5];
@@ -183,7 +202,8 @@ namespace {
 
 // A common friction may take its place from one foot to another, too.
 long slips_and_rests(const Run& r) {
-  return std::count_if(r.result.events.begin(), r.result.events.end(), [](const Event& event) { return event.kind != EventKind::changes_foot; });
+  return std::count_if(r.result.events.begin(), r.result.events.end(),
+                       [](const Event& event) { return event.kind != EventKind::changes_foot; });
 }
 
 } // namespace

@@ -23,12 +23,13 @@ Equilibrium settle(const Model& model) {
 } // namespace
 
 TEST_CASE("a mass dropped on two contacts settles where they carry its weight") {
-  const Model model = scene(k_head +
-      body("block", "mass = 1000; inertia = 100; position = [0.2, 1.3]") +
-      element("unilateral_contact", "left", "a = { body = 'block', point = [-0.5, -0.5] }; stiffness = 1e6; "
-              "damping = 1e4") +
-      element("unilateral_contact", "right", "a = { body = 'block', point = [0.5, -0.5] }; stiffness = 1e6; "
-              "damping = 1e4"));
+  const Model model = scene(k_head + body("block", "mass = 1000; inertia = 100; position = [0.2, 1.3]") +
+                            element("unilateral_contact", "left",
+                                    "a = { body = 'block', point = [-0.5, -0.5] }; stiffness = 1e6; "
+                                    "damping = 1e4") +
+                            element("unilateral_contact", "right",
+                                    "a = { body = 'block', point = [0.5, -0.5] }; stiffness = 1e6; "
+                                    "damping = 1e4"));
   const Equilibrium rest = settle(model);
   // Both springs at m g / 2k = 4.905 mm; 1e-9 m/s² left over k/m = 2000 /s² is 5e-13 m.
   CHECK(std::abs(rest.state.q[4] - (0.5 - 1000 * 9.81 / 2e6)) < 1e-12);
@@ -55,9 +56,8 @@ TEST_CASE("what nothing holds has no equilibrium, and the body is named") {
 }
 
 TEST_CASE("poses given roughly are moved onto the joints, no further than needed") {
-  const Model model = scene(k_head +
-      body("bob", "mass = 2; inertia = 0.1; position = [1.1, 0.0]") +
-      element("distance", "rod", "a = 'bob'; length = 1.0"));
+  const Model model =
+      scene(k_head + body("bob", "mass = 2; inertia = 0.1; position = [1.1, 0.0]") + element("distance", "rod", "a = 'bob'; length = 1.0"));
   const auto system = compile(model);
   const State state = assemble(model, *system);
   // The least motion is along the rod; the projection tolerance is 1e-12 m.
@@ -69,13 +69,14 @@ TEST_CASE("poses given roughly are moved onto the joints, no further than needed
 // Two rods of 1 m with their pins off by centimetres and their speeds wrong: the joints are met, the motion is
 // mass-weighted (the heavy rod hardly moves), and what was met already is not touched.
 TEST_CASE("rough poses and velocities are assembled, and each body's move is told") {
-  const Model model = scene(k_head +
-      body("heavy", "mass = 1000; inertia = 80; position = [0.53, 0.02]; angle = 0.05; velocity = [0.0, 0.3]") +
-      body("light", "mass = 1; inertia = 0.08; position = [1.46, -0.03]; angle = -0.04; velocity = [0.2, 0.5]") +
-      body("apart", "mass = 1; inertia = 0.1; position = [5.0, 0.0]") +
-      element("revolute", "wall", "a = { body = 'heavy', point = [-0.5, 0.0] }") +
-      element("revolute", "elbow", "a = { body = 'light', point = [-0.5, 0.0] }; "
-              "b = { body = 'heavy', point = [0.5, 0.0] }"));
+  const Model model =
+      scene(k_head + body("heavy", "mass = 1000; inertia = 80; position = [0.53, 0.02]; angle = 0.05; velocity = [0.0, 0.3]") +
+            body("light", "mass = 1; inertia = 0.08; position = [1.46, -0.03]; angle = -0.04; velocity = [0.2, 0.5]") +
+            body("apart", "mass = 1; inertia = 0.1; position = [5.0, 0.0]") +
+            element("revolute", "wall", "a = { body = 'heavy', point = [-0.5, 0.0] }") +
+            element("revolute", "elbow",
+                    "a = { body = 'light', point = [-0.5, 0.0] }; "
+                    "b = { body = 'heavy', point = [0.5, 0.0] }"));
   const auto system = compile(model);
   const State given = system->initial_state(), state = assemble(model, *system);
   const auto pin = [&](const State& s, int body, double side) {
@@ -98,9 +99,8 @@ TEST_CASE("rough poses and velocities are assembled, and each body's move is tol
   }
   // Mass-weighted: the heavy rod meets its own pin as if the light one were not there, but for the ratio of
   // their masses, 1e-3, times the distances moved, 0.1 m.
-  const Model alone_model = scene(k_head +
-      body("heavy", "mass = 1000; inertia = 80; position = [0.53, 0.02]; angle = 0.05") +
-      element("revolute", "wall", "a = { body = 'heavy', point = [-0.5, 0.0] }"));
+  const Model alone_model = scene(k_head + body("heavy", "mass = 1000; inertia = 80; position = [0.53, 0.02]; angle = 0.05") +
+                                  element("revolute", "wall", "a = { body = 'heavy', point = [-0.5, 0.0] }"));
   const auto alone_system = compile(alone_model);
   const State alone = assemble(alone_model, *alone_system);
   for (int k = 3; k < 6; ++k) CHECK(std::abs(state.q[k] - alone.q[k]) < 1e-3);
@@ -109,9 +109,9 @@ TEST_CASE("rough poses and velocities are assembled, and each body's move is tol
 // Nearest to (x0, y0) on a circle round the origin is the point in that direction, however far it is off.
 TEST_CASE("a bob far off its rod is put on the circle at the nearest point") {
   for (const Vec2& given : {Vec2(1.3, 0.9), Vec2(0.1, -0.35), Vec2(-2.5, 1.5)}) {
-    const Model model = scene(k_head + "[[body]]\nname = \"bob\"\nmass = 2\ninertia = 0.1\nposition = [" +
-                              std::to_string(given.x()) + ", " + std::to_string(given.y()) +
-                              "]\n[[element]]\nkind = \"distance\"\nname = \"rod\"\na = \"bob\"\nlength = 1.0\n");
+    const Model model =
+        scene(k_head + "[[body]]\nname = \"bob\"\nmass = 2\ninertia = 0.1\nposition = [" + std::to_string(given.x()) + ", " +
+              std::to_string(given.y()) + "]\n[[element]]\nkind = \"distance\"\nname = \"rod\"\na = \"bob\"\nlength = 1.0\n");
     const auto system = compile(model);
     const State state = assemble(model, *system);
     CHECK((Vec2(state.q[3], state.q[4]) - given.normalized()).norm() < 1e-11);
@@ -130,13 +130,13 @@ TEST_CASE("two rods off by decimetres are put together where no small motion lea
     for (int i : {0, 1}) {
       const double* q = given + 3 * i;
       text += std::string("[[body]]\nname = \"") + (i == 0 ? "first" : "second") + "\"\nmass = " + std::to_string(mass[i]) +
-              "\ninertia = " + std::to_string(inertia[i]) + "\nposition = [" + std::to_string(q[0]) + ", " +
-              std::to_string(q[1]) + "]\nangle = " + std::to_string(q[2]) + "\n";
+              "\ninertia = " + std::to_string(inertia[i]) + "\nposition = [" + std::to_string(q[0]) + ", " + std::to_string(q[1]) +
+              "]\nangle = " + std::to_string(q[2]) + "\n";
     }
-    const Model model = scene(text +
-        element("revolute", "wall", "a = { body = 'first', point = [-0.5, 0.0] }") +
-        element("revolute", "elbow", "a = { body = 'second', point = [-0.5, 0.0] }; "
-                "b = { body = 'first', point = [0.5, 0.0] }"));
+    const Model model = scene(text + element("revolute", "wall", "a = { body = 'first', point = [-0.5, 0.0] }") +
+                              element("revolute", "elbow",
+                                      "a = { body = 'second', point = [-0.5, 0.0] }; "
+                                      "b = { body = 'first', point = [0.5, 0.0] }"));
     const auto system = compile(model);
     const State state = assemble(model, *system);
     const double *p = &state.q[3], *q = &state.q[6];
@@ -158,10 +158,9 @@ TEST_CASE("two rods off by decimetres are put together where no small motion lea
 }
 
 TEST_CASE("joints that no motion meets are an error at the joint") {
-  const Model model = scene(k_head +
-      body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +
-      element("distance", "left rod", "a = 'bob'; length = 1.0") +
-      element("distance", "right rod", "a = 'bob'; b = { body = 'ground', at = [5.0, 0.0] }; length = 1.0"));
+  const Model model = scene(k_head + body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +
+                            element("distance", "left rod", "a = 'bob'; length = 1.0") +
+                            element("distance", "right rod", "a = 'bob'; b = { body = 'ground', at = [5.0, 0.0] }; length = 1.0"));
   const auto system = compile(model);
   try {
     (void)assemble(model, *system);

@@ -54,8 +54,9 @@ TEST_CASE("random blows of two bodies along a contact give back what was asked")
     const double effective = 1.0 / (1.0 / m + side * side / j), length = 3.2 * std::sqrt(effective / k); // half a period and more
     const double turned = v * length * std::abs(side) / j * effective;
     if (turned > 1e-5) continue; // a stiff blow of a heavy body, no swing
-    const Run r = run(k_no_gravity + body("ball", m, j, 0.0, 0.0, 0.0, -v) + "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = { body = \"ball\", at = [" +
-                          number(side) + ", 0.0] }\nstiffness = " + number(k) + "\nrestitution = " + number(e) + "\n",
+    const Run r = run(k_no_gravity + body("ball", m, j, 0.0, 0.0, 0.0, -v) +
+                          "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = { body = \"ball\", at = [" + number(side) +
+                          ", 0.0] }\nstiffness = " + number(k) + "\nrestitution = " + number(e) + "\n",
                       {"dop853", 1e-11, 3.0 * length, 3.0 * length});
     const double after = r.last("ball.vy") + side * r.last("ball.omega");
     CHECK(after / v == doctest::Approx(e).epsilon(1e-4)); // the lever turns by up to `turned`
@@ -66,13 +67,16 @@ TEST_CASE("two free balls, a ball in a ring, a stop: the effective mass is that 
   const double e = 0.6;
   const std::string balls = k_no_gravity + body("a", 1.0, 1.0, 0.0, 0.0, 2.0, 0.0) + body("b", 3.0, 1.0, 0.25, 0.0, -1.0, 0.0);
   const auto parting = [](const Run& r) { return r.last("b.vx") - r.last("a.vx"); };
-  const Run circles = run(balls + "[[element]]\nkind = \"circle_contact\"\nname = \"c\"\na = \"a\"\nb = \"b\"\nradius_a = 0.1\nradius_b = 0.1\nstiffness = 1e6\nrestitution = 0.6\n",
+  const Run circles = run(balls + "[[element]]\nkind = \"circle_contact\"\nname = \"c\"\na = \"a\"\nb = \"b\"\nradius_a = 0.1\nradius_b = "
+                                  "0.1\nstiffness = 1e6\nrestitution = 0.6\n",
                           {"dop853", 1e-11, 0.1});
   CHECK(parting(circles) == doctest::Approx(3.0 * e).epsilon(1e-9));
-  const Run stop = run(balls + "[[element]]\nkind = \"limit\"\nname = \"c\"\na = \"b\"\nb = \"a\"\ncoordinate = \"distance\"\nlower = 0.2\nstiffness = 1e6\nrestitution = 0.6\n",
+  const Run stop = run(balls + "[[element]]\nkind = \"limit\"\nname = \"c\"\na = \"b\"\nb = \"a\"\ncoordinate = \"distance\"\nlower = "
+                               "0.2\nstiffness = 1e6\nrestitution = 0.6\n",
                        {"dop853", 1e-11, 0.1});
   CHECK(parting(stop) == doctest::Approx(3.0 * e).epsilon(1e-9));
-  const Run plane = run(balls + "[[element]]\nkind = \"unilateral_contact\"\nname = \"c\"\na = \"b\"\nb = \"a\"\nnormal = [1.0, 0.0]\ngap = 0.05\nstiffness = 2.5e5\ncount = 4\nrestitution = 0.6\n",
+  const Run plane = run(balls + "[[element]]\nkind = \"unilateral_contact\"\nname = \"c\"\na = \"b\"\nb = \"a\"\nnormal = [1.0, 0.0]\ngap "
+                                "= 0.05\nstiffness = 2.5e5\ncount = 4\nrestitution = 0.6\n",
                         {"dop853", 1e-11, 0.1});
   CHECK(parting(plane) == doctest::Approx(3.0 * e).epsilon(1e-9));
 }
@@ -80,8 +84,9 @@ TEST_CASE("two free balls, a ball in a ring, a stop: the effective mass is that 
 TEST_CASE("the stiffer the floor, the nearer the heights of a bouncing ball come to e²: the weight counts less") {
   double before = 1.0;
   for (const double stiffness : {1e5, 1e7, 1e9}) {
-    const Run r = run(body("ball", 1.0, 1.0, 0.0, 1.0, 0.0, 0.0) + "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"ball\"\nstiffness = " +
-                          number(stiffness) + "\nrestitution = 0.7\n",
+    const Run r = run(body("ball", 1.0, 1.0, 0.0, 1.0, 0.0, 0.0) +
+                          "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"ball\"\nstiffness = " + number(stiffness) +
+                          "\nrestitution = 0.7\n",
                       {"dop853", 1e-12, 1.2});
     const std::vector<double> closes = r.event_times("floor", "closes"), opens = r.event_times("floor", "opens");
     REQUIRE(closes.size() >= 2);
@@ -93,7 +98,8 @@ TEST_CASE("the stiffer the floor, the nearer the heights of a bouncing ball come
 
 TEST_CASE("what cannot be is refused") {
   const auto text = [](const std::string& fields) {
-    return body("ball", 1.0, 1.0, 0.0, 0.0, 0.0, 0.0) + "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"ball\"\nstiffness = 1e5\n" + fields +
+    return body("ball", 1.0, 1.0, 0.0, 0.0, 0.0, 0.0) +
+           "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"ball\"\nstiffness = 1e5\n" + fields +
            "[simulation]\nstep = 1e-3\n";
   };
   CHECK_THROWS_AS((void)scene(text("restitution = 0.0\n")), ModelError);

@@ -22,14 +22,16 @@ name = "box"
 mass = 100.0
 inertia = 60.0
 position = [0.0, 0.8]
-angular_velocity = )" + angular_velocity + R"(
+angular_velocity = )" +
+         angular_velocity + R"(
 [[element]]
 kind = "unilateral_contact"
 name = "rear"
 a = { body = "box", at = [-0.5, 0.0] }
 stiffness = 4e5
 preload = 490.5
-)" + damping + R"(
+)" + damping +
+         R"(
 [[element]]
 kind = "unilateral_contact"
 name = "front"
@@ -90,8 +92,7 @@ angle = "-35 deg"
   for (const std::string edge : {"lower", "upper"})
     text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + edge + "\"\na = { body = \"brick\", point = [0.052, " +
             (edge == "lower" ? "-" : "") + "0.1125] }\nstiffness = 1e8\ndamping = 1e4\n";
-  text +=
-      "[[element]]\nkind = \"coulomb_stick\"\nname = \"friction\"\ncontacts = [\"lower\", \"upper\"]\nstatic_friction = 0.6\n";
+  text += "[[element]]\nkind = \"coulomb_stick\"\nname = \"friction\"\ncontacts = [\"lower\", \"upper\"]\nstatic_friction = 0.6\n";
   const Run r = run(text, {"dop853", 1e-8, 0.05});
   // Of θ − θ₀ = −½ α t² over 50 ms with α = m g x/J = 10.5 rad/s²; α grows with x by 2 % meanwhile, and the edge sinks by
   // microns.
@@ -116,8 +117,8 @@ TEST_CASE("a block that rocks on a floor drawn at an angle rocks as on a level o
         "\n[[body]]\nname = \"block\"\nmass = 100.0\ninertia = 41.666666666666664\nposition = " + place(0.0798503332, 1.0486708) +
         "\nangle = " + angle + "\n";
     for (const std::string side : {"-0.5", "0.5"})
-      text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"corner " + side + "\"\na = { body = \"block\", point = [" +
-              side + ", -1.0] }\nnormal = " + place(0.0, 1.0) + "\nstiffness = 1e7\ndamping = 4e4\n";
+      text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"corner " + side + "\"\na = { body = \"block\", point = [" + side +
+              ", -1.0] }\nnormal = " + place(0.0, 1.0) + "\nstiffness = 1e7\ndamping = 4e4\n";
     text += "[[element]]\nkind = \"coulomb_stick\"\nname = \"friction\"\ncontacts = [\"corner -0.5\", \"corner "
             "0.5\"]\nstatic_friction = 0.6\n";
     return run(text, {"dop853", 1e-11, 2.0, 0.01}).series("block.theta");
@@ -128,8 +129,7 @@ TEST_CASE("a block that rocks on a floor drawn at an angle rocks as on a level o
     const std::vector<double> other = rocking(turned);
     REQUIRE(other.size() == level.size());
     double worst = 0.0;
-    for (std::size_t i = 0; i < level.size(); ++i)
-      worst = std::max(worst, std::abs(other[i] - turned - level[i]));
+    for (std::size_t i = 0; i < level.size(); ++i) worst = std::max(worst, std::abs(other[i] - turned - level[i]));
     CHECK(worst < 1e-6);
   }
 }

@@ -28,8 +28,9 @@ double channel(const System& system, const Equilibrium& rest, const std::string&
 // comes back up to where it began.
 TEST_CASE("a mass that falls into its rope is caught as the closed form says") {
   const double s = 0.5, k = 4000.0, m = 2.0;
-  const std::string text = body("mass", "mass = 2; inertia = 0.1; position = [0.0, -1.0]") +
-                           element("rope", "line", "a = \"mass\"; b = { body = \"ground\", at = [0.0, 0.0] }; stiffness = 4000.0; slack = 0.5");
+  const std::string text =
+      body("mass", "mass = 2; inertia = 0.1; position = [0.0, -1.0]") +
+      element("rope", "line", "a = \"mass\"; b = { body = \"ground\", at = [0.0, 0.0] }; stiffness = 4000.0; slack = 0.5");
   for (const char* method : {"dop853", "rodas5p", "auto"}) {
     CAPTURE(std::string(method));
     const double stretch = m * k_g / k * (1.0 + std::sqrt(1.0 + 2.0 * k * s / (m * k_g)));
@@ -59,9 +60,11 @@ TEST_CASE("over two pulleys a weight holds twice its own, and the tension is the
                  body("weight", "mass = " + mass + "; inertia = 1; position = [1.0, -1.0]") +
                  element("point_on_line", "left guide", "a = \"load\"; axis = [0.0, 1.0]") +
                  element("point_on_line", "right guide", "a = \"weight\"; b = { body = \"ground\", at = [1.0, 0.0] }; axis = [0.0, 1.0]") +
-                 element("spring_damper", "peg", "a = \"weight\"; b = { body = \"ground\", at = [1.0, -1.0] }; axis = [0.0, 1.0]; "
+                 element("spring_damper", "peg",
+                         "a = \"weight\"; b = { body = \"ground\", at = [1.0, -1.0] }; axis = [0.0, 1.0]; "
                          "stiffness = 100.0; free_length = 0.0") +
-                 element("rope", "rope", "a = { body = \"ground\", at = [0.0, 0.0] }; b = \"weight\"; "
+                 element("rope", "rope",
+                         "a = { body = \"ground\", at = [0.0, 0.0] }; b = \"weight\"; "
                          "over = [\"sheave\", \"block\", \"turn\"]; stiffness = 1e5") +
                  "[[marker]]\nname = \"turn\"\nbody = \"ground\"\npoint = [1.0, 0.0]\n");
   };

@@ -14,15 +14,16 @@ namespace {
 
 std::string number(double x) { return std::to_string(x); }
 
-const std::vector<Settings> k_loose_to_tight = {
-    {"dop853", 1e-10}, {"dop853", 1e-8}, {"dop853", 1e-5}, {"dop853", 1e-3}, {"tsit5", 1e-8}, {"tsit5", 1e-5},
-    {"rodas5p", 1e-8}, {"rodas5p", 1e-5}, {"rodas5p", 1e-4}, {"auto", 1e-8}, {"auto", 1e-6}};
+const std::vector<Settings> k_loose_to_tight = {{"dop853", 1e-10}, {"dop853", 1e-8}, {"dop853", 1e-5},  {"dop853", 1e-3},
+                                                {"tsit5", 1e-8},   {"tsit5", 1e-5},  {"rodas5p", 1e-8}, {"rodas5p", 1e-5},
+                                                {"rodas5p", 1e-4}, {"auto", 1e-8},   {"auto", 1e-6}};
 
 } // namespace
 
 TEST_CASE("a ball bounces to rest on a hill and rolls off it: all methods and tolerances end at the same place") {
   const std::string hill = body("ball", "mass = 857.1; inertia = 66.02; position = [0.264, 2.32996]") +
-                           element("circle_contact", "hill", "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }\n"
+                           element("circle_contact", "hill",
+                                   "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }\n"
                                    "radius_a = 0.306; radius_b = 2.0; law = 'hunt_crossley'; exponent = 1.5\n"
                                    "stiffness = 9353000000.0; dissipation = 1.389");
   for (Settings settings : k_loose_to_tight) {
@@ -54,8 +55,8 @@ TEST_CASE("stiff and soft, in every power: without dissipation a central blow gi
           const std::string text =
               k_no_gravity + body("ball", "mass = 1.0; inertia = 0.02; position = [0.0, 1.5]; velocity = [0.0, -3.0]") +
               element(shape.substr(0, bar), "wall",
-                      "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }; law = 'hunt_crossley'\nstiffness = " +
-                          number(stiffness) + "; exponent = " + number(power) + ";" + shape.substr(bar + 1));
+                      "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }; law = 'hunt_crossley'\nstiffness = " + number(stiffness) +
+                          "; exponent = " + number(power) + ";" + shape.substr(bar + 1));
           CAPTURE(text);
           CAPTURE(settings.integrator);
           CAPTURE(settings.step_or_tolerance);
@@ -91,15 +92,15 @@ TEST_CASE("a Kelvin-Voigt floor is not stepped over by a method that would damp 
 
 TEST_CASE("a fast ball does not fly through a pin, or past a hill's flank, within one step") {
   // No forces: the flight is one step. A point passes a pin of 1 mm at 5 m/s, half a radius off its middle.
-  const std::string pin = k_no_gravity +
-                          body("ball", "mass = 1.0; inertia = 1.0; position = [-3.0, 0.0005]; velocity = [5.0, 0.0]") +
-                          element("circle_contact", "pin", "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }\n"
+  const std::string pin = k_no_gravity + body("ball", "mass = 1.0; inertia = 1.0; position = [-3.0, 0.0005]; velocity = [5.0, 0.0]") +
+                          element("circle_contact", "pin",
+                                  "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }\n"
                                   "radius_a = 0.0; radius_b = 0.001; stiffness = 1e9");
   // A bounce on a hill, then a flight of a second down its flank: into the hill again.
-  const std::string flank =
-      body("ball", "mass = 14.6437; inertia = 0.840051; position = [0.864576, 3.56512]; velocity = [0.527402, 0.0]") +
-      element("circle_contact", "hill", "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }\nradius_a = 0.378702\n"
-              "radius_b = 2.9226; law = 'hunt_crossley'; exponent = 1.2; stiffness = 2.759381e8; dissipation = 0.05");
+  const std::string flank = body("ball", "mass = 14.6437; inertia = 0.840051; position = [0.864576, 3.56512]; velocity = [0.527402, 0.0]") +
+                            element("circle_contact", "hill",
+                                    "a = 'ball'; b = { body = 'ground', at = [0.0, 0.0] }\nradius_a = 0.378702\n"
+                                    "radius_b = 2.9226; law = 'hunt_crossley'; exponent = 1.2; stiffness = 2.759381e8; dissipation = 0.05");
   for (Settings settings : k_loose_to_tight) {
     CAPTURE(settings.integrator);
     CAPTURE(settings.step_or_tolerance);

@@ -1,9 +1,9 @@
 // Scenes for tests: a model from TOML text, run to its end with the settings that a test chooses.
 #pragma once
 
-#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "transformer/catalog.h"
 
 #include <memory>
 #include <string>
@@ -18,9 +18,7 @@ struct Run {
   RunResult result;
 
   [[nodiscard]] const std::vector<double>& times() const { return result.trajectory->times(); }
-  [[nodiscard]] std::vector<double> series(const std::string& channel) const {
-    return result.trajectory->series(channel);
-  }
+  [[nodiscard]] std::vector<double> series(const std::string& channel) const { return result.trajectory->series(channel); }
   /// Value of a channel in the last sample.
   [[nodiscard]] double last(const std::string& channel) const {
     return result.trajectory->value(result.trajectory->size() - 1, result.trajectory->column(channel));
@@ -62,8 +60,6 @@ inline Run run(const Model& model, const Settings& settings) {
 }
 
 /// `text` needs no [simulation]: one that validates is added.
-inline Run run(const std::string& text, const Settings& settings) {
-  return run(scene(text + "\n[simulation]\nstep = 1e-3\n"), settings);
-}
+inline Run run(const std::string& text, const Settings& settings) { return run(scene(text + "\n[simulation]\nstep = 1e-3\n"), settings); }
 
 } // namespace steplap::testing

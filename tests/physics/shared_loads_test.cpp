@@ -37,16 +37,16 @@ std::string push(const std::string& body, const std::string& what = "force_x") {
 
 // A foot under `at` that bears `weight` and sticks for itself.
 std::string foot(const std::string& name, const std::string& body, double x, double weight, double mu_s, double mu_k) {
-  return "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + name + "\"\na = { body = \"" + body + "\", at = [" +
-         number(x) + ", 0.0] }\nb = { body = \"ground\", at = [" + number(x) +
-         ", 0.0] }\nstiffness = 1e5\ndamping = 400.0\npreload = " + number(weight) +
-         "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"" + name + " friction\"\ncontacts = [\"" + name +
-         "\"]\nstatic_friction = " + number(mu_s) + "\nkinetic_friction = " + number(mu_k) + "\n";
+  return "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + name + "\"\na = { body = \"" + body + "\", at = [" + number(x) +
+         ", 0.0] }\nb = { body = \"ground\", at = [" + number(x) +
+         ", 0.0] }\nstiffness = 1e5\ndamping = 400.0\npreload = " + number(weight) + "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"" +
+         name + " friction\"\ncontacts = [\"" + name + "\"]\nstatic_friction = " + number(mu_s) + "\nkinetic_friction = " + number(mu_k) +
+         "\n";
 }
 
 std::string body(const std::string& name, double mass, double x, double y = 0.0) {
-  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(mass) + "\ninertia = 1.0\nposition = [" + number(x) + ", " +
-         number(y) + "]\n";
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(mass) + "\ninertia = 1.0\nposition = [" + number(x) + ", " + number(y) +
+         "]\n";
 }
 
 std::string box_on_two_feet(double mu_s1, double mu_k1, double mu_s2, double mu_k2) {
@@ -100,7 +100,8 @@ TEST_CASE("shared loads: what slips has its kinetic coefficient, what holds the 
 
 TEST_CASE("shared loads: the group comes to rest, holds again and lets go the other way, at its exact instants") {
   // 12 sin(2πt/2 s): at the sum of capacities after asin(0.654)/π s; the second onset after it has come to rest.
-  const std::string shake = "[[signal]]\nname = \"ramp\"\nkind = \"harmonics\"\namplitudes = [12.0]\nfrequencies = [0.5]\nphases = [\"-90 deg\"]\n";
+  const std::string shake =
+      "[[signal]]\nname = \"ramp\"\nkind = \"harmonics\"\namplitudes = [12.0]\nfrequencies = [0.5]\nphases = [\"-90 deg\"]\n";
   std::string text = box_on_two_feet(0.3, 0.3, 0.5, 0.5);
   const std::size_t begin = text.find("[[signal]]"), stop = text.find("[[body]]");
   text.replace(begin, stop - begin, shake);
@@ -108,8 +109,7 @@ TEST_CASE("shared loads: the group comes to rest, holds again and lets go the ot
   for (const char* method : {"rk4", "dop853"}) {
     CAPTURE(std::string(method));
     const Run r = run(text, settings(method, 1.9));
-    const std::vector<double> slips = r.event_times("front friction", "slips forward"),
-                              rests = r.event_times("front friction", "sticks"),
+    const std::vector<double> slips = r.event_times("front friction", "slips forward"), rests = r.event_times("front friction", "sticks"),
                               back = r.event_times("front friction", "slips backward");
     REQUIRE(slips.size() == 1);
     REQUIRE(rests.size() >= 1);
@@ -141,7 +141,7 @@ TEST_CASE("shared loads: a chain of unequal blocks to and fro: all of it slips, 
           "]\nfrequencies = [0.5]\nphases = [\"-90 deg\"]\n" + push("block 2");
   // Something that moves meanwhile, so that steps stay shorter than the load's period.
   text += body("bob", 1.0, -5.0, 0.1) + "[[element]]\nkind = \"spring_damper\"\nname = \"spring\"\na = \"bob\"\naxis = [0.0, 1.0]\n"
-          "stiffness = 400.0\n";
+                                        "stiffness = 400.0\n";
   const double pi = 3.14159265358979323846, onset = std::asin(1.0 / 1.2) / pi;
   for (const char* method : k_methods) {
     CAPTURE(std::string(method));
@@ -204,7 +204,8 @@ TEST_CASE("shared loads: friction held by a loop that moves: null vectors turn w
     const std::string n = x == 0.0 ? "first" : "second";
     text += "[[body]]\nname = \"" + n + "\"\nmass = 1.0\ninertia = 0.1\nposition = [" + number(x + 0.5 * std::cos(1.5)) + ", " +
             number(0.5 * std::sin(1.5)) + "]\nangle = 1.5\nangular_velocity = 0.1\n";
-    text += "[[element]]\nkind = \"revolute\"\nname = \"pin " + n + "\"\na = { body = \"" + n + "\", at = [" + number(x) + ", 0.0] }\nb = { body = \"ground\", at = [" + number(x) + ", 0.0] }\n";
+    text += "[[element]]\nkind = \"revolute\"\nname = \"pin " + n + "\"\na = { body = \"" + n + "\", at = [" + number(x) +
+            ", 0.0] }\nb = { body = \"ground\", at = [" + number(x) + ", 0.0] }\n";
     const std::string head = "at = [" + number(x + std::cos(1.5)) + ", " + number(std::sin(1.5)) + "] }\n";
     text += "[[element]]\nkind = \"revolute\"\nname = \"head " + n + "\"\na = { body = \"" + n + "\", " + head +
             "b = { body = \"coupler\", " + head;
@@ -231,11 +232,11 @@ std::string limb_on_two_patches(bool is_one_joint, bool is_free, const std::stri
       text += "[[element]]\nkind = \"step_lap_joint\"\nname = \"" + joint + "\"\nlimb = \"limb\"\nactive_part = \"yokes\"\n";
     const double x = side;
     const auto square = [&](double half) {
-      return "[[" + number(x - half) + ", " + number(-half) + "], [" + number(x + half) + ", " + number(-half) + "], [" +
-             number(x + half) + ", " + number(half) + "], [" + number(x - half) + ", " + number(half) + "]]";
+      return "[[" + number(x - half) + ", " + number(-half) + "], [" + number(x + half) + ", " + number(-half) + "], [" + number(x + half) +
+             ", " + number(half) + "], [" + number(x - half) + ", " + number(half) + "]]";
     };
-    text += std::string("[[element]]\nkind = \"step_lap_interface\"\nname = \"corner ") + (side < 0 ? "left" : "right") +
-            "\"\njoint = \"" + joint + "\"\nyoke = " + square(0.9) + "\nlimb = " + square(side < 0 ? 0.3 : 0.2) +
+    text += std::string("[[element]]\nkind = \"step_lap_interface\"\nname = \"corner ") + (side < 0 ? "left" : "right") + "\"\njoint = \"" +
+            joint + "\"\nyoke = " + square(0.9) + "\nlimb = " + square(side < 0 ? 0.3 : 0.2) +
             "\ncount = 100\npressure = 1e5\nstatic_friction = 0.25\n";
   }
   return text + load;
@@ -244,7 +245,9 @@ std::string limb_on_two_patches(bool is_one_joint, bool is_free, const std::stri
 } // namespace
 
 TEST_CASE("shared loads: two joints side by side let go as one joint with both areas does") {
-  const std::string twist = push("limb", "torque"), eccentric = push("limb", "force_x") + "[[element]]\nkind = \"load\"\nname = \"turn\"\nat = \"limb\"\ntorque = \"ramp\"\n";
+  const std::string twist = push("limb", "torque"),
+                    eccentric =
+                        push("limb", "force_x") + "[[element]]\nkind = \"load\"\nname = \"turn\"\nat = \"limb\"\ntorque = \"ramp\"\n";
   for (const bool is_free : {false, true})
     for (const std::string& load : {twist, eccentric}) {
       if (steplap::testing::k_is_sanitized && is_free == (load == twist)) continue; // each once
@@ -275,7 +278,7 @@ TEST_CASE("shared loads: a joint beside a weld bears nothing, merged or not") {
     const Run r = run(limb_on_two_patches(true, is_free, load), settings("dop853", 5.0, 0.5));
     CHECK(r.result.events.empty());
     for (const double m : r.series("joint.m")) CHECK(std::abs(m) < 1e-6); // of 2e7 N m
-    const double limb_share = is_free ? 9000.0 / 9700.0 : 1.0; // of the torque on the limb: what does not turn it
+    const double limb_share = is_free ? 9000.0 / 9700.0 : 1.0;            // of the torque on the limb: what does not turn it
     CHECK(std::abs(std::abs(r.last("weld.couple")) / (limb_share * 2e7) - 1.0) < 1e-9);
   }
 }

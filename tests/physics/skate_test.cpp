@@ -21,17 +21,15 @@ constexpr double k_close = 1e-9;
 // --- a knife edge on an incline, turning: its cusped path is a cycloid (e.g. A. M. Bloch, Nonholonomic Mechanics and Control, 1.6)
 
 constexpr double k_downhill = 3.0, k_spin = 2.0; // m/s² along x, rad/s
-const std::string k_knife = "gravity = [3.0, 0.0]\n" + body("knife", "mass = 2; inertia = 0.3; angular_velocity = 2.0") +
-                            element("skate", "edge", "a = 'knife'");
+const std::string k_knife =
+    "gravity = [3.0, 0.0]\n" + body("knife", "mass = 2; inertia = 0.3; angular_velocity = 2.0") + element("skate", "edge", "a = 'knife'");
 
 Vec2 cycloid(double t) {
   const double turned = k_spin * t, size = k_downhill / (2.0 * k_spin * k_spin);
   return {size * std::sin(turned) * std::sin(turned), size * (turned - 0.5 * std::sin(2.0 * turned))};
 }
 
-double miss_of_cycloid(const Run& r) {
-  return (Vec2(r.last("knife.x"), r.last("knife.y")) - cycloid(r.times().back())).norm();
-}
+double miss_of_cycloid(const Run& r) { return (Vec2(r.last("knife.x"), r.last("knife.y")) - cycloid(r.times().back())).norm(); }
 
 std::string number(double value) {
   char text[40];
@@ -75,8 +73,9 @@ TEST_CASE("skates converge with the order of the method") {
 TEST_CASE("Chaplygin's sleigh turns until it runs straight, its weight ahead of its edge") {
   // With u the speed of the edge, k² = J/m + d²: u' = d ω², k² ω' = −d u ω; so u² + k² ω² stays what it was.
   const double mass = 2.0, inertia = 0.4, ahead = 0.3, spin = 1.5, k = std::sqrt(inertia / mass + ahead * ahead);
-  const std::string sleigh = k_no_gravity + body("sleigh", "mass = 2; inertia = 0.4; angular_velocity = 1.5; velocity = [0.0, " + number(spin * ahead) + "]") +
-                             element("skate", "edge", "a = { body = 'sleigh', point = [-0.3, 0.0] }");
+  const std::string sleigh =
+      k_no_gravity + body("sleigh", "mass = 2; inertia = 0.4; angular_velocity = 1.5; velocity = [0.0, " + number(spin * ahead) + "]") +
+      element("skate", "edge", "a = { body = 'sleigh', point = [-0.3, 0.0] }");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(sleigh, {method, 1e-12, 5.0, 0.1});
@@ -89,10 +88,11 @@ TEST_CASE("Chaplygin's sleigh turns until it runs straight, its weight ahead of 
 }
 
 TEST_CASE("an edge on a raft that floats: nothing from outside, so momenta and energy stay") {
-  const std::string text = k_no_gravity + body("raft", "mass = 5; inertia = 2; angular_velocity = 0.4; velocity = [0.3, -0.1]") +
-                           body("rider", "mass = 2; inertia = 0.3; position = [0.5, 0.2]; angle = 0.7; angular_velocity = -1.1; velocity = [0.5, 0.9]") +
-                           element("skate", "edge", "a = { body = 'rider', point = [0.1, -0.2], angle = 0.3 }; b = 'raft'; axis = [0.8, 0.6]") +
-                           element("spring_damper", "elastic", "a = 'rider'; b = { body = 'raft', point = [1.0, 0.5] }; stiffness = 20");
+  const std::string text =
+      k_no_gravity + body("raft", "mass = 5; inertia = 2; angular_velocity = 0.4; velocity = [0.3, -0.1]") +
+      body("rider", "mass = 2; inertia = 0.3; position = [0.5, 0.2]; angle = 0.7; angular_velocity = -1.1; velocity = [0.5, 0.9]") +
+      element("skate", "edge", "a = { body = 'rider', point = [0.1, -0.2], angle = 0.3 }; b = 'raft'; axis = [0.8, 0.6]") +
+      element("spring_damper", "elastic", "a = 'rider'; b = { body = 'raft', point = [1.0, 0.5] }; stiffness = 20");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(text, {method, 1e-12, 6.0, 0.2});
@@ -113,10 +113,11 @@ TEST_CASE("an edge on a raft that floats: nothing from outside, so momenta and e
 
 TEST_CASE("a vehicle whose front axle is turned by δ drives on a circle of radius L / tan δ") {
   const double rear = 1.2, base = 2.6, steer = 0.2, speed = 5.0, radius = base / std::tan(steer), spin = speed / radius;
-  const std::string car = k_no_gravity +
-                          body("car", "mass = 900; inertia = 1300; angular_velocity = " + number(spin) + "; velocity = [5.0, " + number(spin * rear) + "]") +
-                          element("skate", "rear axle", "a = { body = 'car', point = [-1.2, 0.0] }") +
-                          element("skate", "front axle", "a = { body = 'car', point = [1.4, 0.0], angle = 0.2 }");
+  const std::string car =
+      k_no_gravity +
+      body("car", "mass = 900; inertia = 1300; angular_velocity = " + number(spin) + "; velocity = [5.0, " + number(spin * rear) + "]") +
+      element("skate", "rear axle", "a = { body = 'car', point = [-1.2, 0.0] }") +
+      element("skate", "front axle", "a = { body = 'car', point = [1.4, 0.0], angle = 0.2 }");
   const Run r = run(car, {"dop853", 1e-12, 10.0, 0.5});
   for (std::size_t i = 0; i < r.times().size(); ++i) {
     const double turned = spin * r.times()[i];
@@ -134,7 +135,8 @@ TEST_CASE("a vehicle whose front axle is turned by δ drives on a circle of radi
 
 TEST_CASE("a skate with a grip slides sideways against it, and holds when it has come to rest") {
   // Across: 2 m/s against 4 N on 2 kg. Along: nothing.
-  const std::string block = k_no_gravity + body("block", "mass = 2; inertia = 1; velocity = [3.0, 2.0]") + element("skate", "edge", "a = 'block'; grip = 4.0");
+  const std::string block =
+      k_no_gravity + body("block", "mass = 2; inertia = 1; velocity = [3.0, 2.0]") + element("skate", "edge", "a = 'block'; grip = 4.0");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(block, {method, 1e-12, 2.0, 0.25});
@@ -153,7 +155,8 @@ TEST_CASE("a skate with a grip slides sideways against it, and holds when it has
 
 TEST_CASE("a skate slips where its grip is reached, and drags less") {
   const double grip = 6.0, drags = 5.0, mass = 2.0, growth = 10.0, slips = grip / growth, end = 1.0;
-  const std::string pushed = k_no_gravity + body("block", "mass = 2; inertia = 1") + element("skate", "edge", "a = 'block'; grip = 6.0; drags = 5.0") +
+  const std::string pushed = k_no_gravity + body("block", "mass = 2; inertia = 1") +
+                             element("skate", "edge", "a = 'block'; grip = 6.0; drags = 5.0") +
                              element("force", "push", "a = 'block'; coordinate = 'y'; formula = \"'10 N/s' * t\"");
   for (const char* method : k_methods) {
     CAPTURE(method);
@@ -171,11 +174,13 @@ TEST_CASE("a skate slips where its grip is reached, and drags less") {
 TEST_CASE("skates in joint coordinates move as in absolute ones") {
   // The knee moves with 0.4 m/s, and the edge, 0.9 m behind it, not at all across the arm.
   const double knee = 0.5 * 0.8, turns = -knee / 0.9;
-  const std::string train = "gravity = [0.4, -0.3]\n" + body("post", "mass = 3; inertia = 0.5; angular_velocity = 0.8") +
-                            body("arm", "mass = 1.5; inertia = 0.2; position = [1.0, 0.0]; velocity = [0.0, " + number(knee + 0.5 * turns) + "]; angular_velocity = " + number(turns)) +
-                            element("revolute", "pivot", "a = { body = 'post', point = [0.0, 0.0] }") +
-                            element("revolute", "knee", "a = { body = 'arm', point = [-0.5, 0.0] }; b = { body = 'post', point = [0.5, 0.0] }") +
-                            element("skate", "edge", "a = { body = 'arm', point = [0.4, 0.0] }");
+  const std::string train =
+      "gravity = [0.4, -0.3]\n" + body("post", "mass = 3; inertia = 0.5; angular_velocity = 0.8") +
+      body("arm", "mass = 1.5; inertia = 0.2; position = [1.0, 0.0]; velocity = [0.0, " + number(knee + 0.5 * turns) +
+                      "]; angular_velocity = " + number(turns)) +
+      element("revolute", "pivot", "a = { body = 'post', point = [0.0, 0.0] }") +
+      element("revolute", "knee", "a = { body = 'arm', point = [-0.5, 0.0] }; b = { body = 'post', point = [0.5, 0.0] }") +
+      element("skate", "edge", "a = { body = 'arm', point = [0.4, 0.0] }");
   const Model model = scene(train + "\n[simulation]\nstep = 1e-3\n");
   Run runs[2];
   for (const bool is_joint : {false, true}) {

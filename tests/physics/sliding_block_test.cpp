@@ -25,13 +25,14 @@ std::string number(double x) {
 // gravity, not turning; the contact carries the settled weight.
 std::string incline(double angle, double mu, double speed) {
   const double s = std::sin(angle), c = std::cos(angle);
-  return "[[body]]\nname = \"block\"\nmass = 1.0\ninertia = 1.0\nangle = " + number(-angle) +
-         "\nvelocity = [" + number(speed * c) + ", " + number(-speed * s) + "]\n" + R"(
+  return "[[body]]\nname = \"block\"\nmass = 1.0\ninertia = 1.0\nangle = " + number(-angle) + "\nvelocity = [" + number(speed * c) + ", " +
+         number(-speed * s) + "]\n" + R"(
 [[marker]]
 name = "plane"
 body = "ground"
 at = [0.0, 0.0]
-angle = )" + number(-angle) + R"(
+angle = )" +
+         number(-angle) + R"(
 [[element]]
 kind = "unilateral_contact"
 name = "sole"
@@ -39,12 +40,14 @@ a = "block"
 b = "plane"
 stiffness = 1e4
 damping = 20.0
-preload = )" + number(9.81 * c) + R"(
+preload = )" +
+         number(9.81 * c) + R"(
 [[element]]
 kind = "coulomb_stick"
 name = "friction"
 contacts = ["sole"]
-static_friction = )" + number(mu) + R"(
+static_friction = )" +
+         number(mu) + R"(
 [[signal]]
 name = "still"
 kind = "constant"
@@ -152,7 +155,8 @@ std::string on_a_base(const std::string& kind, double mu) {
   return R"(
 [[signal]]
 name = "pulse"
-kind = ")" + kind + "\"\npeak = " + number(-k_peak) + "\nduration = " + number(k_duration) + R"(
+kind = ")" +
+         kind + "\"\npeak = " + number(-k_peak) + "\nduration = " + number(k_duration) + R"(
 [[signal]]
 name = "still"
 kind = "constant"
@@ -195,7 +199,8 @@ preload = 9.81
 kind = "coulomb_stick"
 name = "friction"
 contacts = ["sole"]
-static_friction = )" + number(mu) + "\n";
+static_friction = )" +
+         number(mu) + "\n";
 }
 
 } // namespace
@@ -222,7 +227,7 @@ TEST_CASE("Newmark's sliding block under four pulses") {
         CHECK(std::abs(r.last("friction.slide") - exact) < (settings.integrator == "rk4" ? 1e-7 : 1e-10) * exact + 1e-13);
         CHECK(r.last("friction.mode") == 1.0);
         CHECK(std::abs(r.last("block.vx") - r.last("base.vx")) < 1e-12); // the projection's tolerance
-        CHECK(r.event_times("friction").size() == 2); // slips and sticks; under the rectangle it slips from the start
+        CHECK(r.event_times("friction").size() == 2);                    // slips and sticks; under the rectangle it slips from the start
       }
     }
   // Rectangular: D = (A T)²/(2 μ g) (1 − μ g/A).
@@ -261,7 +266,8 @@ static_friction = 0.4
 kind = "load"
 name = "push"
 at = { body = "block", point = [0.0, -0.5] }
-force = [)" + number(share * 0.4 * 9810.0) + ", 0.0]\n";
+force = [)" +
+           number(share * 0.4 * 9810.0) + ", 0.0]\n";
   };
   // Pushed at floor level: the friction acts 5 mm below (the tip of the compressed contact), which tilts
   // the block by microns in the first second; after that nothing may creep.

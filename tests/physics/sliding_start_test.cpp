@@ -29,7 +29,8 @@ std::string block(double speed, double push, double friction) {
          body("block", "mass = 10.0; inertia = 1.0; position = [0.0, 0.0]; velocity = [" + number(speed) + ", 0.0]") +
          element("unilateral_contact", "sole",
                  "a = { body = 'block', at = [0.0, 0.0] }; b = 'ground'; normal = [0.0, 1.0]; stiffness = 1e5; damping = 100.0; "
-                 "preload = " + number(10.0 * k_g)) +
+                 "preload = " +
+                     number(10.0 * k_g)) +
          element("coulomb_stick", "friction", "contacts = ['sole']; static_friction = " + number(friction)) +
          element("load", "load", "at = 'block'; force_x = 'push'");
 }
@@ -106,8 +107,7 @@ TEST_CASE("the time of a slip from the start is exact, and its partner in a fine
     const Run r = run_with(method, text, 0.3); // stops after v/(μ g) = 0.204 s
     REQUIRE(r.result.events.size() == 2);
     CHECK(r.result.events[1].kind == EventKind::sticks);
-    const GlobalErrorEstimate estimate =
-        estimate_global_error(*r.system, r.system->initial_state(), settings_of(method, 0.3), r.result);
+    const GlobalErrorEstimate estimate = estimate_global_error(*r.system, r.system->initial_state(), settings_of(method, 0.3), r.result);
     CHECK(estimate.event_times[0] == 0.0);
     CHECK(estimate.event_times[1] > 0.0);
     CHECK(estimate.error.unmatched_events == 0);

@@ -24,8 +24,7 @@ constexpr double k_tolerance = 1e-10;
 
 void check_decay(const Run& r, const std::string& channel, const FreeDecay& exact) {
   const std::vector<double> q = r.series(channel);
-  for (std::size_t i = 0; i < q.size(); ++i)
-    CHECK(std::abs(q[i] - exact.at(r.times()[i])) < k_tolerance * std::abs(exact.q0));
+  for (std::size_t i = 0; i < q.size(); ++i) CHECK(std::abs(q[i] - exact.at(r.times()[i])) < k_tolerance * std::abs(exact.q0));
 }
 
 } // namespace
@@ -157,8 +156,7 @@ gap = 0.2
   for (const Settings& settings : {Settings{"dop853", 1e-12, 6.0}, Settings{"rk4", 1e-3, 6.0}}) {
     const Run r = run(text, settings);
     const double half_period = std::acos(-1.0) / 20.0, crossing = 0.2 / 0.5;
-    const std::vector<double> closes = r.event_times("spring", "closes its gap"),
-                              enters = r.event_times("spring", "enters its gap");
+    const std::vector<double> closes = r.event_times("spring", "closes its gap"), enters = r.event_times("spring", "enters its gap");
     REQUIRE(closes.size() == 11); // at 0.2 s and every half period and crossing after it
     REQUIRE(enters.size() == 11);
     for (std::size_t i = 0; i < closes.size(); ++i) {
@@ -192,8 +190,7 @@ free_length = 0.0
   const Run table = run(text("force_table = [[-1.0, -50.0], [0.1, 5.0], [1.0, 50.0]]\n"
                              "damping_table = [[-1.0, -1.2], [1.0, 1.2]]\n"),
                         {"dop853", 1e-12, 3.0, 0.1});
-  for (std::size_t i = 0; i < linear.times().size(); ++i)
-    CHECK(std::abs(linear.series("mass.x")[i] - table.series("mass.x")[i]) < 1e-11);
+  for (std::size_t i = 0; i < linear.times().size(); ++i) CHECK(std::abs(linear.series("mass.x")[i] - table.series("mass.x")[i]) < 1e-11);
   CHECK(!table.event_times("spring").empty());
 
   // Four times as stiff below zero: half periods of π/5 and π/10 alternate, energy is kept.

@@ -40,7 +40,8 @@ a = "mass"
 stiffness = 1e5
 damping = 100.0
 preload = 9.81
-)" + belt_contact + R"(
+)" + belt_contact +
+         R"(
 [[element]]
 kind = "coulomb_stick"
 name = "friction"

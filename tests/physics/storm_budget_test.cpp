@@ -18,11 +18,12 @@ namespace {
 std::string scene_text() {
   const double half = 2.0, x = half * std::cos(M_PI / 6.0), y = half * std::sin(M_PI / 6.0);
   const auto number = [](double value) { return std::to_string(value); };
-  std::string text = body("ladder", "mass = 20; inertia = " + number(20.0 * 16.0 / 12.0) + "; position = [" + number(x) + ", " + number(y) + "]");
+  std::string text =
+      body("ladder", "mass = 20; inertia = " + number(20.0 * 16.0 / 12.0) + "; position = [" + number(x) + ", " + number(y) + "]");
   const auto end = [&](const std::string& name, double px, double py, const std::string& normal, const std::string& friction) {
-    text += element("unilateral_contact", name, "a = { body = \"ladder\", point = [" + number(px) + ", " + number(py) +
-                                                    "] }; b = \"ground\"; gap = 0.0; normal = " + normal +
-                                                    "; stiffness = 1e7; damping = 2e3");
+    text += element("unilateral_contact", name,
+                    "a = { body = \"ladder\", point = [" + number(px) + ", " + number(py) +
+                        "] }; b = \"ground\"; gap = 0.0; normal = " + normal + "; stiffness = 1e7; damping = 2e3");
     text += element("coulomb_stick", name + " friction", "contacts = [\"" + name + "\"]; static_friction = " + friction);
   };
   end("foot", x, -y, "[0.0, 1.0]", "0.3");
@@ -30,8 +31,9 @@ std::string scene_text() {
   for (int i = 0; i < 20; ++i) {
     const std::string ball = "ball " + std::to_string(i);
     text += body(ball, "mass = 1e-3; inertia = 1e-3; velocity = [0.0, -1.0]; position = [" + number(10.0 + i) + ", 0.0]");
-    text += element("unilateral_contact", "plate " + std::to_string(i), "a = \"" + ball + "\"; b = \"ground\"; gap = " + number(4e-4 + 5e-5 * i) +
-                                                                             "; normal = [0.0, 1.0]; stiffness = 1e3; damping = 1e6");
+    text += element("unilateral_contact", "plate " + std::to_string(i),
+                    "a = \"" + ball + "\"; b = \"ground\"; gap = " + number(4e-4 + 5e-5 * i) +
+                        "; normal = [0.0, 1.0]; stiffness = 1e3; damping = 1e6");
   }
   return text;
 }

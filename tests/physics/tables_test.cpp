@@ -63,8 +63,7 @@ TEST_CASE("a fall through tabulated quadratic drag: 10, 400 and 10 000 points") 
       // rk4: (h/τ)⁵/120 in each of some twenty steps, τ = 0.07 s, and as much again at kinks
       const double of_method = settings.integrator == "rk4" ? 1e-6 : 1e-8;
       for (std::size_t k = 0; k < r.times().size(); ++k)
-        CHECK(std::abs(r.series("mass.vx")[k] - 1.333 * std::tanh(9.81 * r.times()[k] / 1.333)) <
-              2.0 * left_out + of_method);
+        CHECK(std::abs(r.series("mass.vx")[k] - 1.333 * std::tanh(9.81 * r.times()[k] / 1.333)) < 2.0 * left_out + of_method);
     }
 }
 
@@ -95,7 +94,7 @@ TEST_CASE("a table's segments: found in any number, and several passed at once")
     CHECK(table.low(s) <= x);
     CHECK(x < table.high(s));
   }
-  CHECK(table.segment_beyond(10, true, table.low(10)) == 11);    // at the kink, to rounding
+  CHECK(table.segment_beyond(10, true, table.low(10)) == 11); // at the kink, to rounding
   CHECK(table.segment_beyond(10, false, table.high(10)) == 9);
   CHECK(table.segment_beyond(10, true, 1.00005) == table.segment_at(1.00005)); // a jump
   CHECK(std::abs(table.integral(2.0) - 8.0 / 3.0) < 2.0 * 1e-8 / 12.0 * 2.0 + 1e-12);
@@ -170,9 +169,11 @@ TEST_CASE("a hardening spring from a smooth curve makes no events, and moves as 
 TEST_CASE("a wheel between the stops of a backlash swings as a spring does, and coasts in between") {
   // Beyond the band half an oscillation of √(J/k), across it 2 h at the speed ω₀: T = 2π √(J/k) + 4 h/ω₀, the same from tables.
   const double inertia = 0.5, k = 200.0, half = 0.05, speed = 3.0, pi = 3.14159265358979323846;
-  const std::string wheel = "gravity = [0.0, 0.0]\n" + body("wheel", "mass = 1.0; inertia = 0.5; angular_velocity = 3.0") + element("revolute", "bearing", "a = 'wheel'");
+  const std::string wheel = "gravity = [0.0, 0.0]\n" + body("wheel", "mass = 1.0; inertia = 0.5; angular_velocity = 3.0") +
+                            element("revolute", "bearing", "a = 'wheel'");
   const double period = 2.0 * pi * std::sqrt(inertia / k) + 4.0 * half / speed;
-  for (const char* spring : {"a = 'wheel'; stiffness = 200.0; gap = 0.1", "a = 'wheel'; couple_table = [[-1.05, -200.0], [-0.05, 0.0], [0.05, 0.0], [1.05, 200.0]]"})
+  for (const char* spring : {"a = 'wheel'; stiffness = 200.0; gap = 0.1",
+                             "a = 'wheel'; couple_table = [[-1.05, -200.0], [-0.05, 0.0], [0.05, 0.0], [1.05, 200.0]]"})
     for (const char* method : {"dop853", "rodas5p"}) {
       CAPTURE(spring);
       CAPTURE(method);

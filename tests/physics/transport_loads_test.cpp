@@ -18,8 +18,7 @@ constexpr double k_pi = std::numbers::pi;
 
 double mean_square(const std::vector<double>& series, std::size_t from, std::size_t to) {
   double sum = 0.0;
-  for (std::size_t k = from; k < to; ++k)
-    sum += series[k] * series[k] / static_cast<double>(to - from);
+  for (std::size_t k = from; k < to; ++k) sum += series[k] * series[k] / static_cast<double>(to - from);
   return sum;
 }
 
@@ -69,15 +68,13 @@ TEST_CASE("the axles of the trailer pass one road, 7 m apart at 40 km/h") {
   }
   CHECK(size > 5e-3);  // mm of a class whose r.m.s. is 15 mm
   CHECK(apart < 1e-9); // positions are given
-  for (const char* joint : {"front joint", "rear joint", "middle joint"})
-    CHECK(r.event_times(joint).empty());
+  for (const char* joint : {"front joint", "rear joint", "middle joint"}) CHECK(r.event_times(joint).empty());
 }
 
 // The trailer is stiff beside the sea: its supports carry what it weighs in the deck's axes.
 TEST_CASE("the barge's deck presses on what it carries by the formula of its accelerations") {
   const Run r = run(load_model("barge"), {"dop853", 1e-8, 30.0, 0.05});
-  const std::vector<double> force = r.series("front axles.force"), rear = r.series("rear axles.force"),
-                            angle = r.series("barge.theta");
+  const std::vector<double> force = r.series("front axles.force"), rear = r.series("rear axles.force"), angle = r.series("barge.theta");
   const double theta = 12.5 * k_pi / 180.0, omega = 2.0 * k_pi / 10.0, heave = 0.2 * 9.80665, mass = 112e3;
   double largest = 0.0, most = 0.0, least = 1e9;
   for (std::size_t k = 0; k < angle.size(); ++k) {

@@ -18,18 +18,22 @@ constexpr double k_slip = 4e4, k_length = 0.2, k_spring = k_slip / k_length, k_d
 constexpr double k_most = k_friction * k_mass * k_g;
 
 std::string tyre(const std::string& more = "") {
-  return element("tyre", "tyre", "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.8; slip_stiffness = 4e4; relaxation_length = 0.2; tread_damping = 300; " + more);
+  return element(
+      "tyre", "tyre",
+      "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.8; slip_stiffness = 4e4; relaxation_length = 0.2; tread_damping = 300; " +
+          more);
 }
 
 // At rest on its tyre, as far as up and down go.
 std::string wheel(double speed, double spin) {
-  return body("wheel", "mass = 400; inertia = 9; position = [0.0, " + number(k_radius - k_mass * k_g / k_stiffness) + "]; velocity = [" + number(speed) +
-                           ", 0.0]; angular_velocity = " + number(spin));
+  return body("wheel", "mass = 400; inertia = 9; position = [0.0, " + number(k_radius - k_mass * k_g / k_stiffness) + "]; velocity = [" +
+                           number(speed) + ", 0.0]; angular_velocity = " + number(spin));
 }
 
 std::string moved(const std::string& name, const std::string& coordinate, double rate) {
   return signal_entry("constant", name + " rate", "value = " + number(rate)) +
-         element("prescribed_motion", name, "a = 'wheel'; coordinate = '" + coordinate + "'; signal = '" + name + " rate'; as = 'velocity'");
+         element("prescribed_motion", name,
+                 "a = 'wheel'; coordinate = '" + coordinate + "'; signal = '" + name + " rate'; as = 'velocity'");
 }
 
 // At 1e-12: forces of kilonewtons, by springs of 2e5 N/m.
@@ -37,7 +41,8 @@ constexpr double k_close = 1e-5; // N
 
 } // namespace
 
-TEST_CASE("a tyre that is driven with a constant slip: its force follows over the relaxation length and is the slip stiffness times the slip") {
+TEST_CASE(
+    "a tyre that is driven with a constant slip: its force follows over the relaxation length and is the slip stiffness times the slip") {
   const double speed = 10.0, spin = -1.02 * speed / k_radius, passing = k_radius * -spin, slip = speed + k_radius * spin;
   for (const char* method : k_methods) {
     CAPTURE(method);
@@ -72,7 +77,8 @@ TEST_CASE("a tyre that stands is a spring beside a damper, and lets go at the in
   // Pushed by g t: m x″ + b x′ + c x = g t from rest.
   const double growth = 2000.0, decay = 0.5 * k_damper / k_mass, turn = std::sqrt(k_spring / k_mass - decay * decay);
   const auto taken = [&](double t) { // g t less what accelerates the mass
-    const double offset = growth * k_damper / (k_spring * k_spring), e = std::exp(-decay * t), c = std::cos(turn * t), s = std::sin(turn * t);
+    const double offset = growth * k_damper / (k_spring * k_spring), e = std::exp(-decay * t), c = std::cos(turn * t),
+                 s = std::sin(turn * t);
     const double b = (offset * decay - growth / k_spring) / turn; // x = g/c t − offset + e (offset c + b s)
     const double acceleration = e * ((decay * decay - turn * turn) * (offset * c + b * s) - 2.0 * decay * turn * (b * c - offset * s));
     return growth * t - k_mass * acceleration;
@@ -94,7 +100,8 @@ TEST_CASE("a tyre that stands is a spring beside a damper, and lets go at the in
 }
 
 TEST_CASE("a tyre that stands does not creep") {
-  const std::string text = wheel(0.0, 0.0) + tyre() + moved("turn", "angle", 0.0) + element("load", "push", "at = 'wheel'; force = [1500.0, 0.0]");
+  const std::string text =
+      wheel(0.0, 0.0) + tyre() + moved("turn", "angle", 0.0) + element("load", "push", "at = 'wheel'; force = [1500.0, 0.0]");
   const Run r = run(text, {"dop853", 1e-10, 200.0});
   CHECK(r.last("wheel.x") == doctest::Approx(1500.0 / k_spring).epsilon(1e-8)); // swings have died out
   CHECK(r.last("tyre.mode") == 1.0);
@@ -135,7 +142,7 @@ TEST_CASE("a wheel that lands without turning is spun up, and leaves nothing out
     const Run r = run(text, {method, 1e-11, 12.0, 0.5});
     CHECK(r.result.statistics.energy_residual < 1e-7 * r.result.statistics.energy_exchanged);
     CHECK(r.event_times("tyre", "closes").size() >= 2); // it bounces
-    CHECK(!r.event_times("tyre", "sticks").empty()); // it lands sliding
+    CHECK(!r.event_times("tyre", "sticks").empty());    // it lands sliding
     // In the end it rolls: what was lost to sliding is that of a blow, m v' + J v'/r² = m v.
     const double rolls = k_mass * 15.0 / (k_mass + 9.0 / (k_radius * k_radius));
     CHECK(r.last("wheel.vx") == doctest::Approx(rolls).epsilon(1e-8));
@@ -165,15 +172,20 @@ TEST_CASE("of a road the nearest place is found") {
     constexpr double h = 1e-5;
     const RoadPoint<Dual<2>> d = road.nearest(Dual<2>::variable(x, 0), Dual<2>::variable(y, 1));
     CHECK(d.x.v == found.x);
-    CHECK(std::abs(d.x.d[0] - (road.nearest(x + h, y).x - road.nearest(x - h, y).x) / (2.0 * h)) < 1e-5 * (1.0 + std::abs(d.x.d[0]))); // third derivatives jump at points
-    CHECK(std::abs(d.height.d[1] - (road.nearest(x, y + h).height - road.nearest(x, y - h).height) / (2.0 * h)) < 1e-5 * (1.0 + std::abs(d.height.d[1])));
+    CHECK(std::abs(d.x.d[0] - (road.nearest(x + h, y).x - road.nearest(x - h, y).x) / (2.0 * h)) <
+          1e-5 * (1.0 + std::abs(d.x.d[0]))); // third derivatives jump at points
+    CHECK(std::abs(d.height.d[1] - (road.nearest(x, y + h).height - road.nearest(x, y - h).height) / (2.0 * h)) <
+          1e-5 * (1.0 + std::abs(d.height.d[1])));
   }
 }
 
 TEST_CASE("without friction a wheel slides over hills and keeps its energy") {
-  const std::string text = body("wheel", "mass = 400; inertia = 9; position = [0.0, 0.28]; velocity = [6.0, 0.0]; angular_velocity = 1.0") +
-                           element("tyre", "tyre", "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.0; slip_stiffness = 4e4; relaxation_length = 0.2; tread_damping = 300; "
-                                                   "road = [[0.0, 0.0], [2.0, 0.0], [4.0, 0.6], [6.0, 1.0], [8.0, 0.4], [12.0, 0.3]]");
+  const std::string text =
+      body("wheel", "mass = 400; inertia = 9; position = [0.0, 0.28]; velocity = [6.0, 0.0]; angular_velocity = 1.0") +
+      element(
+          "tyre", "tyre",
+          "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.0; slip_stiffness = 4e4; relaxation_length = 0.2; tread_damping = 300; "
+          "road = [[0.0, 0.0], [2.0, 0.0], [4.0, 0.6], [6.0, 1.0], [8.0, 0.4], [12.0, 0.3]]");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(text, {method, 1e-11, 3.0, 0.05});
@@ -200,8 +212,11 @@ TEST_CASE("rolling resistance brakes a wheel by what it takes, and holds it at r
   // T from m v′ = −T, J ω′ = −r T + f N, and v = −r ω (1 + T/C) where the bristles have settled: constant.
   const double arm = 0.02, inertia = 9.0, speed = 2.0, couple = arm * k_mass * k_g;
   double force = couple / k_radius;
-  for (int i = 0; i < 50; ++i) force = (couple * k_radius / inertia) * (1.0 + force / k_slip) / (1.0 / k_mass + k_radius * k_radius / inertia * (1.0 + force / k_slip));
-  const std::string text = wheel(speed, -speed / k_radius / (1.0 + force / k_slip)) + tyre() + element("rolling_resistance", "resistance", "contacts = ['tyre']; arm = 0.02");
+  for (int i = 0; i < 50; ++i)
+    force =
+        (couple * k_radius / inertia) * (1.0 + force / k_slip) / (1.0 / k_mass + k_radius * k_radius / inertia * (1.0 + force / k_slip));
+  const std::string text = wheel(speed, -speed / k_radius / (1.0 + force / k_slip)) + tyre() +
+                           element("rolling_resistance", "resistance", "contacts = ['tyre']; arm = 0.02");
   for (const char* method : k_methods) {
     CAPTURE(method);
     const Run r = run(text, {method, 1e-11, 20.0, 0.25});
@@ -230,8 +245,12 @@ TEST_CASE("what a tyre cannot be is said") {
   refused(tyre("road = [[0.0, 0.0]]"), "at least two points");
   refused(tyre("road = [[0.0, 0.0], [1.0, 0.1], [1.0, 0.2]]"), "must increase from row to row: 1 m follows 1 m");
   refused(tyre("road = [[0.0, 0.5], [0.5, 0.0], [1.0, 0.5]]"), "would touch it twice");
-  refused(element("tyre", "tyre", "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.8; slip_stiffness = 4e4; relaxation_length = 0.2"), "tread_damping");
+  refused(
+      element("tyre", "tyre", "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.8; slip_stiffness = 4e4; relaxation_length = 0.2"),
+      "tread_damping");
   refused(tyre() + element("coulomb_stick", "more", "contacts = ['tyre']; static_friction = 0.3"), "'tyre' is no unilateral_contact");
   refused(tyre() + element("rolling_resistance", "resistance", "contacts = ['tyre', 'tyre']; arm = 0.01"), "name one contact");
-  refused(element("spring_damper", "spring", "a = 'wheel'; stiffness = 3.0") + element("rolling_resistance", "resistance", "contacts = ['spring']; arm = 0.01"), "'spring' does not roll");
+  refused(element("spring_damper", "spring", "a = 'wheel'; stiffness = 3.0") +
+              element("rolling_resistance", "resistance", "contacts = ['spring']; arm = 0.01"),
+          "'spring' does not roll");
 }

@@ -30,9 +30,7 @@ struct Bounce {
     return (damping_ratio < 1.0 ? (std::numbers::pi - 2.0 * phi) / std::cos(phi) : 2.0) / frequency;
   }
   [[nodiscard]] double opens() const { return closes() + pressed_for() + 2.0 * damping_ratio / frequency; }
-  [[nodiscard]] double lost() const {
-    return 0.5 * mass * speed * speed * -std::expm1(-2.0 * damping_ratio * frequency * pressed_for());
-  }
+  [[nodiscard]] double lost() const { return 0.5 * mass * speed * speed * -std::expm1(-2.0 * damping_ratio * frequency * pressed_for()); }
 };
 
 std::string point(const Vec2& p) {
@@ -58,7 +56,8 @@ std::string element_text(const Bounce& b) {
   } else if (b.element == "limit") {
     out << "kind = \"limit\"\nb = \"axes\"\ncoordinate = \"x\"\nlower = " << -b.gap << "\n";
   } else if (b.element == "tension" || b.element == "compression") {
-    out << "kind = \"tie\"\nacts = \"" << b.element << "\"\naxis = " << point(b.along) << "\nslack = " << b.gap << "\n" << ground(b.place - b.along);
+    out << "kind = \"tie\"\nacts = \"" << b.element << "\"\naxis = " << point(b.along) << "\nslack = " << b.gap << "\n"
+        << ground(b.place - b.along);
   } else if (b.element == "rope") {
     out << "kind = \"rope\"\nslack = " << b.gap << "\n" << ground(b.place - b.along);
   } else if (b.element == "circle") {
@@ -66,7 +65,8 @@ std::string element_text(const Bounce& b) {
         << ground(b.place - (b.gap + 2.0 * radius) * b.along);
   } else {
     const Vec2 middle = -(b.gap + radius) * b.along;
-    out << "kind = \"segment_contact\"\nradius = " << radius << "\nfrom = " << point(middle - across) << "\nto = " << point(middle + across) << "\n"
+    out << "kind = \"segment_contact\"\nradius = " << radius << "\nfrom = " << point(middle - across) << "\nto = " << point(middle + across)
+        << "\n"
         << ground(b.place);
   }
   out << "stiffness = " << b.mass * b.frequency * b.frequency << "\ndamping = " << 2.0 * b.damping_ratio * b.mass * b.frequency << "\n";
@@ -76,9 +76,9 @@ std::string element_text(const Bounce& b) {
 std::string text_of(const Bounce& b) {
   std::ostringstream out;
   out.precision(17);
-  out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"ball\"\nmass = " << b.mass << "\ninertia = " << 0.1 * b.mass << "\nposition = " << point(b.place)
-      << "\nvelocity = " << point((pulls(b) ? b.speed : -b.speed) * b.along) << "\n[[marker]]\nname = \"axes\"\nbody = \"ground\"\nat = "
-      << point(b.place) << "\nangle = " << b.turn << "\n";
+  out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"ball\"\nmass = " << b.mass << "\ninertia = " << 0.1 * b.mass
+      << "\nposition = " << point(b.place) << "\nvelocity = " << point((pulls(b) ? b.speed : -b.speed) * b.along)
+      << "\n[[marker]]\nname = \"axes\"\nbody = \"ground\"\nat = " << point(b.place) << "\nangle = " << b.turn << "\n";
   if (b.is_guided) out << "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"ball\"\nb = \"axes\"\n";
   out << element_text(b) << "[simulation]\nstep = 1e-3\n";
   return out.str();
@@ -123,7 +123,8 @@ TEST_CASE("a contact opens when its force has ended and its gap is gone, however
     const Run r = run(scene(text_of(b)), {method.name, method.tolerance, 1.3 * b.opens()});
     std::vector<double> opens;
     for (const Event& event : r.result.events)
-      if (event.kind == EventKind::opens || event.kind == EventKind::leaves_stop || event.kind == EventKind::enters_gap) opens.push_back(event.t);
+      if (event.kind == EventKind::opens || event.kind == EventKind::leaves_stop || event.kind == EventKind::enters_gap)
+        opens.push_back(event.t);
     REQUIRE(opens.size() == 1);
     // What the method is allowed in each step, of the contact's length; and rounding of the place, passed at the speed.
     const double left = b.speed * std::exp(-b.damping_ratio * b.frequency * b.pressed_for());
@@ -148,8 +149,9 @@ TEST_CASE("what slides along a contact while it bounces loses friction times wha
     const double mu = between(0.1, 0.9), along = 3.0 * speed, damping = i % 4 == 0 ? 0.0 : between(0.0, 0.6);
     std::ostringstream out;
     out.precision(17);
-    out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"b\"\nmass = " << mass << "\ninertia = " << mass << "\nposition = [0.0, 0.1]\nvelocity = [" << along << ", "
-        << -speed << "]\n[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"b\"\nb = \"ground\"\nnormal = [0.0, 1.0]\nstiffness = "
+    out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"b\"\nmass = " << mass << "\ninertia = " << mass
+        << "\nposition = [0.0, 0.1]\nvelocity = [" << along << ", " << -speed
+        << "]\n[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"b\"\nb = \"ground\"\nnormal = [0.0, 1.0]\nstiffness = "
         << mass * frequency * frequency << "\ndamping = " << 2.0 * damping * mass * frequency
         << "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"sole\"\ncontacts = [\"floor\"]\nstatic_friction = " << mu << "\n";
     const std::string text = out.str();

@@ -84,8 +84,8 @@ std::vector<std::string> gears(SceneWriter& w, At place) {
   const double apart = is_ring ? rb - ra : ra + rb;
   const Wheel a = wheel(w, place, w.r.chance(0.5));
   const Wheel b = wheel(w, {place.x + apart, place.y}, w.r.chance(0.3));
-  Fields fields{{"a", marker(a.name, place)}, {"b", marker(b.name, {place.x + apart, place.y})},
-                {"radius_a", number(ra)}, {"radius_b", number(rb)}};
+  Fields fields{
+      {"a", marker(a.name, place)}, {"b", marker(b.name, {place.x + apart, place.y})}, {"radius_a", number(ra)}, {"radius_b", number(rb)}};
   if (is_ring) fields.push_back({"inside", "true"});
   w.element("gear", fields, {a.name, b.name});
   if (w.r.chance(0.8)) bearing(w, a);
@@ -105,7 +105,8 @@ std::vector<std::string> rack_and_pinion(SceneWriter& w, At place) {
   w.element("rack", {{"a", quoted(pinion.name)}, {"b", quoted(rack)}, {"radius", number(radius)}}, {pinion.name, rack});
   if (w.r.chance(0.7)) bearing(w, pinion);
   if (w.r.chance(0.7))
-    w.element("joint_friction", {{"a", quoted(rack)}, {"coordinate", "\"x\""}, {"holds", number(pinion.bound / radius * w.r.decades(-1.0, 0.0))}}, {rack});
+    w.element("joint_friction",
+              {{"a", quoted(rack)}, {"coordinate", "\"x\""}, {"holds", number(pinion.bound / radius * w.r.decades(-1.0, 0.0))}}, {rack});
   couple(w, pinion, w.r.between(0.6, 2.0));
   return {rack};
 }
@@ -141,8 +142,10 @@ std::vector<std::string> driven_wheel(SceneWriter& w, At place) {
   const Wheel a = wheel(w, place, false);
   const bool is_position = w.r.chance(0.3);
   const std::string s = w.signal(is_position ? 0.5 : w.r.decades(-0.3, 0.7) / w.duration, true);
-  w.element("prescribed_motion", {{"a", quoted(a.name)}, {"coordinate", "\"angle\""}, {"signal", quoted(s)},
-                                  {"as", is_position ? "\"position\"" : "\"velocity\""}}, {a.name, s});
+  w.element(
+      "prescribed_motion",
+      {{"a", quoted(a.name)}, {"coordinate", "\"angle\""}, {"signal", quoted(s)}, {"as", is_position ? "\"position\"" : "\"velocity\""}},
+      {a.name, s});
   if (w.r.chance(0.7)) bearing(w, a);
   const Wheel b = wheel(w, {place.x, place.y + w.size}, false);
   turn_spring(w, b.name, a.name, b.inertia);
@@ -220,8 +223,12 @@ std::vector<std::string> crank(SceneWriter& w, At place) {
   w.element("distance", {{"a", marker(turning, pin)}, {"b", marker(slider, end)}}, {turning, slider});
   const double force = m2 * radius * std::pow(4.0 / w.duration, 2);
   if (w.r.chance(0.6))
-    w.element("joint_friction", {{"a", marker(slider, end)}, {"b", marker("ground", end)}, {"coordinate", "\"x\""},
-                                 {"holds", number(force * w.r.decades(-1.5, 0.5))}}, {slider});
+    w.element("joint_friction",
+              {{"a", marker(slider, end)},
+               {"b", marker("ground", end)},
+               {"coordinate", "\"x\""},
+               {"holds", number(force * w.r.decades(-1.5, 0.5))}},
+              {slider});
   if (w.r.chance(0.5)) {
     const std::string s = w.signal(force * w.r.between(0.5, 4.0));
     w.element("load", {{"at", quoted(slider)}, {"force_x", quoted(s)}}, {slider, s});
@@ -233,8 +240,8 @@ std::vector<std::string> crank(SceneWriter& w, At place) {
 
 const std::vector<NamedCell>& rotating_cells() {
   static const std::vector<NamedCell> cells{
-      {"held wheel", held_wheel},   {"stopped wheel", stopped_wheel}, {"gears", gears}, {"rack", rack_and_pinion},
-      {"motor", motor_wheel},       {"driven wheel", driven_wheel},   {"pendulum", pendulum}, {"crank", crank}};
+      {"held wheel", held_wheel}, {"stopped wheel", stopped_wheel}, {"gears", gears},       {"rack", rack_and_pinion},
+      {"motor", motor_wheel},     {"driven wheel", driven_wheel},   {"pendulum", pendulum}, {"crank", crank}};
   return cells;
 }
 

@@ -30,8 +30,7 @@ void add_law(SceneWriter& w, Fields& fields, double m, double depth, bool is_fla
 void friction_on(SceneWriter& w, const std::vector<std::string>& contacts, double least, double most) {
   const double mu = w.r.between(least, most);
   std::string names;
-  for (const std::string& contact : contacts)
-    names += (names.empty() ? "" : ", ") + quoted(contact);
+  for (const std::string& contact : contacts) names += (names.empty() ? "" : ", ") + quoted(contact);
   Fields fields{{"contacts", "[" + names + "]"}, {"static_friction", number(mu)}};
   if (w.r.chance(0.35)) fields.push_back({"kinetic_friction", number(mu * w.r.between(0.3, 0.95))});
   w.element("coulomb_stick", fields, contacts);
@@ -92,8 +91,13 @@ std::vector<std::string> box_on_deck(SceneWriter& w, At place) {
     w.element("prescribed_motion", {{"a", quoted(deck)}, {"signal", quoted(s)}}, {deck, s});
   } else {
     const double k = w.stiffness_for(m + deck_mass, 0.7, 10.0), c = w.damping_for(m, k);
-    w.element("spring_damper", {{"a", quoted(deck)}, {"b", marker("ground", {below.x + w.size, below.y})}, {"axis", "[1.0, 0.0]"},
-                                {"stiffness", number(k)}, {"damping", number(c)}}, {deck});
+    w.element("spring_damper",
+              {{"a", quoted(deck)},
+               {"b", marker("ground", {below.x + w.size, below.y})},
+               {"axis", "[1.0, 0.0]"},
+               {"stiffness", number(k)},
+               {"damping", number(c)}},
+              {deck});
     const std::string s = w.signal(brake * (m + deck_mass));
     w.element("load", {{"at", quoted(deck)}, {"force_x", quoted(s)}}, {deck, s});
   }
@@ -136,7 +140,8 @@ std::string ball(SceneWriter& w, double m, double radius, At at) {
 }
 
 std::vector<std::string> ball_on_hill(SceneWriter& w, At place) {
-  const double m = std::stod(number(w.some_mass())), ra = neat((w.size * w.r.between(0.1, 0.4))), rb = neat((w.size * w.r.between(0.5, 2.0)));
+  const double m = std::stod(number(w.some_mass())), ra = neat((w.size * w.r.between(0.1, 0.4))),
+               rb = neat((w.size * w.r.between(0.5, 2.0)));
   const double away = w.r.either(0.0, 0.3), reach = ra + rb + drop(w);
   const std::string name = ball(w, m, ra, {place.x + reach * away, place.y + reach * std::sqrt(1.0 - away * away)});
   Fields fields{{"a", quoted(name)}, {"b", marker("ground", place)}, {"radius_a", number(ra)}, {"radius_b", number(rb)}};
@@ -146,10 +151,12 @@ std::vector<std::string> ball_on_hill(SceneWriter& w, At place) {
 }
 
 std::vector<std::string> ball_in_ring(SceneWriter& w, At place) {
-  const double m = std::stod(number(w.some_mass())), ra = neat((w.size * w.r.between(0.1, 0.4))), rb = neat((w.size * w.r.between(0.8, 2.0)));
+  const double m = std::stod(number(w.some_mass())), ra = neat((w.size * w.r.between(0.1, 0.4))),
+               rb = neat((w.size * w.r.between(0.8, 2.0)));
   const double away = w.r.either(0.0, 0.8), reach = (rb - ra) * w.r.between(0.5, 0.98);
   const std::string name = ball(w, m, ra, {place.x + reach * away, place.y - reach * std::sqrt(1.0 - away * away)});
-  Fields fields{{"a", quoted(name)}, {"b", marker("ground", place)}, {"radius_a", number(ra)}, {"radius_b", number(rb)}, {"inside", "true"}};
+  Fields fields{
+      {"a", quoted(name)}, {"b", marker("ground", place)}, {"radius_a", number(ra)}, {"radius_b", number(rb)}, {"inside", "true"}};
   add_law(w, fields, m, 0.01 * w.size, false);
   add_ball_friction(w, w.element("circle_contact", fields, {name}));
   return {};
@@ -160,8 +167,12 @@ std::vector<std::string> ball_on_plate(SceneWriter& w, At place) {
   const double slope = w.r.between(-0.5, 0.5);
   const At start{place.x + w.size * w.r.either(0.0, 0.4), place.y + 0.5 * thick + (radius + drop(w)) * 1.2 + 0.25 * w.size};
   const std::string name = ball(w, m, radius, start);
-  Fields fields{{"a", quoted(name)}, {"b", marker("ground", place)}, {"radius", number(radius)}, {"from", pair(-w.size, -slope * 0.5 * w.size)},
-                {"to", pair(w.size, slope * 0.5 * w.size)}, {"thickness", number(thick)}};
+  Fields fields{{"a", quoted(name)},
+                {"b", marker("ground", place)},
+                {"radius", number(radius)},
+                {"from", pair(-w.size, -slope * 0.5 * w.size)},
+                {"to", pair(w.size, slope * 0.5 * w.size)},
+                {"thickness", number(thick)}};
   add_law(w, fields, m, 0.01 * w.size, false);
   add_ball_friction(w, w.element("segment_contact", fields, {name}));
   return {};
@@ -183,8 +194,9 @@ std::vector<std::string> two_balls(SceneWriter& w, At place) {
 } // namespace
 
 const std::vector<NamedCell>& touching_cells() {
-  static const std::vector<NamedCell> cells{{"box", box_on_ground},         {"deck", box_on_deck},        {"hill", ball_on_hill},
-                                            {"ring", ball_in_ring},         {"ball on plate", ball_on_plate}, {"two balls", two_balls}};
+  static const std::vector<NamedCell> cells{{"box", box_on_ground},           {"deck", box_on_deck},
+                                            {"hill", ball_on_hill},           {"ring", ball_in_ring},
+                                            {"ball on plate", ball_on_plate}, {"two balls", two_balls}};
   return cells;
 }
 

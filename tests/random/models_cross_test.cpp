@@ -1,10 +1,10 @@
 // Every model of models/ by methods that share little, over its first fifth of a second: whole runs, which take minutes,
 // are those of `steplap check --cross`.
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/assembly.h"
-#include "mbd/trust/cross_check.h"
-#include "mbd/rest/equilibrium.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
+#include "mbd/trust/cross_check.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
@@ -66,9 +66,9 @@ bool rests_on_many(const std::string& file) { return file.ends_with("brick_wall.
 bool is_known(const std::string& file, const CrossCheck& check) {
   const bool is_listed = file.ends_with("redundant_loop.toml") || file.ends_with("weak_clamping.toml");
   return is_listed && std::all_of(check.disagreements.begin(), check.disagreements.end(), [](const Disagreement& d) {
-    const bool is_force = d.where.find(".force") != std::string::npos || d.where.find("joint.f") != std::string::npos;
-    return d.doubt == Doubt::channel && is_force && d.ratio < 20.0;
-  });
+           const bool is_force = d.where.find(".force") != std::string::npos || d.where.find("joint.f") != std::string::npos;
+           return d.doubt == Doubt::channel && is_force && d.ratio < 20.0;
+         });
 }
 
 } // namespace

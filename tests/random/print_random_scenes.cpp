@@ -27,8 +27,7 @@ struct Options {
 
 std::string cells_of(const Scene& scene) {
   std::string text;
-  for (const std::string& cell : scene.cells)
-    text += (text.empty() ? "" : ", ") + cell;
+  for (const std::string& cell : scene.cells) text += (text.empty() ? "" : ", ") + cell;
   return text;
 }
 
@@ -40,8 +39,8 @@ std::string doubts_of(const SceneResult& result) {
 }
 
 void print_one(const Scene& scene, const SceneResult& result) {
-  std::printf("%6llu | %s | %.2f s | %s | %s\n", static_cast<unsigned long long>(scene.seed), cells_of(scene).c_str(),
-              result.seconds, result.text().c_str(), doubts_of(result).c_str());
+  std::printf("%6llu | %s | %.2f s | %s | %s\n", static_cast<unsigned long long>(scene.seed), cells_of(scene).c_str(), result.seconds,
+              result.text().c_str(), doubts_of(result).c_str());
   for (const CrossRun& run : result.check.runs)
     if (!run.failure.empty()) std::printf("       | %s stops: %s\n", run.setting.text().c_str(), run.failure.c_str());
   std::fflush(stdout);
@@ -67,7 +66,8 @@ int run(std::uint64_t first, std::uint64_t last, const Options& options) {
     const Scene scene = random_scene(seed);
     const SceneResult result = check_scene(scene, folder);
     seconds += result.seconds;
-    const auto stops = std::count_if(result.check.runs.begin(), result.check.runs.end(), [](const CrossRun& r) { return !r.failure.empty(); });
+    const auto stops =
+        std::count_if(result.check.runs.begin(), result.check.runs.end(), [](const CrossRun& r) { return !r.failure.empty(); });
     stopped += stops;
     if (result.is_bad()) ++bad;
     else if (result.check.outcome == CrossOutcome::vague) ++vague;
@@ -78,7 +78,8 @@ int run(std::uint64_t first, std::uint64_t last, const Options& options) {
   }
   std::filesystem::remove_all(folder);
   std::printf("%ld agree, %ld cannot be told apart to the end, %ld disagree; %ld runs stopped; worst ratio of those that "
-              "agree %.2g; %.1f s of CPU time\n", agreed, vague, bad, stopped, worst_agreed, seconds);
+              "agree %.2g; %.1f s of CPU time\n",
+              agreed, vague, bad, stopped, worst_agreed, seconds);
   return bad > 0 ? 4 : 0;
 }
 

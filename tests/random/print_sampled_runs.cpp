@@ -1,10 +1,10 @@
 // sampled_runs COUNT METHOD TOLERANCE FIRST LAST: random scenes, sampled COUNT times and not at all; a line for each that differs, or of
 // which a sample lies beyond its channel's extremes.
 // sampled_runs COUNT METHOD TOLERANCE MODEL...: model files.
-#include "mbd/rest/assembly.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/validate.h"
+#include "mbd/rest/assembly.h"
 #include "tests/random/random_scene.h"
 #include "tests/random/sampled_runs.h"
 #include "transformer/catalog.h"
@@ -47,8 +47,8 @@ void look_at(const std::string& name, const Model& model, const Setting& setting
   std::size_t shown = 0;
   for (const Beyond& b : found.beyond)
     if (++shown <= 3)
-      std::printf("%s: %s at %.9g s is %.3g beyond its range of %.6g, allowed %.2g (%zu channels)\n", name.c_str(), b.channel.c_str(), b.t, b.excess, b.range,
-                  b.allowed, found.beyond.size());
+      std::printf("%s: %s at %.9g s is %.3g beyond its range of %.6g, allowed %.2g (%zu channels)\n", name.c_str(), b.channel.c_str(), b.t,
+                  b.excess, b.range, b.allowed, found.beyond.size());
   std::fflush(stdout);
 }
 
@@ -65,11 +65,9 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("sampled_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     const std::uint64_t last = std::strtoull(argv[5], nullptr, 10);
-    for (std::uint64_t seed = std::strtoull(argv[4], nullptr, 10); seed <= last; ++seed)
-      try {
+    for (std::uint64_t seed = std::strtoull(argv[4], nullptr, 10); seed <= last; ++seed) try {
         look_at(std::to_string(seed), model_of(random_scene(seed), folder.string()), setting, totals);
-      } catch (const ModelError&) {
-      }
+      } catch (const ModelError&) {}
     std::filesystem::remove_all(folder);
   } else {
     for (int i = 4; i < argc; ++i) look_at(argv[i], read_model(argv[i], transformer_catalog()), setting, totals);

@@ -14,9 +14,7 @@ std::uint64_t RandomNumber::bits() {
   return z ^ (z >> 31);
 }
 
-double RandomNumber::between(double low, double high) {
-  return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1.0p-53;
-}
+double RandomNumber::between(double low, double high) { return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1.0p-53; }
 
 double RandomNumber::decades(double low, double high) { return std::pow(10.0, between(low, high)); }
 

@@ -15,8 +15,7 @@ void couple(SceneWriter& w, const std::string& a, const std::string& b) {
   const double k = w.stiffness_for(w.mass, 0.5, 8.0), c = w.damping_for(w.mass, k);
   if (w.r.chance(0.7))
     w.element("spring_damper", {{"a", quoted(a)}, {"b", quoted(b)}, {"stiffness", number(k)}, {"damping", number(c)}}, {a, b});
-  else
-    w.element("bushing", {{"a", quoted(a)}, {"b", quoted(b)}, {"stiffness", pair(k, k)}, {"damping", pair(c, c)}}, {a, b});
+  else w.element("bushing", {{"a", quoted(a)}, {"b", quoted(b)}, {"stiffness", pair(k, k)}, {"damping", pair(c, c)}}, {a, b});
 }
 
 // A rope to something above or a tie to something below: in a few scenes, drawn from a stream of
@@ -55,8 +54,8 @@ void drop(SceneWriter& w, RandomNumber own) {
   }
   const double speed = w.size / w.duration;
   const double height = own.between(1.05, 2.0) * radius, along = speed * own.between(-2.0, 2.0);
-  const std::string body = w.body(m, 0.4 * m * radius * radius, {-10.0 * w.size, height},
-                                  {{"outline", outline + "]"}, {"velocity", pair(along, 0.0)}});
+  const std::string body =
+      w.body(m, 0.4 * m * radius * radius, {-10.0 * w.size, height}, {{"outline", outline + "]"}, {"velocity", pair(along, 0.0)}});
   const double weight = m * std::max(w.gravity, speed * speed / w.size);
   SceneWriter::Fields fields{{"a", quoted(body)}, {"stiffness", number(weight / (k_depth * w.size * w.size))}};
   if (own.chance(0.7)) fields.push_back({"static_friction", number(own.between(0.05, 0.8))});
@@ -72,11 +71,12 @@ void buffer_beside(SceneWriter& w, RandomNumber& own, const std::string& body) {
   const double slope = w.stiffness_for(w.mass, 1.0, 10.0), corner = w.size * own.between(0.02, 0.2);
   const double share = own.between(0.1, 0.9), gap = w.size * own.between(-0.01, 0.1);
   const bool is_left = own.chance(0.5);
-  w.element("buffer", {{"a", quoted(body)},
-                       {"axis", is_left ? "[1.0, 0.0]" : "[-1.0, 0.0]"},
-                       {"gap", number(gap)},
-                       {"loading", "[[0.0, 0.0], " + pair(corner, slope * corner) + ", " + pair(2.0 * corner, 3.0 * slope * corner) + "]"},
-                       {"unloading", "[[0.0, 0.0], " + pair(1.3 * corner, share * slope * corner) + "]"}},
+  w.element("buffer",
+            {{"a", quoted(body)},
+             {"axis", is_left ? "[1.0, 0.0]" : "[-1.0, 0.0]"},
+             {"gap", number(gap)},
+             {"loading", "[[0.0, 0.0], " + pair(corner, slope * corner) + ", " + pair(2.0 * corner, 3.0 * slope * corner) + "]"},
+             {"unloading", "[[0.0, 0.0], " + pair(1.3 * corner, share * slope * corner) + "]"}},
             {body});
 }
 
@@ -89,14 +89,19 @@ void formula_on(SceneWriter& w, RandomNumber& own, const std::string& body) {
     w.element("force", {{"a", quoted(body)}, {"coordinate", axis}, {"formula", formula}, {"energy", "\"dissipated\""}}, {body});
   } else {
     const std::string law = "'" + number(force / w.size) + " N/m' * (value - '" + number(w.size * own.between(-1.0, 1.0)) + " m')";
-    w.element("force", {{"a", quoted(body)}, {"coordinate", axis}, {"formula", "\"-max(-'" + number(force) + " N', min('" + number(force) + " N', " + law + "))\""}}, {body});
+    w.element("force",
+              {{"a", quoted(body)},
+               {"coordinate", axis},
+               {"formula", "\"-max(-'" + number(force) + " N', min('" + number(force) + " N', " + law + "))\""}},
+              {body});
   }
 }
 
 // A brake on a coordinate, pressed by a pulse, with a law of its own.
 void brake_on(SceneWriter& w, RandomNumber& own, const std::string& body) {
   const double speed = w.size / w.duration, holds = w.mass * speed / w.duration * own.decades(-1.0, 1.0);
-  SceneWriter::Fields fields{{"a", quoted(body)}, {"coordinate", "\"x\""}, {"holds", number(holds)}, {"drags", number(holds * own.between(0.3, 0.95))}};
+  SceneWriter::Fields fields{
+      {"a", quoted(body)}, {"coordinate", "\"x\""}, {"holds", number(holds)}, {"drags", number(holds * own.between(0.3, 0.95))}};
   if (own.chance(0.5)) fields.push_back({"stribeck_velocity", number(speed * own.decades(-2.0, 0.0))});
   if (own.chance(0.5)) fields.push_back({"viscous", number(holds / speed * own.decades(-2.0, 0.0))});
   w.element("joint_friction", fields, {body});
@@ -132,12 +137,18 @@ void add_actions(SceneWriter& w, RandomNumber own, const std::string& body) {
   if (elements.empty()) return;
   const Block chosen = own.one_of(elements);
   const std::string& released = chosen.name;
-  const char* const k_have_to_fit[] = {"revolute", "point_on_line", "gear", "rack", "rope", "wound_rope", "prescribed_motion"}; // where they close
+  const char* const k_have_to_fit[] = {"revolute",   "point_on_line",    "gear", "rack", "rope",
+                                       "wound_rope", "prescribed_motion"}; // where they close
   w.action({{"when", condition(w, own, body)}, {"do", "[\"release " + released + "\"]"}}, {released, body});
   const bool fits = std::none_of(std::begin(k_have_to_fit), std::end(k_have_to_fit), [&](const char* kind) { return chosen.kind == kind; });
   if (fits && own.chance(0.5)) w.action({{"when", condition(w, own, body)}, {"do", "[\"hold " + released + "\"]"}}, {released, body});
   if (own.chance(0.4)) {
-    const std::string brace = w.element("joint_friction", {{"a", quoted(body)}, {"coordinate", "\"angle\""}, {"holds", number(w.mass * w.size * w.size / (w.duration * w.duration) * own.decades(-1.0, 1.0))}, {"active", "false"}}, {body});
+    const std::string brace = w.element("joint_friction",
+                                        {{"a", quoted(body)},
+                                         {"coordinate", "\"angle\""},
+                                         {"holds", number(w.mass * w.size * w.size / (w.duration * w.duration) * own.decades(-1.0, 1.0))},
+                                         {"active", "false"}},
+                                        {body});
     w.action({{"when", condition(w, own, body)}, {"do", "[\"hold " + brace + "\"]"}}, {brace, body});
   }
   if (own.chance(0.2)) w.action({{"when", quoted(number(w.duration * own.between(0.8, 1.0)) + " s")}, {"do", "[\"stop\"]"}}, {body});
@@ -150,7 +161,8 @@ constexpr std::uint64_t k_last_without_wheels = 6000;
 void roll(SceneWriter& w, RandomNumber& own) {
   const double radius = neat(0.3 * w.size), speed = w.size / w.duration, m = w.mass * own.between(0.5, 2.0);
   const double weight = m * std::max(w.gravity, speed * speed / w.size), along = speed * own.between(-3.0, 3.0);
-  const double slip = weight * own.decades(0.3, 1.3), relaxation = radius * own.between(0.3, 1.5), depth = radius * own.between(0.005, 0.03);
+  const double slip = weight * own.decades(0.3, 1.3), relaxation = radius * own.between(0.3, 1.5),
+               depth = radius * own.between(0.005, 0.03);
   const double turning = own.between(-0.5, 2.0), high = own.between(0.99, 1.5); // each compiler has its own order of arguments
   const std::string body = w.body(m, 0.5 * m * radius * radius, {-20.0 * w.size, radius * high},
                                   {{"velocity", pair(along, 0.0)}, {"angular_velocity", number(-along / radius * turning)}});
@@ -168,15 +180,20 @@ void roll(SceneWriter& w, RandomNumber& own) {
     fields.push_back({"road", road + "]"});
   }
   const std::string tyre = w.element("tyre", fields, {body});
-  if (own.chance(0.5)) w.element("rolling_resistance", {{"contacts", "[" + quoted(tyre) + "]"}, {"arm", number(radius * own.between(0.005, 0.05))}}, {body, tyre});
+  if (own.chance(0.5))
+    w.element("rolling_resistance", {{"contacts", "[" + quoted(tyre) + "]"}, {"arm", number(radius * own.between(0.005, 0.05))}},
+              {body, tyre});
 }
 
 // A body on a skate that a spring holds, or that slides sideways where its grip ends.
 void skate(SceneWriter& w, RandomNumber& own) {
-  const double speed = w.size / w.duration, m = w.mass * own.between(0.5, 2.0), heading = own.between(-3.0, 3.0), along = speed * own.between(0.5, 2.0);
+  const double speed = w.size / w.duration, m = w.mass * own.between(0.5, 2.0), heading = own.between(-3.0, 3.0),
+               along = speed * own.between(0.5, 2.0);
   const At place{-40.0 * w.size, 0.0};
   const std::string body = w.body(m, w.inertia_of(m, w.size), place,
-                                  {{"angle", number(heading)}, {"velocity", pair(along * std::cos(heading), along * std::sin(heading))}, {"angular_velocity", number(own.between(-3.0, 3.0) / w.duration)}});
+                                  {{"angle", number(heading)},
+                                   {"velocity", pair(along * std::cos(heading), along * std::sin(heading))},
+                                   {"angular_velocity", number(own.between(-3.0, 3.0) / w.duration)}});
   SceneWriter::Fields fields{{"a", quoted(body)}};
   if (own.chance(0.5)) {
     const double grip = m * (w.gravity + speed / w.duration) * own.decades(-0.7, 0.3);
@@ -185,7 +202,12 @@ void skate(SceneWriter& w, RandomNumber& own) {
   }
   w.element("skate", fields, {body});
   const double k = w.stiffness_for(m, 0.3, 3.0);
-  w.element("spring_damper", {{"a", quoted(body)}, {"b", marker("ground", {place.x, 2.0 * w.size})}, {"stiffness", number(k)}, {"damping", number(w.damping_for(m, k))}}, {body});
+  w.element("spring_damper",
+            {{"a", quoted(body)},
+             {"b", marker("ground", {place.x, 2.0 * w.size})},
+             {"stiffness", number(k)},
+             {"damping", number(w.damping_for(m, k))}},
+            {body});
 }
 
 void add_wheels(SceneWriter& w, RandomNumber own) {

@@ -1,12 +1,12 @@
 // Random scenes: all methods agree on them, and with an integration that shares nothing with them; and what looks at
 // them sees what is wrong where something is.
-#include "tests/sanitized.h"
+#include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/trust/cross_check.h"
-#include "mbd/io/reader.h"
 #include "tests/random/random_scene.h"
 #include "tests/random/scene_check.h"
 #include "tests/random/smooth_friction.h"
+#include "tests/sanitized.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
@@ -40,8 +40,7 @@ struct Folder {
 
 // FNV-1a.
 std::uint64_t hash_of(const std::string& text, std::uint64_t hash) {
-  for (const char c : text)
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
   return hash;
 }
 
@@ -60,8 +59,7 @@ CrossCheck checked(const std::string& text, double end, const std::vector<CrossM
   options.methods = methods;
   options.free_groups = free_groups(model, *system);
   CrossCheck check = cross_check(*system, assembled_start(*system, assemble(model, *system)), every(end, end / 400.0), options);
-  for (CrossRun& run : check.runs)
-    run.result.trajectory.reset(); // its channels go with the system
+  for (CrossRun& run : check.runs) run.result.trajectory.reset(); // its channels go with the system
   return check;
 }
 
@@ -74,8 +72,7 @@ const std::string k_pendulum = "[[body]]\nname = \"bob\"\nmass = 2.0\ninertia = 
 
 CrossMethod fixed(const char* name, std::vector<double> steps) {
   CrossMethod method{name, {}};
-  for (const double step : steps)
-    method.levels.push_back({name, step, true});
+  for (const double step : steps) method.levels.push_back({name, step, true});
   return method;
 }
 
@@ -85,16 +82,17 @@ TEST_CASE("methods agree on random scenes within their own error estimates") {
   const Folder folder;
   std::vector<std::uint64_t> seeds(k_scenes);
   std::iota(seeds.begin(), seeds.end(), 1);
-  for (std::uint64_t seed = 3001; seed <= 3000 + k_scenes / 2; ++seed) // with buffers, forces by formula, brakes
-    if (seed != 3004) seeds.push_back(seed); // KNOWN_ISSUES.md
+  for (std::uint64_t seed = 3001; seed <= 3000 + k_scenes / 2; ++seed)                        // with buffers, forces by formula, brakes
+    if (seed != 3004) seeds.push_back(seed);                                                  // KNOWN_ISSUES.md
   for (std::uint64_t seed = 6001; seed <= 6000 + k_scenes / 2; ++seed) seeds.push_back(seed); // with wheels and skates
-  for (std::uint64_t seed = 9001; seed <= 9000 + k_scenes / 2; ++seed) // with actions
-    if (seed != 9023) seeds.push_back(seed); // KNOWN_ISSUES.md
-  for (std::uint64_t seed = 12001; seed <= 12000 + k_scenes / 4; ++seed) seeds.push_back(seed); // with belts, bands, cams, clutches, gears with losses, beams
-  seeds.push_back(100); // one of two feet turns at the instant at which the other begins to slip
-  seeds.push_back(261); // the frictions of two gears turn together, known apart by what dense output leaves of the gear
-  seeds.push_back(582); // a joint's slip passes through rest and goes on another way
-  seeds.push_back(667); // what slides while its contact's force ends: steps reach beyond that
+  for (std::uint64_t seed = 9001; seed <= 9000 + k_scenes / 2; ++seed)                        // with actions
+    if (seed != 9023) seeds.push_back(seed);                                                  // KNOWN_ISSUES.md
+  for (std::uint64_t seed = 12001; seed <= 12000 + k_scenes / 4; ++seed)
+    seeds.push_back(seed); // with belts, bands, cams, clutches, gears with losses, beams
+  seeds.push_back(100);    // one of two feet turns at the instant at which the other begins to slip
+  seeds.push_back(261);    // the frictions of two gears turn together, known apart by what dense output leaves of the gear
+  seeds.push_back(582);    // a joint's slip passes through rest and goes on another way
+  seeds.push_back(667);    // what slides while its contact's force ends: steps reach beyond that
   for (const std::uint64_t seed : seeds) {
     const SceneResult result = check_scene(random_scene(seed), folder.path);
     INFO("seed " << seed << ": " << result.text());
@@ -122,9 +120,11 @@ TEST_CASE("blocks on a rail move as an integration with smoothed friction has it
     const SmoothMotion smooth = smooth_motion(scene, samples);
     const Model model = parse_model(scene.text(), "rail.toml", transformer_catalog());
     const auto system = compile(model);
-    for (const MethodSetting& method : {MethodSetting{"dop853", 1e-9, false}, MethodSetting{"auto", 1e-8, false}, MethodSetting{"tsit5", 1e-9, false},
-                                        MethodSetting{"rodas5p", 1e-7, false}, MethodSetting{"rk4", 1e-4, true}}) {
-      const RunResult run = simulate(*system, assembled_start(*system, assemble(model, *system)), method.applied_to(every(scene.end, scene.end / samples)));
+    for (const MethodSetting& method :
+         {MethodSetting{"dop853", 1e-9, false}, MethodSetting{"auto", 1e-8, false}, MethodSetting{"tsit5", 1e-9, false},
+          MethodSetting{"rodas5p", 1e-7, false}, MethodSetting{"rk4", 1e-4, true}}) {
+      const RunResult run =
+          simulate(*system, assembled_start(*system, assemble(model, *system)), method.applied_to(every(scene.end, scene.end / samples)));
       double worst = 0.0;
       for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
         const std::size_t column = run.trajectory->column("b" + std::to_string(i) + ".x");
@@ -145,11 +145,9 @@ TEST_CASE("a seed gives the same scene everywhere, and seeds reach all kinds of 
   const auto take = [&](std::uint64_t first, std::uint64_t last) {
     for (std::uint64_t seed = first; seed <= last; ++seed) {
       const Scene scene = random_scene(seed);
-      for (const Block& block : scene.blocks)
-        kinds.insert(block.kind);
+      for (const Block& block : scene.blocks) kinds.insert(block.kind);
       hash = hash_of(scene.text(), hash);
-      for (const auto& [name, text] : scene.files)
-        hash = hash_of(text, hash);
+      for (const auto& [name, text] : scene.files) hash = hash_of(text, hash);
     }
   };
   take(1, 500);
@@ -162,36 +160,36 @@ TEST_CASE("a seed gives the same scene everywhere, and seeds reach all kinds of 
   CHECK(hash == 0x324C1ECAAE0BF187ULL);
   take(12001, 12100); // with actions, and belts, bands, cams, clutches, gears with losses, beams
   CHECK(hash == 0x435184324F3C8A1DULL);
-  for (const ElementKind* kind : transformer_catalog().elements)
-    CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
-  for (const SignalKind* kind : transformer_catalog().signals)
-    CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
+  for (const ElementKind* kind : transformer_catalog().elements) CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
+  for (const SignalKind* kind : transformer_catalog().signals) CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
 }
 
 // Run twice at the same loose tolerance, a method sees no error of its own.
 TEST_CASE("a method that is wrong without knowing it is found out") {
-  const CrossCheck check = checked(k_pendulum, 4.0, {{"tsit5", {{"tsit5", 1e-2, false}, {"tsit5", 1e-2, false}}},
-                                                     {"rodas5p", {{"rodas5p", 1e-6, false}, {"rodas5p", 1e-8, false}}},
-                                                     fixed("moreau", {2e-3, 1e-3, 5e-4})});
+  const CrossCheck check = checked(k_pendulum, 4.0,
+                                   {{"tsit5", {{"tsit5", 1e-2, false}, {"tsit5", 1e-2, false}}},
+                                    {"rodas5p", {{"rodas5p", 1e-6, false}, {"rodas5p", 1e-8, false}}},
+                                    fixed("moreau", {2e-3, 1e-3, 5e-4})});
   CHECK(check.outcome == CrossOutcome::disagree);
   CHECK(has(check, Doubt::channel));
-  for (const Disagreement& d : check.disagreements)
-    CHECK((d.first == "tsit5" || d.second == "tsit5"));
+  for (const Disagreement& d : check.disagreements) CHECK((d.first == "tsit5" || d.second == "tsit5"));
 }
 
 TEST_CASE("coarse time stepping that estimates its error is no disagreement") {
-  const CrossCheck check = checked(k_pendulum, 2.0, {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}},
-                                                     fixed("moreau", {4e-3, 2e-3, 1e-3})});
+  const CrossCheck check =
+      checked(k_pendulum, 2.0, {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}}, fixed("moreau", {4e-3, 2e-3, 1e-3})});
   CHECK(check.disagreements.empty());
 }
 
 // A double pendulum from above loses 1e-10 within some ten swings: nobody can tell where it is then.
 TEST_CASE("a chaotic motion cannot be told apart, which is no disagreement and no agreement") {
   const std::string text = k_pendulum + "[[body]]\nname = \"second\"\nmass = 1.0\ninertia = 0.05\nposition = [1.0, 1.0]\n"
-                           "[[element]]\nkind = \"revolute\"\nname = \"pin2\"\na = { body = \"second\", at = [1.0, 0.0] }\nb = { body = \"bob\", at = [1.0, 0.0] }\n";
-  const CrossCheck check = checked(text, 20.0, {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}},
-                                                {"rodas5p", {{"rodas5p", 1e-6, false}, {"rodas5p", 1e-8, false}}},
-                                                fixed("moreau", {1e-2, 5e-3, 2.5e-3})});
+                                        "[[element]]\nkind = \"revolute\"\nname = \"pin2\"\na = { body = \"second\", at = [1.0, 0.0] }\nb "
+                                        "= { body = \"bob\", at = [1.0, 0.0] }\n";
+  const CrossCheck check = checked(text, 20.0,
+                                   {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}},
+                                    {"rodas5p", {{"rodas5p", 1e-6, false}, {"rodas5p", 1e-8, false}}},
+                                    fixed("moreau", {1e-2, 5e-3, 2.5e-3})});
   CHECK(check.outcome == CrossOutcome::vague);
   CHECK(check.known_until > 0.0);
   CHECK(check.known_until < 10.0);
@@ -201,7 +199,8 @@ TEST_CASE("a chaotic motion cannot be told apart, which is no disagreement and n
 TEST_CASE("what is free of the ground is known by its elements, and its momentum is looked at") {
   const std::string balls = "[[body]]\nname = \"one\"\nmass = 2.0\ninertia = 0.1\nvelocity = [1.0, 0.2]\n"
                             "[[body]]\nname = \"two\"\nmass = 1.0\ninertia = 0.05\nposition = [1.0, 0.1]\n"
-                            "[[element]]\nkind = \"circle_contact\"\nname = \"knock\"\na = \"one\"\nb = \"two\"\nradius_a = 0.3\nradius_b = 0.3\nstiffness = 1e5\n";
+                            "[[element]]\nkind = \"circle_contact\"\nname = \"knock\"\na = \"one\"\nb = \"two\"\nradius_a = 0.3\nradius_b "
+                            "= 0.3\nstiffness = 1e5\n";
   const Model model = parse_model(balls + k_pendulum, "scene.toml", transformer_catalog());
   const auto system = compile(model);
   const auto groups = free_groups(model, *system);

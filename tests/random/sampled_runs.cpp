@@ -26,8 +26,7 @@ Ran ran(const System& system, const State& start, const SimulationOptions& optio
   Ran found;
   Simulation simulation(system, start, options);
   try {
-    while (simulation.statistics().steps < k_most_steps && simulation.advance()) {
-    }
+    while (simulation.statistics().steps < k_most_steps && simulation.advance()) {}
   } catch (const NumericalFailure& failure) {
     found.failure = failure.what();
   }
@@ -35,20 +34,24 @@ Ran ran(const System& system, const State& start, const SimulationOptions& optio
   return found;
 }
 
-bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b)); }
+bool is_same(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
+}
 
 std::string difference(const RunResult& a, const RunResult& b) {
   std::ostringstream text;
   text.precision(17);
   for (std::size_t i = 0; i < std::min(a.events.size(), b.events.size()); ++i)
     if (!is_same(a.events[i].t, b.events[i].t) || a.events[i].kind != b.events[i].kind) {
-      text << "event " << i << " '" << a.events[i].element << "' " << a.events[i].words() << " at " << a.events[i].t << " s and " << b.events[i].t << " s";
+      text << "event " << i << " '" << a.events[i].element << "' " << a.events[i].words() << " at " << a.events[i].t << " s and "
+           << b.events[i].t << " s";
       return text.str();
     }
   if (a.events.size() != b.events.size()) text << a.events.size() << " and " << b.events.size() << " events";
   if (a.statistics.steps != b.statistics.steps) text << a.statistics.steps << " and " << b.statistics.steps << " steps";
   for (std::size_t i = 0; i < a.final_state.q.size(); ++i)
-    if (!is_same(a.final_state.q[i], b.final_state.q[i])) text << "coordinate " << i << " ends otherwise: " << a.final_state.q[i] << " and " << b.final_state.q[i] << "; ";
+    if (!is_same(a.final_state.q[i], b.final_state.q[i]))
+      text << "coordinate " << i << " ends otherwise: " << a.final_state.q[i] << " and " << b.final_state.q[i] << "; ";
   for (std::size_t c = 0; c < a.ranges.size(); ++c)
     if (!is_same(a.ranges[c].low.value, b.ranges[c].low.value) || !is_same(a.ranges[c].high.value, b.ranges[c].high.value)) {
       text << "extremes of " << a.ranges[c].channel->name << ": " << a.ranges[c].low.value << " … " << a.ranges[c].high.value << " and "

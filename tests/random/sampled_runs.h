@@ -22,7 +22,7 @@ struct Sampled {
   std::string difference; ///< of the two runs; empty: none
   std::vector<Beyond> beyond;
   std::size_t samples = 0;
-  std::string failure;    ///< of both
+  std::string failure; ///< of both
 };
 
 /// `options` have an end; `count` samples are taken on the way there.

@@ -1,7 +1,7 @@
 // A run does not hang on how often it is sampled: random scenes and every model of models/. What is sampled of random scenes lies within
 // the extremes that are told.
-#include "mbd/rest/assembly.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
 #include "tests/random/random_scene.h"
 #include "tests/random/sampled_runs.h"
 #include "tests/sanitized.h"

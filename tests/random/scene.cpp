@@ -71,14 +71,12 @@ bool Scene::has(const std::string& kind) const {
 void write_scene(const Scene& scene, const std::string& path, const std::string& comment) {
   const std::filesystem::path place(path);
   if (place.has_parent_path()) std::filesystem::create_directories(place.parent_path());
-  for (const auto& [name, text] : scene.files)
-    write_text(place.parent_path() / name, text);
+  for (const auto& [name, text] : scene.files) write_text(place.parent_path() / name, text);
   write_text(place, scene.text(comment));
 }
 
 Model model_of(const Scene& scene, const std::string& folder) {
-  for (const auto& [name, text] : scene.files)
-    write_text(std::filesystem::path(folder) / name, text);
+  for (const auto& [name, text] : scene.files) write_text(std::filesystem::path(folder) / name, text);
   return parse_model(scene.text(), folder + "/random_" + std::to_string(scene.seed) + ".toml", transformer_catalog());
 }
 

@@ -1,7 +1,7 @@
 #include "tests/random/scene_check.h"
 
-#include "mbd/rest/assembly.h"
 #include "mbd/base/number_text.h"
+#include "mbd/rest/assembly.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,7 @@ namespace steplap::random {
 namespace {
 
 // A foot that changes at angles that cross slowly has no sharp time, and kinks of forces are the integrator's.
-bool is_friction_event(const Event& event) {
-  return is_slip(event.kind) || event.kind == EventKind::sticks;
-}
+bool is_friction_event(const Event& event) { return is_slip(event.kind) || event.kind == EventKind::sticks; }
 
 std::string text_of(const Disagreement& d) {
   std::string text = std::string(name_of(d.doubt)) + ": " + d.first;
@@ -35,7 +33,8 @@ bool is_same_fault(const SceneResult& a, const SceneResult& b) {
 
 std::string SceneResult::text() const {
   if (!model_error.empty()) return "no model: " + model_error;
-  if (check.disagreements.empty()) return check.outcome == CrossOutcome::vague ? "cannot be told apart after " + number_text(check.known_until) + " s" : "agrees";
+  if (check.disagreements.empty())
+    return check.outcome == CrossOutcome::vague ? "cannot be told apart after " + number_text(check.known_until) + " s" : "agrees";
   return text_of(check.disagreements.front());
 }
 
@@ -53,8 +52,7 @@ SceneResult check_scene(const Scene& scene, const std::string& folder, long eval
     options.is_event_counted = is_friction_event;
     options.free_groups = free_groups(model, *system);
     result.check = cross_check(*system, initial, options_of(model), options);
-    for (CrossRun& run : result.check.runs)
-      run.result.trajectory.reset();
+    for (CrossRun& run : result.check.runs) run.result.trajectory.reset();
   } catch (const ModelError& error) {
     result.model_error = error.what();
   }

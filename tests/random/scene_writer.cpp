@@ -22,9 +22,7 @@ std::string SceneWriter::new_name(const std::string& stem) { return stem + std::
 
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
-std::string marker(const std::string& body, At at) {
-  return "{ body = " + quoted(body) + ", at = " + pair(at.x, at.y) + " }";
-}
+std::string marker(const std::string& body, At at) { return "{ body = " + quoted(body) + ", at = " + pair(at.x, at.y) + " }"; }
 
 namespace {
 
@@ -36,8 +34,7 @@ constexpr std::uint64_t k_last_without_transport = 1500;
 
 std::string lines(const SceneWriter::Fields& fields) {
   std::string text;
-  for (const auto& [key, value] : fields)
-    text += key + " = " + value + "\n";
+  for (const auto& [key, value] : fields) text += key + " = " + value + "\n";
   return text;
 }
 
@@ -45,8 +42,7 @@ std::string lines(const SceneWriter::Fields& fields) {
 
 std::string SceneWriter::body(double body_mass, double inertia, At at, const Fields& more) {
   Block block{"body", "", new_name("b"), {}, {}};
-  block.fields = lines({{"mass", number(body_mass)}, {"inertia", number(inertia)}, {"position", pair(at.x, at.y)}}) +
-                 lines(more);
+  block.fields = lines({{"mass", number(body_mass)}, {"inertia", number(inertia)}, {"position", pair(at.x, at.y)}}) + lines(more);
   scene.blocks.push_back(block);
   return block.name;
 }
@@ -96,8 +92,8 @@ std::string SceneWriter::signal(double peak, bool is_smooth) {
       frequencies += comma + number((is_smooth ? r.decades(-0.3, 0.6) : r.decades(-0.3, 1.6)) / duration);
       phases += comma + (is_smooth ? k_from_zero : number(r.between(-3.1, 3.1)));
     }
-    block.fields = lines({{"amplitudes", "[" + amplitudes + "]"}, {"frequencies", "[" + frequencies + "]"},
-                          {"phases", "[" + phases + "]"}});
+    block.fields =
+        lines({{"amplitudes", "[" + amplitudes + "]"}, {"frequencies", "[" + frequencies + "]"}, {"phases", "[" + phases + "]"}});
     if (!is_smooth && r.chance(0.3)) block.fields += lines({{"start", number(start)}, {"duration", number(length)}});
   } else {
     block.fields = lines({{"peak", number(peak)}, {"start", number(start)}, {"duration", number(length)}});
@@ -108,8 +104,12 @@ std::string SceneWriter::signal(double peak, bool is_smooth) {
     if (kind == "triangle" && scene.seed > k_last_without_transport && scene.seed % 4 == 1) {
       const double omega = 3.14159265358979 / length, speed = 2.0 * std::abs(peak) / omega, stroke = speed / omega;
       block.kind = "shunting";
-      block.fields = lines({{"mass", "2.0"}, {"other_mass", "2.0"}, {"speed", number(peak < 0.0 ? speed : 0.0)}, {"other_speed", number(peak < 0.0 ? 0.0 : speed)},
-                            {"buffer", "[[0, 0], [" + number(stroke) + ", " + number(omega * omega * stroke) + "]]"}, {"start", number(start)}});
+      block.fields = lines({{"mass", "2.0"},
+                            {"other_mass", "2.0"},
+                            {"speed", number(peak < 0.0 ? speed : 0.0)},
+                            {"other_speed", number(peak < 0.0 ? 0.0 : speed)},
+                            {"buffer", "[[0, 0], [" + number(stroke) + ", " + number(omega * omega * stroke) + "]]"},
+                            {"start", number(start)}});
     }
   }
   scene.blocks.push_back(block);
@@ -140,15 +140,19 @@ std::string SceneWriter::composed(const std::string& part, double peak) {
     // Beside it a load that begins with nothing, of some waves within the run; of unit size but for the sea's angle of 0.35.
     const std::string seed = std::to_string(scene.seed), f = number(1.0 / duration), end = number(duration);
     Block load{"signal", choice == 3 ? "road" : choice == 4 ? "random" : "sea", part + "_load", {}, {}};
-    if (choice == 3) load.fields = lines({{"roughness", "1.1"}, {"speed", f}, {"from", "1.0"}, {"to", "9.0"}, {"run_in", "0.3"}, {"seed", seed}});
+    if (choice == 3)
+      load.fields = lines({{"roughness", "1.1"}, {"speed", f}, {"from", "1.0"}, {"to", "9.0"}, {"run_in", "0.3"}, {"seed", seed}});
     else if (choice == 4)
-      load.fields = lines({{"frequencies", "[" + f + ", " + number(9.0 / duration) + "]"}, {"densities", "[" + number(duration / 8.0) + ", " + number(duration / 8.0) + "]"},
-                           {"duration", end}, {"seed", seed}});
+      load.fields = lines({{"frequencies", "[" + f + ", " + number(9.0 / duration) + "]"},
+                           {"densities", "[" + number(duration / 8.0) + ", " + number(duration / 8.0) + "]"},
+                           {"duration", end},
+                           {"seed", seed}});
     else load.fields = lines({{"component", "\"angle\""}, {"period", number(duration / 4.0)}});
     scene.blocks.push_back(load);
     block.kind = "sum";
     block.uses.push_back(load.name);
-    block.fields = lines({{"signals", "[" + quoted(part) + ", " + quoted(load.name) + "]"}, {"factors", "[1.0, " + number(0.01 * peak) + "]"}});
+    block.fields =
+        lines({{"signals", "[" + quoted(part) + ", " + quoted(load.name) + "]"}, {"factors", "[1.0, " + number(0.01 * peak) + "]"}});
   } else {
     return part;
   }
@@ -166,9 +170,7 @@ double SceneWriter::stiffness_for(double m, double least_periods, double most_pe
   return m * omega * omega;
 }
 
-double SceneWriter::damping_for(double m, double k) {
-  return r.chance(0.3) ? 0.0 : 2.0 * r.decades(-2.5, -0.3) * std::sqrt(k * m);
-}
+double SceneWriter::damping_for(double m, double k) { return r.chance(0.3) ? 0.0 : 2.0 * r.decades(-2.5, -0.3) * std::sqrt(k * m); }
 
 double SceneWriter::inertia_of(double m, double length) { return m * length * length * r.decades(-1.3, 0.0); }
 

@@ -43,7 +43,9 @@ public:
     case 0: return simple("haversine", "", impulse / (0.5 * duration), start, duration, impulse);
     case 1: return simple("half_sine", "", impulse / (2.0 / k_pi * duration), start, duration, impulse);
     case 2: return simple("rectangle", "", impulse / duration, start, duration, impulse);
-    case 3: return simple("triangle", "rise = " + text_of(random_.between(0.01, 0.99) * duration), impulse / (0.5 * duration), start, duration, impulse);
+    case 3:
+      return simple("triangle", "rise = " + text_of(random_.between(0.01, 0.99) * duration), impulse / (0.5 * duration), start, duration,
+                    impulse);
     case 4: return trapezoid(impulse, start, duration);
     case 5: return harmonics(impulse, start, duration);
     case 6: return record(impulse, start, duration);
@@ -57,19 +59,24 @@ private:
   std::string name() { return "s" + std::to_string(count_++); }
   Pulse simple(const std::string& kind, const std::string& more, double peak, double start, double duration, double integral) {
     const std::string n = name();
-    return {signal_entry(kind, n, "peak = " + text_of(peak) + "; start = " + text_of(start) + "; duration = " + text_of(duration) + "; " + more), n, integral, duration};
+    return {signal_entry(kind, n,
+                         "peak = " + text_of(peak) + "; start = " + text_of(start) + "; duration = " + text_of(duration) + "; " + more),
+            n, integral, duration};
   }
   Pulse trapezoid(double impulse, double start, double duration) {
     const double rise = random_.between(0.0, 0.5) * duration, fall = random_.between(0.0, 0.5) * duration;
-    return simple("trapezoid", "rise = " + text_of(rise) + "; fall = " + text_of(fall), impulse / (duration - 0.5 * (rise + fall)), start, duration, impulse);
+    return simple("trapezoid", "rise = " + text_of(rise) + "; fall = " + text_of(fall), impulse / (duration - 0.5 * (rise + fall)), start,
+                  duration, impulse);
   }
   Pulse harmonics(double impulse, double start, double duration) {
     const std::string n = name();
     const double offset = impulse / duration, amplitude = random_.between(-2.0, 2.0) * offset, phase = random_.between(-3.0, 3.0);
     const double frequency = random_.between(0.2, 6.0) / duration, w = 2.0 * k_pi * frequency;
     const double integral = offset * duration + amplitude / w * (std::sin(w * duration + phase) - std::sin(phase));
-    return {signal_entry("harmonics", n, "offset = " + text_of(offset) + "; amplitudes = [" + text_of(amplitude) + "]; frequencies = [" + text_of(frequency) +
-                                             "]; phases = [" + text_of(phase) + "]; start = " + text_of(start) + "; duration = " + text_of(duration)),
+    return {signal_entry("harmonics", n,
+                         "offset = " + text_of(offset) + "; amplitudes = [" + text_of(amplitude) + "]; frequencies = [" +
+                             text_of(frequency) + "]; phases = [" + text_of(phase) + "]; start = " + text_of(start) +
+                             "; duration = " + text_of(duration)),
             n, integral, duration};
   }
   Pulse record(double impulse, double start, double duration) {
@@ -90,7 +97,8 @@ private:
   Pulse scaled_later(double impulse, double start, double duration) {
     Pulse inner = simple("half_sine", "", 1.0 / (2.0 / k_pi * duration), 0.5 * start, duration, 1.0);
     const std::string n = name();
-    inner.text += signal_entry("scaled", n, "signal = \"" + inner.name + "\"; factor = " + text_of(impulse) + "; delay = " + text_of(0.5 * start));
+    inner.text +=
+        signal_entry("scaled", n, "signal = \"" + inner.name + "\"; factor = " + text_of(impulse) + "; delay = " + text_of(0.5 * start));
     return {inner.text, n, impulse, duration};
   }
   // A wave within a triangle that rises only: ∫ p τ/D sin(wτ) over D, with a whole number of waves, is −p D/(2πn).
@@ -100,8 +108,9 @@ private:
     const std::string wave = name(), n = name();
     const double amplitude = -impulse * 2.0 * k_pi * waves / duration;
     return {ramp.text +
-                signal_entry("harmonics", wave, "amplitudes = [" + text_of(amplitude) + "]; frequencies = [" + text_of(waves / duration) +
-                                                    "]; phases = [" + text_of(-0.5 * k_pi) + "]; start = " + text_of(start)) +
+                signal_entry("harmonics", wave,
+                             "amplitudes = [" + text_of(amplitude) + "]; frequencies = [" + text_of(waves / duration) + "]; phases = [" +
+                                 text_of(-0.5 * k_pi) + "]; start = " + text_of(start)) +
                 signal_entry("product", n, "signals = [\"" + ramp.name + "\", \"" + wave + "\"]"),
             n, impulse, duration};
   }
@@ -109,7 +118,8 @@ private:
     const double part = random_.between(0.2, 0.8);
     const Pulse a = next(part * impulse), b = next((1.0 - part) * impulse);
     const std::string n = name();
-    return {a.text + b.text + signal_entry("sum", n, "signals = [\"" + a.name + "\", \"" + b.name + "\"]"), n, a.integral + b.integral, std::min(a.duration, b.duration)};
+    return {a.text + b.text + signal_entry("sum", n, "signals = [\"" + a.name + "\", \"" + b.name + "\"]"), n, a.integral + b.integral,
+            std::min(a.duration, b.duration)};
   }
 
   RandomNumber random_;
@@ -201,8 +211,10 @@ TEST_CASE("time stepping notes a pulse of a load that it passed over, and none o
     const bool is_drive = random.chance(0.5);
     const double taken = (kind == "haversine" ? 0.5 : 2.0 / k_pi) * duration; // of a peak of one
     const auto run_of = [&](const std::string& method, double length) {
-      const std::string pulse = signal_entry(kind, "p", "peak = " + text_of(1.0 / taken) + "; start = " + text_of(start) + "; duration = " + text_of(length));
-      const std::string pushed = is_drive ? element("prescribed_motion", "drive", "a = \"b\"; signal = \"p\"") : element("load", "push", "at = \"b\"; force_x = \"p\"");
+      const std::string pulse =
+          signal_entry(kind, "p", "peak = " + text_of(1.0 / taken) + "; start = " + text_of(start) + "; duration = " + text_of(length));
+      const std::string pushed = is_drive ? element("prescribed_motion", "drive", "a = \"b\"; signal = \"p\"")
+                                          : element("load", "push", "at = \"b\"; force_x = \"p\"");
       Model model = scene(k_no_gravity + body("b", "mass = 1.0; inertia = 1.0") + pulse + pushed);
       const auto system = compile(model);
       SimulationOptions options;
@@ -231,8 +243,10 @@ TEST_CASE("short pulses of drives: time stepping moves a body by them, and what 
     Pulses pulses(static_cast<std::uint64_t>(i) + 9000);
     RandomNumber random(static_cast<std::uint64_t>(i) + 9500);
     const Pulse pulse = pulses.next(random.between(0.5, 2.0));
-    const std::string text = k_no_gravity + body("deck", "mass = 10.0; inertia = 10.0") + body("load", "mass = 2.0; inertia = 1.0; position = [0.0, 0.5]") + pulse.text +
-                             element("prismatic", "rail", "a = \"deck\"; axis = [1.0, 0.0]") + element("weld", "bolt", "a = \"load\"; b = \"deck\"") +
+    const std::string text = k_no_gravity + body("deck", "mass = 10.0; inertia = 10.0") +
+                             body("load", "mass = 2.0; inertia = 1.0; position = [0.0, 0.5]") + pulse.text +
+                             element("prismatic", "rail", "a = \"deck\"; axis = [1.0, 0.0]") +
+                             element("weld", "bolt", "a = \"load\"; b = \"deck\"") +
                              element("prescribed_motion", "drive", "a = \"deck\"; signal = \"" + pulse.name + "\"");
     const Model model = scene(text);
     const auto system = compile(model);
@@ -245,6 +259,7 @@ TEST_CASE("short pulses of drives: time stepping moves a body by them, and what 
     CAPTURE(pulse.text);
     // Integrals of signals are exact, but for the rounding of the pulse's ends; the weld is met to a velocity's tolerance.
     const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * k_end / pulse.duration;
-    for (const std::size_t at : {std::size_t{3}, std::size_t{6}}) CHECK(std::abs(result.final_state.v[at] - pulse.integral) <= 10.0 * (1e-9 + rounding));
+    for (const std::size_t at : {std::size_t{3}, std::size_t{6}})
+      CHECK(std::abs(result.final_state.v[at] - pulse.integral) <= 10.0 * (1e-9 + rounding));
   }
 }

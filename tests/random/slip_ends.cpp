@@ -283,8 +283,8 @@ std::string compare(const SlipEndScene& scene, std::size_t i, const SlipEnd& exa
       const double low = range.low.value, high = range.high.value;
       const bool is_reached = low <= exact.surely.least[c] + bound && high >= exact.surely.most[c] - bound;
       if (!is_reached || low < exact.perhaps.least[c] - bound || high > exact.perhaps.most[c] + bound)
-        return range.channel->name + " from " + number(range.low.value) + " at " + number(range.low.t) + " to " + number(range.high.value) + " at " +
-               number(range.high.t) + ", exactly " + number(exact.perhaps.least[c]) + " to " + number(exact.perhaps.most[c]);
+        return range.channel->name + " from " + number(range.low.value) + " at " + number(range.low.t) + " to " + number(range.high.value) +
+               " at " + number(range.high.t) + ", exactly " + number(exact.perhaps.least[c]) + " to " + number(exact.perhaps.most[c]);
     }
   return {};
 }

@@ -17,24 +17,24 @@ struct SlidingSheet {
   std::vector<Vec2> outline;
   double mass = 1.0, inertia = 1.0;
   double static_traction = 1.0, kinetic_traction = 1.0; ///< Pa
-  Vec3 velocity = Vec3::Zero(); ///< of the centre of gravity in ground axes, and of turning
-  Vec3 load = Vec3::Zero();     ///< force in ground axes, couple
+  Vec3 velocity = Vec3::Zero();                         ///< of the centre of gravity in ground axes, and of turning
+  Vec3 load = Vec3::Zero();                             ///< force in ground axes, couple
 };
 
 /// How a sheet comes to rest.
 struct SlipEnd {
   bool rests = false;
   double time = 0.0;
-  Vec3 moved = Vec3::Zero();        ///< of the centre of gravity, and the angle
+  Vec3 moved = Vec3::Zero(); ///< of the centre of gravity, and the angle
   struct Range {
     Vec3 least = Vec3::Zero(), most = Vec3::Zero();
   };
   /// Of the joint's wrench, the hold behind the end included: of all speeds that a run knows, and of any, the directions included
   /// that a run's errors make of the last speeds.
   Range surely, perhaps;
-  double last_fall = 0.0;           ///< m/s²: of its speed at last
-  double fastest = 0.0;             ///< m/s
-  double size = 0.0;                ///< m: radius of gyration of the traction
+  double last_fall = 0.0; ///< m/s²: of its speed at last
+  double fastest = 0.0;   ///< m/s
+  double size = 0.0;      ///< m: radius of gyration of the traction
 };
 
 /// `tolerance`: of the steps of the run that is compared.

@@ -8,9 +8,9 @@
 namespace {
 
 step_lap_scene::Run run_data(const char* file, const std::string& method, const std::string& tolerance, const std::string& end) {
-  return step_lap_scene::run(steplap::read_model(
-      std::string(STEPLAP_TEST_DATA) + "/" + file, steplap::transformer_catalog(),
-      {"simulation.integrator=" + method, "simulation.tolerance=" + tolerance, "simulation.end=" + end}));
+  return step_lap_scene::run(
+      steplap::read_model(std::string(STEPLAP_TEST_DATA) + "/" + file, steplap::transformer_catalog(),
+                          {"simulation.integrator=" + method, "simulation.tolerance=" + tolerance, "simulation.end=" + end}));
 }
 
 } // namespace
@@ -26,7 +26,8 @@ TEST_CASE("random sheets that slide, turn or both come to rest when and as an in
 }
 
 TEST_CASE("a slip that static friction stops and kinetic would turn is not stepped over") {
-  const std::vector<const char*> tolerances = steplap::testing::k_is_sanitized ? std::vector{"1e-6"} : std::vector{"1e-5", "1e-6", "1e-8", "1e-10"};
+  const std::vector<const char*> tolerances =
+      steplap::testing::k_is_sanitized ? std::vector{"1e-6"} : std::vector{"1e-5", "1e-6", "1e-8", "1e-10"};
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p"})
     for (const char* tolerance : tolerances) {
       CAPTURE(method);

@@ -16,8 +16,7 @@ constexpr double k_steps_of_a_period = 60.0;
 
 double force_at(const std::vector<Harmonic>& load, double t) {
   double sum = 0.0;
-  for (const Harmonic& h : load)
-    sum += h.amplitude * std::cos(2.0 * k_pi * h.frequency * t + h.phase);
+  for (const Harmonic& h : load) sum += h.amplitude * std::cos(2.0 * k_pi * h.frequency * t + h.phase);
   return sum;
 }
 
@@ -36,8 +35,7 @@ void rates(const RailBlocks& scene, double epsilon, double t, const std::vector<
     dy[n + i] -= f;
     dy[n + i - 1] += f;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    dy[n + i] /= scene.blocks[i].mass;
+  for (std::size_t i = 0; i < n; ++i) dy[n + i] /= scene.blocks[i].mass;
 }
 
 double step_for(const RailBlocks& scene, double epsilon) {
@@ -47,8 +45,7 @@ double step_for(const RailBlocks& scene, double epsilon) {
     const double m = i > 0 ? std::min(b.mass, scene.blocks[i - 1].mass) : b.mass;
     slope = std::max(slope, (b.friction + 2.0 * b.link_friction) / (epsilon * m));
     fastest = std::max(fastest, std::sqrt(4.0 * b.stiffness / m));
-    for (const Harmonic& h : b.load)
-      fastest = std::max(fastest, 2.0 * k_pi * h.frequency);
+    for (const Harmonic& h : b.load) fastest = std::max(fastest, 2.0 * k_pi * h.frequency);
   }
   return std::min(k_share_of_slope / std::max(slope, 1e-300), 2.0 * k_pi / std::max(fastest, 1e-300) / k_steps_of_a_period);
 }
@@ -56,15 +53,13 @@ double step_for(const RailBlocks& scene, double epsilon) {
 std::vector<std::vector<double>> integrated(const RailBlocks& scene, double epsilon, int samples) {
   const std::size_t n = scene.blocks.size();
   std::vector<double> y(2 * n, 0.0), k1(2 * n), k2(2 * n), k3(2 * n), k4(2 * n), stage(2 * n);
-  for (std::size_t i = 0; i < n; ++i)
-    y[n + i] = scene.blocks[i].velocity;
+  for (std::size_t i = 0; i < n; ++i) y[n + i] = scene.blocks[i].velocity;
   std::vector<std::vector<double>> list;
   const double span = scene.end / samples;
   const int steps = static_cast<int>(std::ceil(span / step_for(scene, epsilon)));
   const double h = span / steps;
   const auto at = [&](double share, const std::vector<double>& k) {
-    for (std::size_t i = 0; i < 2 * n; ++i)
-      stage[i] = y[i] + share * h * k[i];
+    for (std::size_t i = 0; i < 2 * n; ++i) stage[i] = y[i] + share * h * k[i];
   };
   for (int s = 0; s < samples; ++s) {
     for (int j = 0; j < steps; ++j) {
@@ -76,8 +71,7 @@ std::vector<std::vector<double>> integrated(const RailBlocks& scene, double epsi
       rates(scene, epsilon, t + 0.5 * h, stage, k3);
       at(1.0, k3);
       rates(scene, epsilon, t + h, stage, k4);
-      for (std::size_t i = 0; i < 2 * n; ++i)
-        y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+      for (std::size_t i = 0; i < 2 * n; ++i) y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
     }
     list.emplace_back(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
   }
@@ -86,9 +80,10 @@ std::vector<std::vector<double>> integrated(const RailBlocks& scene, double epsi
 
 std::string body_text(const RailBlock& b, std::size_t i) {
   const std::string name = "b" + std::to_string(i);
-  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(b.mass) + "\ninertia = 1.0\nposition = " + pair(static_cast<double>(i), 0.0) +
-         "\nvelocity = " + pair(b.velocity, 0.0) + "\n[[element]]\nkind = \"prismatic\"\nname = \"rail" + std::to_string(i) +
-         "\"\na = \"" + name + "\"\nb = { body = \"ground\", at = " + pair(static_cast<double>(i), 0.0) + " }\n";
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(b.mass) +
+         "\ninertia = 1.0\nposition = " + pair(static_cast<double>(i), 0.0) + "\nvelocity = " + pair(b.velocity, 0.0) +
+         "\n[[element]]\nkind = \"prismatic\"\nname = \"rail" + std::to_string(i) + "\"\na = \"" + name +
+         "\"\nb = { body = \"ground\", at = " + pair(static_cast<double>(i), 0.0) + " }\n";
 }
 
 std::string friction_text(const std::string& name, const std::string& a, const std::string& b, double holds) {
@@ -107,7 +102,8 @@ std::string load_text(const RailBlock& b, const std::string& i) {
     phases += comma + number(h.phase);
   }
   return "[[signal]]\nkind = \"harmonics\"\nname = \"s" + i + "\"\namplitudes = [" + amplitudes + "]\nfrequencies = [" + frequencies +
-         "]\nphases = [" + phases + "]\n[[element]]\nkind = \"load\"\nname = \"load" + i + "\"\nat = \"b" + i + "\"\nforce_x = \"s" + i + "\"\n";
+         "]\nphases = [" + phases + "]\n[[element]]\nkind = \"load\"\nname = \"load" + i + "\"\nat = \"b" + i + "\"\nforce_x = \"s" + i +
+         "\"\n";
 }
 
 double rounded(double x) { return std::stod(number(x)); }

@@ -3,8 +3,8 @@
 // the final state, of the events and counts. Random scenes, scenes on rails, and every model of models/, with each explicit method:
 // whatever an element's template does in another order, a branch that is no condition of the tape, a by-product that somebody
 // reads behind a stage shows in the last bits, which steps and events then amplify.
-#include "mbd/rest/assembly.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/tape/machine_code.h"
 #include "tests/random/random_scene.h"
@@ -47,8 +47,7 @@ Outcome outcome(const System& system, const State& start, SimulationOptions opti
   const auto keep = [&found](double x) { found.bits.push_back(std::bit_cast<std::uint64_t>(x)); };
   try {
     Simulation simulation(system, start, options);
-    while (simulation.statistics().evaluations < k_most_evaluations && simulation.advance()) {
-    }
+    while (simulation.statistics().evaluations < k_most_evaluations && simulation.advance()) {}
     const RunResult run = std::move(simulation).result();
     for (const Channel& channel : system.channels)
       for (const double x : run.trajectory->series(channel.name)) keep(x);
@@ -121,8 +120,7 @@ template <class Check> void on_random_scenes(const Check& check) {
     CAPTURE(method);
     try {
       check(model_of(scene, folder.string()), method, scene.end);
-    } catch (const ModelError&) {
-    }
+    } catch (const ModelError&) {}
   }
   std::filesystem::remove_all(folder);
 }
@@ -132,7 +130,8 @@ template <class Check> void on_random_scenes(const Check& check) {
 TEST_CASE("random scenes run to the same bytes with and without machine code") {
   if (!MachineCode::is_available()) return;
   long scenes_coded = 0;
-  on_random_scenes([&](const Model& model, const std::string& method, double end) { scenes_coded += compare(model, method, end) > 0 ? 1 : 0; });
+  on_random_scenes(
+      [&](const Model& model, const std::string& method, double end) { scenes_coded += compare(model, method, end) > 0 ? 1 : 0; });
   CHECK(scenes_coded > static_cast<long>(k_scenes / 8)); // else next to nothing was compared
 }
 
@@ -163,7 +162,8 @@ TEST_CASE("every model runs to the same bytes with and without machine code, and
     ++models;
     const double end = std::min(model.simulation.end, k_longest);
     static_cast<void>(compare_stores(model, "dop853", end));
-    if (MachineCode::is_available()) CHECK((compare(model, "dop853", end) > 0) == (k_without_code.count(entry.path().filename().string()) == 0));
+    if (MachineCode::is_available())
+      CHECK((compare(model, "dop853", end) > 0) == (k_without_code.count(entry.path().filename().string()) == 0));
   }
   CHECK(models > 50);
 }
@@ -327,7 +327,8 @@ const ElementKind& picky_kind() {
 Outcome picky_outcome(const std::string& limit, StageCode code) {
   Catalogue catalogue = transformer_catalog();
   catalogue.elements.push_back(&picky_kind());
-  const Model model = parse_model(k_two_bodies + "[[element]]\nkind = \"picky\"\nname = \"spring\"\nbody = \"low\"\nlimit = " + limit + "\n", "picky", catalogue);
+  const Model model = parse_model(
+      k_two_bodies + "[[element]]\nkind = \"picky\"\nname = \"spring\"\nbody = \"low\"\nlimit = " + limit + "\n", "picky", catalogue);
   const auto system = compile(model);
   return outcome(*system, system->initial_state(), options_for(model, "dop853", model.simulation.end), code);
 }

@@ -32,7 +32,8 @@ std::optional<ReadResult> attempt(const std::string& text, const ReadOptions& op
 }
 
 bool is_same(const Segments& a, const Segments& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), q.end(), same); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), q.end(), same); });
 }
 
 Damaged random_bytes(std::mt19937& random, const Victim& victim) {
@@ -62,7 +63,8 @@ Damaged other_digit(std::mt19937& random, const Victim& victim, const Segments& 
   const auto result = attempt(text, victim.options, damaged.fault);
   damaged.came = result ? Came::read : Came::refused;
   if (result && is_same(result->segments, whole))
-    damaged.fault = "'" + victim.made.text.substr(begin, length) + "' and '" + text.substr(begin, length) + "' are read alike (" + text_of(victim.manner) + ")";
+    damaged.fault = "'" + victim.made.text.substr(begin, length) + "' and '" + text.substr(begin, length) + "' are read alike (" +
+                    text_of(victim.manner) + ")";
   return damaged;
 }
 

@@ -23,7 +23,7 @@ struct Victim {
 
 enum class Came { refused, read, none }; ///< none: nothing was changed
 struct Damaged {
-  std::string text;  ///< the damaged file
+  std::string text; ///< the damaged file
   Came came = Came::none;
   std::string fault; ///< what must not be; "" if nothing
 };

@@ -24,7 +24,8 @@ struct Tally {
     ++tried;
     ++(damaged.came == Came::read ? read : refused);
     if (damaged.fault.empty()) return;
-    if (++faults <= 20) std::printf("%s, file %u: %s\n----\n%s\n----\n", kind, static_cast<unsigned>(file), damaged.fault.c_str(), damaged.text.c_str());
+    if (++faults <= 20)
+      std::printf("%s, file %u: %s\n----\n%s\n----\n", kind, static_cast<unsigned>(file), damaged.fault.c_str(), damaged.text.c_str());
   }
 };
 
@@ -52,7 +53,8 @@ int main(int count, char** arguments) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   long all = 0, faults = 0;
   for (std::size_t k = 0; k < tallies.size(); ++k) {
-    std::printf("%s: %ld tried, %ld read, %ld refused, %ld wrong\n", k_kinds[k], tallies[k].tried, tallies[k].read, tallies[k].refused, tallies[k].faults);
+    std::printf("%s: %ld tried, %ld read, %ld refused, %ld wrong\n", k_kinds[k], tallies[k].tried, tallies[k].read, tallies[k].refused,
+                tallies[k].faults);
     all += tallies[k].tried, faults += tallies[k].faults;
   }
   std::printf("%ld damaged files in %.0f s, %.0f a second\n", all, seconds, static_cast<double>(all) / seconds);

@@ -14,9 +14,9 @@ namespace steplap::test {
 namespace {
 
 constexpr std::size_t k_rows = 40, k_trap_row = 20, k_missing_axis = 1;
-constexpr double k_step = 0.01; // s
+constexpr double k_step = 0.01;                                  // s
 constexpr std::int64_t k_start_ns = 1'451'903'114 * k_second_ns; // 2016-01-04 10:25:14
-constexpr double k_start_days = 42373.434189814814; // the same
+constexpr double k_start_days = 42373.434189814814;              // the same
 
 template <class... Values> std::string printed(const char* format, Values... values) {
   std::array<char, 100> text{};
@@ -43,7 +43,9 @@ const char* unit_of(Scale scale) {
 }
 
 bool is_counts(Scale scale) { return scale == Scale::counts_with_scale || scale == Scale::counts_alone; }
-bool is_number(Clock clock) { return clock == Clock::seconds || clock == Clock::milliseconds || clock == Clock::epoch || clock == Clock::days; }
+bool is_number(Clock clock) {
+  return clock == Clock::seconds || clock == Clock::milliseconds || clock == Clock::epoch || clock == Clock::days;
+}
 
 std::string utf16(const std::string& text, bool is_big, bool is_marked) {
   std::string wide = !is_marked ? "" : is_big ? "\xFE\xFF" : "\xFF\xFE";
@@ -84,7 +86,9 @@ private:
     if (manner_.decimal == ',') std::replace(number.begin(), number.end(), '.', ',');
     return number;
   }
-  void leave_open(const std::string& option, std::function<void(ReadOptions&)> settle, std::size_t at = 0) { made_.open.push_back({option, at, std::move(settle)}); }
+  void leave_open(const std::string& option, std::function<void(ReadOptions&)> settle, std::size_t at = 0) {
+    made_.open.push_back({option, at, std::move(settle)});
+  }
 
   void header() {
     const std::string mark = manner_.comment ? std::string(1, manner_.comment) : "";
@@ -99,7 +103,10 @@ private:
     const bool in_names = manner_.unit_place == UnitPlace::names;
     std::vector<std::string> names, units;
     if (manner_.clock != Clock::none) {
-      const std::string unit = !manner_.says_clock_unit || !is_number(manner_.clock) ? "" : manner_.clock == Clock::milliseconds ? "ms" : manner_.clock == Clock::days ? "days" : "s";
+      const std::string unit = !manner_.says_clock_unit || !is_number(manner_.clock) ? ""
+                               : manner_.clock == Clock::milliseconds                ? "ms"
+                               : manner_.clock == Clock::days                        ? "days"
+                                                                                     : "s";
       names.push_back("Time" + (in_names && !unit.empty() ? "[" + unit + "]" : ""));
       units.push_back(unit.empty() && manner_.delimiter == ' ' ? "-" : unit);
     }
@@ -115,14 +122,16 @@ private:
 
   std::string joined(const std::vector<std::string>& fields) const {
     std::string text;
-    for (const std::string& field : fields) text += (text.empty() && &field == &fields.front() ? "" : std::string(1, manner_.delimiter)) + field;
+    for (const std::string& field : fields)
+      text += (text.empty() && &field == &fields.front() ? "" : std::string(1, manner_.delimiter)) + field;
     return text;
   }
 
   std::string time_text(double steps) const {
     const double t = steps * k_step;
     const std::int64_t ns = k_start_ns + std::llround(t * 1e3) * 1'000'000;
-    const std::string stamp = stamp_text(ns), clock = decimal(stamp.substr(11)), year = stamp.substr(0, 4), month = stamp.substr(5, 2), day = stamp.substr(8, 2);
+    const std::string stamp = stamp_text(ns), clock = decimal(stamp.substr(11)), year = stamp.substr(0, 4), month = stamp.substr(5, 2),
+                      day = stamp.substr(8, 2);
     switch (manner_.clock) {
     case Clock::seconds: return decimal(printed("%.3f", t));
     case Clock::milliseconds: return printed("%.0f", t * 1e3);
@@ -142,7 +151,8 @@ private:
     for (std::size_t i = 0; i < 3; ++i) {
       std::uniform_real_distribution<double> size(-1.5, 1.5);
       const double g = size(random_);
-      row.fields[i] = is_counts(manner_.scale) ? printed("%ld", std::lround(g * 2048.0)) : printed("%.4f", g * k_gravity / factor_of(manner_.scale));
+      row.fields[i] =
+          is_counts(manner_.scale) ? printed("%ld", std::lround(g * 2048.0)) : printed("%.4f", g * k_gravity / factor_of(manner_.scale));
       row.a[i] = std::stod(row.fields[i]) * factor_of(manner_.scale);
     }
     return row;
@@ -174,7 +184,8 @@ private:
   void write(const Row& row, std::size_t i) {
     std::string text;
     const auto put = [&](const std::string& field) {
-      const bool may_be_left_out = i == k_trap_row && (manner_.trap == RowTrap::missing || manner_.trap == RowTrap::repeated || manner_.trap == RowTrap::backward);
+      const bool may_be_left_out =
+          i == k_trap_row && (manner_.trap == RowTrap::missing || manner_.trap == RowTrap::repeated || manner_.trap == RowTrap::backward);
       if (!may_be_left_out) made_.values.push_back({made_.text.size() + text.size(), field.size()});
       text += field;
     };
@@ -200,7 +211,7 @@ private:
     if (manner_.ending == Ending::no_line_break) {
       made_.text.resize(made_.text.size() - manner_.line_end.size());
       const bool has_more = manner_.is_ragged && (k_rows - 1) % 7 == 2; // a field that is not read: the last axis is whole
-      if (is_counts(manner_.scale) && !has_more) leave_last_row_out(); // its number may lack digits
+      if (is_counts(manner_.scale) && !has_more) leave_last_row_out();  // its number may lack digits
     }
     if (manner_.ending == Ending::cut_row) { // in the middle of the axis before the last
       const auto place = made_.text.rfind(manner_.delimiter);
@@ -209,7 +220,8 @@ private:
     }
     if (manner_.ending == Ending::comment) line("# stopped by button");
     if (manner_.encoding == Encoding::marked_utf8) made_.text.insert(0, "\xEF\xBB\xBF");
-    if (manner_.encoding == Encoding::utf16_little || manner_.encoding == Encoding::utf16_unmarked) made_.text = utf16(made_.text, false, manner_.encoding == Encoding::utf16_little);
+    if (manner_.encoding == Encoding::utf16_little || manner_.encoding == Encoding::utf16_unmarked)
+      made_.text = utf16(made_.text, false, manner_.encoding == Encoding::utf16_little);
     if (manner_.encoding == Encoding::utf16_big) made_.text = utf16(made_.text, true, true);
   }
 
@@ -222,20 +234,26 @@ private:
     }
     if (manner_.clock == Clock::local_slashes) leave_open("--dates", [](ReadOptions& o) { o.dates = k_day_first; });
     if (is_number(manner_.clock) && !says_time_unit()) {
-      const char* unit = manner_.clock == Clock::seconds ? "s" : manner_.clock == Clock::milliseconds ? "ms" : manner_.clock == Clock::epoch ? "epoch" : "days";
+      const char* unit = manner_.clock == Clock::seconds        ? "s"
+                         : manner_.clock == Clock::milliseconds ? "ms"
+                         : manner_.clock == Clock::epoch        ? "epoch"
+                                                                : "days";
       leave_open("--time-unit", [unit](ReadOptions& o) { o.time_unit = unit; });
     }
     if (manner_.clock == Clock::none && !manner_.has_rate) leave_open("--rate", [](ReadOptions& o) { o.rate = 100.0; });
     const bool says_unit = manner_.unit_place != UnitPlace::nowhere && !(manner_.unit_place == UnitPlace::names && !manner_.has_names);
     if (manner_.scale == Scale::counts_alone) leave_open("--counts-per-g", [](ReadOptions& o) { o.counts_per_g = 2048.0; });
-    else if (!says_unit && manner_.scale != Scale::counts_with_scale) leave_open("--unit", [unit = unit_of(manner_.scale)](ReadOptions& o) { o.unit = unit; });
+    else if (!says_unit && manner_.scale != Scale::counts_with_scale)
+      leave_open("--unit", [unit = unit_of(manner_.scale)](ReadOptions& o) { o.unit = unit; });
     expect_rows();
     made_.time_error = manner_.clock == Clock::days ? 1e-6 : manner_.clock == Clock::epoch ? 5e-7 : 1e-12;
   }
 
   bool says_time_unit() const {
-    if (manner_.has_rate && (manner_.clock == Clock::seconds || manner_.clock == Clock::milliseconds || manner_.clock == Clock::epoch)) return true; // 100 Hz fit one unit only
-    return manner_.says_clock_unit && ((manner_.unit_place == UnitPlace::names && manner_.has_names) || manner_.unit_place == UnitPlace::line);
+    if (manner_.has_rate && (manner_.clock == Clock::seconds || manner_.clock == Clock::milliseconds || manner_.clock == Clock::epoch))
+      return true; // 100 Hz fit one unit only
+    return manner_.says_clock_unit &&
+           ((manner_.unit_place == UnitPlace::names && manner_.has_names) || manner_.unit_place == UnitPlace::line);
   }
 
   void expect_rows() {
@@ -245,7 +263,8 @@ private:
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       Row row = rows_[i];
       const bool is_trap = i == k_trap_row;
-      if (is_trap && ((manner_.trap == RowTrap::gap && has_times) || manner_.trap == RowTrap::block || (manner_.trap == RowTrap::backward && has_times && splits))) {
+      if (is_trap && ((manner_.trap == RowTrap::gap && has_times) || manner_.trap == RowTrap::block ||
+                      (manner_.trap == RowTrap::backward && has_times && splits))) {
         made_.segments.emplace_back();
         if (manner_.trap == RowTrap::block) of_block = 0;
       }
@@ -256,9 +275,15 @@ private:
       if (row.is_missing) row.a[k_missing_axis] = rows_[i - 1].a[k_missing_axis];
       made_.segments.back().push_back({t, row.a});
     }
-    if (manner_.trap == RowTrap::missing) leave_open("--missing", [splits](ReadOptions& o) { o.missing = splits ? IfMissing::skip : IfMissing::hold; }, trap_line_);
-    if (manner_.trap == RowTrap::repeated && has_times) leave_open("--repeated", [](ReadOptions& o) { o.repeated = IfRepeated::first; }, trap_line_);
-    if (manner_.trap == RowTrap::backward && has_times) leave_open("--backward", [splits](ReadOptions& o) { o.backward = splits ? IfBackward::split : IfBackward::drop; }, trap_line_);
+    if (manner_.trap == RowTrap::missing)
+      leave_open(
+          "--missing", [splits](ReadOptions& o) { o.missing = splits ? IfMissing::skip : IfMissing::hold; }, trap_line_);
+    if (manner_.trap == RowTrap::repeated && has_times)
+      leave_open(
+          "--repeated", [](ReadOptions& o) { o.repeated = IfRepeated::first; }, trap_line_);
+    if (manner_.trap == RowTrap::backward && has_times)
+      leave_open(
+          "--backward", [splits](ReadOptions& o) { o.backward = splits ? IfBackward::split : IfBackward::drop; }, trap_line_);
   }
 
   const Manner& manner_;
@@ -297,7 +322,9 @@ Manner random_manner(std::mt19937& random) {
   if (m.delimiter == ' ' && (m.clock == Clock::local_dots || m.clock == Clock::local_slashes)) m.clock = Clock::iso;
   if (m.delimiter == ',' && m.decimal == ',') { // whole numbers, stamps and rows of several lengths do not come in pairs
     m.decimal = '.';
-    if (!is_counts(m.scale) && (m.clock == Clock::seconds || m.clock == Clock::none) && m.trap != RowTrap::missing && !m.is_ragged && m.ending != Ending::cut_row) m.decimal = ',';
+    if (!is_counts(m.scale) && (m.clock == Clock::seconds || m.clock == Clock::none) && m.trap != RowTrap::missing && !m.is_ragged &&
+        m.ending != Ending::cut_row)
+      m.decimal = ',';
   }
   if (is_counts(m.scale) && m.unit_place != UnitPlace::nowhere) m.unit_place = UnitPlace::names;
   if (is_counts(m.scale)) m.has_names = true;
@@ -309,10 +336,14 @@ Manner random_manner(std::mt19937& random) {
 }
 
 std::string text_of(const Manner& m) {
-  return "delimiter '" + std::string(1, m.delimiter) + "' decimal '" + m.decimal + "' encoding " + std::to_string(static_cast<int>(m.encoding)) + " line end " + std::to_string(m.line_end.size()) + (m.line_end[0] == '\r' ? "r" : "n") +
-         " comment '" + (m.comment ? std::string(1, m.comment) : "") + "' names " + std::to_string(m.has_names) + std::to_string(m.are_names_comment) + " rate " + std::to_string(m.has_rate) + " ragged " + std::to_string(m.is_ragged) +
-         " clock " + std::to_string(static_cast<int>(m.clock)) + " unit said " + std::to_string(m.says_clock_unit) + " scale " + std::to_string(static_cast<int>(m.scale)) + " unit place " + std::to_string(static_cast<int>(m.unit_place)) +
-         " trap " + std::to_string(static_cast<int>(m.trap)) + " ending " + std::to_string(static_cast<int>(m.ending)) + " variant " + std::to_string(m.variant);
+  return "delimiter '" + std::string(1, m.delimiter) + "' decimal '" + m.decimal + "' encoding " +
+         std::to_string(static_cast<int>(m.encoding)) + " line end " + std::to_string(m.line_end.size()) +
+         (m.line_end[0] == '\r' ? "r" : "n") + " comment '" + (m.comment ? std::string(1, m.comment) : "") + "' names " +
+         std::to_string(m.has_names) + std::to_string(m.are_names_comment) + " rate " + std::to_string(m.has_rate) + " ragged " +
+         std::to_string(m.is_ragged) + " clock " + std::to_string(static_cast<int>(m.clock)) + " unit said " +
+         std::to_string(m.says_clock_unit) + " scale " + std::to_string(static_cast<int>(m.scale)) + " unit place " +
+         std::to_string(static_cast<int>(m.unit_place)) + " trap " + std::to_string(static_cast<int>(m.trap)) + " ending " +
+         std::to_string(static_cast<int>(m.ending)) + " variant " + std::to_string(m.variant);
 }
 
 ReadResult read_text(const std::string& text, const ReadOptions& options) {
@@ -367,7 +398,8 @@ void check_same(const Segments& read, const Segments& written, double time_error
       const Sample &a = read[s][i], &b = written[s][i];
       if (!(std::abs(a.t - b.t) <= time_error)) FAIL("segment " << s << " row " << i << ": time " << a.t << " instead of " << b.t);
       for (std::size_t k = 0; k < 3; ++k) // a number times a factor, rounded in another order: a few units of the last place
-        if (!(std::abs(a.a[k] - b.a[k]) <= 1e-15 * std::abs(b.a[k]))) FAIL("segment " << s << " row " << i << " axis " << k << ": " << a.a[k] << " instead of " << b.a[k]);
+        if (!(std::abs(a.a[k] - b.a[k]) <= 1e-15 * std::abs(b.a[k])))
+          FAIL("segment " << s << " row " << i << " axis " << k << ": " << a.a[k] << " instead of " << b.a[k]);
     }
   }
 }

@@ -72,7 +72,8 @@ struct MadeFile {
   Segments segments;       ///< what has to be read when all is settled
   double time_error = 0.0; ///< s: the digits that the file's times have
   std::vector<Open> open;
-  std::vector<std::array<std::size_t, 2>> values; ///< of UTF-8 files: begin and length of each number of an axis or a time in rows that are kept
+  std::vector<std::array<std::size_t, 2>>
+      values;                ///< of UTF-8 files: begin and length of each number of an axis or a time in rows that are kept
   std::size_t last_line = 0; ///< number of the last line of rows
 };
 

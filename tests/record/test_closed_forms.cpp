@@ -30,7 +30,8 @@ double greatest_response(double quality) {
   const double duration = 0.01, rate = 400'000.0; // 4000 samples a pulse: straight between them to 1e-7
   const std::vector<double> pulse = half_sine(duration, rate, 1.0, 0.0, 0.0);
   double greatest = 0.0;
-  for (double share = 0.7; share < 0.95; share += 0.001) greatest = std::max(greatest, shock_response(pulse, rate, share / duration, quality));
+  for (double share = 0.7; share < 0.95; share += 0.001)
+    greatest = std::max(greatest, shock_response(pulse, rate, share / duration, quality));
   return greatest;
 }
 
@@ -49,7 +50,8 @@ TEST_CASE("the undamped response to a half sine follows its closed form at every
   for (const double share : {0.6, 0.8, 1.0, 1.2, 1.4}) { // f T: the greatest value lies within the pulse, once
     const double w = 2.0 * pi * share / duration, r = pi / (w * duration), t = 2.0 * pi / (w + pi / duration);
     const double expected = (std::sin(pi * t / duration) - r * std::sin(w * t)) / (1.0 - r * r);
-    CHECK(shock_response(pulse, rate, share / duration, std::numeric_limits<double>::infinity()) == doctest::Approx(expected).epsilon(1e-5));
+    CHECK(shock_response(pulse, rate, share / duration, std::numeric_limits<double>::infinity()) ==
+          doctest::Approx(expected).epsilon(1e-5));
   }
 }
 
@@ -110,7 +112,8 @@ struct OneAxis : SignalSink {
   void end_segment() override {}
 };
 
-OneAxis conditioned(const std::vector<double>& samples, double rate, const Conditioning& conditioning, std::vector<std::array<double, 3>>* means = nullptr) {
+OneAxis conditioned(const std::vector<double>& samples, double rate, const Conditioning& conditioning,
+                    std::vector<std::array<double, 3>>* means = nullptr) {
   RecordLayout layout;
   layout.axes.resize(1);
   layout.time.rate = rate;
@@ -137,9 +140,11 @@ TEST_CASE("the high-pass has the gain of a Butterworth filter run twice, no phas
     const OneAxis out = conditioned(samples, rate, conditioning);
     REQUIRE(out.filtered.size() == count);
     // r: of the tangents to that of the frequency where the gain is 1/2; at `edge` the gain is 1/√2.
-    const double half = edge / std::pow(1.0 / (std::sqrt(2.0) - 1.0), 0.25), r = std::tan(pi * frequency / rate) / std::tan(pi * half / rate), gain = std::pow(r, 4) / (1.0 + std::pow(r, 4));
+    const double half = edge / std::pow(1.0 / (std::sqrt(2.0) - 1.0), 0.25),
+                 r = std::tan(pi * frequency / rate) / std::tan(pi * half / rate), gain = std::pow(r, 4) / (1.0 + std::pow(r, 4));
     double worst = 0.0;
-    for (std::size_t i = 20'000; i < count - 20'000; ++i) worst = std::max(worst, std::abs(out.filtered[i] - gain * std::sin(2.0 * pi * frequency * static_cast<double>(i) / rate)));
+    for (std::size_t i = 20'000; i < count - 20'000; ++i)
+      worst = std::max(worst, std::abs(out.filtered[i] - gain * std::sin(2.0 * pi * frequency * static_cast<double>(i) / rate)));
     CAPTURE(frequency);
     CHECK(worst < 1e-9); // rounding of 1e5 steps of the filter, and its ends, which have died away to 1e-12
     if (frequency == edge) CHECK(gain == doctest::Approx(std::sqrt(0.5)).epsilon(1e-4)); // the tangents bend
@@ -162,7 +167,8 @@ TEST_CASE("a segment less its mean ends with the velocity with which it began") 
 
 namespace {
 
-std::vector<ShockEvent> events_of(const std::vector<double>& samples, double rate, const EventRules& rules, const Conditioning& conditioning = {}) {
+std::vector<ShockEvent> events_of(const std::vector<double>& samples, double rate, const EventRules& rules,
+                                  const Conditioning& conditioning = {}) {
   RecordLayout layout;
   layout.axes.resize(1);
   layout.time.rate = rate;

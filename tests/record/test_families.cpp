@@ -76,7 +76,8 @@ TEST_CASE("each family's file is read to the numbers that stand in it") {
     }
     CHECK(is_same);
     CHECK(read.recording.facts.axes[2].rest == doctest::Approx(k_gravity).epsilon(0.01)); // at rest, gravity along z; noise 0.01 g
-    const double greatest = read.recording.facts.axes[0].greatest / k_gravity; // a sample is half a step from the peak at most; noise 0.01 g
+    const double greatest =
+        read.recording.facts.axes[0].greatest / k_gravity; // a sample is half a step from the peak at most; noise 0.01 g
     CHECK(greatest > 3.1 * std::cos(std::numbers::pi * 0.5 / family.rate / 0.05) - 0.02);
     CHECK(greatest < 3.12);
   }

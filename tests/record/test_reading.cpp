@@ -39,13 +39,18 @@ TEST_CASE("each way of writing alone is read to the values that were written") {
   add([](Manner& m) { m.has_names = false; });
   for (int clock = 0; clock < 8; ++clock)
     for (const bool is_said : {false, true})
-      for (const bool has_rate : {false, true}) add([&](Manner& m) { m.clock = static_cast<Clock>(clock), m.says_clock_unit = is_said, m.has_rate = has_rate && m.clock != Clock::epoch; });
+      for (const bool has_rate : {false, true})
+        add([&](Manner& m) {
+          m.clock = static_cast<Clock>(clock), m.says_clock_unit = is_said, m.has_rate = has_rate && m.clock != Clock::epoch;
+        });
   for (int scale = 0; scale < 5; ++scale)
     for (int place = 0; place < 4; ++place)
-      if (scale < 3 || place == 0 || place == 3) add([&](Manner& m) { m.scale = static_cast<Scale>(scale), m.unit_place = static_cast<UnitPlace>(place); });
+      if (scale < 3 || place == 0 || place == 3)
+        add([&](Manner& m) { m.scale = static_cast<Scale>(scale), m.unit_place = static_cast<UnitPlace>(place); });
   for (int trap = 0; trap < 8; ++trap)
     for (int variant = 0; variant < 2; ++variant)
-      for (const Clock clock : {Clock::seconds, Clock::iso, Clock::none}) add([&](Manner& m) { m.trap = static_cast<RowTrap>(trap), m.variant = variant, m.clock = clock, m.delimiter = ';'; });
+      for (const Clock clock : {Clock::seconds, Clock::iso, Clock::none})
+        add([&](Manner& m) { m.trap = static_cast<RowTrap>(trap), m.variant = variant, m.clock = clock, m.delimiter = ';'; });
   for (int ending = 0; ending < 4; ++ending) add([&](Manner& m) { m.ending = static_cast<Ending>(ending); });
   add([](Manner& m) { m.is_ragged = true; });
   std::uint32_t seed = 1;

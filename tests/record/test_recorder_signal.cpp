@@ -21,8 +21,7 @@ using Values = std::vector<std::pair<std::string, FieldValue>>;
 struct RecordOnDisk {
   std::string path;
   RecordOnDisk(const std::string& name, const std::string& text)
-      : path(
-            (std::filesystem::temp_directory_path() / ("steplap_recorder_" + std::to_string(::getpid()) + "_" + name)).string()) {
+      : path((std::filesystem::temp_directory_path() / ("steplap_recorder_" + std::to_string(::getpid()) + "_" + name)).string()) {
     std::ofstream(path, std::ios::binary) << text;
   }
   RecordOnDisk(const RecordOnDisk&) = delete;
@@ -35,8 +34,7 @@ Signal made(const RecordOnDisk& file, const Values& values) {
   const auto definition = kind.create();
   definition->name = "r";
   kind.fields.find("file")->set(definition.get(), file.path);
-  for (const auto& [field, value] : values)
-    kind.fields.find(field)->set(definition.get(), value);
+  for (const auto& [field, value] : values) kind.fields.find(field)->set(definition.get(), value);
   return kind.build(*definition);
 }
 
@@ -49,21 +47,17 @@ std::string problem(const RecordOnDisk& file, const Values& values) {
   return "";
 }
 
-FieldValue text(const char* value) {
-  return std::string(value);
-}
+FieldValue text(const char* value) { return std::string(value); }
 
 // A hundred samples a second of x and y = 1 … 6 m/s², z = g.
-const std::string k_plain =
-    "time [s],x [m/s^2],y [m/s^2],z [m/s^2]\n"
-    "0.00,1,1,9.80665\n0.01,2,2,9.80665\n0.02,3,3,9.80665\n0.03,4,4,9.80665\n0.04,5,5,9.80665\n0.05,6,6,9.80665\n";
+const std::string k_plain = "time [s],x [m/s^2],y [m/s^2],z [m/s^2]\n"
+                            "0.00,1,1,9.80665\n0.01,2,2,9.80665\n0.02,3,3,9.80665\n0.03,4,4,9.80665\n0.04,5,5,9.80665\n0.05,6,6,9.80665\n";
 
 } // namespace
 
 TEST_CASE("a record's samples are the signal's values, along an axis and along a direction") {
   const RecordOnDisk file("plain.csv", k_plain);
-  const Signal x = made(file, {{"axis", text("x")}}),
-               turned = made(file, {{"axis", text("-y")}, {"start", 0.3}, {"factor", 2.0}});
+  const Signal x = made(file, {{"axis", text("x")}}), turned = made(file, {{"axis", text("-y")}, {"start", 0.3}, {"factor", 2.0}});
   const Signal along = made(file, {{"map", std::vector<double>{0.6, -0.8, 0.0}}});
   for (int k = 0; k < 5; ++k) {
     const double t = 0.01 * k;
@@ -102,21 +96,18 @@ TEST_CASE("an event of a record has its peak and its velocity, and ends at rest 
   CHECK(first.drive(end, DriveLevel::acceleration).rate == doctest::Approx(pulse).epsilon(0.02));
   CHECK(std::abs(shock(1, {{"axis", text("x")}, {"drift", text("line")}}).drive(end, DriveLevel::acceleration).rate) < 1e-9);
   double slow = 0.0;
-  for (const double t : second.breakpoints())
-    slow = std::max(slow, second.value(t));
+  for (const double t : second.breakpoints()) slow = std::max(slow, second.value(t));
   CHECK(slow == doctest::Approx(1.6 * k_gravity).epsilon(0.02));
   // CFC 10 keeps frequencies up to 17 Hz: less of the short shock is left than of the long one.
   const Signal filtered = shock(1, {{"axis", text("x")}, {"cfc", 10.0}, {"threshold", 5.0}});
   double kept = 0.0;
-  for (const double t : filtered.breakpoints())
-    kept = std::max(kept, filtered.value(t));
+  for (const double t : filtered.breakpoints()) kept = std::max(kept, filtered.value(t));
   CHECK(kept > 0.6 * peak);
   CHECK(kept < 0.95 * peak);
 }
 
 TEST_CASE("what a record leaves open is asked for") {
-  const RecordOnDisk plain("plain2.csv", k_plain), counts("counts.csv", make_record("gcdc")),
-      peaks("peaks.csv", make_record("shocklog"));
+  const RecordOnDisk plain("plain2.csv", k_plain), counts("counts.csv", make_record("gcdc")), peaks("peaks.csv", make_record("shocklog"));
   std::string parted = k_plain;
   parted += "9.00,1,1,9.80665\n9.01,1,1,9.80665\n9.02,1,1,9.80665\n";
   const RecordOnDisk gap("gap.csv", parted);

@@ -31,7 +31,8 @@ public:
     return text.str();
   }
   int record(const std::string& arguments) const {
-    const int status = std::system(("cd '" + path_.string() + "' && '" STEPLAP_PROGRAM "' record " + arguments + " > screen.txt 2>&1").c_str());
+    const int status =
+        std::system(("cd '" + path_.string() + "' && '" STEPLAP_PROGRAM "' record " + arguments + " > screen.txt 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string screen() const { return read("screen.txt"); }
@@ -65,7 +66,8 @@ TEST_CASE("a file that is read leaves its results, and a second reading replaces
   CHECK(place.screen().find("--force") != std::string::npos);
   place.write("good.csv", k_names + rows(0, 100));
   REQUIRE_MESSAGE(place.record("good.csv --gravity none -o out/deep --force") == 0, place.screen());
-  CHECK(place.files("out/deep") == std::set<std::string>{"events.csv", "record.json", "shock_spectra.csv", "signal.csv"}); // no segments of the file before
+  CHECK(place.files("out/deep") ==
+        std::set<std::string>{"events.csv", "record.json", "shock_spectra.csv", "signal.csv"}); // no segments of the file before
 }
 
 TEST_CASE("a file that is refused halfway leaves nothing") {

@@ -30,12 +30,17 @@ TEST_CASE("values that are none are refused where they stand") {
   check_refused(k_names + k_rows + "0.03,0.4,\"0.5,1.3\n", 5, "a quote is not closed");
   check_refused(k_names + k_rows + "0.03,0.4\n", 5, "--missing");
   check_refused(k_names + k_rows + "0.03,0.4,1.234,5\n0.04,0.4,1,2,3\n", 6, "5 fields, 4 were expected");
-  check_refused("Time;Ax[g];Ay[g]\n2016-01-04 10:00:00.00;0.1;0.2\n2016-01-04 10:00:00.01;0.1;0.2\n2016-02-30 10:00:00.02;0.1;0.2\n", 4, "'2016-02-30 10:00:00.02' is");
+  check_refused("Time;Ax[g];Ay[g]\n2016-01-04 10:00:00.00;0.1;0.2\n2016-01-04 10:00:00.01;0.1;0.2\n2016-02-30 10:00:00.02;0.1;0.2\n", 4,
+                "'2016-02-30 10:00:00.02' is");
 }
 
 TEST_CASE("a zero byte and half a character of UTF-16 are refused") {
   check_refused(k_names + "0.00,0.1,0.2" + std::string(1, '\0') + ",1.0\n", 2, "A zero byte");
-  CHECK_THROWS_WITH_AS(static_cast<void>(read_text(std::string("\xFF\xFE" "1\0" "2", 5))), doctest::Contains("odd number of bytes"), RecordError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(read_text(std::string("\xFF\xFE"
+                                                               "1\0"
+                                                               "2",
+                                                               5))),
+                       doctest::Contains("odd number of bytes"), RecordError);
   CHECK_THROWS_WITH_AS(static_cast<void>(read_text("")), doctest::Contains("The file is empty"), RecordError);
 }
 
@@ -50,7 +55,9 @@ TEST_CASE("an acceleration without an axis is asked for") {
   CHECK(read.segments.at(0).at(1).a[0] == doctest::Approx(-0.2 * 9.80665).epsilon(1e-15));
 }
 
-TEST_CASE("two columns that may be the same axis are asked for") { check_refused("Time[s],Ax[g],Acc X[g]\n0.00,0.1,1\n0.01,0.2,1\n0.02,0.3,1\n", 1, "Choose one with --x"); }
+TEST_CASE("two columns that may be the same axis are asked for") {
+  check_refused("Time[s],Ax[g],Acc X[g]\n0.00,0.1,1\n0.01,0.2,1\n0.02,0.3,1\n", 1, "Choose one with --x");
+}
 
 TEST_CASE("columns without names are named x, y and z only if three are left") {
   ReadOptions options;
@@ -68,11 +75,14 @@ TEST_CASE("a unit of time is never guessed from the size of the numbers") {
   check_refused("Time,Ax[g]\n0,0.1\n10,0.2\n20,0.3\n", 2, "--time-unit s, ms");
 }
 
-TEST_CASE("a column T is no time unless it is said, as it may be a temperature") { check_refused("T,Ax[g]\n21.5,0.1\n21.6,0.2\n21.7,0.3\n", 2, "--rate HZ"); }
+TEST_CASE("a column T is no time unless it is said, as it may be a temperature") {
+  check_refused("T,Ax[g]\n21.5,0.1\n21.6,0.2\n21.7,0.3\n", 2, "--rate HZ");
+}
 
 TEST_CASE("the line that says when the record starts is no row") {
   const std::string rows = "TIME;ACC x;ACC y;ACC z\n;g;g;g\n2016-01-04 10:25:14.00;0.1;0.2;1.0\n2016-01-04 10:25:14.02;0.2;0.3;1.1\n";
-  for (const std::string& head : {std::string("*CREATOR\nMSR145\n*STARTTIME\n2016-01-04;10:25:14\n*MODUL\n*NAME\n*DATA\n"), std::string("2016-01-04;10:25:14\n")}) {
+  for (const std::string& head :
+       {std::string("*CREATOR\nMSR145\n*STARTTIME\n2016-01-04;10:25:14\n*MODUL\n*NAME\n*DATA\n"), std::string("2016-01-04;10:25:14\n")}) {
     const ReadResult read = read_text(head + rows);
     REQUIRE(read.segments.size() == 1);
     REQUIRE(read.segments[0].size() == 2);
@@ -89,7 +99,8 @@ TEST_CASE("a last line without line break is kept if it has all fields, and said
   };
   const ReadResult kept = read_text(k_names + k_rows + "0.03,0.4,0.5,1.3");
   CHECK(kept.segments.at(0).size() == 4);
-  CHECK(lines(kept).find("The last line (5) does not end with a line break. It has all fields, and its last number as many decimals as those before: it was kept.") != std::string::npos);
+  CHECK(lines(kept).find("The last line (5) does not end with a line break. It has all fields, and its last number as many decimals as "
+                         "those before: it was kept.") != std::string::npos);
   for (const char* cut : {"0.03,0.4,0.5,1.", "0.03,0.4,0.5,1", "0.03,0.4,0.5,-", "0.03,0.4,0.5,", "0.03,0.4,0.5", "0.03,0.", "0"}) {
     CAPTURE(cut);
     const ReadResult left_out = read_text(k_names + k_rows + cut);
@@ -109,7 +120,9 @@ TEST_CASE("a last number without line break that may lack digits is left out, an
 }
 
 TEST_CASE("of rows of one time the first or the last is kept, as asked") {
-  const std::string text = k_names + "0.00,0.1,0.2,1.0\n0.01,0.2,0.3,1.1\n0.01,0.3,0.3,1.1\n0.01,0.4,0.3,1.1\n0.02,0.5,0.4,1.2\n0.03,0.6,0.4,1.2\n0.03,0.7,0.4,1.2\n";
+  const std::string text =
+      k_names +
+      "0.00,0.1,0.2,1.0\n0.01,0.2,0.3,1.1\n0.01,0.3,0.3,1.1\n0.01,0.4,0.3,1.1\n0.02,0.5,0.4,1.2\n0.03,0.6,0.4,1.2\n0.03,0.7,0.4,1.2\n";
   for (const bool is_last : {false, true}) {
     ReadOptions options;
     options.repeated = is_last ? IfRepeated::last : IfRepeated::first;
@@ -123,7 +136,9 @@ TEST_CASE("of rows of one time the first or the last is kept, as asked") {
 }
 
 TEST_CASE("quoted numbers with a decimal comma are read where a comma parts them") {
-  const ReadResult read = read_text("\"Time [s]\",\"X [g]\",\"Y [g]\",\"Z [g]\"\n\"0,00\",\"0,1250\",\"-0,2\",\"1,0\"\n\"0,01\",\"0,2500\",\"0,3\",\"1,1\"\n\"0,02\",\"0,5000\",\"0,4\",\"1,2\"\n");
+  const ReadResult read =
+      read_text("\"Time [s]\",\"X [g]\",\"Y [g]\",\"Z "
+                "[g]\"\n\"0,00\",\"0,1250\",\"-0,2\",\"1,0\"\n\"0,01\",\"0,2500\",\"0,3\",\"1,1\"\n\"0,02\",\"0,5000\",\"0,4\",\"1,2\"\n");
   REQUIRE(read.segments.at(0).size() == 3);
   CHECK(read.segments[0][1].t == doctest::Approx(0.01).epsilon(1e-12));
   CHECK(read.segments[0][2].a[0] == doctest::Approx(0.5 * 9.80665).epsilon(1e-12));
@@ -131,7 +146,8 @@ TEST_CASE("quoted numbers with a decimal comma are read where a comma parts them
 }
 
 TEST_CASE("a last entry of a list of peaks that is cut is left out") {
-  const std::string list = "Timestamp;Max [g];Duration [ms]\n04.01.2016 10:25:17;3.12;50.0\n04.01.2016 10:25:20;1.61;120.0\n04.01.2016 10:25:24;1.";
+  const std::string list =
+      "Timestamp;Max [g];Duration [ms]\n04.01.2016 10:25:17;3.12;50.0\n04.01.2016 10:25:20;1.61;120.0\n04.01.2016 10:25:24;1.";
   CHECK(read_text(list).recording.peaks.size() == 2);
 }
 
@@ -152,14 +168,17 @@ TEST_CASE("two signs of decimals in one file are asked for, and then refused whe
   check_refused(text, 3, "'0.2345' is", options);
 }
 
-TEST_CASE("a comma that may part thousands is asked for") { check_refused("Time[s];Ax[mG]\n0;1,234\n1;2,345\n2;3,456\n", 2, "--decimal comma"); }
+TEST_CASE("a comma that may part thousands is asked for") {
+  check_refused("Time[s];Ax[mG]\n0;1,234\n1;2,345\n2;3,456\n", 2, "--decimal comma");
+}
 
 TEST_CASE("dates and times of day in all their forms give the time from the first row") {
-  for (const char* text : {"Date;Time;Ax[g]\n04.01.2016;23:59:59.98;0.1\n04.01.2016;23:59:59.99;0.2\n05.01.2016;00:00:00.00;0.3\n",
-                           "Time;Ax[g]\n23:59:59.98;0.1\n23:59:59.99;0.2\n00:00:00.00;0.3\n",
-                           "Time;Ax[g]\n01/31/2016 11:59:59.98 PM;0.1\n01/31/2016 11:59:59.99 PM;0.2\n02/01/2016 12:00:00.00 AM;0.3\n",
-                           "Time;Ax[g]\n2016-02-28T23:59:59.98+01:00;0.1\n2016-02-28T23:59:59.99+01:00;0.2\n2016-02-29T00:00:00.00+01:00;0.3\n",
-                           "Time;Ax[g]\n31-Dec-2015 23:59:59,98;0.1\n31-Dec-2015 23:59:59,99;0.2\n01-Jan-2016 00:00:00,00;0.3\n"}) {
+  for (const char* text :
+       {"Date;Time;Ax[g]\n04.01.2016;23:59:59.98;0.1\n04.01.2016;23:59:59.99;0.2\n05.01.2016;00:00:00.00;0.3\n",
+        "Time;Ax[g]\n23:59:59.98;0.1\n23:59:59.99;0.2\n00:00:00.00;0.3\n",
+        "Time;Ax[g]\n01/31/2016 11:59:59.98 PM;0.1\n01/31/2016 11:59:59.99 PM;0.2\n02/01/2016 12:00:00.00 AM;0.3\n",
+        "Time;Ax[g]\n2016-02-28T23:59:59.98+01:00;0.1\n2016-02-28T23:59:59.99+01:00;0.2\n2016-02-29T00:00:00.00+01:00;0.3\n",
+        "Time;Ax[g]\n31-Dec-2015 23:59:59,98;0.1\n31-Dec-2015 23:59:59,99;0.2\n01-Jan-2016 00:00:00,00;0.3\n"}) {
     CAPTURE(text);
     const ReadResult read = read_text(text);
     REQUIRE(read.segments.size() == 1);
@@ -172,7 +191,8 @@ TEST_CASE("dates and times of day in all their forms give the time from the firs
 }
 
 TEST_CASE("with a deadband the value before is held up to the sample that differs") {
-  const ReadResult read = read_text(";Deadband, 5, counts\n;SampleRate, 100, Hz\n;Accel, 100, 1000, 16, g\n;Headers, time,Ax\n0.00,100\n0.01,200\n0.05,300\n0.06,400\n");
+  const ReadResult read = read_text(
+      ";Deadband, 5, counts\n;SampleRate, 100, Hz\n;Accel, 100, 1000, 16, g\n;Headers, time,Ax\n0.00,100\n0.01,200\n0.05,300\n0.06,400\n");
   REQUIRE(read.segments.size() == 1);
   REQUIRE(read.segments[0].size() == 5); // one row more, a step before the change
   CHECK(read.segments[0][2].t == doctest::Approx(0.04).epsilon(1e-12));

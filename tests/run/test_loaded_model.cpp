@@ -131,7 +131,8 @@ TEST_CASE("settings of a run are the same overrides, byte for byte, in all files
   const Case cases[] = {
       {"tolerance", {"simulation.tolerance=1e-07"}, with([](RunOptions& o) { o.tolerance = 1e-7; })},
       {"step", {"simulation.integrator=rk4", "simulation.step=0.00025"}, with([](RunOptions& o) { o.method = "rk4", o.step = 2.5e-4; })},
-      {"all", {"simulation.integrator=rodas5p", "simulation.tolerance=1e-06", "simulation.end=0.25", "output.step=0.01"},
+      {"all",
+       {"simulation.integrator=rodas5p", "simulation.tolerance=1e-06", "simulation.end=0.25", "output.step=0.01"},
        with([](RunOptions& o) { o.method = "rodas5p", o.tolerance = 1e-6, o.end = 0.25, o.output_step = 0.01; })}};
   for (const char* model : {STEPLAP_MODELS "/benchmarks/simple_pendulum.toml", STEPLAP_MODELS "/benchmarks/hard/noisy_record.toml"})
     for (const Case& c : cases) {
@@ -160,7 +161,8 @@ TEST_CASE("settings that a model cannot be run with are refused, all of them at 
     FAIL("not refused");
   } catch (const ModelError& error) {
     CHECK(error.diagnostics().size() == 4);
-    for (const char* part : {"RunOptions: error: ", "did you mean 'dop853'?", "must be at most 0.1, got 3", "must be finite", "must be greater than 0 s, got -1"})
+    for (const char* part : {"RunOptions: error: ", "did you mean 'dop853'?", "must be at most 0.1, got 3", "must be finite",
+                             "must be greater than 0 s, got -1"})
       CHECK_MESSAGE(std::string(error.what()).find(part) != std::string::npos, part << " is not in\n" << error.what());
   }
   RunOptions no_method, idle_step, no_step, short_run;
@@ -213,7 +215,8 @@ force_x = "f"
   options.end = 0.5;
   CHECK(with_settings(loaded, options)->inputs == loaded->inputs);
   std::ofstream(folder / "f.csv") << "t,f\n0,0\n1,2\n";
-  CHECK_THROWS_WITH_AS(static_cast<void>(with_settings(loaded, options)), doctest::Contains("has changed since the model was loaded"), ModelError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(with_settings(loaded, options)), doctest::Contains("has changed since the model was loaded"),
+                       ModelError);
   fs::remove_all(folder);
 }
 

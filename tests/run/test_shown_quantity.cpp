@@ -106,7 +106,7 @@ TEST_CASE("random values: what is shown is the value, within half of its last di
       CHECK_FALSE((has_error && error > half_digit * (1.0 + 1e-9)));     // else it would have had to be told
     } else {
       CHECK(has_error);
-      CHECK(shown_error >= error * (1.0 - 1e-9));                   // never smaller than it is
+      CHECK(shown_error >= error * (1.0 - 1e-9)); // never smaller than it is
       CHECK(std::abs(shown.value - value) <= shown_error * 0.5 * (1.0 + 1e-9) + 1e-9 * std::abs(value));
     }
   }

@@ -1,10 +1,10 @@
 #include "tests/scales/alike.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/assembly.h"
-#include "mbd/rest/equilibrium.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "transformer/catalog.h"
 
 #include <algorithm>
@@ -23,7 +23,8 @@ void compare(Difference& d, const ChannelRange& own, const ChannelRange& other, 
   for (const auto& pair : pairs) {
     const double a = pair[0], b = pair[1] / factor;
     if (a == b || (std::isnan(a) && std::isnan(b))) continue;
-    const double difference = size > 0.0 && std::isfinite(a) && std::isfinite(b) ? std::abs(a - b) / size : std::numeric_limits<double>::infinity();
+    const double difference =
+        size > 0.0 && std::isfinite(a) && std::isfinite(b) ? std::abs(a - b) / size : std::numeric_limits<double>::infinity();
     if (difference <= d.value) continue;
     d.value = difference;
     d.channel = own.channel->name;
@@ -32,7 +33,8 @@ void compare(Difference& d, const ChannelRange& own, const ChannelRange& other, 
 
 } // namespace
 
-Original::Original(const std::string& file, double longest, const std::string& integrator) : model_(read_model(file, transformer_catalog())) {
+Original::Original(const std::string& file, double longest, const std::string& integrator)
+    : model_(read_model(file, transformer_catalog())) {
   model_.simulation.end = std::min(model_.simulation.end, longest);
   model_.output.step = std::min(model_.output.step, model_.simulation.end);
   if (!integrator.empty()) model_.simulation.integrator = integrator;

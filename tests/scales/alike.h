@@ -8,14 +8,14 @@
 namespace steplap::testing {
 
 struct Difference {
-  std::string failure;        ///< of one run and not of the other, or other words; "": both ended alike
-  long steps[2] = {0, 0};     ///< accepted, of the model and of the scaled one
+  std::string failure;    ///< of one run and not of the other, or other words; "": both ended alike
+  long steps[2] = {0, 0}; ///< accepted, of the model and of the scaled one
   long evaluations[2] = {0, 0};
   long events[2] = {0, 0};
-  std::string first_event;    ///< that is not the same; "": all are
-  double event_time = 0.0;    ///< largest difference, of the run's duration
-  double value = 0.0;         ///< of what channels end with and of their extremes, of the larger of these and what there is in such a scene
-  std::string channel;        ///< of that
+  std::string first_event; ///< that is not the same; "": all are
+  double event_time = 0.0; ///< largest difference, of the run's duration
+  double value = 0.0;      ///< of what channels end with and of their extremes, of the larger of these and what there is in such a scene
+  std::string channel;     ///< of that
   std::string verdict[2];
 
   [[nodiscard]] bool is_same_course() const { return failure.empty() && first_event.empty() && verdict[0] == verdict[1]; }

@@ -16,9 +16,10 @@ int main(int argc, char** argv) {
     try {
       const Original original(argv[i], std::strtod(argv[4], nullptr));
       const Difference d = original.difference(by);
-      std::printf("%-60s steps %6ld %6ld events %4ld %4ld (%.1e) value %.1e %-24s %s %s %s %.150s\n", argv[i], d.steps[0], d.steps[1], d.events[0], d.events[1],
-                  d.event_time, d.value, d.channel.c_str(), d.verdict[0].c_str(), d.verdict[0] == d.verdict[1] ? "" : d.verdict[1].c_str(),
-                  d.first_event.c_str(), d.failure.empty() ? original.failure().c_str() : d.failure.c_str());
+      std::printf("%-60s steps %6ld %6ld events %4ld %4ld (%.1e) value %.1e %-24s %s %s %s %.150s\n", argv[i], d.steps[0], d.steps[1],
+                  d.events[0], d.events[1], d.event_time, d.value, d.channel.c_str(), d.verdict[0].c_str(),
+                  d.verdict[0] == d.verdict[1] ? "" : d.verdict[1].c_str(), d.first_event.c_str(),
+                  d.failure.empty() ? original.failure().c_str() : d.failure.c_str());
     } catch (const std::exception& failure) {
       std::printf("%-60s %.200s\n", argv[i], failure.what());
     }

@@ -91,9 +91,11 @@ private:
   static bool multiply(FieldValue& value, double x, double y) {
     if (std::holds_alternative<std::string>(value)) return false;
     if (auto* number = std::get_if<double>(&value)) *number *= x;
-    else if (auto* numbers = std::get_if<std::vector<double>>(&value)) for (double& n : *numbers) n *= x;
+    else if (auto* numbers = std::get_if<std::vector<double>>(&value))
+      for (double& n : *numbers) n *= x;
     else if (auto* point = std::get_if<Vec2>(&value)) *point = Vec2(point->x() * x, point->y() * y);
-    else if (auto* points = std::get_if<std::vector<Vec2>>(&value)) for (Vec2& p : *points) p = Vec2(p.x() * x, p.y() * y);
+    else if (auto* points = std::get_if<std::vector<Vec2>>(&value))
+      for (Vec2& p : *points) p = Vec2(p.x() * x, p.y() * y);
     else if (auto* rings = std::get_if<std::vector<std::vector<Vec2>>>(&value)) {
       for (std::vector<Vec2>& ring : *rings)
         for (Vec2& p : ring) p = Vec2(p.x() * x, p.y() * y);
@@ -158,8 +160,6 @@ std::string Scaling::text() const {
   return "lengths × " + number_text(length) + ", times × " + number_text(time) + ", masses × " + number_text(mass);
 }
 
-Model scaled(const Model& model, const System& system, const Scaling& by) {
-  return Scaler(model, by).scaled(system);
-}
+Model scaled(const Model& model, const System& system, const Scaling& by) { return Scaler(model, by).scaled(system); }
 
 } // namespace steplap::testing

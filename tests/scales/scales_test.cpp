@@ -58,9 +58,12 @@ const std::map<std::string, std::string> k_not_yet_by_length = {
 
 // Formulas of forces and states, and of fields by parameters, hold numbers with units of their own, which are no fields: scaling does
 // not reach them.
-const std::set<std::string> k_of_formulas = {"machines/balanced_drum.toml", "machines/balanced_pendulum.toml", "machines/band_brake.toml", "machines/braking_car.toml",
-                                             "machines/cam_jump.toml", "machines/drawbar_train.toml", "machines/engine_governor.toml", "machines/locking_wedge.toml",
-                                             "machines/parachute.toml", "machines/pid_pendulum.toml", "machines/shunted_wagons.toml", "machines/trebuchet.toml",
+const std::set<std::string> k_of_formulas = {"machines/balanced_drum.toml",   "machines/balanced_pendulum.toml",
+                                             "machines/band_brake.toml",      "machines/braking_car.toml",
+                                             "machines/cam_jump.toml",        "machines/drawbar_train.toml",
+                                             "machines/engine_governor.toml", "machines/locking_wedge.toml",
+                                             "machines/parachute.toml",       "machines/pid_pendulum.toml",
+                                             "machines/shunted_wagons.toml",  "machines/trebuchet.toml",
                                              "machines/weighing_bridge.toml", "machines/wheelie.toml"};
 
 std::vector<std::string> models() {
@@ -81,8 +84,8 @@ bool is_near(const Difference& d) { return d.is_same_course() && d.event_time <=
 
 void check(const std::string& file, const Difference& d, const Scaling& by, bool is_left) {
   CAPTURE(file);
-  INFO(by.text() << ": steps " << d.steps[0] << " and " << d.steps[1] << ", events apart by " << d.event_time
-            << " of the run, " << d.channel << " by " << d.value << " " << d.first_event << d.failure);
+  INFO(by.text() << ": steps " << d.steps[0] << " and " << d.steps[1] << ", events apart by " << d.event_time << " of the run, "
+                 << d.channel << " by " << d.value << " " << d.first_event << d.failure);
   if (is_left) CHECK(is_near(d));
   CHECK(is_alike(d) != is_left); // one that is cured is to leave the list
 }

@@ -60,8 +60,7 @@ contacts = ["foot"]
 static_friction = 0.3
 )";
 
-inline const std::string k_slid =
-    "[[response]]\nname = \"slid\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n";
+inline const std::string k_slid = "[[response]]\nname = \"slid\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n";
 
 inline double slid_distance(double acceleration, double time, double mu) {
   if (acceleration <= mu * k_g) return 0.0;

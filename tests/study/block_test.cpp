@@ -1,7 +1,7 @@
 // A block on a deck that is accelerated for a while: everything is known in closed form.
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
-#include "mbd/rest/start.h"
 #include "mbd/model/completion.h"
+#include "mbd/rest/start.h"
 #include "study/law.h"
 #include "tests/study/block_scene.h"
 #include "tests/study/study_bench.h"
@@ -14,8 +14,7 @@ namespace {
 std::string with_friction(const std::string& kind, const std::string& settings, double mean, double cov) {
   return "kind = \"" + kind + "\"\nmodel = \"block.toml\"\n" + settings +
          "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n" +
-         "distribution = \"lognormal\"\nmean = " + std::to_string(mean) + "\ncov = " + std::to_string(cov) + "\n" +
-         k_slid;
+         "distribution = \"lognormal\"\nmean = " + std::to_string(mean) + "\ncov = " + std::to_string(cov) + "\n" + k_slid;
 }
 
 } // namespace
@@ -49,14 +48,12 @@ TEST_CASE("the probability that it slides too far, friction lognormal") {
                         {0.60, 0.10, 0.005, 0.063857722, 1.523172941}}) {
     StudyBench bench;
     bench.write("block.toml", k_block);
-    const std::string limit =
-        "[[limit_state]]\nname = \"far\"\nexpression = \"" + std::to_string(c.limit) + " - slid\"\n";
-    const Outcome outcome =
-        bench.run(with_friction("reliability",
-                                "[reliability]\nmethods = [\"form\", \"importance_sampling\"]\nsamples = "
-                                "400\nconfidence = 0.999\nstarts = 2\n",
-                                c.mean, c.cov) +
-                  limit);
+    const std::string limit = "[[limit_state]]\nname = \"far\"\nexpression = \"" + std::to_string(c.limit) + " - slid\"\n";
+    const Outcome outcome = bench.run(with_friction("reliability",
+                                                    "[reliability]\nmethods = [\"form\", \"importance_sampling\"]\nsamples = "
+                                                    "400\nconfidence = 0.999\nstarts = 2\n",
+                                                    c.mean, c.cov) +
+                                      limit);
     CAPTURE(outcome.err);
     CAPTURE(c.mean);
     // One variable and a monotonic response: first order is exact. Four digits are asked for.
@@ -69,10 +66,8 @@ TEST_CASE("the probability that it slides too far, friction lognormal") {
 
 TEST_CASE("responses of channels on request: friction's heat, and a formula of it") {
   StudyBench bench;
-  bench.write("block.toml",
-              k_block +
-                  "[output]\nalso = [\"deck friction.dissipated\"]\n"
-                  "[[channel]]\nname = \"way by heat\"\nexpression = \"{deck friction.dissipated} / '9810 N'\"\n");
+  bench.write("block.toml", k_block + "[output]\nalso = [\"deck friction.dissipated\"]\n"
+                                      "[[channel]]\nname = \"way by heat\"\nexpression = \"{deck friction.dissipated} / '9810 N'\"\n");
   const std::string text = "kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = "
                            "\"element.deck friction.static_friction\"\nvalues = [0.1, 0.3]\n"
                            "[[response]]\nname = \"heat\"\nchannel = \"deck friction.dissipated\"\nwhat = \"final\"\n"
@@ -103,8 +98,8 @@ TEST_CASE("a sample is replayed by the command that runs models") {
   (void)bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck "
                   "friction.static_friction\"\nvalues = [0.2, 0.3]\n" +
                   k_slid);
-  const Outcome outcome = study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample",
-                                      "2", "-o", bench.at("replay")});
+  const Outcome outcome =
+      study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample", "2", "-o", bench.at("replay")});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "\"element.deck friction.static_friction=0.3\""));
   CHECK(fs::exists(bench.at("replay/block/summary.json")));
@@ -140,15 +135,13 @@ TEST_CASE("a sample's numbers are those of the whole model with its values") {
     options.channels = {"*"};
     const RunResult result = simulate(*system, start_of(model, *system), options);
     const auto range = [&](const std::string& name) {
-      return *std::find_if(result.ranges.begin(), result.ranges.end(),
-                           [&](const ChannelRange& r) { return r.channel->name == name; });
+      return *std::find_if(result.ranges.begin(), result.ranges.end(), [&](const ChannelRange& r) { return r.channel->name == name; });
     };
     const std::vector<double> deck = result.trajectory->series("deck.x");
     double way = 0.0;
     for (std::size_t i = 1; i < deck.size(); ++i) way += std::abs(deck[i] - deck[i - 1]);
     // Where extremes are looked for hangs on the other channels too: to 1e-6 of their ranges. The rest is the same run.
-    CHECK(row.outcome.numbers[0] ==
-          doctest::Approx(std::abs(range("deck friction.slide").largest().value)).epsilon(1e-6));
+    CHECK(row.outcome.numbers[0] == doctest::Approx(std::abs(range("deck friction.slide").largest().value)).epsilon(1e-6));
     CHECK(row.outcome.numbers[1] == doctest::Approx(range("foot.force").high.value).epsilon(1e-6));
     CHECK(row.outcome.numbers[2] == range("block.x").final);
     CHECK(row.outcome.numbers[3] == way);
@@ -161,15 +154,15 @@ TEST_CASE("a study over two models") {
   StudyBench bench;
   bench.write("soft.toml", k_block);
   bench.write("hard.toml", k_block);
-  const Outcome outcome = bench.run(
-      "kind = \"sample\"\nmodel = [\"soft.toml\", \"hard.toml\"]\n[sample]\ndesign = \"latin_hypercube\"\nsamples = "
-      "12\n"
-      "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\ndistribution = \"uniform\"\nlow "
-      "= 0.2\nhigh = 0.5\n"
-      "[[variable]]\nname = \"peak\"\npath = \"signal.push.peak\"\nmodel = \"hard\"\ndistribution = \"uniform\"\nlow = "
-      "6\nhigh = 8\n"
-      "[[response]]\nname = \"soft\"\nmodel = \"soft\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n"
-      "[[response]]\nname = \"hard\"\nmodel = \"hard\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n");
+  const Outcome outcome =
+      bench.run("kind = \"sample\"\nmodel = [\"soft.toml\", \"hard.toml\"]\n[sample]\ndesign = \"latin_hypercube\"\nsamples = "
+                "12\n"
+                "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\ndistribution = \"uniform\"\nlow "
+                "= 0.2\nhigh = 0.5\n"
+                "[[variable]]\nname = \"peak\"\npath = \"signal.push.peak\"\nmodel = \"hard\"\ndistribution = \"uniform\"\nlow = "
+                "6\nhigh = 8\n"
+                "[[response]]\nname = \"soft\"\nmodel = \"soft\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n"
+                "[[response]]\nname = \"hard\"\nmodel = \"hard\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n");
   CAPTURE(outcome.err);
   REQUIRE(outcome.code == 0);
   std::vector<study::StoredSample> rows;

@@ -11,8 +11,8 @@ using namespace steplap::testing;
 namespace {
 
 std::string critical(const std::string& expression, double low, double high) {
-  return "kind = \"critical\"\n[critical]\nvariable = \"x\"\nexpression = \"" + expression +
-         "\"\n[[variable]]\nname = \"x\"\nrange = [" + std::to_string(low) + ", " + std::to_string(high) + "]\n";
+  return "kind = \"critical\"\n[critical]\nvariable = \"x\"\nexpression = \"" + expression + "\"\n[[variable]]\nname = \"x\"\nrange = [" +
+         std::to_string(low) + ", " + std::to_string(high) + "]\n";
 }
 
 // Points of a border, both variables.
@@ -35,8 +35,7 @@ TEST_CASE("the friction at which the block slides 5 mm: mu* = A/(g (1 + 2 D/(A t
                                     k_slid);
   CAPTURE(outcome.err);
   REQUIRE(outcome.code == 0);
-  CHECK(bench.find("critical", "critical value").value ==
-        doctest::Approx(0.512866686).epsilon(1e-8)); // studies.md, to its digits
+  CHECK(bench.find("critical", "critical value").value == doctest::Approx(0.512866686).epsilon(1e-8)); // studies.md, to its digits
   CHECK(has(outcome.out, "falls all over the range"));
 }
 
@@ -46,8 +45,7 @@ TEST_CASE("all crossings of a response that is not monotonic") {
   const double pi = std::acos(-1.0);
   REQUIRE(bench.findings().size() == 4); // 13 pi/6 = 6.81 and 17 pi/6 = 8.90 too
   for (int i = 0; i < 4; ++i)
-    CHECK(bench.findings()[i].value ==
-          doctest::Approx((i % 2 ? 5.0 / 6.0 : 1.0 / 6.0) * pi + i / 2 * 2.0 * pi).epsilon(1e-8));
+    CHECK(bench.findings()[i].value == doctest::Approx((i % 2 ? 5.0 / 6.0 : 1.0 / 6.0) * pi + i / 2 * 2.0 * pi).epsilon(1e-8));
   CHECK(has(text_of(bench.at("study.toml")), "sin"));
 }
 
@@ -77,12 +75,11 @@ TEST_CASE("no crossing is an answer of its own, and an exit code") {
 TEST_CASE("the border of damage in the plane of acceleration and duration") {
   StudyBench bench;
   bench.write("block.toml", k_block);
-  const Outcome outcome =
-      bench.run("model = \"block.toml\"\nkind = \"map\"\n[map]\nvariables = [\"A\", \"t\"]\nexpression = \"0.005 - "
-                "slid\"\nstep = 0.1\npoints = 4\n"
-                "[[variable]]\nname = \"A\"\npath = \"signal.push.peak\"\nrange = [3.924, 19.62]\n"
-                "[[variable]]\nname = \"t\"\npath = \"signal.push.duration\"\nrange = [\"5 ms\", \"100 ms\"]\n" +
-                k_slid);
+  const Outcome outcome = bench.run("model = \"block.toml\"\nkind = \"map\"\n[map]\nvariables = [\"A\", \"t\"]\nexpression = \"0.005 - "
+                                    "slid\"\nstep = 0.1\npoints = 4\n"
+                                    "[[variable]]\nname = \"A\"\npath = \"signal.push.peak\"\nrange = [3.924, 19.62]\n"
+                                    "[[variable]]\nname = \"t\"\npath = \"signal.push.duration\"\nrange = [\"5 ms\", \"100 ms\"]\n" +
+                                    k_slid);
   CAPTURE(outcome.err);
   CAPTURE(outcome.out);
   REQUIRE(outcome.code == 0);
@@ -90,8 +87,7 @@ TEST_CASE("the border of damage in the plane of acceleration and duration") {
   REQUIRE(borders.size() == 1);
   const auto& points = borders.begin()->second;
   CHECK(points.size() > 10);
-  for (const auto& [A, t] : points)
-    CHECK(t == doctest::Approx(std::sqrt(0.01 / (A * (A / (0.3 * k_g) - 1.0)))).epsilon(1e-6));
+  for (const auto& [A, t] : points) CHECK(t == doctest::Approx(std::sqrt(0.01 / (A * (A / (0.3 * k_g) - 1.0)))).epsilon(1e-6));
   // From end to end: A = 0.4 g at 87.437 ms, 2 g at 9.484 ms (studies.md).
   const auto [least, most] = std::minmax_element(points.begin(), points.end());
   CHECK(least->first == doctest::Approx(0.4 * k_g));
@@ -170,7 +166,8 @@ TEST_CASE("crossings as dense as the looks are not taken for all there are") {
   CHECK(has(outcome.out, "there may be more between them"));
   StudyBench fine;
   REQUIRE(fine.run("kind = \"critical\"\n[critical]\nvariable = \"x\"\nexpression = \"sin(200*x)\"\npoints = 401\n"
-                   "[[variable]]\nname = \"x\"\nrange = [0, 1]\n").code == 0);
+                   "[[variable]]\nname = \"x\"\nrange = [0, 1]\n")
+              .code == 0);
   CHECK(fine.findings().size() == 64);
 }
 
@@ -178,25 +175,21 @@ TEST_CASE("crossings as dense as the looks are not taken for all there are") {
 // begun): nothing but the way down to it tells of it.
 TEST_CASE("an island that no line of the first look meets is found") {
   StudyBench bench;
-  const Outcome outcome = bench.run(
-      "kind = \"map\"\n[map]\nvariables = [\"x\", \"y\"]\nexpression = "
-      "\"min((x - 0.43)^2 + (y - 0.56)^2 - 0.0009, (x - 1)^2 + (y - 1)^2 - 0.04)\"\n"
-      "[[variable]]\nname = \"x\"\nrange = [0, 1]\n[[variable]]\nname = \"y\"\nrange = [0, 1]\n");
+  const Outcome outcome = bench.run("kind = \"map\"\n[map]\nvariables = [\"x\", \"y\"]\nexpression = "
+                                    "\"min((x - 0.43)^2 + (y - 0.56)^2 - 0.0009, (x - 1)^2 + (y - 1)^2 - 0.04)\"\n"
+                                    "[[variable]]\nname = \"x\"\nrange = [0, 1]\n[[variable]]\nname = \"y\"\nrange = [0, 1]\n");
   REQUIRE(outcome.code == 0);
   const auto borders = borders_of(bench);
   REQUIRE(borders.size() == 2);
-  for (const auto& [x, y] : borders.at("border 1"))
-    CHECK(std::hypot(x - 1.0, y - 1.0) == doctest::Approx(0.2).epsilon(1e-7));
+  for (const auto& [x, y] : borders.at("border 1")) CHECK(std::hypot(x - 1.0, y - 1.0) == doctest::Approx(0.2).epsilon(1e-7));
   CHECK(borders.at("border 2").front() == borders.at("border 2").back());
-  for (const auto& [x, y] : borders.at("border 2"))
-    CHECK(std::hypot(x - 0.43, y - 0.56) == doctest::Approx(0.03).epsilon(1e-6));
+  for (const auto& [x, y] : borders.at("border 2")) CHECK(std::hypot(x - 0.43, y - 0.56) == doctest::Approx(0.03).epsilon(1e-6));
 }
 
 TEST_CASE("a plain without a border is not searched hollow by hollow") {
   StudyBench bench;
-  const Outcome outcome =
-      bench.run("kind = \"map\"\n[map]\nvariables = [\"x\", \"y\"]\nexpression = \"1 + 0*x*y\"\n"
-                "[[variable]]\nname = \"x\"\nrange = [0, 1]\n[[variable]]\nname = \"y\"\nrange = [0, 1]\n");
+  const Outcome outcome = bench.run("kind = \"map\"\n[map]\nvariables = [\"x\", \"y\"]\nexpression = \"1 + 0*x*y\"\n"
+                                    "[[variable]]\nname = \"x\"\nrange = [0, 1]\n[[variable]]\nname = \"y\"\nrange = [0, 1]\n");
   CHECK(outcome.code == 5);
   CHECK(bench.find("map", "points").samples == 121);
 }

@@ -35,13 +35,14 @@ std::optional<std::string> all_of(const std::string& path) {
     std::ostringstream text;
     text.precision(17);
     const study::StoreIdentity& id = store.identity();
-    text << id.version << id.study << id.kind << id.scene << store.setting("standing") << store.setting("about")
-         << store.setting("files") << store.size();
+    text << id.version << id.study << id.kind << id.scene << store.setting("standing") << store.setting("about") << store.setting("files")
+         << store.size();
     std::vector<study::StoredSample> rows;
     store.read(1, store.size(), rows);
     for (const study::StoredSample& row : rows) {
-      text << "\n" << row.number << study::name_of(row.outcome.status) << row.outcome.reason << row.outcome.error << ","
-           << row.outcome.evaluations << "," << row.outcome.cpu_seconds;
+      text << "\n"
+           << row.number << study::name_of(row.outcome.status) << row.outcome.reason << row.outcome.error << "," << row.outcome.evaluations
+           << "," << row.outcome.cpu_seconds;
       for (const double x : row.values) text << "," << x;
       for (const double x : row.outcome.numbers) text << "," << x;
     }
@@ -131,25 +132,39 @@ TEST_CASE("a store that was cut off, or of which pieces are gone, is refused, or
 }
 
 TEST_CASE("what was edited is refused by whatever reads the store") {
-  for (const char* sql :
-       {"UPDATE sample SET status = 77 WHERE number = 5", "UPDATE sample SET status = 1000000", "UPDATE sample SET status = -1",
-        "UPDATE sample SET r_g = 1 WHERE number = 17", "UPDATE sample SET r_y = NULL WHERE number = 17",
-        "UPDATE sample SET v_x = v_x + 1e-9 WHERE number = 200", "UPDATE sample SET reason = 'none' WHERE number = 3",
-        "DELETE FROM sample WHERE number > 250", "DELETE FROM sample WHERE number = 20", "DELETE FROM batch", "UPDATE finding SET value = value/2",
-        "DELETE FROM finding WHERE place = (SELECT max(place) FROM finding)", "UPDATE growth SET samples = 3",
-        "UPDATE setting SET value = 'done' WHERE key = 'kind'", "DELETE FROM setting WHERE key = 'scene'",
-        "UPDATE setting SET value = 'not met' WHERE key = 'standing'", "UPDATE note SET text = 'all is well'",
-        "INSERT INTO note VALUES (99, 'all is well', 0)", "ALTER TABLE sample RENAME COLUMN r_g TO r_h",
-        "UPDATE sample SET number = number + 1000", "INSERT INTO sample (number, status) VALUES (301, 0)"}) {
+  for (const char* sql : {"UPDATE sample SET status = 77 WHERE number = 5",
+                          "UPDATE sample SET status = 1000000",
+                          "UPDATE sample SET status = -1",
+                          "UPDATE sample SET r_g = 1 WHERE number = 17",
+                          "UPDATE sample SET r_y = NULL WHERE number = 17",
+                          "UPDATE sample SET v_x = v_x + 1e-9 WHERE number = 200",
+                          "UPDATE sample SET reason = 'none' WHERE number = 3",
+                          "DELETE FROM sample WHERE number > 250",
+                          "DELETE FROM sample WHERE number = 20",
+                          "DELETE FROM batch",
+                          "UPDATE finding SET value = value/2",
+                          "DELETE FROM finding WHERE place = (SELECT max(place) FROM finding)",
+                          "UPDATE growth SET samples = 3",
+                          "UPDATE setting SET value = 'done' WHERE key = 'kind'",
+                          "DELETE FROM setting WHERE key = 'scene'",
+                          "UPDATE setting SET value = 'not met' WHERE key = 'standing'",
+                          "UPDATE note SET text = 'all is well'",
+                          "INSERT INTO note VALUES (99, 'all is well', 0)",
+                          "ALTER TABLE sample RENAME COLUMN r_g TO r_h",
+                          "UPDATE sample SET number = number + 1000",
+                          "INSERT INTO sample (number, status) VALUES (301, 0)"}) {
     CAPTURE(std::string(sql));
     StudyBench bench;
     (void)bench.run(k_small);
     const std::string store = bench.at("study.sqlite"), file = bench.at("study.toml"), before = text_of(store);
     edit(store, sql);
     if (text_of(store) == before) continue; // there was nothing of that kind
-    for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"show", store}, {"export", store}, {"export", store, "--findings"},
-          {"report", store, "-o", bench.at("page.html"), "--force"}, {"run", file, "-o", store}, {"run", file, "-o", store, "--changed"}}) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"show", store},
+                                                      {"export", store},
+                                                      {"export", store, "--findings"},
+                                                      {"report", store, "-o", bench.at("page.html"), "--force"},
+                                                      {"run", file, "-o", store},
+                                                      {"run", file, "-o", store, "--changed"}}) {
       const Outcome outcome = study_does(arguments);
       CAPTURE(arguments.front());
       CHECK(outcome.code == 2);

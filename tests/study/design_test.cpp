@@ -24,14 +24,12 @@ std::string uniform_study(const std::string& design, int samples) {
 } // namespace
 
 TEST_CASE("a grid, a list and one at a time") {
-  const std::string
-      head = "kind = \"sweep\"\n[sweep]\n",
-      tail = "[[variable]]\nname = \"a\"\nvalues = [1, 2, 3]\n[[variable]]\nname = \"b\"\nrange = [\"0\", \"1\"]\n"
-             "[[response]]\nname = \"y\"\nexpression = \"10*a + b\"\n";
+  const std::string head = "kind = \"sweep\"\n[sweep]\n",
+                    tail = "[[variable]]\nname = \"a\"\nvalues = [1, 2, 3]\n[[variable]]\nname = \"b\"\nrange = [\"0\", \"1\"]\n"
+                           "[[response]]\nname = \"y\"\nexpression = \"10*a + b\"\n";
   const auto ys = [&](const std::string& design, int points) {
     StudyBench bench;
-    const Outcome outcome =
-        bench.run(head + "design = \"" + design + "\"\npoints = " + std::to_string(points) + "\n" + tail);
+    const Outcome outcome = bench.run(head + "design = \"" + design + "\"\npoints = " + std::to_string(points) + "\n" + tail);
     CAPTURE(outcome.err);
     REQUIRE(outcome.code == 0);
     std::vector<double> values;

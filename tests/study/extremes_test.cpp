@@ -1,10 +1,10 @@
 // A study follows only those extremes that it is asked for, and of channels that one response looks at together only the outermost.
 // What it says is held against runs by themselves, which follow all ends of all channels.
-#include "mbd/rest/start.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
+#include "mbd/rest/start.h"
 #include "tests/study/study_bench.h"
 #include "transformer/catalog.h"
 
@@ -18,7 +18,8 @@ namespace {
 constexpr double k_located = 1e-5;
 
 const std::string k_scene = STEPLAP_SOURCE "/models/studies/transformer_interference.toml";
-const std::string k_paths[] = {"element.tank bottom.static_friction", "core.core.static_friction", "core.core.pressure", "signal.braking.peak"};
+const std::string k_paths[] = {"element.tank bottom.static_friction", "core.core.static_friction", "core.core.pressure",
+                               "signal.braking.peak"};
 const std::string k_values[] = {"[0.28, 0.4]", "[0.2, 0.3]", "[7e4, 1.2e5]", "[-8.5, 6.0, -4.5]"}; // in each direction
 
 std::string study_text() {
@@ -72,7 +73,8 @@ TEST_CASE("extremes of a study are those of runs by themselves") {
     CHECK(numbers.at(0) == doctest::Approx(outermost(run, "* joint.margin", true)).epsilon(k_located));
     CHECK(numbers.at(1) == doctest::Approx(outermost(run, "* joint.p_req", false)).epsilon(k_located));
     CHECK(numbers.at(2) == doctest::Approx(outermost(run, "* arresting.force", false)).epsilon(k_located));
-    const auto slide = std::find_if(run.ranges.begin(), run.ranges.end(), [](const ChannelRange& range) { return range.channel->name == "tank bottom.slide"; });
+    const auto slide = std::find_if(run.ranges.begin(), run.ranges.end(),
+                                    [](const ChannelRange& range) { return range.channel->name == "tank bottom.slide"; });
     REQUIRE(slide != run.ranges.end());
     CHECK(numbers.at(3) == slide->final); // the motion does not hang on what is asked for, to the bit
     of_front += outermost(run, "front joint.margin", true) < outermost(run, "back joint.margin", true) ? 1 : 0;

@@ -35,8 +35,7 @@ std::string record(
   const study::CounterRandom random(seed, 77);
   std::string text = "t,slide\n";
   for (int i = 1; i <= count; ++i)
-    text += number(time(i)) + "," +
-            number(slide_at(time(i)) + noise * random.normal(static_cast<std::uint64_t>(i), 0)) + "\n";
+    text += number(time(i)) + "," + number(slide_at(time(i)) + noise * random.normal(static_cast<std::uint64_t>(i), 0)) + "\n";
   return text;
 }
 
@@ -49,11 +48,9 @@ std::string block() {
 
 const std::string k_fit = "kind = \"fit\"\nmodel = \"block.toml\"\n";
 const std::string k_history = "[[history]]\nname = \"way\"\nchannel = \"deck friction.slide\"\nfile = \"record.csv\"\n";
-const std::string k_mu_variable =
-    "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nrange = [0.1, 0.8]\n";
+const std::string k_mu_variable = "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nrange = [0.1, 0.8]\n";
 const std::string k_peak_variable = "[[variable]]\nname = \"peak\"\npath = \"signal.push.peak\"\nrange = [2, 15]\n";
-const std::string k_duration_variable =
-    "[[variable]]\nname = \"duration\"\npath = \"signal.push.duration\"\nrange = [0.02, 0.25]\n";
+const std::string k_duration_variable = "[[variable]]\nname = \"duration\"\npath = \"signal.push.duration\"\nrange = [0.02, 0.25]\n";
 const std::string k_variables = k_mu_variable + k_peak_variable + k_duration_variable;
 const std::string k_few = "[fit]\nstarts = 2\n";
 
@@ -76,8 +73,7 @@ TEST_CASE("least squares of a straight line: values and covariance of the closed
   const study::LeastSquaresMinimum m = study::minimise(problem, start, problem.residuals({start}).front());
   CHECK(m.problem.empty());
   double mean_y = 0.0, slope = 0.0; // slope = Σ (x − x̄) y / Σ (x − x̄)², x̄ = 4.5, Σ (x − x̄)² = 82.5
-  for (int i = 0; i < 10; ++i)
-    mean_y += (1.0 + 2.0 * i + noise[i]) / 10.0, slope += (i - 4.5) * (1.0 + 2.0 * i + noise[i]) / 82.5;
+  for (int i = 0; i < 10; ++i) mean_y += (1.0 + 2.0 * i + noise[i]) / 10.0, slope += (i - 4.5) * (1.0 + 2.0 * i + noise[i]) / 82.5;
   CHECK(4.0 * m.at[1] == doctest::Approx(slope).epsilon(1e-6)); // the search ends a ten-thousandth of a deviation off
   CHECK(4.0 * m.at[0] == doctest::Approx(mean_y - 4.5 * slope).epsilon(1e-4));
   const study::Identified told = study::identify(m, 0.01);
@@ -106,8 +102,7 @@ TEST_CASE("least squares in a curved valley, and at the end of a range") {
 
   problem.residuals = [](const std::vector<Eigen::VectorXd>& points) {
     std::vector<Eigen::VectorXd> rows;
-    for (const auto& z : points)
-      rows.push_back(Eigen::Vector3d(z[0] - 1.5, z[1] - 0.25, z[0] - 1.4)); // z[0] would be 1.45
+    for (const auto& z : points) rows.push_back(Eigen::Vector3d(z[0] - 1.5, z[1] - 0.25, z[0] - 1.4)); // z[0] would be 1.45
     return rows;
   };
   const study::LeastSquaresMinimum end = study::minimise(problem, start, problem.residuals({start}).front());
@@ -151,8 +146,7 @@ TEST_CASE("intervals of a fit are as wide as its errors") {
       error[i] = bench.find("fit", "value", names[i]).value - truth[i];
       deviation[i] = bench.find("fit", "standard deviation", names[i]).value;
       for (int j = i + 1; j < 3; ++j)
-        correlation(i, j) = correlation(j, i) =
-            bench.find("fit", "correlation", std::string(names[i]) + ", " + names[j]).value;
+        correlation(i, j) = correlation(j, i) = bench.find("fit", "correlation", std::string(names[i]) + ", " + names[j]).value;
     }
     const Eigen::Vector3d scaled = error.cwiseQuotient(deviation);
     distance += scaled.dot(correlation.ldlt().solve(scaled));
@@ -167,16 +161,14 @@ TEST_CASE("parameters that a record cannot tell apart are named, with the combin
   StudyBench bench;
   bench.write("block.toml", block());
   bench.write("record.csv", record(2e-4, 3, 50));
-  const std::string longer =
-      "[[variable]]\nname = \"duration\"\npath = \"signal.push.duration\"\nrange = [0.1, 0.25]\n";
+  const std::string longer = "[[variable]]\nname = \"duration\"\npath = \"signal.push.duration\"\nrange = [0.1, 0.25]\n";
   const Outcome outcome = bench.run(k_fit + k_few + k_history + k_mu_variable + k_peak_variable + longer);
   CAPTURE(outcome.out);
   CHECK(outcome.code == 5);
   const study::Finding together = bench.find("fit", "not told", "mu, peak");
   double mu = 0.0, peak = 0.0;
   REQUIRE(std::sscanf(together.status.c_str(),
-                      "cannot be told apart: the record stays as it is where mu changes by %lf and peak changes by %lf",
-                      &mu, &peak) == 2);
+                      "cannot be told apart: the record stays as it is where mu changes by %lf and peak changes by %lf", &mu, &peak) == 2);
   CHECK(peak / mu == doctest::Approx(k_g).epsilon(1e-3)); // printed to four digits
   CHECK(has(bench.find("fit", "not told", "duration").status, "does not hang on it"));
   CHECK(std::isnan(bench.find("fit", "value", "mu").low)); // no interval is claimed
@@ -198,8 +190,7 @@ TEST_CASE("a record that the model does not describe is told, and not trusted") 
   }
   SUBCASE("the value lies beyond the range") {
     bench.write("record.csv", record(2e-4, 3));
-    const std::string low =
-        "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nrange = [0.1, 0.25]\n";
+    const std::string low = "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nrange = [0.1, 0.25]\n";
     CHECK(bench.run(k_fit + k_few + k_history + low + k_peak_variable + k_duration_variable).code != 0);
     CHECK(has(bench.find("fit", "value", "mu").status, "at the end of its range"));
   }
@@ -258,19 +249,16 @@ TEST_CASE("what is wrong with a history is told with its place") {
   bench.write("record.csv", "t,slide\n0.1,1\n0.2,2\n0.15,3\n");
   CHECK(has(said(k_fit + k_history + k_mu_variable), "record.csv:4:1: error: the times of history 'way' must rise"));
   bench.write("record.csv", "t,slide\n0.1,1\n0.2,2\n0.9,3\n");
-  CHECK(has(said(k_fit + k_history + k_mu_variable),
-            "record.csv:4:1: error: t = 0.9 s of history 'way' lies outside the run"));
+  CHECK(has(said(k_fit + k_history + k_mu_variable), "record.csv:4:1: error: t = 0.9 s of history 'way' lies outside the run"));
   CHECK(has(said(k_fit + k_history + "to = 0.25\n" + k_variables), "2 measured values are too few for 3 parameters"));
   bench.write("record.csv", record(0.0, 1));
   CHECK(has(said(k_fit + k_history + "column = \"slid\"\n" + k_mu_variable), "study.toml:7:10"));
   CHECK(has(said(k_fit + k_history + "unit = \"kg\"\n" + k_mu_variable), "study.toml:7:8"));
   CHECK(has(said(k_fit + k_history + "noise = \"-1 mm\"\n" + k_mu_variable), "must be above zero"));
   CHECK(has(said(k_fit + k_mu_variable), "needs a [[history]]"));
-  CHECK(has(said(k_fit + k_history +
-                 "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalue = 0.3\n"),
+  CHECK(has(said(k_fit + k_history + "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalue = 0.3\n"),
             "needs a [[variable]] with a range"));
-  CHECK(has(said("kind = \"sweep\"\nmodel = \"block.toml\"\n" + k_history + k_mu_variable),
-            "for studies of the kind 'fit'"));
+  CHECK(has(said("kind = \"sweep\"\nmodel = \"block.toml\"\n" + k_history + k_mu_variable), "for studies of the kind 'fit'"));
   std::string twice = k_history;
   twice.replace(twice.find("way"), 3, "again");
   CHECK(has(said(k_fit + k_history + twice + k_mu_variable), "need 'noise' each"));

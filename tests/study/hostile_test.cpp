@@ -12,13 +12,11 @@ std::string normal(const std::string& name) {
   return "[[variable]]\nname = \"" + name + "\"\ndistribution = \"normal\"\nmean = 0\nstandard_deviation = 1\n";
 }
 
-std::string limit(const std::string& expression) {
-  return "[[limit_state]]\nname = \"g\"\nexpression = \"" + expression + "\"\n";
-}
+std::string limit(const std::string& expression) { return "[[limit_state]]\nname = \"g\"\nexpression = \"" + expression + "\"\n"; }
 
 std::string reliability(const std::string& method, const std::string& expression) {
-  return "kind = \"reliability\"\n[reliability]\nmethods = [\"" + method +
-         "\"]\nsamples = 2000\nstarts = 3\nsubset_samples = 500\n" + normal("x") + limit(expression);
+  return "kind = \"reliability\"\n[reliability]\nmethods = [\"" + method + "\"]\nsamples = 2000\nstarts = 3\nsubset_samples = 500\n" +
+         normal("x") + limit(expression);
 }
 
 const std::string k_mu = "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n";
@@ -104,8 +102,8 @@ TEST_CASE("values that the model does not take") {
     CHECK(std::isnan(bench.find("monte_carlo", "mean").value));
   }
   SUBCASE("all, and the study is to stop") {
-    const Outcome outcome = bench.run("failed = \"stop\"\n" + head +
-                                      "distribution = \"uniform\"\nlow = -2\nhigh = -1\nvalue = 0.3\n" + k_slid);
+    const Outcome outcome =
+        bench.run("failed = \"stop\"\n" + head + "distribution = \"uniform\"\nlow = -2\nhigh = -1\nvalue = 0.3\n" + k_slid);
     CHECK(outcome.code == 4);
     CHECK(has(outcome.err, "sample 1 impossible"));
   }
@@ -119,15 +117,12 @@ TEST_CASE("odd variables are told before anything runs") {
     CHECK(outcome.code == 3);
     return outcome.err;
   };
-  const std::string sweep = "kind = \"sweep\"\nmodel = \"block.toml\"\n",
-                    path = "\"element.deck friction.static_friction\"";
+  const std::string sweep = "kind = \"sweep\"\nmodel = \"block.toml\"\n", path = "\"element.deck friction.static_friction\"";
   CHECK(has(said(sweep + "[[variable]]\nname = \"mu\"\npath = [" + path + ", " + path + "]\nvalues = [0.1]\n" + k_slid),
             "variable 'mu' names the path"));
-  CHECK(has(said(sweep + k_mu + "values = [0.1]\n[[variable]]\nname = \"nu\"\npath = " + path + "\nvalues = [0.2]\n" +
-                 k_slid),
+  CHECK(has(said(sweep + k_mu + "values = [0.1]\n[[variable]]\nname = \"nu\"\npath = " + path + "\nvalues = [0.2]\n" + k_slid),
             "two variables, 'mu' and 'nu'"));
-  const std::string sample =
-      "kind = \"sample\"\n[[response]]\nname = \"r\"\nexpression = \"x\"\n[[variable]]\nname = \"x\"\n";
+  const std::string sample = "kind = \"sample\"\n[[response]]\nname = \"r\"\nexpression = \"x\"\n[[variable]]\nname = \"x\"\n";
   CHECK(has(said(sample + "distribution = \"uniform\"\nlow = 2\nhigh = 1\n"), "'low' must be below 'high'"));
   CHECK(has(said(sample + "distribution = \"triangular\"\nlow = 0\nmode = 2\nhigh = 1\n"), "'mode' must lie between"));
   CHECK(has(said(sample + "distribution = \"normal\"\nmean = 0\nstandard_deviation = 1\nlower = 60\nupper = 61\n"),
@@ -139,8 +134,7 @@ TEST_CASE("odd variables are told before anything runs") {
                  "= 0.9\n" +
                  "[[correlation]]\nbetween = [\"x\", \"z\"]\nrho = -0.9\n"),
             "not positive definite"));
-  CHECK(has(said("kind = \"sample\"\n" + normal("x") + "[[response]]\nname = \"r\"\nexpression = \"x = 3\"\n"),
-            "assigns with '='"));
+  CHECK(has(said("kind = \"sample\"\n" + normal("x") + "[[response]]\nname = \"r\"\nexpression = \"x = 3\"\n"), "assigns with '='"));
   CHECK(bench
             .run("kind = \"sample\"\n[sample]\nsamples = 10\n" + normal("x") +
                  "[[response]]\nname = \"r\"\nexpression = \"x >= 0 && x != 3 && x == x\"\n")
@@ -171,7 +165,8 @@ TEST_CASE("words of libraries never reach the user") {
   for (const auto& [kind, keys] : kinds)
     for (std::size_t k = 0; k < 16; ++k) {
       std::string text = "kind = \"sample\"\n[sample]\nsamples = 3\n[[variable]]\nname = \"x\"\ndistribution = \"" + kind + "\"\n";
-      for (std::size_t i = 0; i < keys.size(); ++i) text += keys[i] + " = " + values[(k * (2 * i + 1) + i * (k / 8 + 1) + k / 8) % 8] + "\n";
+      for (std::size_t i = 0; i < keys.size(); ++i)
+        text += keys[i] + " = " + values[(k * (2 * i + 1) + i * (k / 8 + 1) + k / 8) % 8] + "\n";
       if (kind == "beta") text += "low = 0\n";
       const Outcome outcome = bench.run(text + "[[response]]\nname = \"r\"\nexpression = \"x\"\n", {"--restart"});
       CAPTURE(text);

@@ -17,16 +17,14 @@ struct KnownCase {
 };
 
 inline std::string normal(double mean, double deviation) {
-  return "distribution = \"normal\"\nmean = " + std::to_string(mean) +
-         "\nstandard_deviation = " + std::to_string(deviation) + "\n";
+  return "distribution = \"normal\"\nmean = " + std::to_string(mean) + "\nstandard_deviation = " + std::to_string(deviation) + "\n";
 }
 
 inline std::string text_of_case(const KnownCase& c, const std::vector<std::string>& methods, const std::string& settings) {
   std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [";
   for (const std::string& m : methods) text += "\"" + m + "\", ";
   text += "]\n" + settings;
-  for (std::size_t i = 0; i < c.variables.size(); ++i)
-    text += "[[variable]]\nname = \"x" + std::to_string(i + 1) + "\"\n" + c.variables[i];
+  for (std::size_t i = 0; i < c.variables.size(); ++i) text += "[[variable]]\nname = \"x" + std::to_string(i + 1) + "\"\n" + c.variables[i];
   return text + "[[limit_state]]\nname = \"g\"\nexpression = \"" + c.g + "\"\n";
 }
 
@@ -59,36 +57,21 @@ inline std::vector<KnownCase> known_cases() {
        2.222795e-3,
        3.0,
        {"importance_sampling", "directional", "subset"}},
-      {"RP28",
-       {normal(78064, 11710), normal(0.0104, 0.00156)},
-       "x1*x2 - 146.14",
-       1.4533e-7,
-       0.0,
-       {"importance_sampling", "subset"}},
+      {"RP28", {normal(78064, 11710), normal(0.0104, 0.00156)}, "x1*x2 - 146.14", 1.4533e-7, 0.0, {"importance_sampling", "subset"}},
       {"RP54",
        twenty,
        "sum(x1,x2,x3,x4,x5,x6,x7,x8,x9,x10,x11,x12,x13,x14,x15,x16,x17,x18,x19,x20) - 8.951",
        9.90603e-4,
        0.0,
        {"monte_carlo", "subset"}},
-      {"RP77",
-       {normal(10, 0.5), standard, normal(4, 1)},
-       "x3 <= 5 ? x1 - x2 - x3 : x3 - x2",
-       2.69128e-7,
-       0.0,
-       {"directional"}},
+      {"RP77", {normal(10, 0.5), standard, normal(4, 1)}, "x3 <= 5 ? x1 - x2 - x3 : x3 - x2", 2.69128e-7, 0.0, {"directional"}},
       {"RP89",
        {standard, standard},
        "min(8 - x1^2 - x2, 6 - x1/5 - x2)",
        5.4713e-3,
        0.0,
        {"monte_carlo", "importance_sampling", "directional"}},
-      {"RP107",
-       ten,
-       "5*sqrt(10) - sum(x1,x2,x3,x4,x5,x6,x7,x8,x9,x10)",
-       2.866516e-7,
-       5.0,
-       {"importance_sampling", "subset"}},
+      {"RP107", ten, "5*sqrt(10) - sum(x1,x2,x3,x4,x5,x6,x7,x8,x9,x10)", 2.866516e-7, 5.0, {"importance_sampling", "subset"}},
       {"RP111", {standard, standard}, "12.5 - abs(x1*x2)", 8.035e-7, 5.0, {"importance_sampling", "directional"}},
       {"RP35",
        {standard, standard},

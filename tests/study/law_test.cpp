@@ -53,8 +53,7 @@ TEST_CASE("uniform numbers by counter are uniform, and independent of who asks f
   double sum = 0.0, squares = 0.0, product = 0.0;
   constexpr int k_count = 100000;
   for (int i = 0; i < k_count; ++i) {
-    const double a = random.uniform(static_cast<std::uint64_t>(i), 0),
-                 b = random.uniform(static_cast<std::uint64_t>(i), 1);
+    const double a = random.uniform(static_cast<std::uint64_t>(i), 0), b = random.uniform(static_cast<std::uint64_t>(i), 1);
     sum += a;
     squares += a * a;
     product += (a - 0.5) * (b - 0.5);
@@ -80,9 +79,8 @@ TEST_CASE("quantiles are those of the closed forms, far into both tails") {
   uniform.high = 3.0;
   Variable exponential = variable("e", "exponential");
   exponential.mean = 2.0;
-  const JointLaw law =
-      law_of({with_moments("a", "normal", mean, deviation), with_moments("b", "lognormal", mean, deviation),
-              with_moments("c", "gumbel", mean, deviation), weibull, uniform, exponential});
+  const JointLaw law = law_of({with_moments("a", "normal", mean, deviation), with_moments("b", "lognormal", mean, deviation),
+                               with_moments("c", "gumbel", mean, deviation), weibull, uniform, exponential});
   for (const double p : probabilities) {
     CAPTURE(p);
     const double z = normal_quantile(p);
@@ -112,16 +110,14 @@ TEST_CASE("a correlation of lognormal values becomes that of their logarithms") 
   Correlation c;
   c.between = {"a", "b"};
   c.rho = 0.5;
-  const JointLaw law =
-      law_of({with_moments("a", "lognormal", 1.0, 0.3), with_moments("b", "lognormal", 2.0, 1.2)}, {c});
+  const JointLaw law = law_of({with_moments("a", "lognormal", 1.0, 0.3), with_moments("b", "lognormal", 2.0, 1.2)}, {c});
   const double zeta1 = std::sqrt(std::log1p(0.09)), zeta2 = std::sqrt(std::log1p(0.36)),
                rho0 = std::log1p(0.5 * 0.3 * 0.6) / (zeta1 * zeta2);
   const double u[2] = {1.3, -0.4};
   double x[2];
   law.values_at(u, x);
-  CHECK(std::log(x[1]) == doctest::Approx(std::log(2.0) - 0.5 * zeta2 * zeta2 +
-                                          zeta2 * (rho0 * u[0] + std::sqrt(1.0 - rho0 * rho0) * u[1]))
-                              .epsilon(1e-9));
+  CHECK(std::log(x[1]) ==
+        doctest::Approx(std::log(2.0) - 0.5 * zeta2 * zeta2 + zeta2 * (rho0 * u[0] + std::sqrt(1.0 - rho0 * rho0) * u[1])).epsilon(1e-9));
 }
 
 TEST_CASE("intervals of proportions are those of Clopper and Pearson") {

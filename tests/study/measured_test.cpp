@@ -19,8 +19,7 @@ struct Whole {
 };
 
 const Whole k_wholes[] = {
-    {"normal", [](double p) { return 0.25 + 0.1 * normal_quantile(p); },
-     [](double x) { return normal_cdf((x - 0.25) / 0.1); }},
+    {"normal", [](double p) { return 0.25 + 0.1 * normal_quantile(p); }, [](double x) { return normal_cdf((x - 0.25) / 0.1); }},
     {"lognormal", [](double p) { return 0.25 * std::exp(0.4 * normal_quantile(p)); },
      [](double x) { return normal_cdf(std::log(x / 0.25) / 0.4); }},
     {"gumbel", [](double p) { return 0.25 - 0.1 * std::log(-std::log(p)); },
@@ -102,8 +101,7 @@ TEST_CASE("a tail that says nothing of its whole is fitted as a tail") {
   study::Variable v = variable(bench, "normal", values);
   v.lower = 0.15;
   const study::JointLaw law = law_of(v);
-  for (const double p : {0.1, 0.5, 0.9})
-    CHECK(law.quantile(0, p) == doctest::Approx(0.15 - 0.2 * std::log1p(-p)).epsilon(0.03));
+  for (const double p : {0.1, 0.5, 0.9}) CHECK(law.quantile(0, p) == doctest::Approx(0.15 - 0.2 * std::log1p(-p)).epsilon(0.03));
   CHECK_FALSE(law.fits()[0].is_misfit);
 }
 

@@ -13,8 +13,7 @@ TEST_CASE("an element that a table puts in again has not been left out") {
   REQUIRE(outcome.code == 0);
   bool is_told = false;
   for (const study::Finding& f : study::Store(bench.at("study.sqlite")).findings())
-    is_told =
-        is_told || (f.subject == "without 'front joint'" && has(f.status, "puts it in again") && std::isnan(f.value));
+    is_told = is_told || (f.subject == "without 'front joint'" && has(f.status, "puts it in again") && std::isnan(f.value));
   CHECK(is_told);
 }
 

@@ -74,8 +74,8 @@ int main(int count, char** words) {
       long held = 0;
       double sum = 0.0, samples = 0.0;
       for (long seed = 1; seed <= o.seeds; ++seed) {
-        const std::string text = "seed = " + std::to_string(seed) + "\n" +
-                                 text_of_case(c, {o.method}, "cov = " + std::to_string(cov) + "\n");
+        const std::string text =
+            "seed = " + std::to_string(seed) + "\n" + text_of_case(c, {o.method}, "cov = " + std::to_string(cov) + "\n");
         const study::Finding f = estimate_of(text, o.method, store);
         held += f.low <= c.probability && c.probability <= f.high;
         sum += f.value / c.probability;

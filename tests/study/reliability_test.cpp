@@ -21,8 +21,7 @@ TEST_CASE("sampling: the interval covers the exact probability") {
       CAPTURE(method);
       CHECK(f.low <= c.probability);
       CHECK(f.high >= c.probability);
-      const double most =
-          method == "subset" ? 20.0 : 5.0; // and says something: of four repetitions little is known at 99.9 %
+      const double most = method == "subset" ? 20.0 : 5.0; // and says something: of four repetitions little is known at 99.9 %
       CHECK(f.low > c.probability / most);
       CHECK(f.high < most * c.probability);
     }
@@ -44,15 +43,14 @@ TEST_CASE("FORM and SORM of three correlated variables are those that pystra's t
   // 3.7347; Breitung 3.8537, Hohenbichler and Rackwitz 3.8582: to the digits published.
   StudyBench bench;
   const KnownCase c{"3RV",
-               {"distribution = \"lognormal\"\nmean = 500\nstandard_deviation = 100\n", normal(2000, 400),
-                "distribution = \"uniform\"\nmean = 5\nstandard_deviation = 0.5\n"},
-               "1.7 - x2/(1000*x3) - (x1/(200*x3))^2",
-               0.0,
-               0.0,
-               {}};
+                    {"distribution = \"lognormal\"\nmean = 500\nstandard_deviation = 100\n", normal(2000, 400),
+                     "distribution = \"uniform\"\nmean = 5\nstandard_deviation = 0.5\n"},
+                    "1.7 - x2/(1000*x3) - (x1/(200*x3))^2",
+                    0.0,
+                    0.0,
+                    {}};
   std::string text = text_of_case(c, {"form", "sorm"}, "");
-  for (const auto& [pair, rho] :
-       std::map<std::string, double>{{"\"x1\", \"x2\"", 0.3}, {"\"x1\", \"x3\"", 0.2}, {"\"x2\", \"x3\"", 0.2}})
+  for (const auto& [pair, rho] : std::map<std::string, double>{{"\"x1\", \"x2\"", 0.3}, {"\"x1\", \"x3\"", 0.2}, {"\"x2\", \"x3\"", 0.2}})
     text += "[[correlation]]\nbetween = [" + pair + "]\nrho = " + std::to_string(rho) + "\n";
   const Outcome outcome = bench.run(text);
   CAPTURE(outcome.err);
@@ -94,8 +92,7 @@ TEST_CASE("traps of FORM are told") {
   }
   SUBCASE("nothing fails") {
     StudyBench bench;
-    const Outcome outcome =
-        bench.run(text_of_case({"", {normal(0, 1)}, "1 + x1^2", 0.0, 0.0, {}}, {"monte_carlo"}, "samples = 3000\n"));
+    const Outcome outcome = bench.run(text_of_case({"", {normal(0, 1)}, "1 + x1^2", 0.0, 0.0, {}}, {"monte_carlo"}, "samples = 3000\n"));
     CHECK(outcome.code == 5);
     const study::Finding f = bench.find("monte_carlo", "probability");
     CHECK(has(f.status, "only a bound is known"));
@@ -117,15 +114,13 @@ TEST_CASE("sampling finds the design points that searches have missed") {
     CHECK(f.high >= c.probability);
     CHECK(f.high - f.low < 0.4 * c.probability);
     for (int k = 1; k <= 4; ++k)
-      CHECK(bench.find("form", "beta", "design point " + std::to_string(k)).value ==
-            doctest::Approx(5.0).epsilon(1e-4));
+      CHECK(bench.find("form", "beta", "design point " + std::to_string(k)).value == doctest::Approx(5.0).epsilon(1e-4));
   }
 }
 
 TEST_CASE("a system of limit states: any of them, and all of them") {
   // Independent normal variables: 1 − Φ(1.5)Φ(2), and Φ(−1.5)Φ(−2)
-  const double either = 1.0 - study::normal_cdf(1.5) * study::normal_cdf(2.0),
-               both = study::normal_cdf(-1.5) * study::normal_cdf(-2.0);
+  const double either = 1.0 - study::normal_cdf(1.5) * study::normal_cdf(2.0), both = study::normal_cdf(-1.5) * study::normal_cdf(-2.0);
   for (const auto& [combination, exact] : std::map<std::string, double>{{"any", either}, {"all", both}}) {
     StudyBench bench;
     std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [\"importance_sampling\", "
@@ -218,11 +213,9 @@ TEST_CASE("rays and levels know what lies before runs without a result") {
 TEST_CASE("a system in series and in parallel") {
   const double p1 = study::normal_cdf(-2.8), p2 = study::normal_cdf(-1.8), p3 = study::normal_cdf(-1.5);
   const double exact = 1.0 - (1.0 - p1) * (1.0 - p2 * p3);
-  std::string text =
-      "kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"importance_sampling\", \"directional\"]\n"
-      "confidence = 0.999\n";
-  for (const char* name : {"x1", "x2", "x3"})
-    text += "[[variable]]\nname = \"" + std::string(name) + "\"\n" + normal(0, 1);
+  std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"importance_sampling\", \"directional\"]\n"
+                     "confidence = 0.999\n";
+  for (const char* name : {"x1", "x2", "x3"}) text += "[[variable]]\nname = \"" + std::string(name) + "\"\n" + normal(0, 1);
   text += "[[response]]\nname = \"second\"\nexpression = \"1.8 - x2\"\n[[response]]\nname = \"third\"\nexpression = "
           "\"1.5 - x3\"\n"
           "[[limit_state]]\nname = \"first\"\nexpression = \"2.8 - x1\"\n"
@@ -240,10 +233,8 @@ TEST_CASE("a system in series and in parallel") {
 
 // Of ranks: the normal variables behind them have 2 sin(π ρ/6). ln a − ln b is normal.
 TEST_CASE("a copula of ranks: the load beats the resistance") {
-  const double za = std::sqrt(std::log1p(0.0625)), zb = std::sqrt(std::log1p(0.16)),
-               rho = 2.0 * std::sin(std::acos(-1.0) * -0.4 / 6.0);
-  const double beta =
-      (std::log(3.0) - 0.5 * za * za + 0.5 * zb * zb) / std::sqrt(za * za + zb * zb - 2.0 * rho * za * zb);
+  const double za = std::sqrt(std::log1p(0.0625)), zb = std::sqrt(std::log1p(0.16)), rho = 2.0 * std::sin(std::acos(-1.0) * -0.4 / 6.0);
+  const double beta = (std::log(3.0) - 0.5 * za * za + 0.5 * zb * zb) / std::sqrt(za * za + zb * zb - 2.0 * rho * za * zb);
   std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [\"form\"]\n";
   text += "[[variable]]\nname = \"a\"\ndistribution = \"lognormal\"\nmean = 3\ncov = 0.25\n";
   text += "[[variable]]\nname = \"b\"\ndistribution = \"lognormal\"\nmean = 1\ncov = 0.4\n";
@@ -274,14 +265,13 @@ TEST_CASE("subset simulation of limit states that know few values") {
     double exact;
   };
   const double b = 3.5 / std::sqrt(2.0);
-  const Few cases[] = {
-      {"x1 + x2 > 3.5 ? -1 : 1", study::normal_cdf(-b)},
-      {"x1 + x2 > 3.5 ? -1 : x1 + x2 > 1 ? 1 : 2", study::normal_cdf(-b)},     // a third value between
-      {"x1 + x2 > 3.5 ? -1 : max(1, 3 - x1 - x2)", study::normal_cdf(-b)},     // a slope that ends on a plain
-      {"x1 + x2 > 3.5 ? -1 : 0", study::normal_cdf(-b)},                       // zero is not negative
-      {"floor3", 0.0},                                                         // levels one by one, below
-      {"x1 + x2 > 8 ? -1 : 1", study::normal_cdf(-8.0 / std::sqrt(2.0))},      // nothing is met
-      {"x1 + x2 > -3.5 ? -1 : 1", study::normal_cdf(b)}};
+  const Few cases[] = {{"x1 + x2 > 3.5 ? -1 : 1", study::normal_cdf(-b)},
+                       {"x1 + x2 > 3.5 ? -1 : x1 + x2 > 1 ? 1 : 2", study::normal_cdf(-b)}, // a third value between
+                       {"x1 + x2 > 3.5 ? -1 : max(1, 3 - x1 - x2)", study::normal_cdf(-b)}, // a slope that ends on a plain
+                       {"x1 + x2 > 3.5 ? -1 : 0", study::normal_cdf(-b)},                   // zero is not negative
+                       {"floor3", 0.0},                                                     // levels one by one, below
+                       {"x1 + x2 > 8 ? -1 : 1", study::normal_cdf(-8.0 / std::sqrt(2.0))},  // nothing is met
+                       {"x1 + x2 > -3.5 ? -1 : 1", study::normal_cdf(b)}};
   for (const Few& few : cases) {
     const bool is_stairs = std::string(few.g) == "floor3";
     const std::string g = is_stairs ? "4 - rint(x1 + x2) + 0*x1" : few.g;
@@ -367,7 +357,7 @@ TEST_CASE("first order is called off where it is, with the factor, and not where
     CHECK(factor.high > factor.value);
   }
   CHECK(alarms <= 3); // four or more of 40: once in 1500 cases at one in a hundred
-  StudyBench bench; // curved towards the origin: P = 1 − E[Φ(2.5 − 0.2 t²)], twice of first order
+  StudyBench bench;   // curved towards the origin: P = 1 − E[Φ(2.5 − 0.2 t²)], twice of first order
   (void)bench.run(standard_study(2, "2.5 - (x1 + x2)/sqrt(2) - 0.1*(x1 - x2)^2", "methods = [\"form\"]\n"));
   const std::string status = bench.find("form", "probability", "g").status;
   CHECK(has(status, "first order is off: importance_sampling gives"));
@@ -380,15 +370,17 @@ TEST_CASE("first order is called off where it is, with the factor, and not where
 // plane's design point sees hardly anything of the island, sampling sees it, and first order knows the nearest point alone.
 TEST_CASE("methods that contradict each other: none of them is believed") {
   StudyBench bench;
-  const Outcome outcome = bench.run("seed = 1\n" + standard_study(2, "min(4 - x1, sqrt((x1 + 1.5)^2 + (x2 + 1.5)^2) - 0.05)",
-                                                                  "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\nsamples = 60000\ncov = 0.1\n"));
+  const Outcome outcome = bench.run(
+      "seed = 1\n" + standard_study(2, "min(4 - x1, sqrt((x1 + 1.5)^2 + (x2 + 1.5)^2) - 0.05)",
+                                    "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\nsamples = 60000\ncov = 0.1\n"));
   CHECK(outcome.code == 4);
   CHECK(has(outcome.out, "monte_carlo and importance_sampling contradict each other: one of them has missed a part of the failures"));
   CHECK(has(outcome.out, "not to be trusted"));
   CHECK(has(bench.find("form", "probability", "g").status, "first order is off"));
   // Where they agree nothing of the kind is said.
   StudyBench plain;
-  const Outcome agreed = plain.run("seed = 1\n" + standard_study(2, "2 - x1 + 0*x2", "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\ncov = 0.2\n"));
+  const Outcome agreed = plain.run(
+      "seed = 1\n" + standard_study(2, "2 - x1 + 0*x2", "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\ncov = 0.2\n"));
   CHECK(!has(agreed.out, "contradict"));
   CHECK(agreed.code != 4);
 }

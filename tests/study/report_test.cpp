@@ -108,8 +108,7 @@ TEST_CASE("how a share of failures settled, with runs without result on both sid
   CHECK(r.samples.size() < 150);
   const study::Running mean = study::running_mean({1.0, 2.0, 3.0});
   CHECK(mean.value.back() == 2.0);
-  CHECK(mean.high.back() - 2.0 ==
-        doctest::Approx(4.302652729911275 / std::sqrt(3.0)).epsilon(1e-9)); // Student's, 2 degrees
+  CHECK(mean.high.back() - 2.0 == doctest::Approx(4.302652729911275 / std::sqrt(3.0)).epsilon(1e-9)); // Student's, 2 degrees
 }
 
 TEST_CASE("two digits of an interval's width are written, none that is not known") {
@@ -145,8 +144,7 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
   CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
   CHECK(view({"fit", "record", "residual, root mean square", 0.00123456}).value == "1.235"); // mm
-  CHECK(view({"fit", "pressure", "skewness", 2.0}).unit ==
-        "SI"); // of which nothing is known is not given the subject's
+  CHECK(view({"fit", "pressure", "skewness", 2.0}).unit == "SI"); // of which nothing is known is not given the subject's
 }
 
 TEST_CASE("findings of every kind have a part to play") {
@@ -157,22 +155,20 @@ TEST_CASE("findings of every kind have a part to play") {
     for (std::size_t at; (at = whole.find("RANGE")) != std::string::npos;) whole.replace(at, 5, range);
     return whole;
   };
-  const std::string normal = "distribution = \"normal\"\nmean = 1\nstandard_deviation = 0.3",
-                    range = "range = [0.5, 2]";
-  const std::string studies[] = {
-      text("kind = \"sweep\"\n[sweep]\npoints = 3\n", range),
-      text("kind = \"sample\"\n[sample]\nsamples = 50\n", normal) +
-          "[[limit_state]]\nname = \"g\"\nexpression = \"3 - r\"\n",
-      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"elasticity\"\n", range),
-      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"morris\"\n", range),
-      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"sobol\"\nsamples = 50\n", range),
-      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"tornado\"\n", range),
-      text("kind = \"critical\"\n[critical]\nvariable = \"a\"\nexpression = \"r - 2\"\n", range),
-      text("kind = \"map\"\n[map]\nvariables = [\"a\", \"b\"]\nexpression = \"r - 2\"\nstep = 0.2\n", range),
-      text("kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"sorm\", \"importance_sampling\", "
-           "\"directional\", \"subset\", \"monte_carlo\"]\nsamples = 2000\nsubset_samples = 500\n",
-           normal) +
-          "[[limit_state]]\nname = \"g\"\nexpression = \"4 - r\"\n"};
+  const std::string normal = "distribution = \"normal\"\nmean = 1\nstandard_deviation = 0.3", range = "range = [0.5, 2]";
+  const std::string studies[] = {text("kind = \"sweep\"\n[sweep]\npoints = 3\n", range),
+                                 text("kind = \"sample\"\n[sample]\nsamples = 50\n", normal) +
+                                     "[[limit_state]]\nname = \"g\"\nexpression = \"3 - r\"\n",
+                                 text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"elasticity\"\n", range),
+                                 text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"morris\"\n", range),
+                                 text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"sobol\"\nsamples = 50\n", range),
+                                 text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"tornado\"\n", range),
+                                 text("kind = \"critical\"\n[critical]\nvariable = \"a\"\nexpression = \"r - 2\"\n", range),
+                                 text("kind = \"map\"\n[map]\nvariables = [\"a\", \"b\"]\nexpression = \"r - 2\"\nstep = 0.2\n", range),
+                                 text("kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"sorm\", \"importance_sampling\", "
+                                      "\"directional\", \"subset\", \"monte_carlo\"]\nsamples = 2000\nsubset_samples = 500\n",
+                                      normal) +
+                                     "[[limit_state]]\nname = \"g\"\nexpression = \"4 - r\"\n"};
   for (const std::string& one : studies) {
     CAPTURE(one);
     StudyBench bench;
@@ -222,8 +218,7 @@ TEST_CASE("the page of a study: all of it from the store, the same bytes, markup
     CHECK(failures + others + bad == 400);
     CHECK(bench.find("monte_carlo", "share of failures, runs without result as unsafe").value ==
           doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
-    CHECK(data["running"][0]["value"].back() ==
-          doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
+    CHECK(data["running"][0]["value"].back() == doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
     CHECK(data["distributions"]["of"].size() == 4);
     CHECK(data["distributions"]["of"][2]["missing"] == bad);
   }
@@ -237,7 +232,7 @@ TEST_CASE("the page of a study: all of it from the store, the same bytes, markup
     CHECK(shown < 400);
     CHECK(data["samples"]["total"] == 400);
     CHECK(data["samples"]["classes"][2]["shown"] == data["samples"]["classes"][2]["all"]); // rare ones are kept
-    CHECK(data["distributions"]["of"][0]["total"] == 400); // of all, however many are shown
+    CHECK(data["distributions"]["of"][0]["total"] == 400);                                 // of all, however many are shown
   }
 }
 
@@ -264,8 +259,7 @@ TEST_CASE("of more samples than fit rare kinds are kept, all evenly") {
 TEST_CASE("a store of before units were kept makes a page that says so little, and goes on") {
   StudyBench bench;
   (void)bench.run(k_sample);
-  study::Store(bench.at("study.sqlite"), study::Store(bench.at("study.sqlite")).identity(), study::StoreMode::run)
-      .describe("");
+  study::Store(bench.at("study.sqlite"), study::Store(bench.at("study.sqlite")).identity(), study::StoreMode::run).describe("");
   const Json data = data_of(bench.at("study.sqlite"));
   CHECK(data["about"]["variables"].empty());
   CHECK(data["samples"]["columns"][0]["unit"] == "");

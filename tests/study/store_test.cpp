@@ -84,8 +84,7 @@ TEST_CASE("a study that is killed at any instant goes on, and comes to the same 
   const std::string text = reliability_text("samples = 100000");
   StudyBench whole;
   (void)whole.run(text);
-  const std::string wanted = whole.samples(),
-                    findings = study_does({"export", whole.at("study.sqlite"), "--findings"}).out;
+  const std::string wanted = whole.samples(), findings = study_does({"export", whole.at("study.sqlite"), "--findings"}).out;
   StudyBench bench;
   const std::string file = bench.write("study.toml", text), store = bench.at("study.sqlite");
   int killed = 0;
@@ -109,8 +108,8 @@ TEST_CASE("a study over MPI's ranks comes to the same bytes" * doctest::skip(std
   const std::string file = together.write("study.toml", text);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1); // containers
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  const int code = wait_for(start({STEPLAP_MPIRUN, "--oversubscribe", "-n", "3", STEPLAP_PROGRAM, "study", file, "-o",
-                                   together.at("study.sqlite")}));
+  const int code =
+      wait_for(start({STEPLAP_MPIRUN, "--oversubscribe", "-n", "3", STEPLAP_PROGRAM, "study", file, "-o", together.at("study.sqlite")}));
   CHECK((code == 0 || code == 5));
   CHECK(together.samples() == alone.samples());
 }
@@ -154,8 +153,7 @@ TEST_CASE("stores that cannot be used are told, and left as they are") {
   const std::string file = bench.write("study.toml", reliability_text());
   SUBCASE("no store yet") { CHECK(has(study_does({"show", bench.at("none.sqlite")}).err, "there is no store")); }
   SUBCASE("not a store") {
-    const std::string other =
-        bench.write("letter.sqlite", "Dear Sir or Madam, this is longer than a page head of a database, and more.");
+    const std::string other = bench.write("letter.sqlite", "Dear Sir or Madam, this is longer than a page head of a database, and more.");
     const Outcome outcome = study_does({"run", file, "-o", other, "--restart"});
     CHECK(outcome.code == 2);
     CHECK(has(outcome.err, "no store of a study"));
@@ -202,8 +200,8 @@ TEST_CASE("stores that cannot be used are told, and left as they are") {
     StudyBench whole;
     (void)whole.run(reliability_text());
     // A shell's limit on the size of files stands for the end of the disk; blocks of 1024 bytes.
-    const std::string command = std::string("trap '' XFSZ; ulimit -f 800; ") + STEPLAP_PROGRAM + " study " + file +
-                                " -o " + bench.at("study.sqlite") + " 2> " + bench.at("said");
+    const std::string command = std::string("trap '' XFSZ; ulimit -f 800; ") + STEPLAP_PROGRAM + " study " + file + " -o " +
+                                bench.at("study.sqlite") + " 2> " + bench.at("said");
     CHECK(wait_for(start({"bash", "-c", command})) == 2);
     CHECK(has(text_of(bench.at("said")), "disk is full"));
     (void)bench.run(reliability_text());

@@ -42,9 +42,7 @@ inline std::string text_of(const fs::path& path) {
 /// A folder that is gone at the end.
 class StudyBench {
 public:
-  StudyBench()
-      : folder_(fs::temp_directory_path() /
-                ("steplap_study_" + std::to_string(getpid()) + "_" + std::to_string(next_++))) {
+  StudyBench() : folder_(fs::temp_directory_path() / ("steplap_study_" + std::to_string(getpid()) + "_" + std::to_string(next_++))) {
     fs::create_directories(folder_);
   }
   ~StudyBench() {
@@ -69,8 +67,7 @@ public:
     return outcome;
   }
   [[nodiscard]] const std::vector<study::Finding>& findings() const { return findings_; }
-  [[nodiscard]] study::Finding find(const std::string& method, const std::string& quantity,
-                                    const std::string& subject = "") const {
+  [[nodiscard]] study::Finding find(const std::string& method, const std::string& quantity, const std::string& subject = "") const {
     for (const study::Finding& f : findings_)
       if (f.method == method && f.quantity == quantity && (subject.empty() || f.subject == subject)) return f;
     FAIL("no finding " << method << " " << quantity << " " << subject);

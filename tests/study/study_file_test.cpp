@@ -13,8 +13,7 @@ using namespace steplap::testing;
 namespace {
 
 const std::string k_model = "model = \"" STEPLAP_MODELS "/paper/no_interference.toml\"\n";
-const std::string k_variable =
-    "[[variable]]\nname = \"mu\"\npath = \"element.tank bottom.static_friction\"\nvalues = [0.2, 0.3]\n";
+const std::string k_variable = "[[variable]]\nname = \"mu\"\npath = \"element.tank bottom.static_friction\"\nvalues = [0.2, 0.3]\n";
 
 std::string complaint(const std::string& text) {
   StudyBench bench;
@@ -22,8 +21,7 @@ std::string complaint(const std::string& text) {
   CHECK(outcome.code == 3);
   CHECK_FALSE(fs::exists(bench.at("study.sqlite")));
   std::string err = outcome.err;
-  for (std::size_t i = err.find(bench.at("")); i != std::string::npos; i = err.find(bench.at("")))
-    err.erase(i, bench.at("").size());
+  for (std::size_t i = err.find(bench.at("")); i != std::string::npos; i = err.find(bench.at(""))) err.erase(i, bench.at("").size());
   return err;
 }
 
@@ -35,11 +33,9 @@ TEST_CASE("mistakes are told with file, line and what was probably meant") {
   };
   const std::string head = "kind = \"sweep\"\n" + k_model; // two lines
   const std::vector<Mistake> mistakes{
-      {"kind = \"swep\"\n",
-       "study.toml:1:8: error: there is no kind of study 'swep' (did you mean 'sweep'?); those there are: 'sweep'"},
+      {"kind = \"swep\"\n", "study.toml:1:8: error: there is no kind of study 'swep' (did you mean 'sweep'?); those there are: 'sweep'"},
       {"kind = \"sweep\"\nmodel = \"none.toml\"\n", "study.toml:2:9: error: there is no model file"},
-      {"kind = \"sweep\"\nmodell = \"none.toml\"\n",
-       "study.toml:2:1: error: unknown key 'modell' in the study (did you mean 'model'?)"},
+      {"kind = \"sweep\"\nmodell = \"none.toml\"\n", "study.toml:2:1: error: unknown key 'modell' in the study (did you mean 'model'?)"},
       {head + "[[variable]]\nname = \"mu\"\npath = \"element.tank botom.static_friction\"\nvalues = [0.3]\n",
        "study.toml:5:8: error: path 'element.tank botom.static_friction' of variable 'mu' in model 'no_interference': "
        "there is no element 'tank botom' (did you mean 'tank bottom'?)"},
@@ -56,14 +52,12 @@ TEST_CASE("mistakes are told with file, line and what was probably meant") {
       {head + k_variable + "[[response]]\nname = \"m\"\nchannel = \"front joint.margn\"\nwhat = \"lowest\"\n",
        "study.toml:9:11: error: no channel of model 'no_interference' is called 'front joint.margn' (did you mean "
        "'front joint.margin'?)"},
-      {head + k_variable + "[[response]]\nname = \"m\"\nchannel = \"front joint.*\"\nwhat = \"lowest\"\n",
-       "are of different units"},
+      {head + k_variable + "[[response]]\nname = \"m\"\nchannel = \"front joint.*\"\nwhat = \"lowest\"\n", "are of different units"},
       {head + k_variable + "[[response]]\nname = \"n\"\nwhat = \"count\"\nevent = \"slip\"\n",
        "no kind of event matches 'slip' (did you mean 'slips'?)"},
       {head + k_variable + "[[response]]\nname = \"m\"\nexpression = \"2*nu\"\n",
        "'nu' in the expression '2*nu' is not known (did you mean 'mu'?)"},
-      {head + k_variable + "[[limit_state]]\nname = \"g\"\nexpression = \"1 - (mu\"\n",
-       "the expression '1 - (mu' is wrong"},
+      {head + k_variable + "[[limit_state]]\nname = \"g\"\nexpression = \"1 - (mu\"\n", "the expression '1 - (mu' is wrong"},
       {head + k_variable + "[[limit_state]]\nname = \"mu\"\nexpression = \"1 - mu\"\n", "the name is taken"},
       {head + k_variable + "[[limit_state]]\nname = \"sin\"\nexpression = \"1 - mu\"\n", "is taken by expressions"},
       {"kind = \"sample\"\n[[variable]]\nname = \"x\"\ndistribution = \"normal\"\nmean = 1\n",
@@ -88,9 +82,9 @@ TEST_CASE("mistakes are told with file, line and what was probably meant") {
 }
 
 TEST_CASE("all mistakes of a file are told at once") {
-  const std::string said = complaint("kind = \"sweep\"\n" + k_model +
-                                     "[[variable]]\nname = \"a\"\npath = \"body.tnk.mass\"\nvalues = [1]\n" +
-                                     "[[response]]\nname = \"r\"\nchannel = \"nothing\"\nwhat = \"final\"\n");
+  const std::string said =
+      complaint("kind = \"sweep\"\n" + k_model + "[[variable]]\nname = \"a\"\npath = \"body.tnk.mass\"\nvalues = [1]\n" +
+                "[[response]]\nname = \"r\"\nchannel = \"nothing\"\nwhat = \"final\"\n");
   CHECK(has(said, "there is no body 'tnk'"));
   CHECK(has(said, "no channel of model"));
 }
@@ -102,8 +96,7 @@ TEST_CASE("a wrong name is one mistake") {
     const std::string said = complaint(
         "kind = \"sweep\"\n" + k_model + k_variable + "[[response]]\nname = \"" + name +
         "\"\nchannel = \"front joint.margin\"\nwhat = \"lowest\"\n" +
-        "[[limit_state]]\nname = \"g\"\nexpression = \"1 - mu\"\n[[limit_state]]\nname = \"f\"\nexpression = \"" +
-        name + " - 1\"\n");
+        "[[limit_state]]\nname = \"g\"\nexpression = \"1 - mu\"\n[[limit_state]]\nname = \"f\"\nexpression = \"" + name + " - 1\"\n");
     CHECK(has(said, "the name of response '" + name + "'"));
     CHECK(said.find("error:") == said.rfind("error:"));
   }
@@ -113,8 +106,7 @@ TEST_CASE("the examples are read without a complaint") {
   int studies = 0;
   for (const auto& entry : fs::directory_iterator(STEPLAP_MODELS "/studies")) {
     if (entry.path().extension() != ".toml") continue;
-    const std::string text = text_of(entry.path()),
-                      head = text.substr(0, text.find("\n[")); // models have kinds in their tables
+    const std::string text = text_of(entry.path()), head = text.substr(0, text.find("\n[")); // models have kinds in their tables
     if (!has(head, "kind = \"") && !has(head, "extends = \"slip_probability")) continue;
     CAPTURE(entry.path().string());
     CHECK_NOTHROW((void)study::read_study(entry.path().string()));
@@ -127,8 +119,7 @@ TEST_CASE("the examples are read without a complaint") {
 // pressure is the pressure over the margin, at any pressure.
 TEST_CASE("the critical clamping pressure of the paper's transformer") {
   StudyBench bench;
-  const Outcome outcome =
-      study_does({"run", STEPLAP_MODELS "/studies/critical_pressure.toml", "-o", bench.at("study.sqlite")});
+  const Outcome outcome = study_does({"run", STEPLAP_MODELS "/studies/critical_pressure.toml", "-o", bench.at("study.sqlite")});
   CAPTURE(outcome.err);
   REQUIRE(outcome.code == 0);
   study::Store store(bench.at("study.sqlite"));

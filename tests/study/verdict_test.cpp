@@ -18,7 +18,8 @@ std::map<std::string, std::string> models() {
   std::map<std::string, std::string> found;
   for (const char* folder : {"models/benchmarks", "models/layouts", "models/machines", "models/paper", "tests/data/defects"})
     for (const auto& entry : fs::directory_iterator(fs::path(STEPLAP_SOURCE) / folder))
-      if (entry.path().extension() == ".toml" && !k_left_out.contains(entry.path().stem().string())) found[entry.path().stem().string()] = entry.path().string();
+      if (entry.path().extension() == ".toml" && !k_left_out.contains(entry.path().stem().string()))
+        found[entry.path().stem().string()] = entry.path().string();
   return found;
 }
 
@@ -32,8 +33,9 @@ TEST_CASE("a study and a run by itself give every model the same verdict") {
     responses += "[[response]]\nname = \"of_" + name + "\"\nmodel = \"" + name + "\"\nwhat = \"verdict\"\n";
   }
   StudyBench bench;
-  const Outcome outcome = bench.run("kind = \"sweep\"\nmodel = [" + list +
-                                    "]\n[[variable]]\nname = \"none\"\nvalues = [0]\n[[response]]\nname = \"zero\"\nexpression = \"0 * none\"\n" + responses);
+  const Outcome outcome =
+      bench.run("kind = \"sweep\"\nmodel = [" + list +
+                "]\n[[variable]]\nname = \"none\"\nvalues = [0]\n[[response]]\nname = \"zero\"\nexpression = \"0 * none\"\n" + responses);
   CAPTURE(outcome.err);
   CAPTURE(outcome.code);
   REQUIRE(outcome.code != 2);

@@ -14,9 +14,9 @@ namespace steplap::testing {
 
 struct TapeShape {
   int inputs = 10, constants = 10, steps = 200, outputs = 10;
-  int reach = 50;               ///< operands are among the last so many steps: few live values; more than steps: many
+  int reach = 50; ///< operands are among the last so many steps: few live values; more than steps: many
   double calls = 0.01, conditions = 0.02;
-  double functions = 0.0;       ///< calls of functions of ours
+  double functions = 0.0; ///< calls of functions of ours
 };
 
 /// Functions that a tape may call. They mix their arguments, so that one in a wrong place shows, and tell orders apart.
@@ -68,22 +68,19 @@ inline Tape random_tape(std::mt19937& random, const TapeShape& shape) {
     for (int i = 0; i < called.results; ++i)
       if (among(4) != 0) push(result, made, i); // some are never asked for
   };
-  const TapeOperation usual[] = {add,    add,    add,      add,         subtract, subtract, subtract, multiply, multiply, multiply,
-                                 divide, negate, absolute, square_root, minimum,  maximum,  input,    constant};
+  const TapeOperation usual[] = {add,      add,    add,    add,      subtract,    subtract, subtract, multiply, multiply,
+                                 multiply, divide, negate, absolute, square_root, minimum,  maximum,  input,    constant};
   for (int i = 0; i < shape.steps; ++i) {
     const double p = std::uniform_real_distribution<double>()(random);
     TapeOperation o = usual[among(std::size(usual))];
-    if (p < shape.calls)
-      o = among(2) == 0 ? sine : cosine;
-    else if (p < shape.calls + shape.conditions)
-      o = among(2) == 0 ? if_less : if_not_less;
+    if (p < shape.calls) o = among(2) == 0 ? sine : cosine;
+    else if (p < shape.calls + shape.conditions) o = among(2) == 0 ? if_less : if_not_less;
     else if (p < shape.calls + shape.conditions + shape.functions) {
       push_call(k_called[among(std::size(k_called))]);
       continue;
     }
     if ((o == input && shape.inputs == 0) || (o == constant && shape.constants == 0)) continue;
-    if (is_given(o))
-      push(o, static_cast<std::int32_t>(among(static_cast<std::size_t>(o == input ? shape.inputs : shape.constants))));
+    if (is_given(o)) push(o, static_cast<std::int32_t>(among(static_cast<std::size_t>(o == input ? shape.inputs : shape.constants))));
     else {
       const std::int32_t a = operand();
       push(o, a, takes_two(o) ? operand() : 0);

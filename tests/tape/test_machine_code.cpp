@@ -50,7 +50,8 @@ struct Samples {
 // What differs, "" if nothing does.
 std::string difference(const MachineCode& code, const Samples& samples, std::size_t sample) {
   std::vector<double> outputs(samples.outputs[sample].size(), k_untouched);
-  if (code.run(samples.inputs[sample].data(), samples.constants[sample].data(), outputs.data()) != samples.holds[sample]) return "a condition";
+  if (code.run(samples.inputs[sample].data(), samples.constants[sample].data(), outputs.data()) != samples.holds[sample])
+    return "a condition";
   for (std::size_t k = 0; k < outputs.size(); ++k)
     if (!are_same_bits(outputs[k], samples.outputs[sample][k])) return "output " + std::to_string(k);
   return "";
@@ -90,7 +91,8 @@ Tape holding(Tape tape, const std::vector<double>& inputs, const std::vector<dou
 int executable_mappings() {
   std::ifstream maps("/proc/self/maps");
   int count = 0;
-  for (std::string line; std::getline(maps, line);) count += line.find('x') < line.find(' ', line.find(' ') + 1) && line.find('/') == std::string::npos;
+  for (std::string line; std::getline(maps, line);)
+    count += line.find('x') < line.find(' ', line.find(' ') + 1) && line.find('/') == std::string::npos;
   return count;
 }
 
@@ -193,7 +195,8 @@ TEST_CASE("a condition that fails first, in the middle, last leaves the outputs 
     shape.reach = i % 2 == 0 ? 8 : 150;
     shape.outputs = 40;
     const Tape drawn = random_tape(random, shape);
-    const auto inputs = random_numbers(random, drawn.input_count, false), constants = random_numbers(random, static_cast<int>(drawn.constants.size()), false);
+    const auto inputs = random_numbers(random, drawn.input_count, false),
+               constants = random_numbers(random, static_cast<int>(drawn.constants.size()), false);
     const Tape tape = holding(drawn, inputs, constants);
     Samples samples;
     samples.add(tape, inputs, constants);
@@ -293,7 +296,8 @@ TEST_CASE("sines of all sizes side by side have the bits of portable::sin_cos") 
     if (i >= 3800 && i % 5 == 0) x = in(-1e9, 1e9);
     all.push_back(x);
   }
-  for (const double edge : {0.78539816339744828, 0x1p-28, 1e6, 0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+  for (const double edge :
+       {0.78539816339744828, 0x1p-28, 1e6, 0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     for (const double x : {edge, -edge, std::nextafter(edge, 0.0), std::nextafter(edge, 1e7)}) all.push_back(x);
   REQUIRE(all.size() % 8 == 0);
   struct Way {
@@ -328,7 +332,8 @@ TEST_CASE("nothing, given numbers as outputs, the same output twice") {
   for (const Tape& tape : tapes) {
     Samples samples;
     for (const double x : {1.0, -2.0, 0.5})
-      samples.add(tape, std::vector<double>(static_cast<std::size_t>(tape.input_count), x), std::vector<double>(tape.constants.size(), 0.75));
+      samples.add(tape, std::vector<double>(static_cast<std::size_t>(tape.input_count), x),
+                  std::vector<double>(tape.constants.size(), 0.75));
     check_everywhere(tape, samples);
     check_everywhere(simplified(tape), samples);
   }
@@ -375,10 +380,8 @@ TEST_CASE("where written pages may not be executed there is code all the same") 
   int status = 0;
   REQUIRE(waitpid(child, &status, 0) == child);
   REQUIRE(WIFEXITED(status));
-  if (WEXITSTATUS(status) == k_denies)
-    MESSAGE("skipped: this system cannot be told to deny it");
-  else
-    CHECK(WEXITSTATUS(status) == 0);
+  if (WEXITSTATUS(status) == k_denies) MESSAGE("skipped: this system cannot be told to deny it");
+  else CHECK(WEXITSTATUS(status) == 0);
 }
 #endif
 

@@ -38,7 +38,7 @@ bool holds(TapeOperation o, double a, double b) {
   const double inputs[2] = {a, b};
   double output = 77.0;
   const bool does = replay(tape, inputs, nullptr, &output);
-  CHECK(are_same_bits(output, does ? a : 77.0));// untouched where it fails
+  CHECK(are_same_bits(output, does ? a : 77.0)); // untouched where it fails
   return does;
 }
 
@@ -79,7 +79,8 @@ TEST_CASE("constants are those of the sample, not of the tape") {
 
 TEST_CASE("what nothing hangs on goes, what is equal is made once") {
   // x y + y x, and a root that nobody wants
-  const Tape tape{{{input, 0}, {input, 1}, {multiply, 0, 1}, {input, 0}, {input, 1}, {multiply, 4, 3}, {add, 2, 5}, {square_root, 0}}, {}, 2, {6}};
+  const Tape tape{
+      {{input, 0}, {input, 1}, {multiply, 0, 1}, {input, 0}, {input, 1}, {multiply, 4, 3}, {add, 2, 5}, {square_root, 0}}, {}, 2, {6}};
   const Tape simple = simplified(tape);
   CHECK(simple.steps == std::vector<TapeStep>{{input, 0}, {input, 1}, {multiply, 0, 1}, {add, 2, 2}});
   CHECK(simple.outputs == std::vector<std::int32_t>{3});
@@ -96,10 +97,11 @@ TEST_CASE("a condition is kept with what it hangs on, and once") {
 
 TEST_CASE("signs are turned by what takes the value") {
   // c − (−a) b = c + a b; |−a| = |a|; −a < −b where b < a
-  const Tape tape{{{input, 0}, {input, 1}, {input, 2}, {negate, 0}, {multiply, 3, 1}, {subtract, 2, 4}, {absolute, 3}, {negate, 1}, {if_less, 3, 7}},
-                  {},
-                  3,
-                  {5, 6}};
+  const Tape tape{
+      {{input, 0}, {input, 1}, {input, 2}, {negate, 0}, {multiply, 3, 1}, {subtract, 2, 4}, {absolute, 3}, {negate, 1}, {if_less, 3, 7}},
+      {},
+      3,
+      {5, 6}};
   const Tape simple = simplified(tape);
   CHECK(count(simple, negate) == 0);
   CHECK(simple.steps.back() == TapeStep{if_less, 1, 0});
@@ -113,7 +115,8 @@ TEST_CASE("signs are turned by what takes the value") {
 }
 
 TEST_CASE("a negative that is an output, a divisor, under a root") {
-  const Tape tape{{{input, 0}, {negate, 0}, {divide, 0, 1}, {square_root, 1}, {minimum, 1, 0}, {negate, 1}, {sine, 1}}, {}, 1, {1, 2, 3, 4, 5, 6}};
+  const Tape tape{
+      {{input, 0}, {negate, 0}, {divide, 0, 1}, {square_root, 1}, {minimum, 1, 0}, {negate, 1}, {sine, 1}}, {}, 1, {1, 2, 3, 4, 5, 6}};
   for (const double x : {2.0, -2.0, 0.0, -0.0, 5e-324}) {
     double plain[6], simple[6];
     REQUIRE(replay(tape, &x, nullptr, plain));
@@ -134,7 +137,8 @@ TEST_CASE("random tapes have the same bits when simplified, and nothing more goe
     fewer += simple.steps.size() < tape.steps.size();
     CHECK(simplified(simple).steps.size() == simple.steps.size());
     for (int sample = 0; sample < 3; ++sample) {
-      const auto inputs = random_numbers(random, tape.input_count, true), constants = random_numbers(random, static_cast<int>(tape.constants.size()), true);
+      const auto inputs = random_numbers(random, tape.input_count, true),
+                 constants = random_numbers(random, static_cast<int>(tape.constants.size()), true);
       std::vector<double> plain(tape.outputs.size(), 1.25), others = plain;
       const bool holds_plain = replay(tape, inputs.data(), constants.data(), plain.data());
       CHECK(replay(simple, inputs.data(), constants.data(), others.data()) == holds_plain);
@@ -166,8 +170,8 @@ TEST_CASE("random tapes that call functions have the same bits when simplified")
 
 TEST_CASE("a call is made once of the same arguments, and not at all where nothing hangs on it") {
   const double address = std::bit_cast<double>(&sum_and_product);
-  const std::vector<TapeStep> wanted{{input, 0},       {constant, 0},   {argument, 1, -1}, {argument, 0, 2}, {argument, 0, 3}, {call, 4, 2},
-                                     {result, 5, 0},   {result, 5, 1}};
+  const std::vector<TapeStep> wanted{{input, 0},       {constant, 0}, {argument, 1, -1}, {argument, 0, 2},
+                                     {argument, 0, 3}, {call, 4, 2},  {result, 5, 0},    {result, 5, 1}};
   std::vector<TapeStep> twice = wanted;
   for (std::size_t i = 2; i < wanted.size(); ++i) {
     TapeStep s = wanted[i];

@@ -46,8 +46,8 @@ Scene scene(const std::string& file, const std::string& method, double end) {
 
 std::vector<Scene> scenes() {
   std::vector<Scene> all;
-  all.push_back(scene("paper/no_interference", "dop853", 0.09));     // joints that hold, an event, a drive
-  all.push_back(scene("benchmarks/andrews", "tsit5", 2e-3));         // joint coordinates
+  all.push_back(scene("paper/no_interference", "dop853", 0.09));      // joints that hold, an event, a drive
+  all.push_back(scene("benchmarks/andrews", "tsit5", 2e-3));          // joint coordinates
   all.push_back(scene("benchmarks/stick_slip_belt", "rodas5p", 0.5)); // Jacobians
   all.push_back(scene("benchmarks/block_on_incline", "moreau", 0.1)); // time stepping
   return all;

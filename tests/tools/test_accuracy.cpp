@@ -11,21 +11,20 @@ using namespace steplap::testing;
 TEST_CASE("accuracy: table, CSV, diagram, one line of advice") {
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
-  const std::vector<std::string> arguments{"accuracy",     model,   "-o",           bench.at("out"),
-                                           "--integrator", "tsit5", "--integrator", "dop853",
-                                           "--end",        "0.5",   "--repeats",    "1",
-                                           "--error",      "1e-5",   "--budget",      "5000"};
+  const std::vector<std::string> arguments{"accuracy",     model,    "-o",       bench.at("out"), "--integrator", "tsit5",
+                                           "--integrator", "dop853", "--end",    "0.5",           "--repeats",    "1",
+                                           "--error",      "1e-5",   "--budget", "5000"};
   const Outcome outcome = steplap_does(arguments);
   CHECK(outcome.code == 0);
   CHECK(outcome.err.empty());
-  for (const char* part : {"reference: dop853 1e-13 and tsit5 1e-13", "tsit5 1e-06", "dop853 1e-12",
-                           "Pareto", "positions ~ tolerance^", "cheapest: for 1e-05 "})
+  for (const char* part : {"reference: dop853 1e-13 and tsit5 1e-13", "tsit5 1e-06", "dop853 1e-12", "Pareto", "positions ~ tolerance^",
+                           "cheapest: for 1e-05 "})
     CHECK_MESSAGE(has(outcome.out, part), part);
   CHECK(bench.content("out/a") == std::set<std::string>{"accuracy.csv", "work_precision.svg"});
   const std::string csv = text_of(bench.at("out/a/accuracy.csv"));
   CHECK(csv.rfind("integrator,tolerance,step [s],cpu [s]", 0) == 0);
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 22); // header, a comment, 2 × 10 tolerances
-  CHECK(has(csv, "\n# the times,")); // what hangs on the clock says so
+  CHECK(has(csv, "\n# the times,"));                     // what hangs on the clock says so
   CHECK(has(outcome.out, "budget: "));
   CHECK(has(outcome.out, " of 5000 s of CPU time"));
   const std::string svg = text_of(bench.at("out/a/work_precision.svg"));
@@ -44,8 +43,8 @@ TEST_CASE("accuracy: what a budget has no room for is left out, and the table an
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
   // A nanosecond has room for nothing, on any computer.
-  const Outcome outcome = steplap_does({"accuracy", model, "-o", bench.at("out"), "--integrator", "tsit5", "--integrator", "rk4", "--end", "0.2",
-                                        "--budget", "1e-9"});
+  const Outcome outcome = steplap_does(
+      {"accuracy", model, "-o", bench.at("out"), "--integrator", "tsit5", "--integrator", "rk4", "--end", "0.2", "--budget", "1e-9"});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "left out as too dear (--budget gives more): "));
   for (const char* setting : {"tsit5 0.001", "tsit5 1e-12", "rk4 h = 0.008 s"}) CHECK_MESSAGE(has(outcome.out, setting), setting);
@@ -82,14 +81,12 @@ TEST_CASE("simulate --estimate-error tells the global error, on the screen and i
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
   const Outcome adaptive =
-      steplap_does({"simulate", "-v", model, "-o", bench.at("out"), "--estimate-error", "--integrator",
-                    "tsit5", "--tolerance", "1e-7"});
+      steplap_does({"simulate", "-v", model, "-o", bench.at("out"), "--estimate-error", "--integrator", "tsit5", "--tolerance", "1e-7"});
   CHECK(adaptive.code == 0);
   CHECK(has(adaptive.out, "estimated from a finer run (tsit5, tolerance 1e-09)"));
   CHECK(has(text_of(bench.at("out/a/summary.json")), "\"global_error\""));
-  const Outcome fixed = steplap_does(
-      {"simulate", "-v", model, "-o", bench.at("fixed"), "--estimate-error", "--integrator", "rk4", "--step",
-       "1e-3"});
+  const Outcome fixed =
+      steplap_does({"simulate", "-v", model, "-o", bench.at("fixed"), "--estimate-error", "--integrator", "rk4", "--step", "1e-3"});
   CHECK(has(fixed.out, "estimated from finer runs (rk4, step 5e-04 s and 0.00025 s)"));
   const Outcome plain = steplap_does({"simulate", "-v", model, "-o", bench.at("plain"), "--no-estimate"});
   CHECK_FALSE(has(plain.out, "Global error"));
@@ -112,7 +109,8 @@ TEST_CASE("by default every number of a run stands with its error") {
   CHECK(csv.find("\n# error estimate,") == csv.find('\n'));
   CHECK(text_of(bench.at("out/a/events.csv")).rfind("t [s],element,event,error of t [s]\n0.14", 0) == 0);
   const std::string summary = text_of(bench.at("out/a/summary.json"));
-  for (const char* key : {"error_min", "error_t_max", "error_final", "error_dissipated", "\"errors\""}) CHECK_MESSAGE(has(summary, key), key);
+  for (const char* key : {"error_min", "error_t_max", "error_final", "error_dissipated", "\"errors\""})
+    CHECK_MESSAGE(has(summary, key), key);
   CHECK(has(text_of(bench.at("out/a/report.html")), "\"text_max\":"));
 
   // Motion and events do not hang on it.

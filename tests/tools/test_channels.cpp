@@ -40,8 +40,8 @@ TEST_CASE("steplap channels lists unit, sign, meaning and codes, made or on requ
   const std::string model = bench.write("a.toml", asking());
   const Outcome all = steplap_does({"channels", model});
   CHECK(all.code == 0);
-  for (const char* part : {"mass.theta", "positive counter-clockwise", "edge.ax", "from the equations of motion", "share of 10 N", "how much of the wire's strength is used",
-                           "on request", "whole.balance", "spring.dissipated"})
+  for (const char* part : {"mass.theta", "positive counter-clockwise", "edge.ax", "from the equations of motion", "share of 10 N",
+                           "how much of the wire's strength is used", "on request", "whole.balance", "spring.dissipated"})
     CHECK_MESSAGE(has(all.out, part), part);
   const Outcome some = steplap_does({"channels", model, "--only", "spring.*", "-o", bench.at("list.csv")});
   CHECK(some.code == 0);
@@ -61,7 +61,8 @@ TEST_CASE("steplap elements lists the channels of a kind") {
   CHECK(has(friction.out, "NAME.mode"));
   CHECK(has(friction.out, "0 free, 1 sticks, 2 slips"));
   const Outcome motor = steplap_does({"elements", "motor"});
-  for (const char* part : {"NAME.couple", "NAME.force", "NAME.angle", "NAME.displacement", "rad/s or m/s", "on request", "negative while it brakes"})
+  for (const char* part :
+       {"NAME.couple", "NAME.force", "NAME.angle", "NAME.displacement", "rad/s or m/s", "on request", "negative while it brakes"})
     CHECK_MESSAGE(has(motor.out, part), part);
   CHECK(has(steplap_does({"elements", "marker"}).out, "NAME.ay"));
   CHECK(has(steplap_does({"elements", "output"}).out, "whole.balance"));
@@ -69,13 +70,15 @@ TEST_CASE("steplap elements lists the channels of a kind") {
 
 TEST_CASE("channels on request are in the trajectory, the summary with errors, the judgement, the plots and the page") {
   const Workbench bench;
-  const Outcome run = steplap_does({"simulate", "-v", bench.write("a.toml", asking()), "-o", bench.at("out"), "--estimate-error", "--report"});
+  const Outcome run =
+      steplap_does({"simulate", "-v", bench.write("a.toml", asking()), "-o", bench.at("out"), "--estimate-error", "--report"});
   REQUIRE_MESSAGE(run.code == 0, run.err);
   CHECK(has(run.out, "Channels on request"));
   CHECK(has(run.out, "share of 10 N"));
   const std::string trajectory = text_of(bench.at("out/a/trajectory.csv"));
   const std::string head = trajectory.substr(0, trajectory.find('\n'));
-  for (const char* part : {"edge.x [m]", "edge.ay [m/s^2]", "whole.kinetic [J]", "spring.stored [J]", "share of 10 N"}) CHECK_MESSAGE(has(head, part), part);
+  for (const char* part : {"edge.x [m]", "edge.ay [m/s^2]", "whole.kinetic [J]", "spring.stored [J]", "share of 10 N"})
+    CHECK_MESSAGE(has(head, part), part);
   const auto summary = nlohmann::json::parse(text_of(bench.at("out/a/summary.json")));
   // ω v₀ m = 4 N within 0.1 s (2 rad): the top of |sin| is inside a step.
   const auto& share = summary["extremes"]["share of 10 N"];

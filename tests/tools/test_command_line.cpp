@@ -9,10 +9,8 @@ TEST_CASE("help names every command, the exit codes and examples") {
   const Outcome help = steplap_does({"--help"});
   CHECK(help.code == 0);
   CHECK(help.err.empty());
-  for (const char* part : {"Exit codes:", "Examples:"})
-    CHECK(has(help.out, part));
-  for (const char* command :
-       {"simulate", "report", "plot", "check", "equilibrium", "modes", "joint", "accuracy", "elements", "schema"}) {
+  for (const char* part : {"Exit codes:", "Examples:"}) CHECK(has(help.out, part));
+  for (const char* command : {"simulate", "report", "plot", "check", "equilibrium", "modes", "joint", "accuracy", "elements", "schema"}) {
     CHECK(has(help.out, command));
     CHECK(has(text_of(STEPLAP_SOURCE "/docs/reference/command_line.md"), std::string("## steplap ") + command));
     const Outcome own = steplap_does({command, "--help"});
@@ -44,7 +42,8 @@ TEST_CASE("wrong usage is exit code 2 and one line") {
   CHECK(nothing.code == 2);
   CHECK(has(nothing.err, "MODEL"));
   CHECK(steplap_does({"simulate", "x.toml", "-q", "-v"}).code == 2);
-  for (const std::vector<std::string>& threads : {std::vector<std::string>{"--threads", "4"}, {"--threads=4"}}) { // an option of earlier days
+  for (const std::vector<std::string>& threads :
+       {std::vector<std::string>{"--threads", "4"}, {"--threads=4"}}) { // an option of earlier days
     std::vector<std::string> arguments{"simulate", "x.toml"};
     arguments.insert(arguments.end(), threads.begin(), threads.end());
     const Outcome retired = steplap_does(arguments);
@@ -118,8 +117,7 @@ TEST_CASE("check names joints that hold what others hold already") {
   const Workbench bench;
   std::string text = k_oscillator;
   for (const char* name : {"weld one", "weld two"})
-    text += std::string("[[element]]\nname = \"") + name +
-            "\"\nkind = \"weld\"\na = \"mass\"\nb = \"ground\"\n";
+    text += std::string("[[element]]\nname = \"") + name + "\"\nkind = \"weld\"\na = \"mass\"\nb = \"ground\"\n";
   const Outcome outcome = steplap_does({"check", bench.write("a.toml", text)});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "6, only 3 of them independent"));
@@ -133,8 +131,9 @@ TEST_CASE("a foot that presses beyond the edge of what it stands on is told") {
     return std::string("[simulation]\nend = 0.01\nstep = 1e-3\n[[body]]\nname = \"shelf\"\nmass = 1.0\ninertia = 1.0\n"
                        "fixed = true\noutline = [[-1.0, -0.1], [1.0, -0.1], [1.0, 0.0], [-1.0, 0.0]]\n"
                        "[[body]]\nname = \"cup\"\nmass = 1.0\ninertia = 1.0\nposition = [") +
-           x + ", 0.1]\n[[element]]\nkind = \"unilateral_contact\"\nname = \"foot\"\na = { body = \"cup\", point = [0.0, -0.1] }\n"
-               "b = { body = \"shelf\", point = [0.0, 0.0] }\nstiffness = 1e4\ndamping = 100.0\npreload = 9.81\n";
+           x +
+           ", 0.1]\n[[element]]\nkind = \"unilateral_contact\"\nname = \"foot\"\na = { body = \"cup\", point = [0.0, -0.1] }\n"
+           "b = { body = \"shelf\", point = [0.0, 0.0] }\nstiffness = 1e4\ndamping = 100.0\npreload = 9.81\n";
   };
   const std::string on = bench.write("on.toml", text("0.9")), off = bench.write("off.toml", text("1.25"));
   for (const char* command : {"simulate", "equilibrium"}) {
@@ -152,7 +151,8 @@ TEST_CASE("a foot that presses beyond the edge of what it stands on is told") {
 TEST_CASE("a contact that is pressed through a part is told, with its line and the time") {
   const Workbench bench;
   const auto text = [](const char* stiffness) {
-    return std::string("gravity = [0.0, 0.0]\n[simulation]\nend = 0.05\ntolerance = 1e-6\nintegrator = \"dop853\"\n[[body]]\nname = \"plate\"\nmass = 1.0\n"
+    return std::string("gravity = [0.0, 0.0]\n[simulation]\nend = 0.05\ntolerance = 1e-6\nintegrator = \"dop853\"\n[[body]]\nname = "
+                       "\"plate\"\nmass = 1.0\n"
                        "inertia = 1.0\nfixed = true\noutline = [[-1.0, -0.1], [1.0, -0.1], [1.0, 0.0], [-1.0, 0.0]]\n"
                        "[[body]]\nname = \"box\"\nmass = 1.0\ninertia = 1.0\nposition = [0.0, 0.3]\nvelocity = [0.0, -10.0]\n"
                        "outline = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]]\n"
@@ -192,8 +192,7 @@ axis = [1, 0]
 
 TEST_CASE("the paper's transformer is given in its pose of rest") {
   for (const char* name : {"no_interference", "interference"}) {
-    const Outcome outcome =
-        steplap_does({"equilibrium", STEPLAP_MODELS "/paper/" + std::string(name) + ".toml"});
+    const Outcome outcome = steplap_does({"equilibrium", STEPLAP_MODELS "/paper/" + std::string(name) + ".toml"});
     CHECK(outcome.code == 0);
     CHECK(has(outcome.out, "moved at most 0 m\n"));
     CHECK(outcome.err.empty());

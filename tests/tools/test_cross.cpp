@@ -10,7 +10,8 @@ TEST_CASE("check --cross runs a model by all methods and says that they agree") 
   const Outcome outcome = steplap_does({"check", "--cross", STEPLAP_MODELS "/benchmarks/block_on_incline.toml"});
   CHECK(outcome.code == 0);
   CHECK(outcome.err.empty());
-  for (const char* part : {"auto ", "dop853 1e-10", "tsit5 1e-10", "rodas5p 1e-08", "rk4 h = ", "moreau h = ", "own error", "block_on_incline: all agree"})
+  for (const char* part :
+       {"auto ", "dop853 1e-10", "tsit5 1e-10", "rodas5p 1e-08", "rk4 h = ", "moreau h = ", "own error", "block_on_incline: all agree"})
     CHECK_MESSAGE(has(outcome.out, part), part);
 }
 
@@ -26,7 +27,8 @@ TEST_CASE("check --cross takes what smaller steps make smaller for the error of 
 TEST_CASE("the CPU time of check --cross is that of the whole command, however many runs there are") {
   const auto seconds_within = [](const std::string& limit) {
     const double start = steplap::thread_cpu_seconds();
-    const Outcome outcome = steplap_does({"check", "--cross", "--cpu-limit", limit, STEPLAP_MODELS "/machines/pile.toml", STEPLAP_MODELS "/machines/brick_wall.toml"});
+    const Outcome outcome = steplap_does(
+        {"check", "--cross", "--cpu-limit", limit, STEPLAP_MODELS "/machines/pile.toml", STEPLAP_MODELS "/machines/brick_wall.toml"});
     CHECK(outcome.code == 4);
     return steplap::thread_cpu_seconds() - start;
   };

@@ -34,7 +34,8 @@ TEST_CASE("models that say the same in other words are the same") {
   const Workbench bench;
   const std::string text = k_oscillator, first = bench.write("a.toml", text);
   // Another unit, a default written out, another order of entries, a file that extends another.
-  const std::string second = bench.write("b.toml", put(put(text, "mass = \"2 kg\"", "mass = 2000e-3\nangle = 0.0"), "end = 0.1", "end = \"100 ms\""));
+  const std::string second =
+      bench.write("b.toml", put(put(text, "mass = \"2 kg\"", "mass = 2000e-3\nangle = 0.0"), "end = 0.1", "end = \"100 ms\""));
   const std::string third = bench.write("c.toml", "extends = \"a.toml\"\n");
   for (const std::string& other : {first, second, third}) {
     const Outcome same = steplap_does({"diff", first, other, "--require-same"});
@@ -86,7 +87,9 @@ TEST_CASE("runs that differ by less than their errors agree, whatever their tole
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
   const auto run = [&](const std::string& tolerance) {
-    REQUIRE(steplap_does({"simulate", model, "-o", bench.at(tolerance), "--integrator", "dop853", "--tolerance", tolerance, "--set", "simulation.step=unset", "--estimate-error", "-q"}).code == 0);
+    REQUIRE(steplap_does({"simulate", model, "-o", bench.at(tolerance), "--integrator", "dop853", "--tolerance", tolerance, "--set",
+                          "simulation.step=unset", "--estimate-error", "-q"})
+                .code == 0);
     return bench.at(tolerance + "/a");
   };
   const std::string coarse = run("1e-6"), fine = run("1e-10");
@@ -100,15 +103,19 @@ TEST_CASE("runs that differ by less than their errors agree, whatever their tole
 TEST_CASE("what followed from another value is told with its size: verdict, events, extremes") {
   const Workbench bench;
   // A mass on a spring swings by v sqrt(m/k): four times the stiffness, half the way.
-  const std::string text = put(std::string(k_oscillator), "end = 0.1", "end = 0.5") + "\n[[acceptance]]\nname = \"way\"\nchannel = \"mass.x\"\nwithin = 0.004\nconsequence = \"reject\"\n";
-  const std::string soft = bench.write("soft.toml", text), stiff = bench.write("stiff.toml", put(text, "stiffness = 800", "stiffness = 3200"));
-  for (const std::string& model : {soft, stiff}) REQUIRE(steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "-q"}).code == 0);
+  const std::string text = put(std::string(k_oscillator), "end = 0.1", "end = 0.5") +
+                           "\n[[acceptance]]\nname = \"way\"\nchannel = \"mass.x\"\nwithin = 0.004\nconsequence = \"reject\"\n";
+  const std::string soft = bench.write("soft.toml", text),
+                    stiff = bench.write("stiff.toml", put(text, "stiffness = 800", "stiffness = 3200"));
+  for (const std::string& model : {soft, stiff})
+    REQUIRE(steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "-q"}).code == 0);
   const Outcome said = steplap_does({"diff", bench.at("out/soft"), bench.at("out/stiff")});
   CHECK_MESSAGE(has(said.out, "reject"), said.out);
   const Json result = result_of(steplap_does({"diff", bench.at("out/soft"), bench.at("out/stiff"), "--json"})), tables = result["tables"];
   CHECK(tables["values"].size() == 1);
   CHECK(*row_of(tables["outcome"], "what", "verdict") == Json{{"what", "verdict"}, {"before", "reject"}, {"after", "hold"}});
-  CHECK(tables["criteria"][0]["before"]["value"].get<double>() == doctest::Approx(0.005).epsilon(1e-6)); // v sqrt(m/k); the run's own error is less
+  CHECK(tables["criteria"][0]["before"]["value"].get<double>() ==
+        doctest::Approx(0.005).epsilon(1e-6)); // v sqrt(m/k); the run's own error is less
   CHECK(tables["criteria"][0]["after"]["value"].get<double>() == doctest::Approx(0.0025).epsilon(1e-6));
   const Json* way = row_of(tables["extremes"], "channel", "mass.x");
   REQUIRE(way);
@@ -118,8 +125,10 @@ TEST_CASE("what followed from another value is told with its size: verdict, even
 
 TEST_CASE("what was zero has no share by which it changed") {
   const Workbench bench;
-  const std::string still = bench.write("still.toml", put(k_oscillator, "velocity = [0.1, 0]", "velocity = [0, 0.1]")), moved = bench.write("moved.toml", k_oscillator);
-  for (const std::string& model : {still, moved}) REQUIRE(steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "-q"}).code == 0);
+  const std::string still = bench.write("still.toml", put(k_oscillator, "velocity = [0.1, 0]", "velocity = [0, 0.1]")),
+                    moved = bench.write("moved.toml", k_oscillator);
+  for (const std::string& model : {still, moved})
+    REQUIRE(steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "-q"}).code == 0);
   const Json rows = result_of(steplap_does({"diff", bench.at("out/still"), bench.at("out/moved"), "--json"}))["tables"]["extremes"];
   const Json* rate = row_of(rows, "channel", "mass.vx");
   REQUIRE(rate);

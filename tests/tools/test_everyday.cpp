@@ -48,7 +48,7 @@ TEST_CASE("a bare command says what there is, and is still an error to scripts")
   const Outcome check = steplap_does({"check"});
   CHECK(check.code == 2);
   CHECK(has(check.err, "MODEL is required"));
-  CHECK(has(check.err, "--cross")); // its options follow
+  CHECK(has(check.err, "--cross"));                                   // its options follow
   CHECK_FALSE(has(steplap_does({"check", "--cross"}).err, "--uses")); // who has typed more is told what is missing
 }
 
@@ -60,7 +60,8 @@ TEST_CASE("the version for programs") {
 
 TEST_CASE("every command that prints a table has --json, with the same numbers to the last digit") {
   const Workbench bench;
-  const std::string model = bench.write("a.toml", k_oscillator), bouncer = bench.write("b.toml", k_bouncer), core = STEPLAP_MODELS "/layouts/three_limb.toml";
+  const std::string model = bench.write("a.toml", k_oscillator), bouncer = bench.write("b.toml", k_bouncer),
+                    core = STEPLAP_MODELS "/layouts/three_limb.toml";
   REQUIRE(steplap_does({"simulate", bouncer, "-o", bench.at("ran"), "--end", "0.3"}).code == 0);
   // What to type, and a table that has to be there.
   const std::map<std::string, std::pair<std::vector<std::string>, std::string>> typed = {
@@ -77,8 +78,10 @@ TEST_CASE("every command that prints a table has --json, with the same numbers t
       {"show", {{bench.at("ran") + "/b"}, ""}},
       {"help", {{}, ""}}};
   // Of others: no table, or a document of their own.
-  const std::map<std::string, std::string> others = {{"new", "a model"}, {"explore", "a page"}, {"report", "a page"}, {"plot", "an image"}, {"schema", "is JSON"},
-                                                     {"study", "a program of its own"}, {"record", "record.json"}, {"assess", "assessment.json"}};
+  const std::map<std::string, std::string> others = {{"new", "a model"},        {"explore", "a page"},
+                                                     {"report", "a page"},      {"plot", "an image"},
+                                                     {"schema", "is JSON"},     {"study", "a program of its own"},
+                                                     {"record", "record.json"}, {"assess", "assessment.json"}};
   for (const Command& command : all_commands()) {
     CAPTURE(command.name);
     CHECK(command.prints_tables == typed.contains(command.name));
@@ -106,7 +109,9 @@ TEST_CASE("numbers of --json are whole, with their unit") {
   CHECK(modes["about"] == model);
   const double frequency = std::sqrt(800.0 / 2.0) / (2.0 * std::numbers::pi);
   bool is_found = false;
-  for (const Json& mode : modes["tables"]["modes"]) is_found |= mode["frequency"]["unit"] == "Hz" && std::abs(mode["frequency"]["value"].get<double>() / frequency - 1.0) < 1e-10; // rounding of an eigenvalue
+  for (const Json& mode : modes["tables"]["modes"])
+    is_found |= mode["frequency"]["unit"] == "Hz" &&
+                std::abs(mode["frequency"]["value"].get<double>() / frequency - 1.0) < 1e-10; // rounding of an eigenvalue
   CHECK(is_found);
   // Two models, two results; what people read is there, too.
   const Json check = document_of({"check", model, bench.write("b.toml", k_bouncer), "--json", "-q"})["results"];

@@ -10,13 +10,15 @@ namespace {
 
 std::string pendulum(const std::string& b) {
   return "title = \"a\"\n[simulation]\nend = 0.1\n[[body]]\nname = \"arm\"\nmass = 2\ninertia = 0.2\nposition = [1.0, 2.0]\n"
-         "[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = \"arm\", at = [0.5, 2.0] }\n" + b;
+         "[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = \"arm\", at = [0.5, 2.0] }\n" +
+         b;
 }
 
 std::string ball(int i) {
   const std::string n = std::to_string(i);
-  return "[[body]]\nname = \"ball " + n + "\"\nmass = 1\ninertia = 0.01\nposition = [" + n + ", 0]\n[[element]]\nkind = \"distance\"\nname = \"rod " + n +
-         "\"\na = \"ball " + n + "\"\nb = { body = \"ground\", at = [" + n + ", 1] }\n";
+  return "[[body]]\nname = \"ball " + n + "\"\nmass = 1\ninertia = 0.01\nposition = [" + n +
+         ", 0]\n[[element]]\nkind = \"distance\"\nname = \"rod " + n + "\"\na = \"ball " + n + "\"\nb = { body = \"ground\", at = [" + n +
+         ", 1] }\n";
 }
 
 std::string told(const char* command, const std::string& text) {
@@ -51,9 +53,10 @@ TEST_CASE("several bodies that are free alike are told in one sentence, a single
 
 // Its errors would be shares of ranges that are rounding themselves.
 TEST_CASE("a machine that rests is said to rest, not to be wrong by many times the tolerance") {
-  const std::string block = "title = \"a\"\n[simulation]\nend = 0.5\ninitial = \"equilibrium\"\n[[body]]\nname = \"block\"\nmass = 2000\ninertia = 500\n"
-                            "position = [0, 1]\noutline = [[-1, -1], [1, -1], [1, 1], [-1, 1]]\n[[element]]\nkind = \"polygon_contact\"\nname = \"floor\"\n"
-                            "a = \"block\"\nstiffness = 1e9\nstatic_friction = 0.5\n";
+  const std::string block =
+      "title = \"a\"\n[simulation]\nend = 0.5\ninitial = \"equilibrium\"\n[[body]]\nname = \"block\"\nmass = 2000\ninertia = 500\n"
+      "position = [0, 1]\noutline = [[-1, -1], [1, -1], [1, 1], [-1, 1]]\n[[element]]\nkind = \"polygon_contact\"\nname = \"floor\"\n"
+      "a = \"block\"\nstiffness = 1e9\nstatic_friction = 0.5\n";
   const Workbench bench;
   const std::string path = bench.write("a.toml", block);
   const Outcome rests = steplap_does({"simulate", "-v", path, "-o", bench.at("out"), "--estimate-error"});
@@ -62,15 +65,17 @@ TEST_CASE("a machine that rests is said to rest, not to be wrong by many times t
   CHECK(has(rests.out, "The machine rests"));
   CHECK(has(rests.out, "nothing is exchanged"));
   CHECK_FALSE(has(rests.out, "times the tolerance"));
-  const Outcome moves = steplap_does({"simulate", path, "-o", bench.at("moves"), "--estimate-error", "--set", "simulation.velocity=[1.0, 0.0]"});
+  const Outcome moves =
+      steplap_does({"simulate", path, "-o", bench.at("moves"), "--estimate-error", "--set", "simulation.velocity=[1.0, 0.0]"});
   CAPTURE(moves.out);
   CHECK_FALSE(has(moves.out, "The machine rests"));
 }
 
 TEST_CASE("the table at rest has the angle at which a block tips") {
-  const std::string text = told("equilibrium", "title = \"a\"\n[simulation]\nend = 0.5\n[[body]]\nname = \"block\"\nmass = 2000\ninertia = 500\n"
-                                               "position = [0, 1]\noutline = [[-0.5, -1], [0.5, -1], [0.5, 1], [-0.5, 1]]\n[[element]]\nkind = \"polygon_contact\"\n"
-                                               "name = \"floor\"\na = \"block\"\nstiffness = 1e12\nstatic_friction = 0.5\n");
+  const std::string text = told(
+      "equilibrium", "title = \"a\"\n[simulation]\nend = 0.5\n[[body]]\nname = \"block\"\nmass = 2000\ninertia = 500\n"
+                     "position = [0, 1]\noutline = [[-0.5, -1], [0.5, -1], [0.5, 1], [-0.5, 1]]\n[[element]]\nkind = \"polygon_contact\"\n"
+                     "name = \"floor\"\na = \"block\"\nstiffness = 1e12\nstatic_friction = 0.5\n");
   CAPTURE(text);
   CHECK(has(text, "Distance from tipping over"));
   CHECK(has(text, "26.6°")); // atan 0.5
@@ -81,8 +86,9 @@ TEST_CASE("the table at rest has the angle at which a block tips") {
 TEST_CASE("a joint that carries nothing has a margin beyond 1e9, not a number of many digits, nor inf") {
   const Workbench bench;
   for (const std::string pull : {"\"1e-9 N\"", "0.0"}) {
-    const Outcome outcome = steplap_does({"simulate", "-v", STEPLAP_MODELS "/layouts/joint_apart.toml", "-o", bench.at(pull == "0.0" ? "a" : "b"), "--set",
-                                          "simulation.end=0.01", "--set", "element.pull.force=[" + pull + ", 0.0]"});
+    const Outcome outcome =
+        steplap_does({"simulate", "-v", STEPLAP_MODELS "/layouts/joint_apart.toml", "-o", bench.at(pull == "0.0" ? "a" : "b"), "--set",
+                      "simulation.end=0.01", "--set", "element.pull.force=[" + pull + ", 0.0]"});
     CAPTURE(outcome.out);
     CAPTURE(outcome.err);
     CHECK(has(outcome.out, pull == "0.0" ? "–" : "> 1e9")); // under no load at all there is none
@@ -93,9 +99,13 @@ TEST_CASE("a joint that carries nothing has a margin beyond 1e9, not a number of
 TEST_CASE("runs side by side tell of the channels that the model asks for, too") {
   const Workbench bench;
   const auto model = [&](const char* name, const char* speed) {
-    return bench.write(name, std::string("title = \"a\"\ngravity = [0.0, 0.0]\n[simulation]\nend = 0.1\n[output]\nstep = 0.01\nalso = [\"rail.displacement\"]\n"
-                                         "[[body]]\nname = \"sledge\"\nmass = 2\ninertia = 1\nvelocity = [") + speed + ", 0.0]\n"
-                             "[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"sledge\"\n");
+    return bench.write(
+        name,
+        std::string("title = \"a\"\ngravity = [0.0, 0.0]\n[simulation]\nend = 0.1\n[output]\nstep = 0.01\nalso = [\"rail.displacement\"]\n"
+                    "[[body]]\nname = \"sledge\"\nmass = 2\ninertia = 1\nvelocity = [") +
+            speed +
+            ", 0.0]\n"
+            "[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"sledge\"\n");
   };
   const Outcome two = steplap_does({"simulate", "-v", model("slow.toml", "1.0"), model("fast.toml", "3.0"), "-o", bench.at("out")});
   CAPTURE(two.out);

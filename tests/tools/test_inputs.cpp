@@ -87,8 +87,9 @@ TEST_CASE("a first row that begins with a number is data: what is wrong in it is
 
 // A whole row may be damaged in one way: by a program that writes other dashes, digits, blanks or quotes.
 TEST_CASE("a first row of which every cell is damaged is not taken for names") {
-  const std::vector<std::pair<const char*, const char*>> around = {{"−", ""}, {"'", "'"}, {"(", ")"}, {"~", ""}, {"$", ""}, {"\xC2\xA0", ""}, {"‐", ""},
-                                                                   {"*", "*"}, {"=", ""}, {"O.", ""}, {"l,", ""}, {"x0.", ""}, {"－", ""}, {"--", ""}, {"\"'", "\""}};
+  const std::vector<std::pair<const char*, const char*>> around = {{"−", ""},        {"'", "'"},  {"(", ")"}, {"~", ""},  {"$", ""},
+                                                                   {"\xC2\xA0", ""}, {"‐", ""},   {"*", "*"}, {"=", ""},  {"O.", ""},
+                                                                   {"l,", ""},       {"x0.", ""}, {"－", ""}, {"--", ""}, {"\"'", "\""}};
   std::mt19937 random(6);
   for (const auto& [before, after] : around)
     for (int trial = 0; trial < 20; ++trial) {
@@ -102,18 +103,21 @@ TEST_CASE("a first row of which every cell is damaged is not taken for names") {
       CAPTURE(text);
       CHECK(refusal(text).starts_with("r.csv:1:1: error: "));
     }
-  for (const char* const row : {"-,-", "--,--", "?,?", "*,*", "1e5x,", "nan,nan", "inf,inf", "-inf,-inf", ",", "\"\",\"\"", "٣,٤", "１,２", "x,1e400", "x,1 000", ",1e400", ".,."}) {
+  for (const char* const row : {"-,-", "--,--", "?,?", "*,*", "1e5x,", "nan,nan", "inf,inf", "-inf,-inf", ",", "\"\",\"\"", "٣,٤", "１,２",
+                                "x,1e400", "x,1 000", ",1e400", ".,."}) {
     CAPTURE(row);
     CHECK(refusal(std::string(row) + "\n1,2\n").starts_with("r.csv:1:1: error: "));
   }
-  for (const char* const row : {"t,a", "t1,a2", "Zeit,µ", "φ1,φ2", "time [s],force [kN]", ",a", "t (s),x.1", "acc_x,acc_y", "Δ,E", "\"time, s\",\"a\"", "T,A1.5 g"}) {
+  for (const char* const row : {"t,a", "t1,a2", "Zeit,µ", "φ1,φ2", "time [s],force [kN]", ",a", "t (s),x.1", "acc_x,acc_y", "Δ,E",
+                                "\"time, s\",\"a\"", "T,A1.5 g"}) {
     CAPTURE(row);
     CHECK(refusal(std::string(row) + "\n1,2\n").empty());
   }
 }
 
 TEST_CASE("decimals of two kinds, and columns of one name, are refused") {
-  CHECK(has(refusal("t;a\n0.5;1\n1;1,000\n"), "r.csv:3:1: error: '1,000' in column 2 has a decimal comma, and numbers before it have a point"));
+  CHECK(has(refusal("t;a\n0.5;1\n1;1,000\n"),
+            "r.csv:3:1: error: '1,000' in column 2 has a decimal comma, and numbers before it have a point"));
   CHECK(has(refusal("0,5\t1\n1.5\t2"), "has a decimal point"));
   CHECK(refusal("t;a\n0,5;1\n1;1,000\n").empty());
   CHECK(refusal("t;a\n0.5;1\n1;1.000\n").empty());
@@ -130,7 +134,8 @@ TEST_CASE("a row that is missing from a record is told, and forbids to call the 
   std::string model = k_pulled;
   model += "[[acceptance]]\nname = \"goes\"\nchannel = \"mass.x\"\nat_most = 1000\n";
   for (int trial = 0; trial < 40; ++trial) {
-    const int rows = 20 + static_cast<int>(random() % 80), gone = trial % 2 == 0 ? 1 + static_cast<int>(random() % static_cast<unsigned>(rows - 2)) : -1;
+    const int rows = 20 + static_cast<int>(random() % 80),
+              gone = trial % 2 == 0 ? 1 + static_cast<int>(random() % static_cast<unsigned>(rows - 2)) : -1;
     const double step = 1e-3 * (1.0 + static_cast<double>(random() % 5));
     std::ostringstream text;
     text.precision(3 + trial % 3); // times with few digits
@@ -163,7 +168,7 @@ TEST_CASE("a machine that no signal loads is not called sound") {
   };
   CHECK(std::string(verdict("0,1\n1,2\n", "")) == "hold");
   CHECK(std::string(verdict("0,0\n0.5,0\n1,0\n", "")) == "open");
-  CHECK(std::string(verdict("2,1\n3,1\n", "")) == "open"); // behind the end
+  CHECK(std::string(verdict("2,1\n3,1\n", "")) == "open");                           // behind the end
   CHECK(std::string(verdict("0,0\n0.5,0\n1,0\n", "velocity = [1, 0]\n")) == "hold"); // it moves without
 }
 
@@ -286,8 +291,7 @@ TEST_CASE("what has no end, or is no file, is refused in words") {
   refused(bench.write("endless.toml", record), "endless.toml:");
   // Twenty thousand files that extend each other.
   bench.write("m0.toml", k_bouncer);
-  for (int i = 1; i <= 20000; ++i)
-    bench.write("m" + std::to_string(i) + ".toml", "extends = \"m" + std::to_string(i - 1) + ".toml\"\n");
+  for (int i = 1; i <= 20000; ++i) bench.write("m" + std::to_string(i) + ".toml", "extends = \"m" + std::to_string(i - 1) + ".toml\"\n");
   refused(bench.at("m20000.toml"), "files extend each other");
   CHECK(shell(k_program + " check " + bench.at("m99.toml")).code == 0);
 }
@@ -305,8 +309,8 @@ TEST_CASE("limits of a file's size and of processor time, and readers that have 
   CHECK((slow.code == -SIGXCPU || slow.code == 128 + SIGXCPU)); // as the shell hands it on
   CHECK(has(text_of(bench.at("slow/long/partial_summary.json")), "stopped by SIGXCPU"));
   CHECK(bench.content("slow") == std::set<std::string>{"long", "long/partial_drawing.json", "long/partial_events.csv",
-                                                        "long/partial_model.toml", "long/partial_summary.json",
-                                                        "long/partial_trajectory.csv"});
+                                                       "long/partial_model.toml", "long/partial_summary.json",
+                                                       "long/partial_trajectory.csv"});
   const Said closed = shell(run + bench.at("closed") + " | true");
   CHECK_FALSE(has(closed.text, "error"));
   CHECK(fs::exists(bench.at("closed/a/summary.json")));

@@ -46,8 +46,8 @@ TEST_CASE("a run stopped by a signal keeps what was computed") {
   const std::string model = bench.write("long.toml", k_oscillator);
   // Days of steps, a row every few thousand of them. A machine may be so slow that the program is not yet listening when the
   // signal comes: then it dies of it, with nothing to keep, and is given longer.
-  const std::vector<std::string> arguments = {"simulate", model, "-o", bench.at("out"), "--force",
-                                              "--set", "simulation.end=1e6", "--set", "output.step=10"};
+  const std::vector<std::string> arguments = {"simulate", model,           "-o", bench.at("out"), "--force", "--set", "simulation.end=1e6",
+                                              "--set",    "output.step=10"};
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     CAPTURE(signal);
     bool is_kept = false;
@@ -87,7 +87,8 @@ TEST_CASE("keys of thousands of parts are refused, points in quotes are no parts
     CHECK(has(outcome.err, "a key of more than 256 parts"));
   }
   const std::string points(1000, '.');
-  for (const std::string& quoted : {"\"" + points + "\\\"" + points + "\"", "'" + points + "'", "\"\"\"\n" + points + "\"\n\"\"\"", "'''" + points + "\n'''"}) {
+  for (const std::string& quoted :
+       {"\"" + points + "\\\"" + points + "\"", "'" + points + "'", "\"\"\"\n" + points + "\"\n\"\"\"", "'''" + points + "\n'''"}) {
     const Outcome outcome = steplap_does({"check", bench.write("b.toml", "source = " + quoted + " # " + points + "\n" + k_oscillator)});
     CHECK(outcome.code == 0);
     CHECK(outcome.err.empty());

@@ -29,7 +29,9 @@ const ModelTemplate& called(const std::string& name) {
 }
 
 // A template's parameters as a model has them.
-Parameters parameters_of(const ModelTemplate& one) { return parse_given_model(std::string(one.text), one.name + ".toml", program_catalogue()).parameters; }
+Parameters parameters_of(const ModelTemplate& one) {
+  return parse_given_model(std::string(one.text), one.name + ".toml", program_catalogue()).parameters;
+}
 
 // Anywhere between the ends of its range; by orders of magnitude where these are far apart.
 Dimensions drawn(const ModelTemplate& one, std::mt19937& random) {
@@ -37,7 +39,8 @@ Dimensions drawn(const ModelTemplate& one, std::mt19937& random) {
   for (const Parameter& p : parameters_of(one).entries) {
     if (!p.least || !p.most) continue;
     const double share = std::uniform_real_distribution<>(0.001, 0.999)(random); // the ends themselves may be rounded beyond the range
-    dimensions[p.name] = *p.least > 0.0 && *p.most > 20.0 * *p.least ? *p.least * std::pow(*p.most / *p.least, share) : *p.least + share * (*p.most - *p.least);
+    dimensions[p.name] = *p.least > 0.0 && *p.most > 20.0 * *p.least ? *p.least * std::pow(*p.most / *p.least, share)
+                                                                     : *p.least + share * (*p.most - *p.least);
   }
   return dimensions;
 }
@@ -105,7 +108,7 @@ TEST_CASE("a model as it stands holds, and every dimension of it has a meaning a
     }
     std::size_t ranged = 0;
     for (const Parameter& p : parameters_of(one).entries) ranged += p.least ? 1 : 0;
-    CHECK(ranged == parameters.size()); // the lines read by `new` are those that the reader reads
+    CHECK(ranged == parameters.size());                     // the lines read by `new` are those that the reader reads
     CHECK(steplap_does({"new", one.name}).out == one.text); // to the standard output
   }
 }
@@ -122,7 +125,8 @@ TEST_CASE("a block of any size slides as far as Coulomb's law says") {
     const double slide = summary["extremes"]["bed friction.slide"]["max"], wanted = slide_of(d);
     // The feet give way by about the sink: the block rocks on them, and its bottom moves by height / length of that; and a thousandth.
     CHECK(std::abs(slide - wanted) < 4.0 * d["sink"] * std::max(1.0, d["height"] / d["length"]) + 1e-3 * wanted);
-    if (std::abs(wanted - d["allowed_slide"]) > 0.02 * wanted + 4.0 * d["sink"]) CHECK(verdict_of(summary) == (wanted > d["allowed_slide"] ? "reject" : "hold"));
+    if (std::abs(wanted - d["allowed_slide"]) > 0.02 * wanted + 4.0 * d["sink"])
+      CHECK(verdict_of(summary) == (wanted > d["allowed_slide"] ? "reject" : "hold"));
     slid += wanted > 0.0 ? 1 : 0;
   }
   CHECK(slid > 3);
@@ -146,7 +150,8 @@ TEST_CASE("a machine on mounts goes up and down with the frequency that was aske
     (void)run_of(bench, called("machine"), d);
     const Json modes = json_of(steplap_does({"modes", bench.at("machine.toml"), "--json"}))["tables"]["modes"];
     double nearest = 1e300;
-    for (const Json& mode : modes) nearest = std::min(nearest, std::abs(mode["frequency"]["value"].get<double>() / d.at("frequency") - 1.0));
+    for (const Json& mode : modes)
+      nearest = std::min(nearest, std::abs(mode["frequency"]["value"].get<double>() / d.at("frequency") - 1.0));
     CHECK(nearest < 1e-7); // symmetric mounts: up and down moves nothing else; what is left is rounding of the eigenvalues
   }
 }
@@ -171,7 +176,8 @@ TEST_CASE("a transformer's joints have the margin that pressure and friction giv
     for (const auto& [joint, before] : first["joints"].items()) {
       CAPTURE(joint);
       const double margin = before["smallest_margin"], after = second["joints"][joint]["smallest_margin"];
-      if (margin > 1.0 && after > 1.0) CHECK(after == doctest::Approx(2.0 * margin).epsilon(1e-6)); // what a joint that sticks has to bear hangs on no pressure
+      if (margin > 1.0 && after > 1.0)
+        CHECK(after == doctest::Approx(2.0 * margin).epsilon(1e-6)); // what a joint that sticks has to bear hangs on no pressure
     }
   }
 }

@@ -66,8 +66,7 @@ TEST_CASE("thinning keeps first, last, every peak and the gaps") {
   const auto kept = thinned(values, 100);
   CHECK(kept.size() <= 302);
   CHECK(std::is_sorted(kept.begin(), kept.end()));
-  for (const std::size_t i : {0U, 4321U, 4322U, 9000U, 9999U})
-    CHECK(std::count(kept.begin(), kept.end(), i) == 1);
+  for (const std::size_t i : {0U, 4321U, 4322U, 9000U, 9999U}) CHECK(std::count(kept.begin(), kept.end(), i) == 1);
   CHECK(thinned(values, 4999).size() == values.size());
   CHECK(thinned({}, 10).empty());
 }
@@ -127,8 +126,7 @@ TEST_CASE("a page needs no other file and no network") {
 TEST_CASE("large results make a page below 5 MB, with the peaks of every curve") {
   Results results = made_results(240000);
   results.channels[1].values[123456] = 17.0;
-  for (int i = 0; i < 60; ++i)
-    results.channels.push_back({"more" + std::to_string(i) + ".force", "N", results.channels[1].values});
+  for (int i = 0; i < 60; ++i) results.channels.push_back({"more" + std::to_string(i) + ".force", "N", results.channels[1].values});
   const std::string page = report_page({results});
   CHECK(page.size() < 5000000);
   const auto json = nlohmann::json::parse(report_data({results}));
@@ -139,7 +137,8 @@ TEST_CASE("large results make a page below 5 MB, with the peaks of every curve")
 
 TEST_CASE("with more channels than a page can hold, those of plots stay") {
   Results results = made_results(300);
-  results.drawing = R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["spring.f*"],"bounds":[]}],"seen_from":""})";
+  results.drawing =
+      R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["spring.f*"],"bounds":[]}],"seen_from":""})";
   for (int i = 0; i < 9000; ++i)
     results.channels.insert(results.channels.begin(), {"body" + std::to_string(i) + ".vx", "m/s", results.channels[0].values});
   const std::string data = report_data({results});
@@ -147,8 +146,7 @@ TEST_CASE("with more channels than a page can hold, those of plots stay") {
   const auto json = nlohmann::json::parse(data);
   CHECK(json["runs"][0]["channels_left_out"] > 0);
   bool is_kept = false;
-  for (const auto& channel : json["runs"][0]["channels"])
-    is_kept = is_kept || channel["name"] == "spring.force";
+  for (const auto& channel : json["runs"][0]["channels"]) is_kept = is_kept || channel["name"] == "spring.force";
   CHECK(is_kept);
 }
 
@@ -238,10 +236,11 @@ stiffness = 1e6
 }
 
 TEST_CASE("a wheel is drawn on its road, a flat one without ends, and a skate along the way in which it runs") {
-  const std::string rest = "stiffness = 1e6\nfriction = 0.8\nslip_stiffness = 1e4\nrelaxation_length = 0.2\ntread_damping = 50\nradius = 0.3\n";
+  const std::string rest =
+      "stiffness = 1e6\nfriction = 0.8\nslip_stiffness = 1e4\nrelaxation_length = 0.2\ntread_damping = 50\nradius = 0.3\n";
   const auto drawing = drawing_of("[[element]]\nkind = \"tyre\"\nname = \"flat\"\na = \"ball\"\n" + rest +
-                                  "[[element]]\nkind = \"tyre\"\nname = \"hilly\"\na = \"ball\"\nroad = [[-2, 0], [0, 0.1], [2, 0]]\n" + rest +
-                                  "[[element]]\nkind = \"skate\"\nname = \"edge\"\na = \"slab\"\naxis = [0, 2]\n");
+                                  "[[element]]\nkind = \"tyre\"\nname = \"hilly\"\na = \"ball\"\nroad = [[-2, 0], [0, 0.1], [2, 0]]\n" +
+                                  rest + "[[element]]\nkind = \"skate\"\nname = \"edge\"\na = \"slab\"\naxis = [0, 2]\n");
   const auto& flat = drawing["elements"][0]["shapes"][0];
   CHECK(flat["style"] == "flat");
   CHECK(is_near(flat["sizes"], {0.3, -300.0, 0.0, 300.0, 0.0, 0.0}));
@@ -263,8 +262,8 @@ TEST_CASE("contacts on one line share a half-plane, whose normal points away fro
     return "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + name + "\"\na = \"ball\"\nb = { body = \"ground\", at = " + at +
            " }\nnormal = " + normal + "\nstiffness = 1e6\n";
   };
-  const auto drawing = drawing_of(contact("left", "[-1, 0.5]", "[0, 2]") + contact("right", "[7, 0.5]", "[0, 1]") +
-                                  contact("wall", "[-3, 0]", "[1, 0]"));
+  const auto drawing =
+      drawing_of(contact("left", "[-1, 0.5]", "[0, 2]") + contact("right", "[7, 0.5]", "[0, 1]") + contact("wall", "[-3, 0]", "[1, 0]"));
   REQUIRE(drawing["planes"].size() == 2);
   CHECK(drawing["planes"][0]["body"] == "ground");
   CHECK(is_near(drawing["planes"][0]["normal"], {0.0, 1.0}));
@@ -332,8 +331,12 @@ std::vector<Shape> shapes_of(const Faces& faces, std::map<std::string, BodyGeome
   kind.fields.add("static_friction", &Faces::static_friction);
   kind.holds<Faces>();
   const ElementEntry entry(&kind, std::make_shared<Faces>(faces));
-  Sketch sketch(entry, [](const std::string& name) { return MarkerPlace{name, Vec2(1.0, 0.0), 0.5 * M_PI}; },
-                [&](const std::string& body) -> BodyGeometry& { return geometry[body]; });
+  Sketch sketch(
+      entry,
+      [](const std::string& name) {
+        return MarkerPlace{name, Vec2(1.0, 0.0), 0.5 * M_PI};
+      },
+      [&](const std::string& body) -> BodyGeometry& { return geometry[body]; });
   draw_element(sketch);
   return sketch.shapes();
 }
@@ -375,8 +378,12 @@ TEST_CASE("every kind of element of the catalogue has its own symbol; one that h
     CAPTURE(kind->name);
     const ElementEntry entry(kind, kind->create());
     BodyGeometry geometry;
-    Sketch sketch(entry, [](const std::string&) { return MarkerPlace{"ground", Vec2::Zero(), 0.0}; },
-                  [&](const std::string&) -> BodyGeometry& { return geometry; });
+    Sketch sketch(
+        entry,
+        [](const std::string&) {
+          return MarkerPlace{"ground", Vec2::Zero(), 0.0};
+        },
+        [&](const std::string&) -> BodyGeometry& { return geometry; });
     draw_element(sketch);
     for (const Shape& shape : sketch.shapes()) CHECK(shape.type != "neutral");
   }
@@ -384,8 +391,12 @@ TEST_CASE("every kind of element of the catalogue has its own symbol; one that h
   unheard_of.name = "unheard_of";
   const ElementEntry entry(&unheard_of, unheard_of.create());
   BodyGeometry geometry;
-  Sketch sketch(entry, [](const std::string&) { return MarkerPlace{"ground", Vec2::Zero(), 0.0}; },
-                [&](const std::string&) -> BodyGeometry& { return geometry; });
+  Sketch sketch(
+      entry,
+      [](const std::string&) {
+        return MarkerPlace{"ground", Vec2::Zero(), 0.0};
+      },
+      [&](const std::string&) -> BodyGeometry& { return geometry; });
   draw_element(sketch);
   REQUIRE(sketch.shapes().size() == 1);
   CHECK(sketch.shapes()[0].type == "neutral");
@@ -419,7 +430,8 @@ yoke = [[2, 3], [4, 3], [4, 5], [2, 5]]
 limb = [[2, 3], [4, 3], [4, 5], [2, 5]]
 pressure = 1
 static_friction = 0.5
-)" + more, "a.toml", program_catalogue())))["sheets"][0];
+)" + more,
+                                                          "a.toml", program_catalogue())))["sheets"][0];
   };
   const auto ring_is = [](const nlohmann::json& ring, const std::vector<std::vector<double>>& wanted) {
     REQUIRE(ring.size() == wanted.size());
@@ -445,7 +457,8 @@ TEST_CASE("a page holds no more channels than a reader could ask for, those of p
   Results results = made_results(3);
   for (int i = 0; i < 12000; ++i) results.channels.push_back({"body " + std::to_string(i) + ".omega", "rad/s", {0.0, 0.0, 0.0}});
   results.channels.push_back({"asked for.omega", "rad/s", {0.0, 1.0, 2.0}});
-  results.drawing = R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["asked*"],"bounds":[]}],"seen_from":""})";
+  results.drawing =
+      R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["asked*"],"bounds":[]}],"seen_from":""})";
   const auto run = nlohmann::json::parse(report_data({results}))["runs"][0];
   CHECK(run["channels"].size() == 10000);
   CHECK(run["channels_left_out"] == 12003 - 10000);
@@ -509,7 +522,8 @@ TEST_CASE("report: places, refusals and the page of simulate") {
 TEST_CASE("a hold that is required and not given is exit code 5; the results are there") {
   const Workbench bench;
   const auto code = [&](const std::string& limit) {
-    const std::string model = bench.write("a.toml", std::string(k_bouncer) + "[[acceptance]]\nname = \"height\"\nchannel = \"ball.y\"\n" + limit);
+    const std::string model =
+        bench.write("a.toml", std::string(k_bouncer) + "[[acceptance]]\nname = \"height\"\nchannel = \"ball.y\"\n" + limit);
     return steplap_does({"simulate", model, "-q", "-f", "-o", bench.at("out"), "--require-hold"}).code;
   };
   CHECK(code("at_most = 0.11\n") == 0); // it falls from 0.1 m

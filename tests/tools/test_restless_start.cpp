@@ -9,9 +9,14 @@ namespace {
 
 // 1000 kg between two springs; the lower one's preload bears the weight. `top`: preload of the upper one.
 std::string between_springs(const std::string& bottom, const std::string& top, const std::string& more = "") {
-  return "[simulation]\nend = 0.1\n" + more + "[[body]]\nname = \"block\"\nmass = 1000\ninertia = 100\n"
-         "[[element]]\nkind = \"spring_damper\"\nname = \"below\"\na = \"block\"\nb = \"ground\"\naxis = [0, 1]\nstiffness = 1e6\npreload = " + bottom +
-         "\n[[element]]\nkind = \"spring_damper\"\nname = \"above\"\na = \"block\"\nb = \"ground\"\naxis = [0, 1]\nstiffness = 1e6\npreload = " + top + "\n";
+  return "[simulation]\nend = 0.1\n" + more +
+         "[[body]]\nname = \"block\"\nmass = 1000\ninertia = 100\n"
+         "[[element]]\nkind = \"spring_damper\"\nname = \"below\"\na = \"block\"\nb = \"ground\"\naxis = [0, 1]\nstiffness = 1e6\npreload "
+         "= " +
+         bottom +
+         "\n[[element]]\nkind = \"spring_damper\"\nname = \"above\"\na = \"block\"\nb = \"ground\"\naxis = [0, 1]\nstiffness = "
+         "1e6\npreload = " +
+         top + "\n";
 }
 
 bool is_noted(const std::string& text) {

@@ -18,8 +18,7 @@ TEST_CASE("summary: extremes, slides and events of the paper's run") {
   // Extremes of the same run sampled every microsecond.
   CHECK(summary.find("bottom arresting.force")->low.value == doctest::Approx(-193529.2594).epsilon(1e-7));
   CHECK(summary.find("tank bottom.friction")->high.value == doctest::Approx(259957.8428).epsilon(1e-7));
-  CHECK(summary.find("tank bottom.slide")->largest().value ==
-        doctest::Approx(0.791365887e-3).epsilon(1e-6));
+  CHECK(summary.find("tank bottom.slide")->largest().value == doctest::Approx(0.791365887e-3).epsilon(1e-6));
   CHECK(summary.find("active part.theta")->low.value == doctest::Approx(-1.54498655e-3).epsilon(1e-6));
   CHECK(summary.find("nothing") == nullptr);
   CHECK(summary.event_counts.at("slips forward") == 1);

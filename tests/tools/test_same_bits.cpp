@@ -31,7 +31,8 @@ Outcome shell_does(const std::string& command) {
 }
 
 bool can_play_older_processor() {
-  const std::string now = shell_does(STEPLAP_LIBRARY_BITS).out, older = shell_does(std::string(k_older_processor) + STEPLAP_LIBRARY_BITS).out;
+  const std::string now = shell_does(STEPLAP_LIBRARY_BITS).out,
+                    older = shell_does(std::string(k_older_processor) + STEPLAP_LIBRARY_BITS).out;
   if (now != older) return true;
   MESSAGE("skipped: the C library gives the same bits with and without the tunables. Either this processor has "
           "no FMA, or this library has but one routine for each function");
@@ -147,10 +148,8 @@ std::string code_of(const std::string& line) {
   std::string rest;
   bool quoted = false;
   for (std::size_t i = 0; i < code.size(); ++i) {
-    if (code[i] == '"')
-      quoted = !quoted;
-    else if (!quoted)
-      rest += code[i];
+    if (code[i] == '"') quoted = !quoted;
+    else if (!quoted) rest += code[i];
     if (quoted && code[i] == '\\') ++i;
   }
   return rest;
@@ -221,9 +220,9 @@ TEST_CASE("the program's own code takes no function from the C library that depe
     ++looked_at;
     const std::string name = line.substr(at + 3);
     const bool has_suffix = name.ends_with("f") || name.ends_with("l"); // of float and long double
-    CHECK_MESSAGE(!(chosen_by_processor().contains(name) ||
-                    (has_suffix && chosen_by_processor().contains(name.substr(0, name.size() - 1)))),
-                  "the program calls " << name << " of the C library: use mbd/math/portable_math.h");
+    CHECK_MESSAGE(
+        !(chosen_by_processor().contains(name) || (has_suffix && chosen_by_processor().contains(name.substr(0, name.size() - 1)))),
+        "the program calls " << name << " of the C library: use mbd/math/portable_math.h");
   }
   CHECK(looked_at > 1000);
 }

@@ -20,7 +20,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 std::size_t characters(const std::string& line) {
-  return static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string upper(std::string text) {
@@ -86,7 +87,8 @@ TEST_CASE("the screen of every model is at most 30 lines of 100 columns and begi
 TEST_CASE("-v shows the tables of all extremes") {
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
-  const Outcome brief = steplap_does({"simulate", model, "-o", bench.at("brief")}), tables = steplap_does({"simulate", model, "-v", "-o", bench.at("tables")});
+  const Outcome brief = steplap_does({"simulate", model, "-o", bench.at("brief")}),
+                tables = steplap_does({"simulate", model, "-v", "-o", bench.at("tables")});
   CHECK_FALSE(has(brief.out, "Accuracy and cost"));
   CHECK(has(tables.out, "Accuracy and cost"));
   CHECK(has(brief.out, "Floor touches "));

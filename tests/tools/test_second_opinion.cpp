@@ -81,10 +81,13 @@ consequence = "reject"
 // A force on friction that holds 40 N. Beside it something moves, so that errors have a range.
 std::string shaken_block(const std::string& shake) {
   return "[simulation]\nend = 0.4\nstep = 0.02\n[output]\nstep = 0.01\n"
-         "[[body]]\nname = \"block\"\nmass = 10.0\ninertia = 1.0\n[[body]]\nname = \"walker\"\nmass = 1.0\ninertia = 1.0\nvelocity = [1.0, 0.0]\n"
-         "[[element]]\nkind = \"prismatic\"\nname = \"path\"\na = \"walker\"\n[[element]]\nkind = \"prismatic\"\nname = \"road\"\na = \"block\"\n"
+         "[[body]]\nname = \"block\"\nmass = 10.0\ninertia = 1.0\n[[body]]\nname = \"walker\"\nmass = 1.0\ninertia = 1.0\nvelocity = [1.0, "
+         "0.0]\n"
+         "[[element]]\nkind = \"prismatic\"\nname = \"path\"\na = \"walker\"\n[[element]]\nkind = \"prismatic\"\nname = \"road\"\na = "
+         "\"block\"\n"
          "[[element]]\nkind = \"joint_friction\"\nname = \"grip\"\na = \"block\"\ncoordinate = \"x\"\nholds = 40.0\ndrags = 10.0\n"
-         "[[signal]]\nname = \"shake\"\n" + shake +
+         "[[signal]]\nname = \"shake\"\n" +
+         shake +
          "[[element]]\nkind = \"load\"\nname = \"shaker\"\nat = \"block\"\nforce_x = \"shake\"\n"
          "[[acceptance]]\nname = \"grips\"\nevent = \"slips*\"\nconsequence = \"reject\"\n";
 }
@@ -121,7 +124,8 @@ TEST_CASE("what holds by all methods holds, and it is said who was asked") {
     if (method == std::string("rk4")) command.insert(command.end(), {"--step", "1e-4"});
     const Outcome outcome = steplap_does(command);
     CHECK(outcome.code == 0);
-    CHECK(has(text_of(bench.at("out/shaken/summary.json")), method == std::string("moreau") ? "A second method, dop853, agrees." : "A second method, moreau, agrees."));
+    CHECK(has(text_of(bench.at("out/shaken/summary.json")),
+              method == std::string("moreau") ? "A second method, dop853, agrees." : "A second method, moreau, agrees."));
     CHECK(has(text_of(bench.at("out/shaken/summary.json")), "\"agrees\": true"));
   }
 }

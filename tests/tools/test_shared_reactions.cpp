@@ -8,8 +8,7 @@ using namespace steplap::testing;
 namespace {
 
 std::string check(const char* model) {
-  const Outcome outcome =
-      steplap_does({"check", std::string(STEPLAP_SOURCE) + "/models/benchmarks/hard/" + model});
+  const Outcome outcome = steplap_does({"check", std::string(STEPLAP_SOURCE) + "/models/benchmarks/hard/" + model});
   CHECK(outcome.code == 0);
   return outcome.out;
 }

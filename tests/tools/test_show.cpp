@@ -16,7 +16,8 @@ std::string tables_of(const std::string& screen) {
   std::istringstream stream(screen);
   std::string kept;
   for (std::string line; std::getline(stream, line);) {
-    const bool is_of_making = line.starts_with("  CPU time ") || line.starts_with("Written to ") || line.starts_with("Results: ") || line.starts_with("  error not estimated: ");
+    const bool is_of_making = line.starts_with("  CPU time ") || line.starts_with("Written to ") || line.starts_with("Results: ") ||
+                              line.starts_with("  error not estimated: ");
     if (!is_of_making) kept += std::regex_replace(line, std::regex(" +"), " ") + "\n";
   }
   return kept;

@@ -17,31 +17,26 @@ namespace {
 const std::set<std::string> k_files{"drawing.json", "events.csv", "model.toml", "summary.json", "trajectory.csv"};
 
 // The built program in a process of its own, both streams into files.
-Outcome program_does(const Workbench& bench, const std::string& arguments,
-                     const std::string& before = "") {
+Outcome program_does(const Workbench& bench, const std::string& arguments, const std::string& before = "") {
   const std::string out = bench.at("stdout"), err = bench.at("stderr");
-  const std::string command =
-      before + STEPLAP_PROGRAM " " + arguments + " >" + out + " 2>" + err;
+  const std::string command = before + STEPLAP_PROGRAM " " + arguments + " >" + out + " 2>" + err;
   const int status = std::system(command.c_str()); // NOLINT: paths of our own
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
 }
 
-long count_lines(const std::string& text) {
-  return std::count(text.begin(), text.end(), '\n');
-}
+long count_lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 } // namespace
 
 TEST_CASE("a run leaves its five files and one screen") {
   const Workbench bench;
-  const Outcome outcome =
-      steplap_does({"simulate", bench.write("a.toml", k_bouncer), "-o", bench.at("out")});
+  const Outcome outcome = steplap_does({"simulate", bench.write("a.toml", k_bouncer), "-o", bench.at("out")});
   CHECK(outcome.code == 0);
   CHECK(outcome.err.empty());
   CHECK(has(outcome.out, "a: a bouncing mass"));
   const Outcome tables = steplap_does({"simulate", "-v", bench.at("a.toml"), "-o", bench.at("again")});
-  for (const char* part : {"a: a bouncing mass", "floor  closes", "floor  opens", "floor.force",
-                           "energy residual", "constraint residual", "evaluations", "CPU time"})
+  for (const char* part : {"a: a bouncing mass", "floor  closes", "floor  opens", "floor.force", "energy residual", "constraint residual",
+                           "evaluations", "CPU time"})
     CHECK_MESSAGE(has(tables.out, part), part);
   CHECK(bench.content("out/a") == k_files);
   const std::string csv = text_of(bench.at("out/a/trajectory.csv"));
@@ -70,13 +65,10 @@ TEST_CASE("two runs give the same bytes") {
 TEST_CASE("the saved model stands alone and gives the same run") {
   const Workbench bench;
   const std::string model = STEPLAP_MODELS "/paper/interference.toml";
-  CHECK(steplap_does({"simulate", model, "-q", "-o", bench.at("one"), "--set",
-                      "element.tank bottom.static_friction=0.3"})
-            .code == 0);
+  CHECK(steplap_does({"simulate", model, "-q", "-o", bench.at("one"), "--set", "element.tank bottom.static_friction=0.3"}).code == 0);
   const std::string saved = bench.at("one/interference/model.toml");
   CHECK(steplap_does({"simulate", saved, "-q", "-o", bench.at("two")}).code == 0);
-  CHECK(text_of(bench.at("one/interference/trajectory.csv")) ==
-        text_of(bench.at("two/model/trajectory.csv")));
+  CHECK(text_of(bench.at("one/interference/trajectory.csv")) == text_of(bench.at("two/model/trajectory.csv")));
 }
 
 TEST_CASE("nothing is said when quiet, no progress without a terminal") {
@@ -122,9 +114,8 @@ TEST_CASE("options are laid over the model") {
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_oscillator);
   const Outcome outcome =
-      steplap_does({"simulate", "-v", model, "-o", bench.at("out"), "--end", "50 ms", "--integrator", "dop853",
-                    "--tolerance", "1e-9", "--output-step", "25 ms", "--set", "body.mass.mass=3 kg", "--set",
-                    "output.channels=[\"mass.x\"]"});
+      steplap_does({"simulate", "-v", model, "-o", bench.at("out"), "--end", "50 ms", "--integrator", "dop853", "--tolerance", "1e-9",
+                    "--output-step", "25 ms", "--set", "body.mass.mass=3 kg", "--set", "output.channels=[\"mass.x\"]"});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "dop853, tolerance 1e-09, t = 0 to 0.05 s"));
   CHECK(text_of(bench.at("out/a/trajectory.csv")).rfind("t [s],mass.x [m]\n", 0) == 0);
@@ -173,15 +164,13 @@ TEST_CASE("several models: each its folder and its few lines; with -v one table"
 TEST_CASE("a failure keeps what there is under marked names and is exit code 4") {
   const Workbench bench;
   const std::string bad = bench.write("bad.toml", k_bouncer), good = bench.write("good.toml", k_oscillator);
-  const Outcome outcome = steplap_does({"simulate", bad, "-o", bench.at("out"), "--set",
-                                        "simulation.max_events=2"});
+  const Outcome outcome = steplap_does({"simulate", bad, "-o", bench.at("out"), "--set", "simulation.max_events=2"});
   CHECK(outcome.code == 4);
   CHECK(has(outcome.err, "more events than simulation.max_events"));
   CHECK(has(outcome.err, "partial_"));
   CHECK(has(outcome.out, "OPEN  The run stopped at "));
   std::set<std::string> partial;
-  for (const std::string& name : k_files)
-    partial.insert("partial_" + name);
+  for (const std::string& name : k_files) partial.insert("partial_" + name);
   CHECK(bench.content("out/bad") == partial);
   CHECK(has(text_of(bench.at("out/bad/partial_summary.json")), "\"completed\": false"));
   CHECK(has(text_of(bench.at("out/bad/partial_summary.json")), "\"final_state\""));
@@ -193,8 +182,7 @@ TEST_CASE("a failure keeps what there is under marked names and is exit code 4")
   CHECK(bench.content("out/bad") == k_files);
 
   // One of several fails: the others are run all the same.
-  const Outcome mixed =
-      steplap_does({"simulate", bad, good, "-o", bench.at("mixed"), "--set", "simulation.max_events=2"});
+  const Outcome mixed = steplap_does({"simulate", bad, good, "-o", bench.at("mixed"), "--set", "simulation.max_events=2"});
   CHECK(mixed.code == 4);
   CHECK(bench.content("mixed/bad") == partial);
   CHECK(bench.content("mixed/good") == k_files);
@@ -205,8 +193,7 @@ TEST_CASE("results that cannot be written are one clear error") {
   const std::string model = bench.write("a.toml", k_oscillator);
   const Outcome file = steplap_does({"simulate", model, "-o", model});
   CHECK(file.code == 2);
-  CHECK(file.err == "steplap: error: cannot write results to '" + model + "/a': '" + model +
-                        "' is not a folder\n");
+  CHECK(file.err == "steplap: error: cannot write results to '" + model + "/a': '" + model + "' is not a folder\n");
   const Outcome missing = steplap_does({"simulate", model, "-o", "/proc/steplap"});
   CHECK(missing.code == 2);
   CHECK(has(missing.err, "cannot write results to '/proc/steplap/a'"));
@@ -217,15 +204,16 @@ TEST_CASE("a disk that fills up leaves nothing behind") {
   const Workbench bench;
   const std::string model = bench.write("a.toml", std::string(k_oscillator));
   // Files of more than 1 or 2 KiB fail, as on a full disk; the trajectory is larger.
-  const Outcome outcome = program_does(bench, "simulate " + model + " --set output.step=1e-4 -o " + bench.at("out"),
-                                       "trap '' XFSZ; ulimit -f 2; ");
+  const Outcome outcome =
+      program_does(bench, "simulate " + model + " --set output.step=1e-4 -o " + bench.at("out"), "trap '' XFSZ; ulimit -f 2; ");
   CHECK(outcome.code == 2);
   CHECK(has(outcome.err, "cannot write '" + bench.at("out/a/trajectory.csv") + "': File too large"));
   CHECK(count_lines(outcome.err) == 1);
   CHECK(bench.content("out").empty());
   // A cleaned record, in a folder that is not made then.
   REQUIRE(program_does(bench, "record --make endaq " + bench.at("shock.csv")).code == 0);
-  const Outcome record = program_does(bench, "record " + bench.at("shock.csv") + " --gravity z -o " + bench.at("cleaned"), "trap '' XFSZ; ulimit -f 2; ");
+  const Outcome record =
+      program_does(bench, "record " + bench.at("shock.csv") + " --gravity z -o " + bench.at("cleaned"), "trap '' XFSZ; ulimit -f 2; ");
   CHECK(record.code == 2);
   CHECK(has(record.err, "signal.csv' cannot be written: File too large"));
   CHECK_FALSE(std::filesystem::exists(bench.at("cleaned")));
@@ -250,10 +238,10 @@ TEST_CASE("the program itself: exit codes, and no progress into a pipe") {
 TEST_CASE("a run that is not to be trusted says so everywhere, and holds nothing") {
   // The mass on its spring, 3 Hz, by a method of the first order with steps of 10 ms: it loses a tenth and more.
   Workbench bench;
-  const std::string model = bench.write("coarse.toml", std::string(k_oscillator) +
-                                                           "[[acceptance]]\nname = \"reach\"\nchannel = \"mass.x\"\nwithin = 1.0\n");
-  const std::vector<std::string> command = {"simulate", model, "-o", bench.at("out"), "--integrator", "moreau", "--step", "0.01",
-                                            "--force", "--report"};
+  const std::string model =
+      bench.write("coarse.toml", std::string(k_oscillator) + "[[acceptance]]\nname = \"reach\"\nchannel = \"mass.x\"\nwithin = 1.0\n");
+  const std::vector<std::string> command = {"simulate", model,    "-o",   bench.at("out"), "--integrator",
+                                            "moreau",   "--step", "0.01", "--force",       "--report"};
   const Outcome outcome = steplap_does(command);
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "not to be trusted: the energy balance is off by"));
@@ -285,8 +273,8 @@ TEST_CASE("a run without criteria that is not to be trusted says so to programs,
     const std::string model = std::string(STEPLAP_MODELS) + name + ".toml", stem = fs::path(name).filename().string();
     for (const bool is_estimated : {true, false}) {
       const Workbench bench;
-      std::vector<std::string> command = {"simulate", model, "-o", bench.at("out"), "--integrator", "auto", "--tolerance", tolerance,
-                                          "--require-hold", "--report"};
+      std::vector<std::string> command = {"simulate", model,         "-o",      bench.at("out"),  "--integrator",
+                                          "auto",     "--tolerance", tolerance, "--require-hold", "--report"};
       if (!is_estimated) command.push_back("--no-estimate");
       const Outcome outcome = steplap_does(command);
       CHECK(outcome.code == 4);
@@ -315,7 +303,8 @@ TEST_CASE("samples meet the joints, where their rows depend on each other, too")
          << "] }\nb = { body = \"" << b << "\", at = [" << x << ", " << y << "] }\n";
   };
   for (int i = 0; i < 3; ++i) {
-    text << "[[body]]\nname = \"" << cranks[i] << "\"\nmass = 1\ninertia = 0.1\nposition = [" << 2.0 * i + 0.5 * c << ", " << 0.5 * s << "]\n";
+    text << "[[body]]\nname = \"" << cranks[i] << "\"\nmass = 1\ninertia = 0.1\nposition = [" << 2.0 * i + 0.5 * c << ", " << 0.5 * s
+         << "]\n";
     pin("foot of " + cranks[i], cranks[i], "ground", 2.0 * i, 0.0);
     pin("head of " + cranks[i], cranks[i], "bar", 2.0 * i + c, s);
   }
@@ -335,7 +324,8 @@ TEST_CASE("samples meet the joints, where their rows depend on each other, too")
     for (int i = 0; i < 3; ++i) {
       const auto foot = place(cranks[i], -0.5 * c, -0.5 * s, row), head = place(cranks[i], 0.5 * c, 0.5 * s, row);
       const auto of_bar = place("bar", 2.0 * i - 2.0, 0.0, row);
-      for (const double off : {foot[0] - 2.0 * i, foot[1], head[0] - of_bar[0], head[1] - of_bar[1]}) worst = std::max(worst, std::abs(off));
+      for (const double off : {foot[0] - 2.0 * i, foot[1], head[0] - of_bar[0], head[1] - of_bar[1]})
+        worst = std::max(worst, std::abs(off));
     }
   CHECK(results.times.size() == 81);
   CHECK(worst <= 2e-12); // projection_tolerance is 1e-12, of a pin's two rows; the curve through steps of 1e-6 is 2e-7 off

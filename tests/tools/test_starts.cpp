@@ -43,12 +43,13 @@ struct Box {
   [[nodiscard]] double stiffness() const { return 0.5 * weight / sag; } // of a foot
   [[nodiscard]] std::string body(double up, const std::string& name = "box", double x = 0.0) const {
     return "[[body]]\nname = \"" + name + "\"\nmass = " + number(mass) + "\ninertia = " + number(inertia_share * mass * size() * size()) +
-           "\nposition = " + point(x, high + up) + "\noutline = [" + point(-half, -high) + ", " + point(half, -high) + ", " + point(half, high) + ", " +
-           point(-half, high) + "]\n";
+           "\nposition = " + point(x, high + up) + "\noutline = [" + point(-half, -high) + ", " + point(half, -high) + ", " +
+           point(half, high) + ", " + point(-half, high) + "]\n";
   }
   [[nodiscard]] std::string foot(const std::string& name, double x, const std::string& more = "") const {
-    return element("unilateral_contact", name, "a = { body = \"box\", point = " + point(x, -high) + " }\nstiffness = " + number(stiffness()) +
-                                                   "\ndamping = " + number(0.2 * std::sqrt(stiffness() * mass)) + "\n" + more);
+    return element("unilateral_contact", name,
+                   "a = { body = \"box\", point = " + point(x, -high) + " }\nstiffness = " + number(stiffness()) +
+                       "\ndamping = " + number(0.2 * std::sqrt(stiffness() * mass)) + "\n" + more);
   }
   [[nodiscard]] std::string feet(const std::string& more = "") const { return foot("left", -half, more) + foot("right", half, more); }
 };
@@ -73,8 +74,8 @@ const std::set<std::string> k_none;
 std::string arm(Random& random, double beyond) {
   const double length = random.decades(-3.0, 3.0), mass = random.decades(-2.0, 4.0), angle = random.between(-0.5, 0.5);
   const double moment = mass * k_g * 0.5 * length * std::cos(angle), stiffness = moment / 1e-4;
-  return "[[body]]\nname = \"arm\"\nmass = " + number(mass) + "\ninertia = " + number(mass * length * length / 12.0) + "\nposition = " +
-         point(0.5 * length * std::cos(angle), 0.5 * length * std::sin(angle)) + "\nangle = " + number(angle) + "\n" +
+  return "[[body]]\nname = \"arm\"\nmass = " + number(mass) + "\ninertia = " + number(mass * length * length / 12.0) +
+         "\nposition = " + point(0.5 * length * std::cos(angle), 0.5 * length * std::sin(angle)) + "\nangle = " + number(angle) + "\n" +
          element("revolute", "pin", "a = { body = \"arm\", point = " + point(-0.5 * length, 0.0) + " }\nb = \"ground\"") +
          element("limit", "stop", "a = \"arm\"\ncoordinate = \"angle\"\nlower = " + number(beyond) + "\nstiffness = " + number(stiffness));
 }
@@ -87,9 +88,12 @@ TEST_CASE("what begins deep in a contact is found, whatever the contact, and wha
     CAPTURE(i);
     const Box box(random);
     const double deep = box.sag * random.between(15.0, 100.0);
-    const std::string outline = element("polygon_contact", "face", "a = \"box\"\nstiffness = " + number(box.weight / (box.sag * 2.0 * box.half)));
-    const std::string wheel = element("segment_contact", "wheel", "a = { body = \"box\", point = [0.0, 0.0] }\nradius = " + number(box.high) + "\nfrom = " +
-                                          point(-9.0 * box.half, 0.0) + "\nto = " + point(9.0 * box.half, 0.0) + "\nstiffness = " + number(2.0 * box.stiffness()));
+    const std::string outline =
+        element("polygon_contact", "face", "a = \"box\"\nstiffness = " + number(box.weight / (box.sag * 2.0 * box.half)));
+    const std::string wheel =
+        element("segment_contact", "wheel",
+                "a = { body = \"box\", point = [0.0, 0.0] }\nradius = " + number(box.high) + "\nfrom = " + point(-9.0 * box.half, 0.0) +
+                    "\nto = " + point(9.0 * box.half, 0.0) + "\nstiffness = " + number(2.0 * box.stiffness()));
     for (const std::string& contact : {box.feet(), outline, wheel}) {
       CAPTURE(contact);
       CHECK(codes_of(box.body(-deep) + contact).warnings == std::set<std::string>{"starts_deep"});
@@ -137,14 +141,16 @@ TEST_CASE("a foot beside its face is found, unless another face carries it") {
     const Box box(random);
     const double beside = box.half * random.between(0.1, 2.5), up = random.chance(0.5) ? 0.0 : 0.1 * box.size();
     const auto face = [&](double low, double high) { return "ends = " + point(low, high); };
-    const std::string away = box.foot("left", -box.half, face(-box.half + beside, 9.0 * box.half)) + box.foot("right", box.half, face(-2.0 * box.half, box.half - beside));
+    const std::string away = box.foot("left", -box.half, face(-box.half + beside, 9.0 * box.half)) +
+                             box.foot("right", box.half, face(-2.0 * box.half, box.half - beside));
     CHECK(codes_of(box.body(up) + away).warnings.count("foot_beside_face") == 1);
     CHECK(codes_of(box.body(0.0) + box.feet(face(-1.5 * box.half, 1.5 * box.half))).warnings == k_none);
     // Two faces in a row: each foot is on one of them.
     std::string row;
     for (const double x : {-box.half, box.half})
       for (const bool is_left : {true, false})
-        row += box.foot((x < 0.0 ? "left on " : "right on ") + std::string(is_left ? "1" : "2"), x, is_left ? face(-9.0 * box.half, 0.0) : face(0.0, 9.0 * box.half));
+        row += box.foot((x < 0.0 ? "left on " : "right on ") + std::string(is_left ? "1" : "2"), x,
+                        is_left ? face(-9.0 * box.half, 0.0) : face(0.0, 9.0 * box.half));
     CHECK(codes_of(box.body(0.0) + row).warnings == k_none);
   }
 }

@@ -80,12 +80,15 @@ const std::vector<std::pair<std::string, std::string>> k_colours{{"NO_COLOR", ""
 TEST_CASE("on a terminal the verdict has the colour of its meaning; piped or with NO_COLOR nothing has") {
   const Workbench bench;
   // By its bound the ball's force holds, is to be inspected, rejected, or left open.
-  const auto model = [&](const std::string& name, const std::string& acceptance) { return bench.write(name + ".toml", k_bouncer + acceptance); };
+  const auto model = [&](const std::string& name, const std::string& acceptance) {
+    return bench.write(name + ".toml", k_bouncer + acceptance);
+  };
   const std::string asked = "[[acceptance]]\nname = \"force\"\nchannel = \"floor.force\"\n";
-  const std::vector<std::tuple<std::string, std::string, const char*>> all{{"HOLD", model("holds", asked + "within = 1e6\n"), "1;32"},
-                                                                         {"INSPECT", model("inspect", asked + "within = 1\n"), "1;33"},
-                                                                         {"REJECT", model("reject", asked + "within = 1\nconsequence = \"reject\"\n"), "1;31"},
-                                                                         {"OPEN", model("open", ""), "1;35"}};
+  const std::vector<std::tuple<std::string, std::string, const char*>> all{
+      {"HOLD", model("holds", asked + "within = 1e6\n"), "1;32"},
+      {"INSPECT", model("inspect", asked + "within = 1\n"), "1;33"},
+      {"REJECT", model("reject", asked + "within = 1\nconsequence = \"reject\"\n"), "1;31"},
+      {"OPEN", model("open", ""), "1;35"}};
   for (const auto& [verdict, file, colour] : all) {
     CAPTURE(verdict);
     Call call{.arguments = {"simulate", file, "-f", "-q", "-o", bench.at("out")}, .environment = k_colours};
@@ -174,7 +177,8 @@ TEST_CASE("study builds nothing after a no, after nothing and at the end of inpu
     const Session session = on_terminal(place.call);
     CHECK(session.code == 2);
     CHECK(has(session.screen, place.call.question));
-    CHECK_MESSAGE(has(session.screen, std::string("\nsteplap: error: Studies need a second program, which is not built. ") + k_remedy), session.screen);
+    CHECK_MESSAGE(has(session.screen, std::string("\nsteplap: error: Studies need a second program, which is not built. ") + k_remedy),
+                  session.screen);
     CHECK_FALSE(place.is_built());
   }
 }

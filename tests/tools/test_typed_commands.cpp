@@ -29,28 +29,27 @@ TEST_CASE("what cannot be said is an error, of every command") {
   const std::string quick = " --end 0.2 --no-estimate";
   REQUIRE(steplap_does({"simulate", model, "-o", bench.at("ran"), "--end", "0.2", "--no-estimate"}).code == 0);
   REQUIRE(steplap_does({"record", "--make", "endaq", bench.at("shock.csv")}).code == 0);
-  const std::vector<std::pair<std::string, std::string>> all = {
-      {"simulate", model + " -o " + bench.at("s") + quick},
-      {"explore", model + " --no-browser"},
-      {"show", bench.at("ran") + "/a"},
-      {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
-      {"plot", bench.at("ran") + "/a --channels ball.y -o " + bench.at("p.svg")},
-      {"assess", "--static iec-1g --directions 0 " + core},
-      {"check", model},
-      {"channels", model},
-      {"equilibrium", model},
-      {"modes", model},
-      {"joint", core},
-      {"core", core},
-      {"accuracy", model + " --end 0.2 --setting rk4@1e-2 -o " + bench.at("acc")},
-      {"record", bench.at("shock.csv")},
-      {"elements", ""},
-      {"new", "block"},
-      {"diff", model + " " + core},
-      {"help", "check"},
-      {"schema", ""},
-      {"--help", ""},
-      {"--version", ""}};
+  const std::vector<std::pair<std::string, std::string>> all = {{"simulate", model + " -o " + bench.at("s") + quick},
+                                                                {"explore", model + " --no-browser"},
+                                                                {"show", bench.at("ran") + "/a"},
+                                                                {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
+                                                                {"plot", bench.at("ran") + "/a --channels ball.y -o " + bench.at("p.svg")},
+                                                                {"assess", "--static iec-1g --directions 0 " + core},
+                                                                {"check", model},
+                                                                {"channels", model},
+                                                                {"equilibrium", model},
+                                                                {"modes", model},
+                                                                {"joint", core},
+                                                                {"core", core},
+                                                                {"accuracy", model + " --end 0.2 --setting rk4@1e-2 -o " + bench.at("acc")},
+                                                                {"record", bench.at("shock.csv")},
+                                                                {"elements", ""},
+                                                                {"new", "block"},
+                                                                {"diff", model + " " + core},
+                                                                {"help", "check"},
+                                                                {"schema", ""},
+                                                                {"--help", ""},
+                                                                {"--version", ""}};
   const auto said = [&](const std::string& arguments) {
     return exit_code(std::string(STEPLAP_PROGRAM) + " " + arguments + " > /dev/full 2> " + bench.at("err"));
   };
@@ -61,7 +60,8 @@ TEST_CASE("what cannot be said is an error, of every command") {
     CHECK_MESSAGE(has(text_of(bench.at("err")), "cannot write to the standard output"), text_of(bench.at("err")));
   }
   for (const steplap::Command& command : steplap::all_commands()) // none is forgotten; study and assess are of a program of its own
-    CHECK_MESSAGE((command.name == "study" || command.name == "assess" || std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first == command.name; })),
+    CHECK_MESSAGE((command.name == "study" || command.name == "assess" ||
+                   std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first == command.name; })),
                   command.name);
   CHECK(exit_code(std::string(STEPLAP_PROGRAM) + " check " + model + " > /dev/null 2>&1") == 0);
 }
@@ -79,7 +79,9 @@ TEST_CASE("a device or a folder is not replaced by a file") {
 TEST_CASE("names that a terminal, a table or a folder would take for something else") {
   const Workbench bench;
   std::string text = k_oscillator;
-  const auto put = [&text](const std::string& old, const std::string& now) { return text.substr(0, text.find(old)) + now + text.substr(text.find(old) + old.size()); };
+  const auto put = [&text](const std::string& old, const std::string& now) {
+    return text.substr(0, text.find(old)) + now + text.substr(text.find(old) + old.size());
+  };
   const auto errors = [&](const std::string& model) {
     const Outcome outcome = steplap_does({"check", bench.write("n.toml", model)});
     CHECK(outcome.code == 3);

@@ -35,9 +35,7 @@ inline std::string text_of(const fs::path& path) {
   return text.str();
 }
 
-inline bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// A mass on a spring, released from rest; a spare signal that nothing uses.
 inline constexpr const char* k_oscillator = R"(title = "a mass on a spring"
@@ -101,8 +99,7 @@ class Workbench {
 public:
   Workbench() {
     static int count = 0;
-    path_ = fs::temp_directory_path() /
-            ("steplap_tools_" + std::to_string(::getpid()) + "_" + std::to_string(++count));
+    path_ = fs::temp_directory_path() / ("steplap_tools_" + std::to_string(::getpid()) + "_" + std::to_string(++count));
     fs::create_directories(path_);
   }
   Workbench(const Workbench&) = delete;

@@ -42,7 +42,8 @@ pitch_direction = "across"
 book = "saw_tooth"
 clearance = "0.5 mm"
 static_friction = 0.2
-)" + section + pressed;
+)" + section +
+         pressed;
 }
 const std::string k_one_packet = "limb_width = 0.5\nyoke_height = 0.5\nstack_depth = 0.4\n";
 const std::string k_stepped = "packets = [[0.4, 0.1], [0.5, 0.2], [0.3, 0.1]]\nyoke_heights = [0.4, 0.5, 0.3]\n";
@@ -83,7 +84,8 @@ TEST_CASE("bolts spread about the middle press as the pressure that is their for
   const auto one = interfaces_of(by_bolts), other = interfaces_of(by_pressure);
   REQUIRE(one.size() == other.size());
   REQUIRE(one.size() >= 4);
-  for (std::size_t i = 0; i < one.size(); ++i) CHECK(one[i]->pressure == doctest::Approx(other[i]->pressure).epsilon(1e-14)); // rounding of a product
+  for (std::size_t i = 0; i < one.size(); ++i)
+    CHECK(one[i]->pressure == doctest::Approx(other[i]->pressure).epsilon(1e-14)); // rounding of a product
   // The same where each is said, in whatever order and wherever they are, as long as they balance about the middle.
   const Model placed = model_of(clamp("places = [1.4, -0.9, 0.2, -0.7]\npreload = 37.5e3\n"));
   CHECK(pressure_at(placed, "front limb joint") == doctest::Approx(1e5).epsilon(1e-14));
@@ -128,8 +130,8 @@ TEST_CASE("each packet bears all of the force over the height of its own yoke") 
     CHECK(least <= own * (1 + 1e-12));
     CHECK(most >= own * (1 - 1e-12));
   }
-  CHECK(pressure_at(model_of(clamp("count = 4\npreload = 25e3\n"), k_stepped + "pressure_shares = [1.0, 1.0, 1.0]\n"), "front limb joint") ==
-        doctest::Approx(100e3 / (k_length * k_height)).epsilon(1e-13)); // shares that are given stay
+  CHECK(pressure_at(model_of(clamp("count = 4\npreload = 25e3\n"), k_stepped + "pressure_shares = [1.0, 1.0, 1.0]\n"),
+                    "front limb joint") == doctest::Approx(100e3 / (k_length * k_height)).epsilon(1e-13)); // shares that are given stay
 }
 
 TEST_CASE("what relaxation, settling and warmth leave of a preload") {
@@ -140,14 +142,17 @@ TEST_CASE("what relaxation, settling and warmth leave of a preload") {
   CHECK(pressure_of("") == doctest::Approx(150e3 / 1.5).epsilon(1e-13));
   CHECK(pressure_of("relaxation = 0.3\n") == doctest::Approx(0.7 * 150e3 / 1.5).epsilon(1e-13));
   CHECK(pressure_of("settling = \"0.2 mm\"\n") == doctest::Approx((150e3 - k * 0.2e-3) / 1.5).epsilon(1e-12));
-  CHECK(pressure_of("warming = 50\nexpansion = 7e-6\nstack_expansion = 12e-6\n") == doctest::Approx((150e3 + k * 0.4 * 5e-6 * 50) / 1.5).epsilon(1e-12));
-  CHECK(pressure_of("warming = -40\nexpansion = 7e-6\nlength = 0.5\n") == doctest::Approx((150e3 - k * 0.5 * 5e-6 * 40) / 1.5).epsilon(1e-12));
+  CHECK(pressure_of("warming = 50\nexpansion = 7e-6\nstack_expansion = 12e-6\n") ==
+        doctest::Approx((150e3 + k * 0.4 * 5e-6 * 50) / 1.5).epsilon(1e-12));
+  CHECK(pressure_of("warming = -40\nexpansion = 7e-6\nlength = 0.5\n") ==
+        doctest::Approx((150e3 - k * 0.5 * 5e-6 * 40) / 1.5).epsilon(1e-12));
   // Steel bolts in a steel stack know no warmth.
   CHECK(pressure_of("warming = 80\nexpansion = 12e-6\n") == doctest::Approx(150e3 / 1.5).epsilon(1e-13));
 }
 
 TEST_CASE("a preload is varied as any number, and the corners follow") {
-  Model given = parse_given_model("gravity = [0.0, 0.0]\n[simulation]\nend = 0.01\n" + core_text(k_one_packet, clamp("count = 6\npreload = \"25 kN\"\n")),
+  Model given = parse_given_model("gravity = [0.0, 0.0]\n[simulation]\nend = 0.01\n" +
+                                      core_text(k_one_packet, clamp("count = 6\npreload = \"25 kN\"\n")),
                                   "core.toml", transformer_catalog());
   set_value(given, "clamp.bolts.preload", 50e3);
   CHECK(pressure_at(completed(given), "front limb joint") == doctest::Approx(2e5).epsilon(1e-14));
@@ -158,17 +163,22 @@ TEST_CASE("what is wrong with clamps is said") {
   CHECK(has(refusal("pressure = 1e5\n" + clamp("preload = 1e5\n")), "'pressure' and clamp 'bolts' say the same: give one of them"));
   CHECK(has(refusal(clamp("preload = 1e5\nat = \"top\"\n")), "the bottom yoke of core 'core' is pressed by nothing"));
   CHECK(has(refusal(clamp("preload = 1e5\nplaces = [1.6]\n")), "the place 1.6 m lies beyond the yoke, which reaches 1.5 m to either side"));
-  CHECK(has(refusal(clamp("preload = 1e5\nplaces = [0.6]\n")), "beyond a sixth of its length: at its other end nothing would press the sheets"));
+  CHECK(has(refusal(clamp("preload = 1e5\nplaces = [0.6]\n")),
+            "beyond a sixth of its length: at its other end nothing would press the sheets"));
   CHECK(has(refusal(clamp("preload = 1e5\nplaces = [0.3, 0.1]\ncount = 3\n")), "'count' says 3 clamps, 'places' gives 2"));
-  CHECK(has(refusal(clamp("preload = 1e4\nstiffness = 2e8\nstack_stiffness = 2e8\nsettling = 0.001\n")), "nothing is left (-90000 N): it is loose"));
+  CHECK(has(refusal(clamp("preload = 1e4\nstiffness = 2e8\nstack_stiffness = 2e8\nsettling = 0.001\n")),
+            "nothing is left (-90000 N): it is loose"));
   CHECK(has(refusal(clamp("preload = 1e4\nsettling = 0.001\n")), "needs 'stiffness' and 'stack_stiffness', by which it changes the force"));
   CHECK(has(refusal(clamp("preload = 1e4\nstiffness = 2e8\n")), "'stiffness' and 'stack_stiffness' are in series: give both"));
-  CHECK(has(refusal(clamp("preload = 1e5\nstiffness = 2e8\nstack_stiffness = 2e8\nexpansion = 6e-6\nwarming = \"20 celsius\"\n")), "look like a temperature and not like a difference"));
-  CHECK(has(refusal("pressure = 1e5\n[[clamp]]\nname = \"bolts\"\ncore = \"cor\"\npreload = 1e5\n"), "there is no core 'cor' (did you mean 'core'?)"));
+  CHECK(has(refusal(clamp("preload = 1e5\nstiffness = 2e8\nstack_stiffness = 2e8\nexpansion = 6e-6\nwarming = \"20 celsius\"\n")),
+            "look like a temperature and not like a difference"));
+  CHECK(has(refusal("pressure = 1e5\n[[clamp]]\nname = \"bolts\"\ncore = \"cor\"\npreload = 1e5\n"),
+            "there is no core 'cor' (did you mean 'core'?)"));
   // Fields out of their ranges are told once, as such; a name is used once.
   CHECK(refusal(clamp("preload = -1e5\n")) == "'preload' of clamp 'bolts' must be greater than 0 N, got -1e+05");
   CHECK(refusal(clamp("preload = 1e5\nrelaxation = 1.0\n")) == "'relaxation' of clamp 'bolts' must be at most 0.99, got 1");
   CHECK(refusal(clamp("preload = inf\n")) == "'preload' of clamp 'bolts' must be finite, got inf");
   CHECK(refusal(clamp("preload = 1e5\n") + clamp("preload = 2e5\n")) == "clamp named 'bolts' exists already: choose another name");
-  CHECK(has(refusal(clamp("preload = 1e5\nyoke_length = 2.4\n")), "forces that press on 2.4 m do not reach the axis of the limb 1.25 m from the middle"));
+  CHECK(has(refusal(clamp("preload = 1e5\nyoke_length = 2.4\n")),
+            "forces that press on 2.4 m do not reach the axis of the limb 1.25 m from the middle"));
 }

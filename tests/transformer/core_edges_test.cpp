@@ -1,8 +1,8 @@
 // A core whose sheets butt from the start: parallel lines of a corner bear as one bed, so that events are those of corners, not of
 // each kind of interface, and what edges bear goes over into cores with a hair's clearance.
+#include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/equilibrium.h"
-#include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/sanitized.h"
 #include "transformer/catalog.h"

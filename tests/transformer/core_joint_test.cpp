@@ -148,11 +148,13 @@ TEST_CASE("what of it contradicts itself or is missing is refused where it stand
   CHECK(has(refusal("joint_pressure_shares = [1.0]\n"), "one share for each of the 2 joints, got 1"));
   CHECK(has(refusal("joint_pressure_shares = [1.0, 0.0]\n"), "must be greater than 0"));
   CHECK(has(refusal("bottom_pressure_gradient = [0.0, 0.0]\n"), "'bottom_pressure_gradient' needs 'pressure_gradient'"));
-  CHECK(has(refusal("pressure_gradient = [6e5, 0.0]\n"), "core.toml:41:21: error: core 'core': 'pressure_gradient' is too steep for 'pressure'"));
+  CHECK(has(refusal("pressure_gradient = [6e5, 0.0]\n"),
+            "core.toml:41:21: error: core 'core': 'pressure_gradient' is too steep for 'pressure'"));
   CHECK(refusal("pressure_gradient = [3.9e5, 0.0]\n") == ""); // a mitre reaches 0.25 m to either side
   CHECK(has(refusal("pressure_loss = 1.0\n"), "0.99"));
   CHECK(has(refusal("pressure_signal = \"shok\"\n"), "(did you mean 'shock'?)"));
-  CHECK(has(refusal("edge_stiffness = \"1 GN/m\"\n"), "core.toml:41:18: error: 'edge_stiffness' of core 'core': '1 GN/m' has the unit 'GN/m', but a unit like 'N/m^2'"));
+  CHECK(has(refusal("edge_stiffness = \"1 GN/m\"\n"),
+            "core.toml:41:18: error: 'edge_stiffness' of core 'core': '1 GN/m' has the unit 'GN/m', but a unit like 'N/m^2'"));
   CHECK(has(refusal("pressure_gradient = [\"1 kPa\", 0.0]\n"), "Pa/m"));
   // across the stack
   CHECK(has(refusal("transverse_support = \"front\"\n"), "'transverse_support' needs 'transverse_acceleration'"));
@@ -205,8 +207,8 @@ TEST_CASE("a shock across the stack takes the pressure off, slice by slice") {
 TEST_CASE("yokes that two tables share are weighed: five limbs") {
   const Model model = read_model(std::string(STEPLAP_MODELS) + "/layouts/five_limb.toml", transformer_catalog());
   const double strip = 0.48 * (2 * 2.8 + 0.44), half_gap = 0.25e-3;
-  const double cuts = 2 * (0.5 * 0.44 * 0.48 + half_gap * std::hypot(0.44, 0.48)) +
-                      3 * (0.5 * 0.8 * 0.4 + half_gap * 2 * 0.4 * std::sqrt(2.0));
+  const double cuts =
+      2 * (0.5 * 0.44 * 0.48 + half_gap * std::hypot(0.44, 0.48)) + 3 * (0.5 * 0.8 * 0.4 + half_gap * 2 * 0.4 * std::sqrt(2.0));
   const double surface = 7650 * std::floor(0.62 * 0.96 / k_sheet) * k_sheet;
   const auto steel = yoke_steel(model, "active part");
   REQUIRE(steel);
@@ -214,8 +216,8 @@ TEST_CASE("yokes that two tables share are weighed: five limbs") {
   CHECK(*steel == doctest::Approx(2 * surface * (strip - cuts)).epsilon(3e-4));
   CHECK_FALSE(yoke_steel(model, "nobody"));
   try {
-    static_cast<void>(read_model(std::string(STEPLAP_MODELS) + "/layouts/five_limb.toml", transformer_catalog(),
-                                 {"body.active part.mass=19000"}));
+    static_cast<void>(
+        read_model(std::string(STEPLAP_MODELS) + "/layouts/five_limb.toml", transformer_catalog(), {"body.active part.mass=19000"}));
     CHECK(false);
   } catch (const ModelError& error) {
     CHECK(has(error.what(), "19000 kg, is less than the yokes of core 'return limbs' weigh alone, 20"));
@@ -235,18 +237,17 @@ TEST_CASE("two tables that are parts of one stack have yokes each; a table witho
   // The second: two yokes of 2.9 m × 0.4 m less half of 0.16 m² at each of four crossings, and the clearances' 8 · 0.14e-3 m².
   const double more = 7650 * k_sheets * k_sheet * 2 * (0.4 * 2.9 - 0.16 - 2 * 0.25e-3 * 0.4 * std::sqrt(2.0));
   CHECK(both - one == doctest::Approx(more).epsilon(3e-4));
-  CHECK_FALSE(yoke_steel(model_of("", {"core.core.limbs=[\"front limb\"]", "body.back limb.mass=1", "body.back limb.inertia=1"}),
-                         "active part"));
+  CHECK_FALSE(
+      yoke_steel(model_of("", {"core.core.limbs=[\"front limb\"]", "body.back limb.mass=1", "body.back limb.inertia=1"}), "active part"));
 }
 
 TEST_CASE("what bears between a limb and the active part is named beside the joint, with what it bore") {
   const auto assess = [](const std::string& more) {
-    const Model model =
-        model_of(more + "[[marker]]\nname = \"plate end\"\nbody = \"active part\"\nat = [1.25, 0.0]\n"
-                        "[[element]]\nkind = \"tie\"\nname = \"tie plate\"\na = \"front limb\"\nb = \"plate end\"\n"
-                        "axis = [0.0, 1.0]\nacts = \"both\"\nstiffness = 1e9\n"
-                        "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"active part\"\nb = \"ground\"\n"
-                        "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"front limb\"\nforce = [0.0, -20000.0]\n");
+    const Model model = model_of(more + "[[marker]]\nname = \"plate end\"\nbody = \"active part\"\nat = [1.25, 0.0]\n"
+                                        "[[element]]\nkind = \"tie\"\nname = \"tie plate\"\na = \"front limb\"\nb = \"plate end\"\n"
+                                        "axis = [0.0, 1.0]\nacts = \"both\"\nstiffness = 1e9\n"
+                                        "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"active part\"\nb = \"ground\"\n"
+                                        "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"front limb\"\nforce = [0.0, -20000.0]\n");
     const auto system = compile(model);
     return assess_joints(model, simulate(*system, system->initial_state(), options_of(model)));
   };
@@ -311,9 +312,7 @@ Model pushed_core(const std::string& integrator, const std::string& tolerance) {
                   {"simulation.integrator=" + integrator, "simulation.tolerance=" + tolerance, "simulation.end=0.005"});
 }
 
-RunResult run(const Model& model, const System& system) {
-  return simulate(system, system.initial_state(), options_of(model));
-}
+RunResult run(const Model& model, const System& system) { return simulate(system, system.initial_state(), options_of(model)); }
 
 ChannelRange& range_of(RunResult& result, const std::string& name) {
   for (ChannelRange& range : result.ranges)
@@ -376,7 +375,8 @@ TEST_CASE("stiffnesses, losses and shares that no core has are told of") {
     return all;
   };
   CHECK(said("") == "");
-  CHECK(said("contact_stiffness = 2e10\nshear_modulus = 8e10\nedge_stiffness = 1e11\nallowed_line_load = 1e7\npressure_loss = 0.1\n") == "");
+  CHECK(said("contact_stiffness = 2e10\nshear_modulus = 8e10\nedge_stiffness = 1e11\nallowed_line_load = 1e7\npressure_loss = 0.1\n") ==
+        "");
   CHECK(has(said("contact_stiffness = 2e5\n"), "'contact_stiffness' = 2e+05 N/m^3 is unusual"));
   CHECK(has(said("tangential_stiffness = 2e5\n"), "'tangential_stiffness' ="));
   CHECK(has(said("contact_stiffness = 2e10\nshear_modulus = 8e6\n"), "'shear_modulus' = 8e+06 Pa is unusual"));

@@ -23,7 +23,7 @@ namespace {
 constexpr double k_thickness = 0.3e-3, k_density = 7650.0;
 
 struct Case {
-  std::vector<Vec2> packets; ///< width, depth
+  std::vector<Vec2> packets;         ///< width, depth
   std::vector<double> yokes, shares; ///< shares of the pressure: none, or one a packet
   std::string yoke_steps = "both", book = "saw_tooth", direction = "across";
   double core_height = 2.4, pitch = 5e-3, clearance = 0.6e-3, notch = 0.25 * std::numbers::pi;
@@ -186,9 +186,7 @@ private:
       for (long k = n - 1; k >= 0; --k) order.push_back(k);
     return order[static_cast<std::size_t>(layer) % order.size()];
   }
-  [[nodiscard]] double share_of(std::size_t sheet) const {
-    return c_.shares.empty() ? 1.0 : c_.shares[sheets_[sheet].packet];
-  }
+  [[nodiscard]] double share_of(std::size_t sheet) const { return c_.shares.empty() ? 1.0 : c_.shares[sheets_[sheet].packet]; }
   [[nodiscard]] bool is_parted(std::size_t sheet) const {
     for (const double duct : c_.ducts)
       if (static_cast<std::size_t>(std::lround(duct / k_thickness)) == sheet) return true;
@@ -199,10 +197,7 @@ private:
     return c_.core_height - (c_.yoke_steps == "both" ? less : c_.yoke_steps == "outside" ? 2 * less : 0.0);
   }
   static Convex box(double x0, double x1, double y0, double y1) {
-    return {{{1, 0}, std::min(x0, x1)},
-            {{-1, 0}, -std::max(x0, x1)},
-            {{0, 1}, std::min(y0, y1)},
-            {{0, -1}, -std::max(y0, y1)}};
+    return {{{1, 0}, std::min(x0, x1)}, {{-1, 0}, -std::max(x0, x1)}, {{0, 1}, std::min(y0, y1)}, {{0, -1}, -std::max(y0, y1)}};
   }
   [[nodiscard]] double angle(std::size_t packet) const {
     if (c_.is_middle) return c_.notch;
@@ -212,18 +207,12 @@ private:
   [[nodiscard]] Convex beyond(std::size_t i, double level, double shift) const {
     const std::size_t p = sheets_[i].packet;
     const double a = angle(p), w = c_.packets[p].x();
-    const double pitch = c_.pitch * (c_.direction == "along_limb"   ? std::cos(a)
-                                     : c_.direction == "along_yoke" ? std::sin(a)
-                                                                    : 1.0);
-    const double q =
-        (static_cast<double>(sheets_[i].position) - 0.5 * static_cast<double>(c_.steps - 1)) *
-            pitch +
-        shift;
+    const double pitch = c_.pitch * (c_.direction == "along_limb" ? std::cos(a) : c_.direction == "along_yoke" ? std::sin(a) : 1.0);
+    const double q = (static_cast<double>(sheets_[i].position) - 0.5 * static_cast<double>(c_.steps - 1)) * pitch + shift;
     Convex lines;
     for (const double side : {1.0, -1.0}) {
       if (!c_.is_middle && side != c_.side) continue;
-      const Vec2 n(side * std::sin(a), -level * std::cos(a)),
-          corner(-0.5 * side * w, level * (0.5 * height(p) - c_.yokes[p]));
+      const Vec2 n(side * std::sin(a), -level * std::cos(a)), corner(-0.5 * side * w, level * (0.5 * height(p) - c_.yokes[p]));
       lines.push_back({n, n.dot(corner) + q});
     }
     return lines;
@@ -231,30 +220,25 @@ private:
   [[nodiscard]] std::vector<Convex> holes(double level) const {
     std::vector<Convex> all;
     for (const Vec2& h : c_.holes)
-      all.push_back(hole_at({(c_.is_middle ? 1.0 : c_.side) * h.x(),
-                             level * (0.5 * (c_.core_height - highest_) + h.y())},
-                            c_.hole));
+      all.push_back(hole_at({(c_.is_middle ? 1.0 : c_.side) * h.x(), level * (0.5 * (c_.core_height - highest_) + h.y())}, c_.hole));
     return all;
   }
   [[nodiscard]] Sheet limb(std::size_t i, double level) const {
     const std::size_t p = sheets_[i].packet;
     const double w = c_.packets[p].x();
-    return {both(box(-0.5 * w, 0.5 * w, 0, 0.5 * level * height(p)),
-                 beyond(i, level, 0.5 * c_.clearance)),
-            {},
-            holes(level)};
+    return {both(box(-0.5 * w, 0.5 * w, 0, 0.5 * level * height(p)), beyond(i, level, 0.5 * c_.clearance)), {}, holes(level)};
   }
   [[nodiscard]] Sheet yoke(std::size_t i, double level, double reach) const {
     const std::size_t p = sheets_[i].packet;
     const double w = c_.packets[p].x(), top = 0.5 * level * height(p), r = std::max(reach, w);
-    const Convex strip = c_.is_middle ? box(-w, w, top - level * c_.yokes[p], top)
-                                      : box(-c_.side * r, 0.5 * c_.side * w, top - level * c_.yokes[p], top);
+    const Convex strip =
+        c_.is_middle ? box(-w, w, top - level * c_.yokes[p], top) : box(-c_.side * r, 0.5 * c_.side * w, top - level * c_.yokes[p], top);
     return {strip, beyond(i, level, -0.5 * c_.clearance), holes(level)};
   }
 
   // Interface i, behind sheet i: weighted with its packets' share of the pressure, too.
-  void add_interface(Sum& sum, double weight, std::size_t i, double level, const Vec2& move, double turn, const Vec2& pivot,
-                     double reach, const Convex& half = {}) const {
+  void add_interface(Sum& sum, double weight, std::size_t i, double level, const Vec2& move, double turn, const Vec2& pivot, double reach,
+                     const Convex& half = {}) const {
     if (is_parted(i + 1)) return;
     const double share = weight * 0.5 * (share_of(i) + share_of(i + 1));
     for (const std::size_t of_limb : {i, i + 1}) {
@@ -265,8 +249,7 @@ private:
   }
 
   // limb ∩ yoke = (limb ∩ strip) − (limb ∩ strip ∩ notch), each less the holes of either, what both holes take once.
-  void add(Sum& sum, double share, const Sheet& limb, const Sheet& yoke, const Vec2& move,
-           double turn, const Vec2& pivot) const {
+  void add(Sum& sum, double share, const Sheet& limb, const Sheet& yoke, const Vec2& move, double turn, const Vec2& pivot) const {
     const auto moved = [&](const Convex& lines) {
       Convex out;
       for (const Line& l : lines) {
@@ -307,8 +290,7 @@ std::string list(const std::vector<double>& numbers) {
 
 std::string list(const std::vector<Vec2>& points) {
   std::string text = "[";
-  for (std::size_t i = 0; i < points.size(); ++i)
-    text += (i ? ", " : "") + list(std::vector<double>{points[i].x(), points[i].y()});
+  for (std::size_t i = 0; i < points.size(); ++i) text += (i ? ", " : "") + list(std::vector<double>{points[i].x(), points[i].y()});
   return text + "]";
 }
 
@@ -317,18 +299,13 @@ std::string core_text(const Case& c) {
   out << std::setprecision(17)
       << "[simulation]\nstep = 1e-3\n[[body]]\nname = \"active part\"\nmass = 40000\ninertia = "
          "60000\n"
-      << "[[body]]\nname = \"limb\"\nposition = [" << (c.is_middle ? 0.0 : 1.25 * c.side)
-      << ", 0.0]\n"
+      << "[[body]]\nname = \"limb\"\nposition = [" << (c.is_middle ? 0.0 : 1.25 * c.side) << ", 0.0]\n"
       << "[[core]]\nname = \"core\"\nactive_part = \"active part\"\n"
-      << (c.is_middle ? "middle_limbs" : "limbs")
-      << " = [\"limb\"]\ncore_height = " << c.core_height << "\npackets = " << list(c.packets)
-      << "\nyoke_heights = " << list(c.yokes) << "\nyoke_steps = \"" << c.yoke_steps
-      << "\"\nbook = \"" << c.book << "\"\nstep_pitch = " << c.pitch << "\npitch_direction = \""
-      << c.direction << "\"\nclearance = " << c.clearance << "\nsteps = " << c.steps
-      << "\nsheets_per_layer = " << c.per_layer
-      << "\nstacking_factor = 1.0\nsheet_thickness = " << k_thickness
-      << "\nnotch_angle = " << c.notch
-      << "\npressure = 1e5\nstatic_friction = 0.2\ndensity = " << k_density << "\n";
+      << (c.is_middle ? "middle_limbs" : "limbs") << " = [\"limb\"]\ncore_height = " << c.core_height << "\npackets = " << list(c.packets)
+      << "\nyoke_heights = " << list(c.yokes) << "\nyoke_steps = \"" << c.yoke_steps << "\"\nbook = \"" << c.book
+      << "\"\nstep_pitch = " << c.pitch << "\npitch_direction = \"" << c.direction << "\"\nclearance = " << c.clearance
+      << "\nsteps = " << c.steps << "\nsheets_per_layer = " << c.per_layer << "\nstacking_factor = 1.0\nsheet_thickness = " << k_thickness
+      << "\nnotch_angle = " << c.notch << "\npressure = 1e5\nstatic_friction = 0.2\ndensity = " << k_density << "\n";
   if (c.mitre > 0) out << "mitre_angle = " << c.mitre << "\n";
   std::vector<Vec2> ducts;
   for (const double duct : c.ducts) ducts.emplace_back(duct, 4e-3);
@@ -437,9 +414,7 @@ TEST_CASE("stepped sections with ducts: packets, and where they meet") {
       c.yokes.push_back(is_round ? w : w + 0.02);
       depth += d;
     }
-    for (int k = 0; k < 3; ++k)
-      c.ducts.push_back(static_cast<double>(2 + dice.one_of(std::lround(depth / k_thickness) - 4)) *
-                        k_thickness);
+    for (int k = 0; k < 3; ++k) c.ducts.push_back(static_cast<double>(2 + dice.one_of(std::lround(depth / k_thickness) - 4)) * k_thickness);
     c.ducts.push_back(c.packets[0].y()); // between two packets
     if (i % 3 == 1) c.shares = {0.8, 0.9, 1.2, 0.9, 0.7};
     c.is_middle = i % 4 == 3;
@@ -459,10 +434,7 @@ TEST_CASE("bolt holes: inside the sheets, across their cuts, and across the over
     c.side = i % 2 ? 1.0 : -1.0;
     // One on the mitre, one near it, one in the limb alone; of a T-joint's point one on its axis.
     if (c.is_middle) c.holes = {{dice.between(-0.1, -0.06), -0.16}, {dice.between(0.05, 0.08), -0.1}};
-    else
-      c.holes = {{0.0, dice.between(-3e-3, 3e-3)},
-                 {0.12, dice.between(0.10, 0.14)},
-                 {0.05, dice.between(-0.4, -0.3)}};
+    else c.holes = {{0.0, dice.between(-3e-3, 3e-3)}, {0.12, dice.between(0.10, 0.14)}, {0.05, dice.between(-0.4, -0.3)}};
     compare(c);
   }
 }
@@ -483,8 +455,9 @@ TEST_CASE("a pressure linear over a corner, on the polygons as they are: at rest
     if (i % 3 == 2) c.holes = {{0.0, 0.0}, {0.1, 0.08}};
     const Vec2 gradient(dice.between(-1e5, 1e5), dice.between(-1e5, 1e5));
     const std::string bands = i == 5 ? "bands = \"mean\"\n" : "";
-    const Model model = parse_model(core_text(c) + bands + "pressure_gradient = " + list(std::vector<double>{gradient.x(), gradient.y()}) + "\n",
-                                    "core.toml", transformer_catalog());
+    const Model model =
+        parse_model(core_text(c) + bands + "pressure_gradient = " + list(std::vector<double>{gradient.x(), gradient.y()}) + "\n",
+                    "core.toml", transformer_catalog());
     const auto system = compile(model);
     const auto& friction = dynamic_cast<const StepLapFriction&>(*system->frictions.at(0).friction);
     const State state = system->initial_state();

@@ -163,8 +163,8 @@ TEST_CASE("the paper's joint bears 411.9 kN") {
 }
 
 TEST_CASE("joints get the names asked for, or those of their limbs") {
-  const Model own = model_of(k_shape + k_counted), named =
-      model_of(k_shape + k_counted + "joints = [\"front joint\", \"back joint\"]\nmode = \"monitor\"\n");
+  const Model own = model_of(k_shape + k_counted),
+              named = model_of(k_shape + k_counted + "joints = [\"front joint\", \"back joint\"]\nmode = \"monitor\"\n");
   const auto names = [](const Model& model) {
     std::vector<std::string> found;
     for (const ElementEntry& entry : model.elements)
@@ -195,8 +195,7 @@ TEST_CASE("a joint of the model is used as it stands") {
   const Model model = model_of(k_shape + k_counted + joint);
   CHECK(compile(model)->frictions.size() == 2);
   for (const ElementEntry& entry : model.elements)
-    if (entry.element->name == "front limb joint")
-      CHECK(dynamic_cast<const StepLapJoint&>(*entry.element).on_apart == "continue");
+    if (entry.element->name == "front limb joint") CHECK(dynamic_cast<const StepLapJoint&>(*entry.element).on_apart == "continue");
   const std::string other = "[[element]]\nkind = \"step_lap_joint\"\nname = \"front limb joint\"\n"
                             "limb = \"back limb\"\nactive_part = \"active part\"\n";
   CHECK(has(refusal(k_shape + k_counted + other), "holds 'back limb' to 'active part', not 'front limb'"));
@@ -206,7 +205,8 @@ TEST_CASE("what a core says of joints declared elsewhere is honoured or refused,
   const std::string joint = "[[element]]\nkind = \"step_lap_joint\"\nname = \"front limb joint\"\n"
                             "limb = \"front limb\"\nactive_part = \"active part\"\n";
   const std::string core = k_shape + k_counted;
-  CHECK(has(refusal(core + "mode = \"monitor\"\n" + joint), "'mode' is for joints that this table adds; step_lap_joint 'front limb joint'"));
+  CHECK(
+      has(refusal(core + "mode = \"monitor\"\n" + joint), "'mode' is for joints that this table adds; step_lap_joint 'front limb joint'"));
   CHECK(has(refusal(core + "on_apart = \"continue\"\n" + joint), "'on_apart' is for joints"));
   CHECK(has(refusal(core + "least_margin = 1.5\n" + joint), "'least_margin' is for joints"));
   CHECK(refusal(core + "mode = \"monitor\"\n" + joint + "mode = \"monitor\"\n") == ""); // they agree
@@ -243,9 +243,7 @@ TEST_CASE("the mean overlap of a book is that of its closed form") {
 namespace {
 
 /// Between a and b across a diagonal of length l of a rectangle whose corners are h off it: chords are l (1 − |q|/h).
-double between_lines(double l, double h, double a, double b) {
-  return l * (b - a - (b * std::abs(b) - a * std::abs(a)) / (2.0 * h));
-}
+double between_lines(double l, double h, double a, double b) { return l * (b - a - (b * std::abs(b) - a * std::abs(a)) / (2.0 * h)); }
 
 } // namespace
 
@@ -274,20 +272,16 @@ TEST_CASE("a stack as it is built: sheets, interfaces, capacity") {
 }
 
 TEST_CASE("a pitch along the sheet is one across the mitre times the cosine or sine of its angle") {
-  const auto force = [](const std::vector<std::string>& overrides) {
-    return patch_of(model_of(k_shape + k_built, overrides)).force();
-  };
+  const auto force = [](const std::vector<std::string>& overrides) { return patch_of(model_of(k_shape + k_built, overrides)).force(); };
   const auto pitch = [](double s) { return "core.core.step_pitch=" + std::to_string(s); };
   const std::string limb = "core.core.pitch_direction=along_limb", yoke = "core.core.pitch_direction=along_yoke";
   // 45°: both the same; six digits of the text
   CHECK(force({limb}) == doctest::Approx(force({yoke})).epsilon(1e-12));
   CHECK(force({limb}) == doctest::Approx(force({pitch(5e-3 / std::sqrt(2.0))})).epsilon(1e-3));
   // tan α = 0.6/0.5
-  const std::string high = "core.core.yoke_height=0.6", front = "body.front limb.inertia=4000",
-                    back = "body.back limb.inertia=4000";
+  const std::string high = "core.core.yoke_height=0.6", front = "body.front limb.inertia=4000", back = "body.back limb.inertia=4000";
   const double c = 0.5 / std::hypot(0.5, 0.6), s = 0.6 / std::hypot(0.5, 0.6);
-  CHECK(force({limb, high, front, back}) / force({yoke, high, front, back}) ==
-        doctest::Approx(c / s).epsilon(0.02)); // but for the ends
+  CHECK(force({limb, high, front, back}) / force({yoke, high, front, back}) == doctest::Approx(c / s).epsilon(0.02)); // but for the ends
 }
 
 TEST_CASE("all bands as one of their mean area: same capacity, parts earlier") {
@@ -299,8 +293,7 @@ TEST_CASE("all bands as one of their mean area: same capacity, parts earlier") {
   // Drawn forward, off both mitres, by a third of the pitch: the corners' bands narrow alike, but for the ends. By 6 mm
   // across the mitre the narrow ones, 5 mm wide, have parted, of the wide one 14 mm are left.
   const double d = 6e-3 * std::sqrt(2.0);
-  CHECK(patch_of(mean, 0, {d / 3, 0, 0}).force() ==
-        doctest::Approx(patch_of(each, 0, {d / 3, 0, 0}).force()).epsilon(0.01));
+  CHECK(patch_of(mean, 0, {d / 3, 0, 0}).force() == doctest::Approx(patch_of(each, 0, {d / 3, 0, 0}).force()).epsilon(0.01));
   const double whole = patch_of(mean).force();
   CHECK(patch_of(mean, 0, {d, 0, 0}).force() / whole < 0.26);
   CHECK(patch_of(each, 0, {d, 0, 0}).force() / whole > 0.34);
@@ -322,9 +315,7 @@ TEST_CASE("the limb's centre of gravity is that of its sheets, its body's origin
   CHECK((front.cg - Vec2(0.25 - off, 0)).norm() < 1e-14);
   CHECK((real.find_body("back limb")->cg + front.cg).norm() < 1e-14); // mirrored
   // As given, if asked for; strips lie about the centre of gravity, as in the paper.
-  CHECK(model_of(k_shape + k_overlaps, {"core.core.centre_of_gravity=as_given"})
-            .find_body("front limb")
-            ->cg.norm() == 0.0);
+  CHECK(model_of(k_shape + k_overlaps, {"core.core.centre_of_gravity=as_given"}).find_body("front limb")->cg.norm() == 0.0);
   CHECK(model_of(k_shape + k_counted).find_body("front limb")->cg.norm() == 0.0);
   CHECK(model_of(k_shape + k_overlaps, {"body.front limb.cg=[0.01,0.0]"}).find_body("front limb")->cg.x() == 0.01);
 }
@@ -347,11 +338,9 @@ TEST_CASE("limbs without a mass have that of their sheets, given ones must agree
   };
   // Counted overlaps say nothing of the stack: the mass is missed as before.
   CHECK(has(said(bodies + k_shape + k_overlaps), "body 'front limb' needs 'mass' (mass; in kg)"));
-  CHECK(has(
-      refusal(k_shape + k_built, {"body.front limb.mass=3000"}),
-      "'mass' of body 'front limb', 3000 kg, contradicts core 'core', whose sheets make it 60"));
-  CHECK(has(refusal(k_shape + k_built, {"body.front limb.inertia=65000"}),
-            "'inertia' of body 'front limb', 65000 kg m², contradicts"));
+  CHECK(has(refusal(k_shape + k_built, {"body.front limb.mass=3000"}),
+            "'mass' of body 'front limb', 3000 kg, contradicts core 'core', whose sheets make it 60"));
+  CHECK(has(refusal(k_shape + k_built, {"body.front limb.inertia=65000"}), "'inertia' of body 'front limb', 65000 kg m², contradicts"));
 }
 
 TEST_CASE("top and bottom may differ") {
@@ -371,10 +360,9 @@ TEST_CASE("a core that stands aslant has the same joints, turned") {
     return "[" + std::to_string(p.x()) + "," + std::to_string(p.y()) + "]";
   };
   const Model upright = model_of(k_shape + k_counted);
-  const Model aslant = model_of(k_shape + k_counted,
-                                {"body.active part.angle=0.3", "body.front limb.angle=0.3", "body.back limb.angle=0.3",
-                                 "body.front limb.position=" + turned(1.25, 1.95),
-                                 "body.back limb.position=" + turned(-1.25, 1.95)});
+  const Model aslant =
+      model_of(k_shape + k_counted, {"body.active part.angle=0.3", "body.front limb.angle=0.3", "body.back limb.angle=0.3",
+                                     "body.front limb.position=" + turned(1.25, 1.95), "body.back limb.position=" + turned(-1.25, 1.95)});
   const Patch a = patch_of(upright), b = patch_of(aslant);
   CHECK(b.force() == doctest::Approx(a.force()).epsilon(1e-12));
   CHECK(b.gyration() == doctest::Approx(a.gyration()).epsilon(1e-12));
@@ -387,16 +375,13 @@ TEST_CASE("a mitre that does not run from corner to corner ends where limb or yo
     return (e.limb[1] - e.limb[0]).norm();
   };
   CHECK(length({"core.core.yoke_height=0.6"}) == doctest::Approx(std::hypot(0.5, 0.6)).epsilon(1e-12));
-  CHECK(length({"core.core.yoke_height=0.6", "core.core.mitre_angle=45 degree"}) ==
-        doctest::Approx(0.5 * std::sqrt(2.0)).epsilon(1e-12));
-  CHECK(length({"core.core.yoke_height=0.4", "core.core.mitre_angle=45 degree"}) ==
-        doctest::Approx(0.4 * std::sqrt(2.0)).epsilon(1e-12));
+  CHECK(length({"core.core.yoke_height=0.6", "core.core.mitre_angle=45 degree"}) == doctest::Approx(0.5 * std::sqrt(2.0)).epsilon(1e-12));
+  CHECK(length({"core.core.yoke_height=0.4", "core.core.mitre_angle=45 degree"}) == doctest::Approx(0.4 * std::sqrt(2.0)).epsilon(1e-12));
 }
 
 // A limb of 0.5 m ends in a point of 45°: two mitres of 0.25 m/cos 45° at either end.
 TEST_CASE("a middle limb has two mitres at either end, together as long as one from corner to corner") {
-  const std::vector<std::string> middle = {"core.core.limbs=[\"front limb\"]",
-                                           "core.core.middle_limbs=[\"back limb\"]",
+  const std::vector<std::string> middle = {"core.core.limbs=[\"front limb\"]", "core.core.middle_limbs=[\"back limb\"]",
                                            "body.back limb.position=[0.0,1.95]"};
   const Model model = model_of(k_shape + k_counted, middle);
   CHECK(interfaces_of(model).size() == 2 + 4);
@@ -413,8 +398,7 @@ TEST_CASE("a middle limb has two mitres at either end, together as long as one f
     CHECK((start - Vec2(0.25 * front, 1.95 + 1.15 * level)).norm() < 1e-14);
     CHECK((end - Vec2(0.0, 1.95 + 1.40 * level)).norm() < 1e-14);
   }
-  CHECK(has(refusal(k_shape + k_counted, {middle[0], middle[1], "core.core.notch_angle=70 degree"}),
-            "is higher than the yoke of 0.5 m"));
+  CHECK(has(refusal(k_shape + k_counted, {middle[0], middle[1], "core.core.notch_angle=70 degree"}), "is higher than the yoke of 0.5 m"));
   CHECK(has(refusal(k_shape + k_counted, {"core.core.middle_limbs=[\"back limb\"]"}), "names limb 'back limb' twice"));
 }
 
@@ -454,8 +438,7 @@ TEST_CASE("impossible cores are refused, with what would be right") {
   }
   CHECK(has(refusal(built, {"core.core.clearance=6 mm"}), "leaves no overlap"));
   CHECK(has(refusal(built, {"core.core.stack_depth=1 mm"}), "3 sheets"));
-  CHECK(has(refusal(built, {"core.core.step_pitch=0.2"}),
-            "a book that reaches 0.8 m across the mitre is wider than the sheets"));
+  CHECK(has(refusal(built, {"core.core.step_pitch=0.2"}), "a book that reaches 0.8 m across the mitre is wider than the sheets"));
   CHECK(has(refusal(counted + "limb_wdth = 3\n"), "did you mean 'limb_width'?"));
   CHECK(has(refusal(counted, {"body.back limb.position=[0.9,1.95]"}),
             "limbs 'back limb' and 'front limb' stand 0.35 m apart ('position' of the bodies), "
@@ -464,14 +447,12 @@ TEST_CASE("impossible cores are refused, with what would be right") {
 
 TEST_CASE("stepped sections, ducts and holes that cannot be are refused, with the field and its line") {
   std::string shape = k_shape;
-  for (const char* field : {"limb_width = 0.5\n", "yoke_height = 0.5\n"})
-    shape.erase(shape.find(field), std::string(field).size());
+  for (const char* field : {"limb_width = 0.5\n", "yoke_height = 0.5\n"}) shape.erase(shape.find(field), std::string(field).size());
   std::string built = k_built;
   built.erase(built.find("stack_depth"), built.find('\n') + 1);
   const std::string packets = "packets = [[0.4, 0.05], [0.5, 0.4], [0.4, 0.05]]\nyoke_heights = [0.4, 0.5, 0.4]\n";
   const std::string stepped = shape + built + packets;
-  const std::vector<std::string> steel = {"body.front limb.mass=5000", "body.back limb.mass=5000",
-                                          "body.front limb.inertia=3400",
+  const std::vector<std::string> steel = {"body.front limb.mass=5000", "body.back limb.mass=5000", "body.front limb.inertia=3400",
                                           "body.back limb.inertia=3400"};
   CHECK(refusal(stepped, steel) == "");
   const auto with = [&](const std::string& more) { return refusal(stepped + more, steel); };
@@ -486,10 +467,8 @@ TEST_CASE("stepped sections, ducts and holes that cannot be are refused, with th
   CHECK(has(with("ducts = [[0.1, 0.0]]\n"), "a width above 0 m"));
   CHECK(has(with("bolt_holes = [[0.0, 0.0]]\n"), "'bolt_holes' needs 'bolt_hole_diameter'"));
   CHECK(has(with("bolt_hole_diameter = 0.02\n"), "'bolt_hole_diameter' needs 'bolt_holes'"));
-  CHECK(has(with("bolt_holes = [[0.3, 0.3]]\nbolt_hole_diameter = 0.02\n"),
-            "bolt hole 1 at (0.3 m, 0.3 m) lies outside a limb"));
-  CHECK(has(with("bolt_holes = [[0.0, 0.0], [0.0, 0.02]]\nbolt_hole_diameter = 0.02\n"),
-            "bolt holes 1 and 2 run into each other"));
+  CHECK(has(with("bolt_holes = [[0.3, 0.3]]\nbolt_hole_diameter = 0.02\n"), "bolt hole 1 at (0.3 m, 0.3 m) lies outside a limb"));
+  CHECK(has(with("bolt_holes = [[0.0, 0.0], [0.0, 0.02]]\nbolt_hole_diameter = 0.02\n"), "bolt holes 1 and 2 run into each other"));
   CHECK(has(with("bolt_holes = [[0.19, 0.19]]\nbolt_hole_diameter = 0.12\n"), "cuts a sheet in two"));
   CHECK(has(refusal(k_shape + k_counted + "yoke_heights = [0.5]\n"), "'yoke_heights' is for 'packets'"));
 }
@@ -520,9 +499,8 @@ TEST_CASE("limbs and active part without an outline are drawn by the core's dime
     }
     return sum;
   };
-  const auto core = std::find_if(model.elements.begin(), model.elements.end(), [](const ElementEntry& e) {
-    return e.element->name == "core: front joint, top 1";
-  });
+  const auto core = std::find_if(model.elements.begin(), model.elements.end(),
+                                 [](const ElementEntry& e) { return e.element->name == "core: front joint, top 1"; });
   REQUIRE(core != model.elements.end());
   // Counter-clockwise, and the two outer limbs are mirror images: equal areas, to rounding.
   CHECK(area("front limb") > 0.0);

@@ -2,8 +2,8 @@
 // is bad, whatever the rest of the joint makes good in a sum.
 #include "elements/step_lap_assessment.h"
 #include "mbd/acceptance/judge.h"
-#include "mbd/rest/assembly.h"
 #include "mbd/io/reader.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/random/random_number.h"
 #include "tests/sanitized.h"
@@ -33,9 +33,8 @@ struct Judged {
   }
   [[nodiscard]] Verdict verdict() const { return judgement.verdict; }
   [[nodiscard]] bool fails(const std::string& text) const {
-    return std::any_of(judgement.criteria.begin(), judgement.criteria.end(), [&](const CriterionResult& c) {
-      return c.outcome > Verdict::open && c.text.find(text) != std::string::npos;
-    });
+    return std::any_of(judgement.criteria.begin(), judgement.criteria.end(),
+                       [&](const CriterionResult& c) { return c.outcome > Verdict::open && c.text.find(text) != std::string::npos; });
   }
 };
 
@@ -47,13 +46,13 @@ Judged judged_file(const std::string& name, const std::vector<std::string>& over
 struct RandomCore {
   std::vector<std::pair<double, double>> packets; ///< width, depth, m
   double friction = 0.2, pressure = 0.1e6, bottom_pressure = 0.1e6, peak = 0.5;
-  std::vector<double> shares;      ///< of the pressure, per packet; empty: 1
-  double bottom_friction = 0.0;    ///< 0: as above
-  double transverse = 0.0;         ///< m/s², across the stack; 0: none
+  std::vector<double> shares;   ///< of the pressure, per packet; empty: 1
+  double bottom_friction = 0.0; ///< 0: as above
+  double transverse = 0.0;      ///< m/s², across the stack; 0: none
   std::string support = "back";
-  std::vector<double> yokes;       ///< of each packet, m; empty: as wide as the limb
+  std::vector<double> yokes; ///< of each packet, m; empty: as wide as the limb
   std::string book = "saw_tooth", direction = "across", clearance = "0.5 mm";
-  bool is_mirrored = false;        ///< accelerated, not braked; the rear limb stands first
+  bool is_mirrored = false;         ///< accelerated, not braked; the rear limb stands first
   std::string head, signals, joint; ///< more text
 
   explicit RandomCore(RandomNumber& random) {
@@ -66,13 +65,18 @@ struct RandomCore {
 
   [[nodiscard]] std::string text() const {
     std::ostringstream out;
-    out << head << "[simulation]\nend = 0.2\nintegrator = \"dop853\"\ntolerance = 1e-6\n[output]\nstep = 0.02\n"
+    out << head
+        << "[simulation]\nend = 0.2\nintegrator = \"dop853\"\ntolerance = 1e-6\n[output]\nstep = 0.02\n"
            "[[body]]\nname = \"yokes\"\nmass = \"80 t\"\ninertia = 2e5\n"
-           "[[body]]\nname = \"limb A\"\nposition = [" << (is_mirrored ? -2.0 : 2.0) << ", 0]\n[[body]]\nname = \"limb C\"\nposition = ["
-        << (is_mirrored ? 2.0 : -2.0) << ", 0]\n"
+           "[[body]]\nname = \"limb A\"\nposition = ["
+        << (is_mirrored ? -2.0 : 2.0) << ", 0]\n[[body]]\nname = \"limb C\"\nposition = [" << (is_mirrored ? 2.0 : -2.0)
+        << ", 0]\n"
            "[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"yokes\"\naxis = [1.0, 0.0]\n"
-           "[[signal]]\nname = \"pulse\"\nkind = \"half_sine\"\npeak = \"" << (is_mirrored ? "" : "-") << peak << " gravity\"\nstart = 0.02\nduration = 0.1\n"
-           "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"yokes\"\nsignal = \"pulse\"\n" << signals;
+           "[[signal]]\nname = \"pulse\"\nkind = \"half_sine\"\npeak = \""
+        << (is_mirrored ? "" : "-") << peak
+        << " gravity\"\nstart = 0.02\nduration = 0.1\n"
+           "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"yokes\"\nsignal = \"pulse\"\n"
+        << signals;
     if (transverse != 0.0)
       out << "[[signal]]\nname = \"side\"\nkind = \"half_sine\"\npeak = " << transverse << "\nstart = 0.02\nduration = 0.1\n";
     out << "[[core]]\nname = \"core\"\nactive_part = \"yokes\"\nlimbs = [\"limb A\", \"limb C\"]\ncore_height = 3.0\n"
@@ -120,10 +124,11 @@ TEST_CASE("a core with one bad corner, packet or clamp does not hold") {
     switch (kind) {
     case 0: core.bottom_pressure = random.between(0.5, 500.0); break; // not clamped at the bottom
     case 1: core.bottom_friction = random.between(1e-6, 1e-3); break; // oil at the bottom
-    case 2: { // one packet slack
+    case 2: {                                                         // one packet slack
       if (core.packets.size() < 2) core.packets.emplace_back(0.6, 0.1);
       core.shares.assign(core.packets.size(), 1.0);
-      core.shares[static_cast<std::size_t>(random.between(0.0, static_cast<double>(core.packets.size()) - 0.01))] = random.between(1e-5, 1e-2);
+      core.shares[static_cast<std::size_t>(random.between(0.0, static_cast<double>(core.packets.size()) - 0.01))] =
+          random.between(1e-5, 1e-2);
       break;
     }
     case 3: { // the packets in front are lifted off: ρ b a over the stack is more than what presses it
@@ -205,7 +210,8 @@ TEST_CASE("a core that is bad in a way of its own does not hold") {
     shuffle(core, random);
     core.is_mirrored = random.between(0.0, 1.0) < 0.5;
     core.shares.assign(core.packets.size(), 1.0);
-    core.shares[static_cast<std::size_t>(random.between(0.0, static_cast<double>(core.packets.size()) - 0.01))] = random.between(1e-6, 1e-2);
+    core.shares[static_cast<std::size_t>(random.between(0.0, static_cast<double>(core.packets.size()) - 0.01))] =
+        random.between(1e-6, 1e-2);
   });
   expect_bad("mirrored, not clamped at the bottom", 24, [](RandomCore& core, RandomNumber& random) {
     core.is_mirrored = true;
@@ -218,16 +224,18 @@ TEST_CASE("a core that is bad in a way of its own does not hold") {
     core.pressure = core.bottom_pressure = random.between(0.05e6, 0.1e6);
     core.joint += "pressure_loss = " + loss.str() + "\n";
   });
-  expect_bad("seen from above, without gravity: not clamped at the bottom, or one packet slack", 30, [](RandomCore& core, RandomNumber& random) {
-    core.head = "gravity = [0, 0]\n";
-    if (random.between(0.0, 1.0) < 0.5) {
-      core.bottom_pressure = random.between(0.5, 500.0);
-      return;
-    }
-    if (core.packets.size() < 2) core.packets.emplace_back(0.6, 0.1);
-    core.shares.assign(core.packets.size(), 1.0);
-    core.shares[static_cast<std::size_t>(random.between(0.0, static_cast<double>(core.packets.size()) - 0.01))] = random.between(1e-5, 1e-2);
-  });
+  expect_bad("seen from above, without gravity: not clamped at the bottom, or one packet slack", 30,
+             [](RandomCore& core, RandomNumber& random) {
+               core.head = "gravity = [0, 0]\n";
+               if (random.between(0.0, 1.0) < 0.5) {
+                 core.bottom_pressure = random.between(0.5, 500.0);
+                 return;
+               }
+               if (core.packets.size() < 2) core.packets.emplace_back(0.6, 0.1);
+               core.shares.assign(core.packets.size(), 1.0);
+               core.shares[static_cast<std::size_t>(random.between(0.0, static_cast<double>(core.packets.size()) - 0.01))] =
+                   random.between(1e-5, 1e-2);
+             });
   expect_bad("oil between the sheets", 26, [](RandomCore& core, RandomNumber& random) { core.friction = random.between(1e-6, 1e-3); });
 }
 

@@ -37,8 +37,8 @@ struct Ran {
     judgement = judge(model, *system, result, failure);
   }
   [[nodiscard]] const ChannelRange& range(const std::string& channel) const {
-    const auto found = std::find_if(result.ranges.begin(), result.ranges.end(),
-                                    [&](const ChannelRange& r) { return r.channel->name == channel; });
+    const auto found =
+        std::find_if(result.ranges.begin(), result.ranges.end(), [&](const ChannelRange& r) { return r.channel->name == channel; });
     REQUIRE(found != result.ranges.end());
     return *found;
   }
@@ -68,8 +68,8 @@ void compare(const Ran& a, const Ran& b) {
     const ChannelRange &x = a.result.ranges[c], &y = b.result.ranges[c];
     CAPTURE(x.channel->name);
     // Not to a tolerance: what is looked at depends on the steps alone.
-    const bool is_equal = is_same(x.low.value, y.low.value) && is_same(x.high.value, y.high.value) && is_same(x.first, y.first) &&
-                          is_same(x.final, y.final);
+    const bool is_equal =
+        is_same(x.low.value, y.low.value) && is_same(x.high.value, y.high.value) && is_same(x.first, y.first) && is_same(x.final, y.final);
     CHECK(is_equal);
   }
 }
@@ -234,7 +234,8 @@ TEST_CASE("channels with one kink are followed by the same looks") {
     Simulation simulation(*system, system->initial_state(), options_of(model));
     simulation.run();
     RunResult result = std::move(simulation).result();
-    std::erase_if(result.ranges, [&](const ChannelRange& r) { return r.channel->name != name && !r.channel->name.starts_with(name + ' '); });
+    std::erase_if(result.ranges,
+                  [&](const ChannelRange& r) { return r.channel->name != name && !r.channel->name.starts_with(name + ' '); });
     for (ChannelRange& range : result.ranges) range.channel = nullptr; // of a system that goes now
     return std::pair(result.statistics.evaluations, std::move(result.ranges));
   };

@@ -56,9 +56,8 @@ TEST_CASE("joints that slide: first slip is the event's, slid distance and lost 
   for (const JointAssessment& joint : a.joints) {
     CAPTURE(joint.joint);
     CHECK(joint.verdict == JointVerdict::slipped);
-    const auto first = std::find_if(a.result.events.begin(), a.result.events.end(), [&](const Event& e) {
-      return e.element == joint.joint && is_slip(e.kind);
-    });
+    const auto first = std::find_if(a.result.events.begin(), a.result.events.end(),
+                                    [&](const Event& e) { return e.element == joint.joint && is_slip(e.kind); });
     REQUIRE(first != a.result.events.end());
     CHECK(joint.first_slip == first->t);
     CHECK(joint.slid_y == doctest::Approx(a.result.trajectory->series(joint.joint + ".dy").back()).epsilon(1e-12));
@@ -75,10 +74,8 @@ TEST_CASE("a monitored joint beyond its limit would slip; a joint without interf
     CHECK(joint.smallest_margin < 1.0);
   }
   Assessed bare = assess("paper/no_interference.toml", "slip", k_fast);
-  std::erase_if(bare.model.elements,
-                [](const ElementEntry& entry) { return entry.kind->name == "step_lap_interface"; });
-  for (const JointAssessment& joint : assess_joints(bare.model, bare.result))
-    CHECK(joint.verdict == JointVerdict::not_assessed);
+  std::erase_if(bare.model.elements, [](const ElementEntry& entry) { return entry.kind->name == "step_lap_interface"; });
+  for (const JointAssessment& joint : assess_joints(bare.model, bare.result)) CHECK(joint.verdict == JointVerdict::not_assessed);
 }
 
 namespace {
@@ -104,7 +101,8 @@ kind = "step_lap_joint"
 name = "joint"
 limb = "limb"
 active_part = "yokes"
-)" + more + R"(
+)" + more +
+         R"(
 [[element]]
 kind = "step_lap_interface"
 name = "top"
@@ -129,7 +127,8 @@ clearance = "0.5 mm"
 kind = "load"
 name = "pull"
 at = "limb"
-force = [0.0, )" + std::to_string(force) + "]\n";
+force = [0.0, )" +
+         std::to_string(force) + "]\n";
 }
 
 JointAssessment assess_text(const std::string& text) {

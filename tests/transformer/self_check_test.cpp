@@ -21,8 +21,8 @@ constexpr double k_onset = 0.4;
 std::string pulled(const std::string& settings, const std::string& joint_fields = "", const std::string& peak = "100.0") {
   const std::vector<Vec2> ring = rectangle(-0.2, -0.1, 0.2, 0.1), yoke = rectangle(-5.0, -5.0, 5.0, 5.0);
   return header("end = 0.5\n" + settings, 0.01) + body("slider", 2.0, 0.05, Vec2::Zero()) + joint("slider", "ground", joint_fields) +
-         interface(yoke, ring, 5.0, 1.0) +
-         "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = " + peak + "\nduration = 200.0\n"
+         interface(yoke, ring, 5.0, 1.0) + "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = " + peak +
+         "\nduration = 200.0\n"
          "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"slider\"\nforce_x = \"ramp\"\n";
 }
 

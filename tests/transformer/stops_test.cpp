@@ -1,8 +1,8 @@
 // What stops a run rather than let it go on with nonsense, each provoked.
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
-#include "transformer/catalog.h"
 #include "tests/transformer/swing.h"
+#include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
 

@@ -123,7 +123,8 @@ TEST_CASE("a run that stopped is not held good, nor one without criteria") {
 TEST_CASE("events that must not happen") {
   const Judged landed(k_floor + acceptance("event = \"closes\"\nelement = \"fl*\"\n"));
   CHECK(landed.judgement.verdict == Verdict::hold); // it is still in the air at 0.9 s
-  Model longer = parse_model(k_throw + k_floor + acceptance("event = \"closes\"\n"), "a.toml", transformer_catalog(), {"simulation.end=1.2"});
+  Model longer =
+      parse_model(k_throw + k_floor + acceptance("event = \"closes\"\n"), "a.toml", transformer_catalog(), {"simulation.end=1.2"});
   const auto system = compile(longer);
   const RunResult result = simulate(*system, system->initial_state(), options_of(longer));
   const Judgement judgement = judge(longer, *system, result, "");
@@ -159,9 +160,8 @@ Judgement judge_layout(const std::string& file, const std::vector<std::string>& 
 }
 
 const CriterionResult* find(const Judgement& judgement, const std::string& name, const std::string& part) {
-  const auto found = std::find_if(judgement.criteria.begin(), judgement.criteria.end(), [&](const CriterionResult& c) {
-    return c.name == name && c.text.find(part) != std::string::npos;
-  });
+  const auto found = std::find_if(judgement.criteria.begin(), judgement.criteria.end(),
+                                  [&](const CriterionResult& c) { return c.name == name && c.text.find(part) != std::string::npos; });
   return found == judgement.criteria.end() ? nullptr : &*found;
 }
 
@@ -197,8 +197,8 @@ static_friction = 0.3
 name = "stays"
 event = ")";
   const auto judged = [&](const std::string& event, const char* friction) {
-    const Model model = parse_model(scene + event + "\"\n", "a.toml", transformer_catalog(),
-                                    {std::string("element.friction.static_friction=") + friction});
+    const Model model =
+        parse_model(scene + event + "\"\n", "a.toml", transformer_catalog(), {std::string("element.friction.static_friction=") + friction});
     const auto system = compile(model);
     const RunResult result = simulate(*system, system->initial_state(), options_of(model));
     Judgement judgement = judge(model, *system, result, "");
@@ -219,7 +219,7 @@ event = ")";
 TEST_CASE("a joint's verdict needs nothing of what is written") {
   // At 20 kPa the joints would need 27.6 kPa: monitored, with no channel of theirs written.
   const Judgement judgement = judge_layout("three_limb_humping.toml", {"output.channels=[\"active part.*\"]", "core.core.pressure=20000",
-                                                                        "core.core.mode=monitor", "simulation.end=0.25"});
+                                                                       "core.core.mode=monitor", "simulation.end=0.25"});
   CHECK(judgement.verdict == Verdict::inspect);
   const CriterionResult* joint = find(judgement, "front joint", "holds");
   REQUIRE(joint);
@@ -230,9 +230,8 @@ TEST_CASE("a joint's verdict needs nothing of what is written") {
 
 TEST_CASE("a limb that falls out is rejected as soon as a corner has parted") {
   const Judgement judgement =
-      judge_layout("three_limb.toml", {"core.core.static_friction=0.1", "core.core.pressure=50000",
-                                       "core.core.sheets_per_layer=2", "core.core.bands=mean",
-                                       "simulation.end=0.4", "output.step=0.1"});
+      judge_layout("three_limb.toml", {"core.core.static_friction=0.1", "core.core.pressure=50000", "core.core.sheets_per_layer=2",
+                                       "core.core.bands=mean", "simulation.end=0.4", "output.step=0.1"});
   CHECK(judgement.verdict == Verdict::reject);
   const CriterionResult* slid = find(judgement, "front joint", "displacement of its corners");
   REQUIRE(slid);
@@ -271,11 +270,13 @@ TEST_CASE("criteria and plots that make no sense are errors of the model") {
   // Limits are read in the channel's unit, and messages point at the field.
   says(acceptance("channel = \"ball.y\"\nat_most = \"3 s\"\n"),
        "a.toml:17:11: error: acceptance 'c': 'at_most' of channel 'ball.y': '3 s' has the unit 's', but a unit like 'm' is needed");
-  says(acceptance("channel = \"ball.theta\"\nwithin = \"2 mm\"\n"), "a.toml:17:10: error: acceptance 'c': 'within' of channel 'ball.theta': '2 mm'");
+  says(acceptance("channel = \"ball.theta\"\nwithin = \"2 mm\"\n"),
+       "a.toml:17:10: error: acceptance 'c': 'within' of channel 'ball.theta': '2 mm'");
   says(acceptance("channel = \"ball.y\"\nat_most = \"much\"\n"), "a.toml:17:11: error: 'at_most' of acceptance 'c'");
   says(acceptance("channel = \"ball.y\"\nwithin = \"-1 m\"\n"), "'within' must be at least 0, got -1");
   says(acceptance("channel = \"ball.y\"\nwithin = nan\n"), "must be finite");
-  says(acceptance("channel = \"ball.*y\"\nat_most = 1\n"), "a.toml:16:11: error: acceptance 'c': 'ball.y' is in 'm', 'ball.vy' in 'm/s': limit them apart");
+  says(acceptance("channel = \"ball.*y\"\nat_most = 1\n"),
+       "a.toml:16:11: error: acceptance 'c': 'ball.y' is in 'm', 'ball.vy' in 'm/s': limit them apart");
   says(k_floor + acceptance("event = \"opns\"\n"), "no event of the model is called 'opns' (did you mean 'opens'?)");
   says(k_floor + acceptance("event = \"slipps\"\nelement = \"floor\"\n"), "no event of 'floor' is called 'slipps'");
   says(acceptance("event = \"opens\"\n"), "nothing of the model has events");

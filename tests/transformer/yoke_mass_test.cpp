@@ -49,16 +49,18 @@ struct Yokes {
   [[nodiscard]] std::string text() const {
     std::ostringstream out;
     out << std::setprecision(17) << "[[body]]\nname = \"part\"\nmass = 80000\ninertia = 60000\n";
-    for (const double x : {k_limb, -k_limb}) out << "[[body]]\nname = \"" << (x > 0.0 ? "front" : "rear") << "\"\nposition = [" << x << ", 0.0]\n";
+    for (const double x : {k_limb, -k_limb})
+      out << "[[body]]\nname = \"" << (x > 0.0 ? "front" : "rear") << "\"\nposition = [" << x << ", 0.0]\n";
     if (has_middle) out << "[[body]]\nname = \"middle\"\n";
-    out << "[[core]]\nname = \"core\"\nactive_part = \"part\"\nlimbs = [\"front\", \"rear\"]\n" << (has_middle ? "middle_limbs = [\"middle\"]\n" : "")
-        << "core_height = 2.6\npackets = [";
+    out << "[[core]]\nname = \"core\"\nactive_part = \"part\"\nlimbs = [\"front\", \"rear\"]\n"
+        << (has_middle ? "middle_limbs = [\"middle\"]\n" : "") << "core_height = 2.6\npackets = [";
     for (const Vec2& packet : packets) out << "[" << packet.x() << ", " << packet.y() << "], ";
     out << "]\nyoke_heights = [";
     for (const double height : heights) out << height << ", ";
-    out << "]\nyoke_steps = \"" << steps_of_yokes << "\"\nstacking_factor = 1.0\nsheet_thickness = " << k_thickness << "\nsheets_per_layer = " << per_layer
-        << "\nsteps = " << steps << "\nstep_pitch = " << pitch << "\npitch_direction = \"across\"\nbook = \"" << book << "\"\nclearance = " << clearance
-        << "\nnotch_angle = " << notch << "\npressure = 1e5\nstatic_friction = 0.2\n";
+    out << "]\nyoke_steps = \"" << steps_of_yokes << "\"\nstacking_factor = 1.0\nsheet_thickness = " << k_thickness
+        << "\nsheets_per_layer = " << per_layer << "\nsteps = " << steps << "\nstep_pitch = " << pitch
+        << "\npitch_direction = \"across\"\nbook = \"" << book << "\"\nclearance = " << clearance << "\nnotch_angle = " << notch
+        << "\npressure = 1e5\nstatic_friction = 0.2\n";
     if (mitre > 0.0) out << "mitre_angle = " << mitre << "\n";
     return out.str();
   }
@@ -67,7 +69,8 @@ struct Yokes {
   [[nodiscard]] double weighed() const {
     double area = 0.0;
     for (std::size_t p = 0; p < packets.size(); ++p)
-      for (long i = 0; i < std::lround(std::floor(packets[p].y() / k_thickness + 1e-9)); ++i) area += 2.0 * yoke_sheet(p, line(i / per_layer));
+      for (long i = 0; i < std::lround(std::floor(packets[p].y() / k_thickness + 1e-9)); ++i)
+        area += 2.0 * yoke_sheet(p, line(i / per_layer));
     return k_density * k_thickness * area;
   }
 
@@ -91,7 +94,7 @@ private:
     double area = 0.0;
     for (int i = 0; i < k_rows; ++i) {
       const double y = (i + 0.5) * height / k_rows;
-      const double outer = (own + y * std::cos(alpha)) / std::sin(alpha);  // from the window's corner of an outer limb
+      const double outer = (own + y * std::cos(alpha)) / std::sin(alpha); // from the window's corner of an outer limb
       double row = 2.0 * (k_limb - 0.5 * w + std::min(outer, w));
       if (has_middle) row -= 2.0 * std::max(0.0, 0.5 * w - (own + y * std::cos(notch)) / std::sin(notch)); // from there to its axis
       area += row * height / k_rows;

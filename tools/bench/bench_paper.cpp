@@ -2,10 +2,10 @@
 // transformer, and of the same bodies on springs only: what contacts, friction and constraints cost.
 //
 // Names are scene/what/…, so that lines of two scenes can be divided by each other.
-#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"
+#include "transformer/catalog.h"
 
 #include <benchmark/benchmark.h>
 
@@ -17,7 +17,7 @@ using namespace steplap;
 
 namespace {
 
-constexpr double k_sliding = 0.10; // s: the active part slides, the load is near its peak
+constexpr double k_sliding = 0.10;  // s: the active part slides, the load is near its peak
 constexpr double k_stretch = 0.005; // s of motion that the step benchmark goes through again and again
 
 struct Scene {
@@ -51,8 +51,7 @@ void evaluation(benchmark::State& state, const std::string& path) {
     benchmark::DoNotOptimize(dy.data());
     benchmark::ClobberMemory();
   }
-  state.counters["evaluations"] =
-      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["evaluations"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
 // Steps without looking for events or samples, over a short stretch again and again.
@@ -71,13 +70,10 @@ void step(benchmark::State& state, const std::string& path, const std::string& m
   const double end = s.state.t + k_stretch;
   for (auto _ : state) {
     integrator->step(dynamics, end);
-    if (integrator->t1() < end)
-      integrator->accept();
-    else
-      integrator->restart(dynamics, s.state.t, y.data());
+    if (integrator->t1() < end) integrator->accept();
+    else integrator->restart(dynamics, s.state.t, y.data());
   }
-  state.counters["evaluations_per_step"] =
-      static_cast<double>(dynamics.evaluations() - before) / static_cast<double>(state.iterations());
+  state.counters["evaluations_per_step"] = static_cast<double>(dynamics.evaluations() - before) / static_cast<double>(state.iterations());
 }
 
 // A whole run as the model asks for it, without samples: events found and passed.
@@ -87,13 +83,11 @@ void whole_run(benchmark::State& state, const std::string& path, const std::stri
   options.integrator = method;
   options.output_step = 0.0;
   RunStatistics statistics;
-  for (auto _ : state)
-    statistics = simulate(*s.system, s.system->initial_state(), options).statistics;
+  for (auto _ : state) statistics = simulate(*s.system, s.system->initial_state(), options).statistics;
   const auto runs = static_cast<double>(state.iterations());
   state.counters["steps"] = static_cast<double>(statistics.steps);
   state.counters["evaluations"] = static_cast<double>(statistics.evaluations);
-  state.counters["evaluations_rate"] = benchmark::Counter(
-      static_cast<double>(statistics.evaluations) * runs, benchmark::Counter::kIsRate);
+  state.counters["evaluations_rate"] = benchmark::Counter(static_cast<double>(statistics.evaluations) * runs, benchmark::Counter::kIsRate);
 }
 
 // A system with another mass, by instantiate() and from variants of the model without channels.
@@ -112,8 +106,7 @@ void add_scene(const std::string& name, const std::string& path) {
   benchmark::RegisterBenchmark((name + "/evaluation").c_str(), evaluation, path);
   for (const std::string method : {"rk4", "tsit5", "dop853"}) {
     benchmark::RegisterBenchmark((name + "/step/" + method).c_str(), step, path, method);
-    benchmark::RegisterBenchmark((name + "/run/" + method).c_str(), whole_run, path, method)
-        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark((name + "/run/" + method).c_str(), whole_run, path, method)->Unit(benchmark::kMillisecond);
   }
 }
 

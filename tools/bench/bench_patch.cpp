@@ -23,12 +23,8 @@ Outline sheet(double k, double s0, double s1, double q0, double q1) {
   const auto at = [&](double s, double q) -> Vec2 { return corner + s * t + q * n; };
   return make_outline({{at(s0, q0), at(s1, q0), at(s1, q1), at(s0, q1)}, {}});
 }
-Outline limb_sheet(double k) {
-  return sheet(k, 0, std::sqrt(0.5), -0.005, 0.05);
-}
-Outline yoke_sheet(double k) {
-  return sheet(k, -0.02, std::sqrt(0.5) + 0.02, -0.05, 0.005);
-}
+Outline limb_sheet(double k) { return sheet(k, 0, std::sqrt(0.5), -0.005, 0.05); }
+Outline yoke_sheet(double k) { return sheet(k, -0.02, std::sqrt(0.5) + 0.02, -0.05, 0.005); }
 
 Patch joint() {
   Patch patch;
@@ -42,16 +38,13 @@ Patch joint() {
   return patch;
 }
 
-Polygon quadrilateral() {
-  return {{{-0.5, -0.3}, {0.6, -0.4}, {0.5, 0.35}, {-0.4, 0.3}}, {}};
-}
+Polygon quadrilateral() { return {{{-0.5, -0.3}, {0.6, -0.4}, {0.5, 0.35}, {-0.4, 0.3}}, {}}; }
 
 /// Twists that turn about points all over and around the quadrilateral.
 std::array<Vec3, 256> near_twists() {
   std::array<Vec3, 256> twists;
   for (std::size_t i = 0; i < twists.size(); ++i) {
-    const double a = 2.399963 * static_cast<double>(i),
-                 r = std::sqrt(static_cast<double>(i) / 256.0);
+    const double a = 2.399963 * static_cast<double>(i), r = std::sqrt(static_cast<double>(i) / 256.0);
     twists[i] = {r * std::sin(a), -r * std::cos(a), 1};
   }
   return twists;
@@ -60,14 +53,11 @@ std::array<Vec3, 256> near_twists() {
 /// Adaptive Gauss-Kronrod (7, 15) in both directions over the triangles from the first vertex:
 /// what one would write without a closed form. h only; the wrench would be three more integrands.
 double adaptive(const auto& f, double a, double b, double tolerance, int depth) {
-  static constexpr double x[8] = {
-      0.991455371120813, 0.949107912342759, 0.864864423359769, 0.741531185599394,
-      0.586087235467691, 0.405845151377397, 0.207784955007898, 0.0};
-  static constexpr double wk[8] = {0.022935322010529, 0.063092092629979, 0.104790010322250,
-                                   0.140653259715525, 0.169004726639267, 0.190350578064785,
-                                   0.204432940075298, 0.209482141084728};
-  static constexpr double wg[4] = {0.129484966168870, 0.279705391489277, 0.381830050505119,
-                                   0.417959183673469};
+  static constexpr double x[8] = {0.991455371120813, 0.949107912342759, 0.864864423359769, 0.741531185599394,
+                                  0.586087235467691, 0.405845151377397, 0.207784955007898, 0.0};
+  static constexpr double wk[8] = {0.022935322010529, 0.063092092629979, 0.104790010322250, 0.140653259715525,
+                                   0.169004726639267, 0.190350578064785, 0.204432940075298, 0.209482141084728};
+  static constexpr double wg[4] = {0.129484966168870, 0.279705391489277, 0.381830050505119, 0.417959183673469};
   const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
   double kronrod = 0, gauss = 0;
   for (int i = 0; i < 8; ++i) {
@@ -76,8 +66,7 @@ double adaptive(const auto& f, double a, double b, double tolerance, int depth) 
     if (i % 2 == 1) gauss += wg[i / 2] * v;
   }
   if (std::abs(kronrod - gauss) * half <= tolerance || depth == 0) return kronrod * half;
-  return adaptive(f, a, middle, 0.5 * tolerance, depth - 1) +
-         adaptive(f, middle, b, 0.5 * tolerance, depth - 1);
+  return adaptive(f, a, middle, 0.5 * tolerance, depth - 1) + adaptive(f, middle, b, 0.5 * tolerance, depth - 1);
 }
 
 double h_by_quadrature(const Polygon& polygon, const Vec3& nu, double tolerance) {
@@ -85,17 +74,16 @@ double h_by_quadrature(const Polygon& polygon, const Vec3& nu, double tolerance)
   const Vec2 origin = polygon.outer[0];
   for (std::size_t i = 1; i + 1 < polygon.outer.size(); ++i) {
     const Vec2 e = polygon.outer[i] - origin, f = polygon.outer[i + 1] - origin;
-    sum += cross(e, f) *
-           adaptive(
-               [&](double s) {
-                 return adaptive(
-                     [&](double t) {
-                       const Vec2 r = origin + s * (e + t * (f - e));
-                       return s * std::hypot(nu[0] - nu[2] * r.y(), nu[1] + nu[2] * r.x());
-                     },
-                     0, 1, 0.1 * tolerance, 30);
-               },
-               0, 1, tolerance, 30);
+    sum += cross(e, f) * adaptive(
+                             [&](double s) {
+                               return adaptive(
+                                   [&](double t) {
+                                     const Vec2 r = origin + s * (e + t * (f - e));
+                                     return s * std::hypot(nu[0] - nu[2] * r.y(), nu[1] + nu[2] * r.x());
+                                   },
+                                   0, 1, 0.1 * tolerance, 30);
+                             },
+                             0, 1, tolerance, 30);
   }
   return sum;
 }
@@ -106,8 +94,7 @@ void h_gradient_closed_form(benchmark::State& state) {
   patch.prepare();
   const auto twists = near_twists();
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(evaluate_gradient(patch, twists[i++ % 256]));
+  for (auto _ : state) benchmark::DoNotOptimize(evaluate_gradient(patch, twists[i++ % 256]));
 }
 BENCHMARK(h_gradient_closed_form);
 
@@ -117,8 +104,7 @@ void h_gradient_hessian_closed_form(benchmark::State& state) {
   patch.prepare();
   const auto twists = near_twists();
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(evaluate(patch, twists[i++ % 256]));
+  for (auto _ : state) benchmark::DoNotOptimize(evaluate(patch, twists[i++ % 256]));
 }
 BENCHMARK(h_gradient_hessian_closed_form);
 
@@ -127,11 +113,9 @@ void h_gradient_hessian_far(benchmark::State& state) {
   patch.add(quadrilateral(), 1);
   patch.prepare();
   auto twists = near_twists();
-  for (Vec3& nu : twists)
-    nu[2] = 0.05;
+  for (Vec3& nu : twists) nu[2] = 0.05;
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(evaluate(patch, twists[i++ % 256]));
+  for (auto _ : state) benchmark::DoNotOptimize(evaluate(patch, twists[i++ % 256]));
 }
 BENCHMARK(h_gradient_hessian_far);
 
@@ -143,11 +127,9 @@ void h_only_quadrature(benchmark::State& state) {
   const double tolerance = std::pow(10.0, -static_cast<double>(state.range(0)));
   double worst = 0;
   for (const Vec3& nu : twists)
-    worst = std::max(worst, std::abs(h_by_quadrature(quadrilateral(), nu, tolerance) -
-                                     evaluate_gradient(patch, nu).h));
+    worst = std::max(worst, std::abs(h_by_quadrature(quadrilateral(), nu, tolerance) - evaluate_gradient(patch, nu).h));
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(h_by_quadrature(quadrilateral(), twists[i++ % 256], tolerance));
+  for (auto _ : state) benchmark::DoNotOptimize(h_by_quadrature(quadrilateral(), twists[i++ % 256], tolerance));
   state.counters["largest_error"] = worst;
 }
 BENCHMARK(h_only_quadrature)->DenseRange(6, 10, 1);
@@ -166,8 +148,7 @@ void required_pressure_cold(benchmark::State& state) {
   const Patch patch = joint();
   const auto w = wrenches();
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(required_pressure(patch, w[i++ % 1024]));
+  for (auto _ : state) benchmark::DoNotOptimize(required_pressure(patch, w[i++ % 1024]));
 }
 BENCHMARK(required_pressure_cold);
 
@@ -190,8 +171,7 @@ void usage_bound_only(benchmark::State& state) {
   const Capacity limits = capacity(joint());
   const auto w = wrenches();
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(usage_bounds(limits, w[i++ % 1024]));
+  for (auto _ : state) benchmark::DoNotOptimize(usage_bounds(limits, w[i++ % 1024]));
 }
 BENCHMARK(usage_bound_only);
 
@@ -215,8 +195,7 @@ BENCHMARK(overlap_fast);
 void overlap_exact(benchmark::State& state) {
   const Outline yoke = yoke_sheet(1), limb = limb_sheet(1);
   std::size_t i = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(exact_intersection(yoke.polygon, limb.polygon, wander(i++)));
+  for (auto _ : state) benchmark::DoNotOptimize(exact_intersection(yoke.polygon, limb.polygon, wander(i++)));
 }
 BENCHMARK(overlap_exact);
 
@@ -252,9 +231,7 @@ Ring regular(int corners, double inner = 1, double scale = 1) {
 }
 
 Polygon ell() { return {{{-1, -1}, {1, -1}, {1, -0.3}, {-0.3, -0.3}, {-0.3, 1}, {-1, 1}}, {}}; }
-Polygon u_shape() {
-  return {{{-1, -1}, {1, -1}, {1, 1}, {0.5, 1}, {0.5, -0.4}, {-0.5, -0.4}, {-0.5, 1}, {-1, 1}}, {}};
-}
+Polygon u_shape() { return {{{-1, -1}, {1, -1}, {1, 1}, {0.5, 1}, {0.5, -0.4}, {-0.5, -0.4}, {-0.5, 1}, {-1, 1}}, {}}; }
 Polygon comb(int teeth) {
   Polygon polygon{{{-1, -1}, {1, -1}}, {}};
   const double width = 2.0 / (2 * teeth - 1);

@@ -32,8 +32,8 @@ std::string chain(int n) {
   for (int i = 1; i <= n; ++i)
     text << "[[body]]\nname = \"" << i << "\"\nmass = 1.0\ninertia = 0.083\nposition = [" << i - 1 << ".5, 0.0]\n";
   for (int i = 1; i <= n; ++i) {
-    text << "[[element]]\nkind = \"revolute\"\nname = \"pin " << i << "\"\na = { body = \"" << i << "\", at = ["
-         << i - 1 << ".0, 0.0] }\nb = { body = \"";
+    text << "[[element]]\nkind = \"revolute\"\nname = \"pin " << i << "\"\na = { body = \"" << i << "\", at = [" << i - 1
+         << ".0, 0.0] }\nb = { body = \"";
     if (i == 1) text << "ground";
     else text << i - 1;
     text << "\", at = [" << i - 1 << ".0, 0.0] }\n";
@@ -49,8 +49,7 @@ std::string grid(int n) {
   const auto name = [&](int row, int column) { return std::to_string(row * side + column); };
   for (int r = 0; r < side; ++r)
     for (int c = 0; c < side; ++c) {
-      text << "[[body]]\nname = \"" << name(r, c) << "\"\nmass = 1.0\ninertia = 0.01\nposition = [" << c << ".0, "
-           << -r << ".0]\n";
+      text << "[[body]]\nname = \"" << name(r, c) << "\"\nmass = 1.0\ninertia = 0.01\nposition = [" << c << ".0, " << -r << ".0]\n";
     }
   const auto spring = [&](const std::string& a, const std::string& b, double x, double y) {
     text << "[[element]]\nkind = \"spring_damper\"\nname = \"" << a << " to " << b << "\"\na = \"" << a << "\"\nb = ";
@@ -75,8 +74,8 @@ std::string linkages(int n) {
     text << "[[body]]\nname = \"" << name << "\"\nmass = 1.0\ninertia = " << inertia << "\nposition = [" << x << ", " << y << "]\n";
   };
   const auto pin = [&](const std::string& a, const std::string& b, double x, double y) {
-    text << "[[element]]\nkind = \"revolute\"\nname = \"" << a << " on " << b << "\"\na = { body = \"" << a << "\", at = [" << x
-         << ", " << y << "] }\nb = { body = \"" << b << "\", at = [" << x << ", " << y << "] }\n";
+    text << "[[element]]\nkind = \"revolute\"\nname = \"" << a << " on " << b << "\"\na = { body = \"" << a << "\", at = [" << x << ", "
+         << y << "] }\nb = { body = \"" << b << "\", at = [" << x << ", " << y << "] }\n";
   };
   for (int i = 0; i < std::max(1, n / 3); ++i) {
     const double x = 4.0 * i;
@@ -118,9 +117,8 @@ void measure(const char* scene, const std::string& text, bool is_absolute = fals
     best = std::min(best, (thread_cpu_seconds() - begin) / steps);
   }
   const double evaluations = static_cast<double>(simulation.statistics().evaluations - evaluated) / (k_batches * steps);
-  std::printf("%-10s %7.0f %10.1f %10.2f %10.2f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n,
-              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n,
-              1e6 * best / n / evaluations, memory / n / 1024.0);
+  std::printf("%-10s %7.0f %10.1f %10.2f %10.2f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n, 1e6 * (compiled - read) / n,
+              1e6 * (started - compiled) / n, 1e6 * best / n, 1e6 * best / n / evaluations, memory / n / 1024.0);
   std::fflush(stdout);
 }
 

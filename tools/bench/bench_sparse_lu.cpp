@@ -25,7 +25,7 @@ struct Entry {
 
 struct Matrix {
   int n = 0;
-  std::vector<Entry> entries; ///< places may come twice, their values add up
+  std::vector<Entry> entries;              ///< places may come twice, their values add up
   std::vector<std::vector<double>> values; ///< of several steps
 };
 
@@ -118,7 +118,8 @@ public:
     std::fill(values_.begin(), values_.end(), 0.0);
     for (std::size_t i = 0; i < place_.size(); ++i) values_[place_[i]] += m_.values[k][i];
     if (!numeric_) numeric_ = klu_factor(begin_.data(), index_.data(), values_.data(), symbolic_, &common_);
-    else if (!klu_refactor(begin_.data(), index_.data(), values_.data(), symbolic_, numeric_, &common_)) throw std::runtime_error("singular");
+    else if (!klu_refactor(begin_.data(), index_.data(), values_.data(), symbolic_, numeric_, &common_))
+      throw std::runtime_error("singular");
     for (int s = 0; s < k_solutions; ++s) {
       std::fill(x.begin(), x.end(), 1.0);
       klu_solve(symbolic_, numeric_, m_.n, 1, x.data(), &common_);

@@ -5,9 +5,9 @@
 // Error: the worse of the active part's pitch and the bottom arresting force over 1 kHz samples, each divided
 // by its range; the reference is dop853 at 1e-12, which rodas5p at 1e-10 must meet. Cost: CPU time of this
 // thread, least of repeats, and evaluations; both interpolated between tolerances at the errors wanted.
-#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "transformer/catalog.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,14 +40,12 @@ double difference(const RunResult& a, const RunResult& b) {
   for (const char* channel : {"active part.theta", "bottom arresting.force"}) {
     const std::vector<double> x = a.trajectory->series(channel), y = b.trajectory->series(channel);
     const auto [low, high] = std::minmax_element(y.begin(), y.end());
-    for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i)
-      worst = std::max(worst, std::abs(x[i] - y[i]) / (*high - *low));
+    for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) worst = std::max(worst, std::abs(x[i] - y[i]) / (*high - *low));
   }
   return worst;
 }
 
-Entry measure(const System& system, const Model& model, const std::string& method, double tolerance,
-              const RunResult& reference) {
+Entry measure(const System& system, const Model& model, const std::string& method, double tolerance, const RunResult& reference) {
   Entry entry{tolerance, difference(run(system, model, method, tolerance, true), reference), 1e300, 0.0, 0.0};
   for (int i = 0; i < k_repeats; ++i) {
     const RunStatistics s = run(system, model, method, tolerance, false).statistics;
@@ -77,16 +75,14 @@ double cost_at(const std::vector<Entry>& ladder, double error, double Entry::*co
 
 int main() {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  std::printf("%8s %8s %9s %10s %8s %12s %8s\n", "stiffer", "method", "tolerance", "error", "steps", "evaluations",
-              "CPU/ms");
+  std::printf("%8s %8s %9s %10s %8s %12s %8s\n", "stiffer", "method", "tolerance", "error", "steps", "evaluations", "CPU/ms");
   for (const double scale : {1.0, 1e2, 1e4}) {
     std::vector<std::string> overrides;
     for (const std::string foot : {"front foot", "rear foot"}) {
       overrides.push_back("element." + foot + ".stiffness=" + std::to_string(1.6e9 * scale));
       overrides.push_back("element." + foot + ".damping=" + std::to_string(1.5e5 * scale));
     }
-    for (const std::string joint : {"front joint", "back joint"})
-      overrides.push_back("element." + joint + ".mode=\"monitor\"");
+    for (const std::string joint : {"front joint", "back joint"}) overrides.push_back("element." + joint + ".mode=\"monitor\"");
     const Model model = read_model(STEPLAP_MODELS "/paper/no_interference.toml", transformer_catalog(), overrides);
     const auto system = compile(model);
     const RunResult reference = run(*system, model, "dop853", 1e-12, true);
@@ -101,8 +97,8 @@ int main() {
           continue;
         }
         const Entry& e = ladder.back();
-        std::printf("%8.0e %8s %9.0e %10.1e %8.0f %12.0f %8.3f\n", scale, method.c_str(), tolerance, e.error, e.steps,
-                    e.evaluations, e.milliseconds);
+        std::printf("%8.0e %8s %9.0e %10.1e %8.0f %12.0f %8.3f\n", scale, method.c_str(), tolerance, e.error, e.steps, e.evaluations,
+                    e.milliseconds);
       }
       for (const double error : {1e-3, 1e-4, 1e-5, 1e-6})
         std::printf("%8.0e %8s  at error %.0e: %10.0f evaluations, %8.3f ms\n", scale, method.c_str(), error,

@@ -3,10 +3,10 @@
 //
 //   steplap study export STORE > samples.csv      of models/studies/slip_probability.toml
 //   bench_study samples.csv
-#include "mbd/rest/start.h"
 #include "mbd/io/csv.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"
+#include "mbd/rest/start.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"
 #include "transformer/catalog.h"
@@ -58,8 +58,7 @@ template <class Work> void measure(const char* what, const Samples& samples, con
   double least = 1e300;
   for (const auto& values : samples.values) least = std::min(least, work(values));
   const double count = static_cast<double>(samples.values.size()), took = thread_cpu_seconds() - begin;
-  std::printf("%-55s %8.3f ms a run, %6.0f runs a second and core, least margin %.6g\n", what, 1e3 * took / count,
-              count / took, least);
+  std::printf("%-55s %8.3f ms a run, %6.0f runs a second and core, least margin %.6g\n", what, 1e3 * took / count, count / took, least);
 }
 
 } // namespace
@@ -68,8 +67,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "bench_study samples.csv\n"), 2;
   const Samples samples = read_samples(argv[1]);
   const Model given = read_given_model(STEPLAP_MODELS "/studies/transformer.toml", transformer_catalog());
-  const std::vector<std::string> paths{"element.tank bottom.static_friction", "core.core.static_friction",
-                                       "core.core.pressure", "signal.braking.peak"};
+  const std::vector<std::string> paths{"element.tank bottom.static_friction", "core.core.static_friction", "core.core.pressure",
+                                       "signal.braking.peak"};
   const double peak = number_of(given, paths[3]);
   const auto scaled = [&](std::vector<double> v) {
     v[3] *= peak;
@@ -78,8 +77,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> none, margins{"front joint.margin", "back joint.margin"};
   Variants bare(given, paths, &none), looked_at(given, paths, &margins);
   const auto once = bare.make(scaled(samples.values.front()));
-  measure("one system, integration and events", samples,
-          [&](const std::vector<double>&) { return run(bare.model(), *once, false); });
+  measure("one system, integration and events", samples, [&](const std::vector<double>&) { return run(bare.model(), *once, false); });
   measure("a system each, integration and events", samples, [&](const std::vector<double>& v) {
     const auto system = bare.make(scaled(v));
     return run(bare.model(), *system, false);

@@ -33,7 +33,10 @@ Tape evaluation_like(int steps) {
     std::int32_t& chain = chains[among(12)];
     const auto made = static_cast<int>(tape.steps.size());
     const int p = among(100);
-    const std::int32_t other = p < 30 ? among(given) : p < 40 ? among(made) : p < 70 ? std::max(0, made - 1 - among(12)) : chains[among(12)];
+    const std::int32_t other = p < 30   ? among(given)
+                               : p < 40 ? among(made)
+                               : p < 70 ? std::max(0, made - 1 - among(12))
+                                        : chains[among(12)];
     const int q = among(200);
     const TapeOperation o = q < 4 ? divide : q < 100 ? multiply : q < 160 ? add : subtract;
     tape.steps.push_back({o, chain, other});

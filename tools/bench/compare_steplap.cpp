@@ -43,9 +43,7 @@ struct Problem {
   bool is_against_tightest; // else the answer is known
   std::vector<Scene> scenes;
   // From the channels of one run, and of the tightest run of the same scene.
-  std::function<double(const std::vector<std::vector<double>>&,
-                       const std::vector<std::vector<double>>&)>
-      error;
+  std::function<double(const std::vector<std::vector<double>>&, const std::vector<std::vector<double>>&)> error;
 };
 
 Scene scene(const std::string& file, std::vector<std::string> channels, double sample_step) {
@@ -71,8 +69,7 @@ RunResult run(const Scene& scene, const std::string& method, double tolerance, b
 
 std::vector<std::vector<double>> series(const Scene& scene, const RunResult& result) {
   std::vector<std::vector<double>> all;
-  for (const std::string& channel : scene.channels)
-    all.push_back(result.trajectory->series(channel));
+  for (const std::string& channel : scene.channels) all.push_back(result.trajectory->series(channel));
   return all;
 }
 
@@ -86,16 +83,14 @@ double over_samples(const Series& a, const Series& b, bool is_scaled) {
     if (a[c].size() != b[c].size()) return std::nan("");
     const auto [low, high] = std::minmax_element(b[c].begin(), b[c].end());
     const double scale = is_scaled ? *high - *low : 1.0;
-    for (std::size_t i = 0; i < b[c].size(); ++i)
-      worst = std::max(worst, std::abs(a[c][i] - b[c][i]) / scale);
+    for (std::size_t i = 0; i < b[c].size(); ++i) worst = std::max(worst, std::abs(a[c][i] - b[c][i]) / scale);
   }
   return worst;
 }
 
 double at_the_end(const Series& a, const std::vector<double>& exact, double factor = 1.0) {
   double worst = 0.0;
-  for (std::size_t c = 0; c < exact.size(); ++c)
-    worst = std::max(worst, std::abs(factor * a[c].back() - exact[c]));
+  for (std::size_t c = 0; c < exact.size(); ++c) worst = std::max(worst, std::abs(factor * a[c].back() - exact[c]));
   return worst;
 }
 
@@ -104,19 +99,16 @@ double andrews_error(const Series& k, const peers::AndrewsAngles& exact) {
   const auto a = [&k](int i) { return k[i - 1].back(); };
   const double angles[7] = {a(1), a(2) - a(1), a(3), a(4) - a(5), a(5), a(6) - a(7), a(7)};
   double worst = 0.0;
-  for (std::size_t i = 0; i < exact.size(); ++i)
-    worst = std::max(worst, std::abs(angles[i] - exact[i]));
+  for (std::size_t i = 0; i < exact.size(); ++i) worst = std::max(worst, std::abs(angles[i] - exact[i]));
   return worst;
 }
 
 // --- problems -----------------------------------------------------------------------------------
 
-Problem ending(const char* name, const std::string& file, std::vector<std::string> channels,
-               std::vector<double> exact, double factor = 1.0) {
+Problem ending(const char* name, const std::string& file, std::vector<std::string> channels, std::vector<double> exact,
+               double factor = 1.0) {
   Problem problem{
-      name, false, {}, [exact = std::move(exact), factor](const Series& a, const Series&) {
-        return at_the_end(a, exact, factor);
-      }};
+      name, false, {}, [exact = std::move(exact), factor](const Series& a, const Series&) { return at_the_end(a, exact, factor); }};
   Scene s = scene("benchmarks/" + file, std::move(channels), 0.0);
   s.sample_step = s.model.simulation.end;
   problem.scenes.push_back(std::move(s));
@@ -124,42 +116,30 @@ Problem ending(const char* name, const std::string& file, std::vector<std::strin
 }
 
 Problem andrews(const char* name, const std::string& file, int variant) {
-  Problem problem{name, false, {}, [variant](const Series& a, const Series&) {
-                    return andrews_error(a, peers::k_andrews_exact[variant]);
-                  }};
+  Problem problem{name, false, {}, [variant](const Series& a, const Series&) { return andrews_error(a, peers::k_andrews_exact[variant]); }};
   std::vector<std::string> angles;
-  for (int i = 1; i <= 7; ++i)
-    angles.push_back("K" + std::to_string(i) + ".theta");
+  for (int i = 1; i <= 7; ++i) angles.push_back("K" + std::to_string(i) + ".theta");
   problem.scenes.push_back(scene("benchmarks/" + file, angles, peers::k_andrews_end[variant]));
   return problem;
 }
 
 std::vector<Problem> problems() {
   std::vector<Problem> all;
-  Problem transformer{"transformer", true, {}, [](const Series& a, const Series& b) {
-                        return over_samples(a, b, true);
-                      }};
+  Problem transformer{"transformer", true, {}, [](const Series& a, const Series& b) { return over_samples(a, b, true); }};
   for (const char* file : {"paper/no_interference", "paper/interference"})
-    transformer.scenes.push_back(
-        scene(file, {"active part.theta", "bottom arresting.force"}, 1e-3));
+    transformer.scenes.push_back(scene(file, {"active part.theta", "bottom arresting.force"}, 1e-3));
   all.push_back(std::move(transformer));
   all.push_back(andrews("B1 Andrews 0.03 s", "andrews", 0));
   all.push_back(andrews("B1 A03 0.05 s", "andrews_a03", 1));
   for (const peers::FourBarExact& exact : peers::k_four_bar_exact) {
     const std::string n = std::to_string(exact.windows);
     // B0 is as far from the rod's middle as that is from the ground.
-    all.push_back(ending(("B2 N = " + n).c_str(), "four_bar_" + n, {"rod 0.x", "rod 0.y"},
-                         {exact.x, exact.y}, 2.0));
+    all.push_back(ending(("B2 N = " + n).c_str(), "four_bar_" + n, {"rod 0.x", "rod 0.y"}, {exact.x, exact.y}, 2.0));
   }
-  all.push_back(ending("B3 pendulum", "simple_pendulum", {"bob.x", "bob.y"},
-                       {peers::k_pendulum_x, peers::k_pendulum_y}));
-  all.push_back(ending("B4a belt", "stick_slip_belt", {"mass.x", "mass.vx"},
-                       {0.0314469318813080, -0.198980397472595}));
-  all.push_back(ending("B4b Den Hartog", "den_hartog", {"mass.x", "mass.vx"},
-                       {-0.0363829137728667, 0.370762125122938}));
-  Problem bounce{"B5 bouncing mass", true, {}, [](const Series& a, const Series& b) {
-                   return over_samples(a, b, false);
-                 }};
+  all.push_back(ending("B3 pendulum", "simple_pendulum", {"bob.x", "bob.y"}, {peers::k_pendulum_x, peers::k_pendulum_y}));
+  all.push_back(ending("B4a belt", "stick_slip_belt", {"mass.x", "mass.vx"}, {0.0314469318813080, -0.198980397472595}));
+  all.push_back(ending("B4b Den Hartog", "den_hartog", {"mass.x", "mass.vx"}, {-0.0363829137728667, 0.370762125122938}));
+  Problem bounce{"B5 bouncing mass", true, {}, [](const Series& a, const Series& b) { return over_samples(a, b, false); }};
   bounce.scenes.push_back(scene("benchmarks/bouncing_mass", {"mass.y"}, 1e-2));
   all.push_back(std::move(bounce));
   return all;
@@ -167,23 +147,20 @@ std::vector<Problem> problems() {
 
 // --- the ladder ---------------------------------------------------------------------------------
 
-Rung measure(const Problem& problem, const std::string& method, double tolerance,
-             const std::vector<Series>& tightest) {
+Rung measure(const Problem& problem, const std::string& method, double tolerance, const std::vector<Series>& tightest) {
   char setting[32];
   std::snprintf(setting, sizeof setting, "%.1e", tolerance);
   Rung rung{problem.name, "steplap " + method, setting};
   for (std::size_t s = 0; s < problem.scenes.size(); ++s) {
     const Scene& scene = problem.scenes[s];
-    rung.error = std::max(
-        rung.error, problem.error(series(scene, run(scene, method, tolerance, true)), tightest[s]));
+    rung.error = std::max(rung.error, problem.error(series(scene, run(scene, method, tolerance, true)), tightest[s]));
     const RunStatistics counts = run(scene, method, tolerance, false).statistics;
     rung.steps += counts.steps;
     rung.evaluations += counts.evaluations;
     rung.events += counts.events;
   }
   rung.cpu_ms = peers::least_ms([&] {
-    for (const Scene& scene : problem.scenes)
-      (void)run(scene, method, tolerance, false);
+    for (const Scene& scene : problem.scenes) (void)run(scene, method, tolerance, false);
   });
   return rung;
 }
@@ -191,17 +168,14 @@ Rung measure(const Problem& problem, const std::string& method, double tolerance
 void climb(const Problem& problem, std::vector<Rung>& rungs) {
   std::vector<Series> tightest;
   for (const Scene& scene : problem.scenes)
-    if (!problem.is_against_tightest)
-      tightest.emplace_back();
-    else
-      tightest.push_back(series(scene, run(scene, "dop853", k_tightest, true)));
+    if (!problem.is_against_tightest) tightest.emplace_back();
+    else tightest.push_back(series(scene, run(scene, "dop853", k_tightest, true)));
   for (const char* method : {"dop853", "tsit5", "auto"})
     for (int exponent = 2; exponent <= 24; ++exponent) {
       try {
         rungs.push_back(measure(problem, method, std::pow(10.0, -0.5 * exponent), tightest));
       } catch (const NumericalFailure& failure) {
-        std::fprintf(stderr, "%s, %s at 1e-%.1f: %s\n", problem.name.c_str(), method,
-                     0.5 * exponent, failure.what());
+        std::fprintf(stderr, "%s, %s at 1e-%.1f: %s\n", problem.name.c_str(), method, 0.5 * exponent, failure.what());
       }
     }
 }
@@ -219,8 +193,7 @@ bool read_rungs(const std::string& path, const std::string& only, std::vector<Ru
     std::getline(cells, r.program, '"');
     cells.ignore(1, ',');
     std::getline(cells, r.setting, ',');
-    for (std::string& text : cell)
-      std::getline(cells, text, ',');
+    for (std::string& text : cell) std::getline(cells, text, ',');
     r.error = std::strtod(cell[0].c_str(), nullptr);
     r.cpu_ms = std::strtod(cell[1].c_str(), nullptr);
     r.steps = std::strtol(cell[2].c_str(), nullptr, 10);
@@ -243,19 +216,15 @@ int main(int argc, char** argv) {
   std::vector<Rung> rungs;
   std::vector<std::string> peer_files;
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--csv") == 0 && i + 1 < argc)
-      csv = argv[++i];
-    else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc)
-      only = argv[++i];
-    else
-      peer_files.push_back(argv[i]);
+    if (std::strcmp(argv[i], "--csv") == 0 && i + 1 < argc) csv = argv[++i];
+    else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc) only = argv[++i];
+    else peer_files.push_back(argv[i]);
   }
   for (const std::string& file : peer_files)
     if (!read_rungs(file, only, rungs)) return fail("cannot read '" + file + "'");
   for (const Problem& problem : problems())
     if (problem.name.compare(0, only.size(), only) == 0) climb(problem, rungs);
-  std::stable_sort(rungs.begin(), rungs.end(),
-                   [](const Rung& a, const Rung& b) { return a.problem < b.problem; });
+  std::stable_sort(rungs.begin(), rungs.end(), [](const Rung& a, const Rung& b) { return a.problem < b.problem; });
   peers::print_table(rungs);
   peers::print_summary(rungs);
   if (csv.empty()) return 0;

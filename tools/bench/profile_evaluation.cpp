@@ -1,9 +1,9 @@
 // Evaluates the equations of motion of one model many times and does nothing else: to be run under a
 // profiler (tools/profile). The state is that of the model's run at a given time.
 //   profile_evaluation MODEL TIME COUNT [COORDINATES]
-#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "transformer/catalog.h"
 
 #include <algorithm>
 #include <cmath>

@@ -57,8 +57,8 @@ void profile(const char* method, const std::string& coordinates, double toleranc
     all.events += counts.events;
     all.evaluations += counts.evaluations;
   }
-  std::printf("%.3f ms; %ld steps, %ld rejected, %ld events, %ld evaluations\n", 1e3 * time, all.steps, all.rejections,
-              all.events, all.evaluations);
+  std::printf("%.3f ms; %ld steps, %ld rejected, %ld events, %ld evaluations\n", 1e3 * time, all.steps, all.rejections, all.events,
+              all.evaluations);
 }
 
 } // namespace

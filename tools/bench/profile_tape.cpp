@@ -60,7 +60,8 @@ int profile(const char* path, double time) {
   TracedRates traced;
   bool is_traced = true;
   const double writing = nanoseconds(100, [&] {
-    is_traced = trace_rates(*system, dynamics.layout(), state, dynamics.evaluation(), state.t, y.data(), inputs, k_least_pivot, traced) && is_traced;
+    is_traced = trace_rates(*system, dynamics.layout(), state, dynamics.evaluation(), state.t, y.data(), inputs, k_least_pivot, traced) &&
+                is_traced;
   });
   if (!is_traced) {
     std::fprintf(stderr, "%s: some part of it is not traced\n", path);

@@ -48,8 +48,7 @@ std::ofstream open(const std::string& path) {
 /// Of the joint of both corners (levels ±1), or of one.
 Patch joint(std::initializer_list<double> levels) {
   Patch patch;
-  for (const double level : levels)
-    patch.add(overlap(sheets(corner_frame(k_mitre, 1.0, level), k_lap), {}), k_lap.count * k_traction);
+  for (const double level : levels) patch.add(overlap(sheets(corner_frame(k_mitre, 1.0, level), k_lap), {}), k_lap.count * k_traction);
   patch.prepare();
   return patch;
 }
@@ -81,9 +80,7 @@ void write_slices(const std::string& path, const Patch& patch) {
       double low = 0.0, high = patch.force();
       for (int step = 0; step < 40; ++step) {
         const double f = 0.5 * (low + high);
-        const bool is_inside =
-            required_pressure(patch, {f * portable::cos(phi), f * portable::sin(phi), share * most})
-                .u < 1.0;
+        const bool is_inside = required_pressure(patch, {f * portable::cos(phi), f * portable::sin(phi), share * most}).u < 1.0;
         (is_inside ? low : high) = f;
       }
       file << low * portable::cos(phi) / 1e3 << ' ' << low * portable::sin(phi) / 1e3 << '\n';
@@ -124,8 +121,7 @@ void write_shrinking(const std::string& path) {
   book.step_pitch = 6.25e-3;
   const auto left = [&](const std::vector<LapBand>& bands, double d) {
     double sum = 0.0;
-    for (const LapBand& b : bands)
-      sum += area(overlap(sheets(corner, b), {d * corner.across.x(), d * corner.across.y(), 0.0}));
+    for (const LapBand& b : bands) sum += area(overlap(sheets(corner, b), {d * corner.across.x(), d * corner.across.y(), 0.0}));
     return sum / static_cast<double>(bands.size());
   };
   const double whole = left(mean_band(book), 0.0);

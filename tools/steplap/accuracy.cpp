@@ -1,9 +1,9 @@
 #include "tools/steplap/accuracy.h"
 
-#include "mbd/trust/accuracy_study.h"
-#include "mbd/trust/global_error.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/atomic_file.h"
+#include "mbd/trust/accuracy_study.h"
+#include "mbd/trust/global_error.h"
 #include "run/prominence.h"
 #include "run/run.h"
 #include "tools/steplap/accuracy_report.h"
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_usual_budget = 5.0; // s of CPU time
+constexpr double k_usual_budget = 5.0;      // s of CPU time
 constexpr double k_steps_of_a_run = 8000.0; // where a model names no step: the middle of the ladder
 
 struct AccuracyCommand {
@@ -32,9 +32,7 @@ struct AccuracyCommand {
   bool is_overwriting = false;
 };
 
-const std::vector<std::string>& known_integrators() {
-  return SimulationSettings::fields().find("integrator")->choices;
-}
+const std::vector<std::string>& known_integrators() { return SimulationSettings::fields().find("integrator")->choices; }
 
 double number_of(const std::string& text, const std::string& option) {
   char* end = nullptr;
@@ -54,8 +52,7 @@ void check_integrator(const std::string& name) {
 MethodSetting setting_of(const System& system, const std::string& text, const std::string& option) {
   const std::size_t at = text.find('@');
   if (at == std::string::npos)
-    throw UsageError(option + ": '" + text +
-                     "' should be INTEGRATOR@TOLERANCE, or INTEGRATOR@STEP for fixed steps");
+    throw UsageError(option + ": '" + text + "' should be INTEGRATOR@TOLERANCE, or INTEGRATOR@STEP for fixed steps");
   const std::string name = text.substr(0, at);
   check_integrator(name);
   return {name, number_of(text.substr(at + 1), option), !is_adaptive(system, name)};
@@ -65,20 +62,16 @@ AccuracyOptions options_for(const AccuracyCommand& command, const LoadedModel& l
   const System& system = *loaded.system;
   const SimulationSettings& s = loaded.model.simulation;
   AccuracyOptions options;
-  for (const std::string& name : command.integrators)
-    check_integrator(name);
-  for (const std::string& text : command.settings)
-    options.ladder.push_back(setting_of(system, text, "--setting"));
+  for (const std::string& name : command.integrators) check_integrator(name);
+  for (const std::string& text : command.settings) options.ladder.push_back(setting_of(system, text, "--setting"));
   if (options.ladder.empty() || !command.integrators.empty()) {
-    const auto usual = usual_ladder(
-        system, command.integrators.empty() ? known_integrators() : command.integrators,
-        s.step.value_or(s.end / k_steps_of_a_run));
+    const auto usual = usual_ladder(system, command.integrators.empty() ? known_integrators() : command.integrators,
+                                    s.step.value_or(s.end / k_steps_of_a_run));
     options.ladder.insert(options.ladder.end(), usual.begin(), usual.end());
   }
   if (!command.references.empty()) {
     if (command.references.size() != 2 || command.references[0] == command.references[1])
-      throw UsageError(
-          "--reference is given twice, each time another method: two that agree make a reference");
+      throw UsageError("--reference is given twice, each time another method: two that agree make a reference");
     options.first_reference = setting_of(system, command.references[0], "--reference");
     options.second_reference = setting_of(system, command.references[1], "--reference");
   }
@@ -93,8 +86,7 @@ AccuracyOptions options_for(const AccuracyCommand& command, const LoadedModel& l
 
 std::vector<double> wanted_errors(const AccuracyCommand& command) {
   std::vector<double> errors;
-  for (const std::string& text : command.wanted)
-    errors.push_back(number_of(text, "--error"));
+  for (const std::string& text : command.wanted) errors.push_back(number_of(text, "--error"));
   if (errors.empty()) errors = {1e-3, 1e-6, 1e-9};
   return errors;
 }
@@ -105,32 +97,25 @@ std::vector<std::string> files_of(const AccuracyCommand& command, const LoadedMo
 }
 
 // Before a study that may take minutes.
-void check_files(const AccuracyCommand& command,
-                 const std::vector<std::shared_ptr<const LoadedModel>>& models) {
+void check_files(const AccuracyCommand& command, const std::vector<std::shared_ptr<const LoadedModel>>& models) {
   std::set<std::string> seen;
   for (const auto& loaded : models)
     for (const std::string& file : files_of(command, *loaded)) {
       if (!seen.insert(file).second)
-        throw UsageError("two models are called '" + loaded->name +
-                         "' and would be written to the same files");
+        throw UsageError("two models are called '" + loaded->name + "' and would be written to the same files");
       if (!command.is_overwriting && fs::exists(file))
-        throw UsageError(
-            "'" + file +
-            "' stands there already: choose another folder with -o, or overwrite it with --force");
+        throw UsageError("'" + file + "' stands there already: choose another folder with -o, or overwrite it with --force");
     }
 }
 
-void write_files(const AccuracyCommand& command, const LoadedModel& loaded,
-                 const AccuracyStudy& study) {
+void write_files(const AccuracyCommand& command, const LoadedModel& loaded, const AccuracyStudy& study) {
   const std::vector<std::string> files = files_of(command, loaded);
   const fs::path folder = fs::path(files[0]).parent_path();
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error)
-    throw FileError(folder.string(), "cannot write results to '" + folder.string() + "': " + error.message());
+  if (error) throw FileError(folder.string(), "cannot write results to '" + folder.string() + "': " + error.message());
   const IfExists if_exists = command.is_overwriting ? IfExists::replace : IfExists::refuse;
-  const std::string title =
-      loaded.model.header.title.empty() ? loaded.name : loaded.model.header.title;
+  const std::string title = loaded.model.header.title.empty() ? loaded.name : loaded.model.header.title;
   write_file(files[0], accuracy_csv(study), if_exists);
   write_file(files[1], work_precision_svg(study, title), if_exists);
 }
@@ -138,12 +123,11 @@ void write_files(const AccuracyCommand& command, const LoadedModel& loaded,
 ExitCode accuracy_of(const AccuracyCommand& command, const LoadedModel& loaded, Console& console) {
   try {
     const AccuracyOptions options = options_for(command, loaded);
-    const AccuracyStudy study =
-        study_accuracy(*loaded.system, initial_state_of(loaded), options_of(loaded.model), options);
+    const AccuracyStudy study = study_accuracy(*loaded.system, initial_state_of(loaded), options_of(loaded.model), options);
     write_files(command, loaded, study);
     if (console.verbosity == Verbosity::quiet) return ExitCode::done;
-    console.out << About{loaded.path} << loaded.name << ": t = 0 to " << number_text(loaded.model.simulation.end)
-                << " s, compared every " << number_text(loaded.model.output.step) << " s\n";
+    console.out << About{loaded.path} << loaded.name << ": t = 0 to " << number_text(loaded.model.simulation.end) << " s, compared every "
+                << number_text(loaded.model.output.step) << " s\n";
     print_accuracy(console.out, study, wanted_errors(command));
     console.out << "Written to " << files_of(command, loaded)[0] << " and work_precision.svg\n";
     return ExitCode::done;
@@ -161,8 +145,7 @@ ExitCode accuracy(const AccuracyCommand& command, Console& console) {
   (void)wanted_errors(command);
   ExitCode code = ExitCode::done;
   for (const auto& loaded : models)
-    if (const ExitCode one = accuracy_of(command, *loaded, console); one != ExitCode::done)
-      code = one;
+    if (const ExitCode one = accuracy_of(command, *loaded, console); one != ExitCode::done) code = one;
   return code;
 }
 
@@ -186,19 +169,13 @@ work_precision.svg.
       {"-o,--output", &o->output, "DIR", "folder for the results (default: out/accuracy)"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the runs, s"},
-      {"--integrator", &o->integrators, "NAME",
-       "only these, over the usual ladder; may be repeated"},
-      {"--setting", &o->settings, "NAME@VALUE",
-       "an entry of its own: a tolerance, or the step of a fixed-step method"},
-      {"--reference", &o->references, "NAME@VALUE",
-       "given twice: the two that have to agree (dop853@1e-13, tsit5@1e-13)"},
-      {"--error", &o->wanted, "E",
-       "name the cheapest setting for this error (default: 1e-3, 1e-6, 1e-9)"},
+      {"--integrator", &o->integrators, "NAME", "only these, over the usual ladder; may be repeated"},
+      {"--setting", &o->settings, "NAME@VALUE", "an entry of its own: a tolerance, or the step of a fixed-step method"},
+      {"--reference", &o->references, "NAME@VALUE", "given twice: the two that have to agree (dop853@1e-13, tsit5@1e-13)"},
+      {"--error", &o->wanted, "E", "name the cheapest setting for this error (default: 1e-3, 1e-6, 1e-9)"},
       {"--repeats", &o->repeats, "N", "runs of which the fastest counts, at most; of long ones fewer (default: 3)"},
-      {"--budget", &o->budget, "S",
-       "CPU time for all settings of a model together, s, the reference not counted (default: 5)"},
-      {"--cpu-limit", &o->cpu_limit, "S",
-       "a run that needs more CPU time is given up, s (default: 60)"},
+      {"--budget", &o->budget, "S", "CPU time for all settings of a model together, s, the reference not counted (default: 5)"},
+      {"--cpu-limit", &o->cpu_limit, "S", "a run that needs more CPU time is given up, s (default: 60)"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return accuracy(*o, console); };

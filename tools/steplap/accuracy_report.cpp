@@ -18,8 +18,7 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr ErrorKind k_kinds[] = {ErrorKind::position, ErrorKind::velocity, ErrorKind::reaction,
-                                 ErrorKind::event_time};
+constexpr ErrorKind k_kinds[] = {ErrorKind::position, ErrorKind::velocity, ErrorKind::reaction, ErrorKind::event_time};
 
 std::string milliseconds(double seconds) {
   char text[32];
@@ -45,8 +44,7 @@ std::string events_text(const AccuracyStudy& study, const AccuracyEntry& entry) 
 }
 
 void print_reference(std::ostream& out, const AccuracyStudy& study) {
-  out << "  reference: " << study.first_reference.text() << " and " << study.second_reference.text()
-      << " differ by at most\n";
+  out << "  reference: " << study.first_reference.text() << " and " << study.second_reference.text() << " differ by at most\n";
   for (const ErrorKind kind : k_kinds) {
     const WorstError& worst = study.resolution.of(kind);
     out << "    " << small_text(worst.value) << " in " << name_of(kind);
@@ -68,10 +66,8 @@ std::string sentence(const AccuracyStudy& study, double wanted) {
 
 // --- diagram ------------------------------------------------------------------------------------
 
-constexpr double k_width = 640.0, k_height = 440.0, k_left = 70.0, k_right = 120.0, k_top = 40.0,
-                 k_bottom = 55.0;
-constexpr const char* k_colours[] = {"#1b6ca8", "#c8553d", "#3a7d44",
-                                     "#7b4fa3", "#b8860b", "#4a4a4a"};
+constexpr double k_width = 640.0, k_height = 440.0, k_left = 70.0, k_right = 120.0, k_top = 40.0, k_bottom = 55.0;
+constexpr const char* k_colours[] = {"#1b6ca8", "#c8553d", "#3a7d44", "#7b4fa3", "#b8860b", "#4a4a4a"};
 
 // A logarithmic axis from whole decade to whole decade.
 struct Axis {
@@ -85,9 +81,7 @@ struct Axis {
   void close() {
     if (!(low < high)) high = low + 1.0;
   }
-  [[nodiscard]] double at(double value) const {
-    return from + (to - from) * (portable::log10(value) - low) / (high - low);
-  }
+  [[nodiscard]] double at(double value) const { return from + (to - from) * (portable::log10(value) - low) / (high - low); }
 };
 
 std::string fixed(double value) {
@@ -99,32 +93,24 @@ std::string fixed(double value) {
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
+    if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else if (c == '&') out += "&amp;";
+    else out += c;
   }
   return out;
 }
 
-std::string label(double x, double y, const std::string& anchor, const std::string& content,
-                  const std::string& more = "") {
-  return "<text x=\"" + fixed(x) + "\" y=\"" + fixed(y) + "\" text-anchor=\"" + anchor + "\"" +
-         more + ">" + content + "</text>\n";
+std::string label(double x, double y, const std::string& anchor, const std::string& content, const std::string& more = "") {
+  return "<text x=\"" + fixed(x) + "\" y=\"" + fixed(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" + content + "</text>\n";
 }
 
 std::string line(double x1, double y1, double x2, double y2, const std::string& style) {
-  return "<line x1=\"" + fixed(x1) + "\" y1=\"" + fixed(y1) + "\" x2=\"" + fixed(x2) + "\" y2=\"" +
-         fixed(y2) + "\" " + style + "/>\n";
+  return "<line x1=\"" + fixed(x1) + "\" y1=\"" + fixed(y1) + "\" x2=\"" + fixed(x2) + "\" y2=\"" + fixed(y2) + "\" " + style + "/>\n";
 }
 
 std::string power_of_ten(double exponent) {
-  return "10<tspan dy=\"-5\" font-size=\"9\">" + std::to_string(static_cast<int>(exponent)) +
-         "</tspan>";
+  return "10<tspan dy=\"-5\" font-size=\"9\">" + std::to_string(static_cast<int>(exponent)) + "</tspan>";
 }
 
 std::string grid(const Axis& x, const Axis& y) {
@@ -136,13 +122,11 @@ std::string grid(const Axis& x, const Axis& y) {
   }
   for (double d = y.low; d <= y.high + 0.5; d += 1.0) {
     const double at = y.at(portable::pow(10.0, d));
-    svg +=
-        line(x.from, at, x.to, at, style) + label(x.from - 8.0, at + 4.0, "end", power_of_ten(d));
+    svg += line(x.from, at, x.to, at, style) + label(x.from - 8.0, at + 4.0, "end", power_of_ten(d));
   }
   svg += label(0.5 * (x.from + x.to), k_height - 12.0, "middle", "largest scaled error");
   const double middle = 0.5 * (y.from + y.to);
-  svg += label(18.0, middle, "middle", "CPU time, ms",
-               " transform=\"rotate(-90 18 " + fixed(middle) + ")\"");
+  svg += label(18.0, middle, "middle", "CPU time, ms", " transform=\"rotate(-90 18 " + fixed(middle) + ")\"");
   return svg;
 }
 
@@ -154,31 +138,27 @@ struct Drawn {
 std::vector<Drawn> drawn(const AccuracyStudy& study) {
   std::vector<Drawn> list;
   for (const AccuracyEntry& entry : study.entries)
-    if (entry.failure.empty() && study.error_of(entry) > 0.0)
-      list.push_back({&entry, study.error_of(entry)});
+    if (entry.failure.empty() && study.error_of(entry) > 0.0) list.push_back({&entry, study.error_of(entry)});
   return list;
 }
 
-std::string curve(const std::vector<Drawn>& points, const std::string& integrator,
-                  const std::string& colour, const Axis& x, const Axis& y) {
+std::string curve(const std::vector<Drawn>& points, const std::string& integrator, const std::string& colour, const Axis& x,
+                  const Axis& y) {
   std::string path, dots;
   for (const Drawn& p : points) {
     if (p.entry->setting.integrator != integrator) continue;
     const std::string px = fixed(x.at(p.error)), py = fixed(y.at(1e3 * p.entry->cpu_seconds));
     path += (path.empty() ? "M" : "L") + px + " " + py;
-    dots += "<circle cx=\"" + px + "\" cy=\"" + py + "\" r=\"4\" stroke=\"" + colour +
-            "\" fill=\"" + (p.entry->is_pareto ? colour : "white") + "\"><title>" +
-            escaped(p.entry->setting.text()) + "</title></circle>\n";
+    dots += "<circle cx=\"" + px + "\" cy=\"" + py + "\" r=\"4\" stroke=\"" + colour + "\" fill=\"" +
+            (p.entry->is_pareto ? colour : "white") + "\"><title>" + escaped(p.entry->setting.text()) + "</title></circle>\n";
   }
-  return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour +
-         "\" stroke-width=\"1.5\"/>\n" + dots;
+  return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.5\"/>\n" + dots;
 }
 
 std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
   std::vector<std::string> names;
   for (const Drawn& p : points)
-    if (std::find(names.begin(), names.end(), p.entry->setting.integrator) == names.end())
-      names.push_back(p.entry->setting.integrator);
+    if (std::find(names.begin(), names.end(), p.entry->setting.integrator) == names.end()) names.push_back(p.entry->setting.integrator);
   return names;
 }
 
@@ -198,44 +178,39 @@ void print_budget(std::ostream& out, const AccuracyStudy& study) {
 
 } // namespace
 
-void print_accuracy(std::ostream& out, const AccuracyStudy& study,
-                    const std::vector<double>& wanted) {
+void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::vector<double>& wanted) {
   print_reference(out, study);
   std::vector<Align> columns(14, Align::right);
   columns[0] = columns[13] = Align::left;
   TextTable table(columns);
-  table.set_head("settings", {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions",
-                              "velocities", "reactions", "event times", "energy", "constraints", "", ""},
-                 {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions",
-                  "velocities", "reactions", "event times", "energy", "constraints", "", "pareto"});
+  table.set_head("settings",
+                 {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions", "velocities", "reactions", "event times",
+                  "energy", "constraints", "", ""},
+                 {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions", "velocities", "reactions", "event times",
+                  "energy", "constraints", "", "pareto"});
   for (const AccuracyEntry& e : study.entries) {
     if (!e.failure.empty()) continue;
     table.add_row({e.setting.text(), Cell(milliseconds(e.cpu_seconds), 1e3 * e.cpu_seconds), whole_cell(e.cost.steps),
-                   whole_cell(e.cost.rejections), whole_cell(e.cost.evaluations),
-                   events_text(study, e), error_cell(study, e, ErrorKind::position),
-                   error_cell(study, e, ErrorKind::velocity),
-                   error_cell(study, e, ErrorKind::reaction),
-                   error_cell(study, e, ErrorKind::event_time), number_cell(e.energy_residual),
+                   whole_cell(e.cost.rejections), whole_cell(e.cost.evaluations), events_text(study, e),
+                   error_cell(study, e, ErrorKind::position), error_cell(study, e, ErrorKind::velocity),
+                   error_cell(study, e, ErrorKind::reaction), error_cell(study, e, ErrorKind::event_time), number_cell(e.energy_residual),
                    number_cell(e.constraint_residual), "", e.is_pareto ? "Pareto" : ""});
   }
   out << table;
   for (const AccuracyEntry& e : study.entries)
-    if (!e.failure.empty() && !e.is_left_out)
-      out << "  " << e.setting.text() << " gave nothing: " << e.failure << "\n";
+    if (!e.failure.empty() && !e.is_left_out) out << "  " << e.setting.text() << " gave nothing: " << e.failure << "\n";
   print_budget(out, study);
   for (const ErrorSlope& s : study.slopes())
-    out << "  " << s.integrator << ": error of positions ~ " << (s.is_step ? "step" : "tolerance")
-        << "^" << small_text(s.slope) << " over " << small_text(s.decades) << " decades\n";
+    out << "  " << s.integrator << ": error of positions ~ " << (s.is_step ? "step" : "tolerance") << "^" << small_text(s.slope) << " over "
+        << small_text(s.decades) << " decades\n";
   out << "  cheapest: ";
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    out << (i > 0 ? "; " : "") << sentence(study, wanted[i]);
+  for (std::size_t i = 0; i < wanted.size(); ++i) out << (i > 0 ? "; " : "") << sentence(study, wanted[i]);
   out << "\n";
 }
 
 std::string accuracy_csv(const AccuracyStudy& study) {
-  std::string csv =
-      "integrator,tolerance,step [s],cpu [s],steps,rejected,evaluations,events,unmatched events,"
-      "positions,velocities,reactions,event times,energy,constraints,pareto,failure\n";
+  std::string csv = "integrator,tolerance,step [s],cpu [s],steps,rejected,evaluations,events,unmatched events,"
+                    "positions,velocities,reactions,event times,energy,constraints,pareto,failure\n";
   csv += "# the times, what is Pareto by them and which settings the budget of " + number_text(study.budget) +
          " s had room for hang on the computer and on its clock\n";
   for (const AccuracyEntry& e : study.entries) {
@@ -246,13 +221,11 @@ std::string accuracy_csv(const AccuracyStudy& study) {
       continue;
     }
     csv += "," + number_text(e.cpu_seconds);
-    for (const long count : {e.cost.steps, e.cost.rejections, e.cost.evaluations, e.cost.events,
-                             static_cast<long>(e.error.unmatched_events)})
+    for (const long count :
+         {e.cost.steps, e.cost.rejections, e.cost.evaluations, e.cost.events, static_cast<long>(e.error.unmatched_events)})
       csv += "," + std::to_string(count);
-    for (const ErrorKind kind : k_kinds)
-      csv += "," + (study.is_resolved(kind) ? number_text(e.error.of(kind).value) : std::string());
-    csv += "," + number_text(e.energy_residual) + "," + number_text(e.constraint_residual) +
-           (e.is_pareto ? ",1," : ",0,") + "\n";
+    for (const ErrorKind kind : k_kinds) csv += "," + (study.is_resolved(kind) ? number_text(e.error.of(kind).value) : std::string());
+    csv += "," + number_text(e.energy_residual) + "," + number_text(e.constraint_residual) + (e.is_pareto ? ",1," : ",0,") + "\n";
   }
   return csv;
 }
@@ -271,8 +244,7 @@ std::string work_precision_svg(const AccuracyStudy& study, const std::string& ti
   if (points.empty()) x.low = y.low = 0.0;
   x.close();
   y.close();
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + fixed(k_width) +
-                    "\" height=\"" + fixed(k_height) +
+  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + fixed(k_width) + "\" height=\"" + fixed(k_height) +
                     "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
                     "height=\"100%\" fill=\"white\"/>\n" +
                     label(k_left, 22.0, "start", escaped(title), " font-size=\"14\"") + grid(x, y) +
@@ -280,16 +252,14 @@ std::string work_precision_svg(const AccuracyStudy& study, const std::string& ti
   double resolution = 0.0;
   for (const ErrorKind kind : k_kinds)
     if (study.is_resolved(kind)) resolution = std::max(resolution, study.resolution.of(kind).value);
-  if (resolution > 0.0 && portable::log10(resolution) >= x.low &&
-      portable::log10(resolution) <= x.high)
-    svg += line(x.at(resolution), y.from, x.at(resolution), y.to,
-                "stroke=\"#888888\" stroke-dasharray=\"4 3\"");
+  if (resolution > 0.0 && portable::log10(resolution) >= x.low && portable::log10(resolution) <= x.high)
+    svg += line(x.at(resolution), y.from, x.at(resolution), y.to, "stroke=\"#888888\" stroke-dasharray=\"4 3\"");
   const std::vector<std::string> names = integrators_of(points);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string colour = k_colours[i % std::size(k_colours)];
     svg += curve(points, names[i], colour, x, y);
-    svg += label(k_width - k_right + 14.0, k_top + 16.0 + 18.0 * static_cast<double>(i), "start",
-                 escaped(names[i]), " fill=\"" + colour + "\"");
+    svg += label(k_width - k_right + 14.0, k_top + 16.0 + 18.0 * static_cast<double>(i), "start", escaped(names[i]),
+                 " fill=\"" + colour + "\"");
   }
   return svg + "</svg>\n";
 }

@@ -10,8 +10,7 @@
 namespace steplap {
 
 /// `wanted`: errors for which the cheapest setting is named in the last line.
-void print_accuracy(std::ostream& out, const AccuracyStudy& study,
-                    const std::vector<double>& wanted);
+void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::vector<double>& wanted);
 /// One row an entry; errors that are not resolved and those of failed entries are empty fields.
 [[nodiscard]] std::string accuracy_csv(const AccuracyStudy& study);
 /// CPU time over error, both logarithmic, one line an integrator, Pareto entries filled, the

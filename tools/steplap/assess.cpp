@@ -30,7 +30,9 @@ ExitCode assess_here(const AssessOptions& options, Console& console) {
 bool asks_for_assessment(const std::vector<std::string>& arguments) {
   const auto command = std::find_if(arguments.begin(), arguments.end(), [](const std::string& word) { return !word.starts_with('-'); });
   if (command == arguments.end() || *command != "assess") return false;
-  return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) { return word == "--static" || word.starts_with("--static=") || word == "--help" || word == "-h"; });
+  return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) {
+    return word == "--static" || word.starts_with("--static=") || word == "--help" || word == "-h";
+  });
 }
 
 Command assess_command(const std::function<ExitCode(const AssessOptions& options, Console& console)>& work) {
@@ -50,19 +52,25 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
   command.options = {
       {"RECORD", &o->records, "RECORD", "recorders' files, each with what its own --gravity and the like say; with --static: models"},
       {"-m,--model", &o->models, "MODEL", "model with a [[recorder]]; one for each plane"},
-      {"-o,--output", &o->output, "DIR", "folder of assessment.json (default: out/assessment); with --static, of static.json (default: none is written)"},
+      {"-o,--output", &o->output, "DIR",
+       "folder of assessment.json (default: out/assessment); with --static, of static.json (default: none is written)"},
       {"--criteria", &o->criteria, "FILE|PRESET", "what decides: a file, or acceptance-3g (default), joints, peaks-3g"},
       {"--print-criteria", &o->print_criteria, "PRESET", "print a preset, to be edited"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over every model; may be repeated"},
       {"--samples", &o->samples, "N", "voyages with other values of what is uncertain (default: 200); 0: none, and no probability"},
       {"--seed", &o->seed, "N", "of the samples (default: 1)"},
       {"--threads", &o->threads, "N", "of the samples (default: all processors); results are the same for any number"},
-      {"--accept", &o->accepted, "FAULT", "decide although a record is clipped, has gaps, holds peaks only, is cut, shows a fall, has a dead axis, or is sampled below 100 Hz: clipped, gaps, peaks, cut, fall, dead or slow; may be repeated"},
-      {"--pulse", &o->pulse, "SHAPE", "of lists of peaks without waveforms: drive the models by a half-sine, haversine or triangle; \"half-sine 50 ms\" where the list does not tell how long. The decision is open unless --accept peaks"},
+      {"--accept", &o->accepted, "FAULT",
+       "decide although a record is clipped, has gaps, holds peaks only, is cut, shows a fall, has a dead axis, or is sampled below 100 "
+       "Hz: clipped, gaps, peaks, cut, fall, dead or slow; may be repeated"},
+      {"--pulse", &o->pulse, "SHAPE",
+       "of lists of peaks without waveforms: drive the models by a half-sine, haversine or triangle; \"half-sine 50 ms\" where the list "
+       "does not tell how long. The decision is open unless --accept peaks"},
       {"--pulse-axis", &o->pulse_axis, "AXIS", "x, y or z: that of peaks whose list tells no direction"},
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate errors of the runs"},
       {"--static", &o->static_preset, "PRESET", "constant loads instead of records: iec-1g, road, sea, or a file of your own (.toml)"},
-      {"--plane", &o->plane, "PLANE", "with --static: lengthwise (default where it makes no difference) or transverse, the section that the models show"},
+      {"--plane", &o->plane, "PLANE",
+       "with --static: lengthwise (default where it makes no difference) or transverse, the section that the models show"},
       {"--directions", &o->directions, "N", "with --static: directions in which a pull grows until something gives way: 72"},
       {"--largest", &o->largest, "A", "with --static: how far it grows, m/s^2: 98.1"},
       {"--json", &o->is_json, "", "print assessment.json instead of the screen"},

@@ -103,11 +103,12 @@ Command channels_command() {
   steplap channels my.toml -o channels.csv
 What formulas of channels may hold, and how to ask for channels: docs/reference/channels.md.
 )";
-  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
-                     {"--only", &o->patterns, "PATTERN", "those that match, * and ?; may be repeated"},
-                     {"-o,--output", &o->output, "FILE", "also write the list as CSV; - is the standard output, which then holds nothing else"},
-                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
-                     {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
+  command.options = {
+      {"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
+      {"--only", &o->patterns, "PATTERN", "those that match, * and ?; may be repeated"},
+      {"-o,--output", &o->output, "FILE", "also write the list as CSV; - is the standard output, which then holds nothing else"},
+      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
+      {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return channels(*o, console); };
   return command;

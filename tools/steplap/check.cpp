@@ -1,12 +1,12 @@
 #include "tools/steplap/check.h"
 
-#include "mbd/rest/assembly.h"
-#include "mbd/rest/freedom.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/validate.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/freedom.h"
 #include "mbd/system/one_sided_row.h"
 #include "run/findings.h"
 #include "run/quantity_text.h"
@@ -52,11 +52,9 @@ double cpu_limit_of(const CheckOptions& options) {
 }
 
 // "16: 2 unilateral_contact, 1 weld"
-template <class Entries, class KindOf>
-std::string counts_text(const Entries& entries, KindOf kind_of) {
+template <class Entries, class KindOf> std::string counts_text(const Entries& entries, KindOf kind_of) {
   std::map<std::string, int> counts;
-  for (const auto& entry : entries)
-    ++counts[kind_of(entry)];
+  for (const auto& entry : entries) ++counts[kind_of(entry)];
   std::string text = std::to_string(entries.size());
   const char* separator = ": ";
   for (const auto& [kind, count] : counts) {
@@ -69,8 +67,7 @@ std::string counts_text(const Entries& entries, KindOf kind_of) {
 std::string bodies_text(const Model& model) {
   double mass = 0.0;
   std::size_t fixed = 0;
-  for (const Body& body : model.bodies)
-    body.fixed ? static_cast<void>(++fixed) : static_cast<void>(mass += body.mass);
+  for (const Body& body : model.bodies) body.fixed ? static_cast<void>(++fixed) : static_cast<void>(mass += body.mass);
   std::string text = std::to_string(model.bodies.size());
   if (fixed > 0) text += ", " + std::to_string(fixed) + " of them fixed";
   char rounded[32]; // a core's sheets weigh no round number of kilograms
@@ -83,7 +80,8 @@ std::string run_text(const Model& model) {
   std::string text = s.integrator + ", 0 to " + number_text(s.end) + " s";
   if (s.step) {
     text += ", step " + number_text(*s.step) + " s";
-    if (has_fixed_step(s.integrator)) text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + (s.end / *s.step > 1.0 + 1e-9 ? " steps)" : " step)");
+    if (has_fixed_step(s.integrator))
+      text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + (s.end / *s.step > 1.0 + 1e-9 ? " steps)" : " step)");
   }
   if (s.tolerance) text += ", tolerance " + number_text(*s.tolerance);
   return text + "; starts " + (s.initial == "equilibrium" ? "from equilibrium" : "as given");
@@ -99,8 +97,9 @@ void print_freedom(TextTable& table, const System& system) {
   table.add_row({"constraint rows", rows});
   std::string degrees = std::to_string(freedom.degrees());
   if (!system.frictions.empty())
-    degrees += "; " + std::to_string(freedom.degrees_sticking()) +
-               (first_one_sided_row(system) ? " while all friction sticks and all inextensible ropes are taut" : " while all friction sticks");
+    degrees +=
+        "; " + std::to_string(freedom.degrees_sticking()) +
+        (first_one_sided_row(system) ? " while all friction sticks and all inextensible ropes are taut" : " while all friction sticks");
   table.add_row({"degrees of freedom", degrees});
 }
 
@@ -110,7 +109,8 @@ void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   const auto moves = assembly_moves(system.initial_state(), loaded.assembled);
   if (moves.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
-  table.set_head("assembled", {"assembled", "moved", "turned", "velocity changed", "angular velocity"}, {"body", "moved", "turned", "velocity changed", "angular velocity"});
+  table.set_head("assembled", {"assembled", "moved", "turned", "velocity changed", "angular velocity"},
+                 {"body", "moved", "turned", "velocity changed", "angular velocity"});
   for (std::size_t i = 0; i < std::min(moves.size(), k_shown_moves); ++i) {
     const AssemblyMove& m = moves[i];
     table.add_row({system.bodies[m.body].name, quantity_cell(m.shift, "m", 1e-3), quantity_cell(m.turn, "rad", 1e-3),
@@ -147,10 +147,12 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
     const ContactAtStart& c = contacts[i];
     const double size = size_of_pair(*loaded.system, c.a, c.b);
     table.add_row({c.entry->element->name, name(c.a) + ", " + name(c.b), quantity_cell(c.gap, "m", size),
-                   c.force > 0.0 ? quantity_cell(c.force, "N", largest) : Cell("-", 0.0, "N"), quantity_cell(c.place.x(), "m", size), quantity_cell(c.place.y(), "m", size)});
+                   c.force > 0.0 ? quantity_cell(c.force, "N", largest) : Cell("-", 0.0, "N"), quantity_cell(c.place.x(), "m", size),
+                   quantity_cell(c.place.y(), "m", size)});
   }
   out << table;
-  if (contacts.size() > k_shown_contacts) out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
+  if (contacts.size() > k_shown_contacts)
+    out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
 }
 
 // Formulas give numbers that nobody has rounded: six digits.
@@ -199,7 +201,8 @@ std::size_t add_formulas(TextTable& table, const Model& model, std::size_t asked
       if (!is_formula_field(field)) continue;
       ++count;
       const Location& where = entry.element->where;
-      table.add_row({entry.element->name + "." + field.name, std::get<std::string>(field.get(entry.element.get())), "", where.file + ":" + std::to_string(where.line)});
+      table.add_row({entry.element->name + "." + field.name, std::get<std::string>(field.get(entry.element.get())), "",
+                     where.file + ":" + std::to_string(where.line)});
     }
   }
   return count;
@@ -219,7 +222,8 @@ void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string&
   const auto place = [](const Location& where) { return where.file + ":" + std::to_string(where.line); };
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
     const Parameter& p = parameters.entries[i];
-    if (p.formula && parameters.needs(*p.formula, *asked)) table.add_row({"parameters." + p.name, p.text, parameter_value(parameters, i), place(p.where)});
+    if (p.formula && parameters.needs(*p.formula, *asked))
+      table.add_row({"parameters." + p.name, p.text, parameter_value(parameters, i), place(p.where)});
   }
   std::size_t uses = 0;
   for (const ParameterUse& use : parameters.uses) {
@@ -229,7 +233,9 @@ void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string&
     table.add_row({use.path, use.text, Cell(with_unit(value, use.unit), value, use.unit), place(use.where)});
   }
   uses += add_formulas(table, loaded.model, *asked);
-  out << About{loaded.path} << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked).text << "; " << counted(uses, "field follows", "fields follow") << " from it\n" << table;
+  out << About{loaded.path} << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked).text << "; "
+      << counted(uses, "field follows", "fields follow") << " from it\n"
+      << table;
 }
 
 void print_model(std::ostream& out, const LoadedModel& loaded) {
@@ -244,9 +250,8 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
   print_freedom(table, *loaded.system);
   table.add_row({"run", run_text(model)});
   const Trajectory channels(*loaded.system, model.output.channels);
-  table.add_row({"output", counted(channels.channels().size(), "channel", "channels") + " every " +
-                               number_text(model.output.step) + " s, " +
-                               number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
+  table.add_row({"output", counted(channels.channels().size(), "channel", "channels") + " every " + number_text(model.output.step) +
+                               " s, " + number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
   out << table;
   print_parameters(out, model.parameters);
   print_assembly(out, loaded);
@@ -264,8 +269,7 @@ ExitCode check(const CheckOptions& options, Console& console) {
     return ExitCode::done;
   }
   if (console.verbosity == Verbosity::quiet) return ExitCode::done;
-  for (const auto& loaded : models)
-    print_model(console.out, *loaded);
+  for (const auto& loaded : models) print_model(console.out, *loaded);
   return ExitCode::done;
 }
 
@@ -287,7 +291,8 @@ disagrees beyond these.
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"--uses", &o->parameter, "NAME", "show all that follows from this parameter, instead of the counts"},
                      {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},
-                     {"--cpu-limit", &o->cpu_limit, "S", "with --cross: CPU time of all runs together, s; each method may take an even part of what is left (default: 60)"}};
+                     {"--cpu-limit", &o->cpu_limit, "S",
+                      "with --cross: CPU time of all runs together, s; each method may take an even part of what is left (default: 60)"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return check(*o, console); };
   return command;

@@ -34,8 +34,7 @@ public:
 };
 
 /// Where the value of an option goes; the pointee must live as long as the Command.
-using OptionTarget = std::variant<bool*, std::string*, std::optional<std::string>*,
-                                  std::vector<std::string>*>;
+using OptionTarget = std::variant<bool*, std::string*, std::optional<std::string>*, std::vector<std::string>*>;
 
 struct Option {
   std::string names; ///< "-o,--output"; without a dash: a positional argument

@@ -42,21 +42,16 @@ struct BindOption {
   CLI::App& app;
   const Option& option;
 
-  CLI::Option* operator()(bool* target) const {
-    return app.add_flag(option.names, *target, option.doc);
-  }
+  CLI::Option* operator()(bool* target) const { return app.add_flag(option.names, *target, option.doc); }
   CLI::Option* operator()(std::optional<std::string>* target) const {
     return named(app.add_option_function<std::string>(
         option.names, [target](const std::string& value) { *target = value; }, option.doc));
   }
-  CLI::Option* operator()(std::string* target) const {
-    return named(app.add_option(option.names, *target, option.doc));
-  }
+  CLI::Option* operator()(std::string* target) const { return named(app.add_option(option.names, *target, option.doc)); }
   CLI::Option* operator()(std::vector<std::string>* target) const {
     CLI::Option* bound = named(app.add_option(option.names, *target, option.doc));
     // An option may come again and again with one value each; a positional takes all that are left.
-    if (option.names.front() == '-') bound->expected(1)->multi_option_policy(
-        CLI::MultiOptionPolicy::TakeAll);
+    if (option.names.front() == '-') bound->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     return bound;
   }
   CLI::Option* named(CLI::Option* bound) const { return bound->type_name(option.value_name); }
@@ -77,8 +72,7 @@ void bind(CLI::App& app, const Command& command, bool is_meant, CommonFlags& fla
   CLI::App* sub = app.add_subcommand(command.name, command.summary);
   if (!is_meant) return;
   if (!command.examples.empty()) sub->footer("Examples:\n" + command.examples);
-  for (const Option& option : command.options)
-    std::visit(BindOption{*sub, option}, option.target)->required(option.is_required);
+  for (const Option& option : command.options) std::visit(BindOption{*sub, option}, option.target)->required(option.is_required);
   if (command.prints_tables) sub->add_flag("--json", flags.is_json, "print what the screen says as JSON instead, with all digits");
   CLI::Option* quiet = sub->add_flag("-q,--quiet", flags.is_quiet, "say nothing but errors");
   sub->add_flag("-v,--verbose", flags.is_verbose, "say more about what is done")->excludes(quiet);
@@ -139,7 +133,8 @@ bool is_given(const std::vector<std::string>& arguments, const std::string& word
 }
 
 // What the parser says about a wrong command line, with the nearest sub-command. Who gives nothing at all is told what there is.
-ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program, CLI::App& app, std::ostream& err) {
+ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program, CLI::App& app,
+                      std::ostream& err) {
   if (arguments.empty()) {
     err << app.help();
     return ExitCode::usage;
@@ -171,12 +166,13 @@ OrderedJson options_json(const CLI::App& app) {
     const bool is_positional = option->get_positional();
     if (is_positional) names.push_back(option->get_name(true));
     const bool is_flag = !is_positional && option->get_expected_max() == 0;
-    options.push_back({{"names", std::move(names)},
-                       {"takes", is_flag ? "" : option->get_type_name()},
-                       {"is_positional", is_positional},
-                       {"is_required", option->get_required()},
-                       {"may_be_repeated", option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll || option->get_expected_max() > 1},
-                       {"meaning", option->get_description()}});
+    options.push_back(
+        {{"names", std::move(names)},
+         {"takes", is_flag ? "" : option->get_type_name()},
+         {"is_positional", is_positional},
+         {"is_required", option->get_required()},
+         {"may_be_repeated", option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll || option->get_expected_max() > 1},
+         {"meaning", option->get_description()}});
   }
   return options;
 }
@@ -185,7 +181,10 @@ OrderedJson options_json(const CLI::App& app) {
 OrderedJson help_json(const Program& program, const CLI::App& app, const std::string& exit_codes) {
   OrderedJson commands = OrderedJson::array();
   for (const Command& command : program.commands)
-    commands.push_back({{"name", command.name}, {"summary", command.summary}, {"examples", command.examples}, {"options", options_json(*app.get_subcommand(command.name))}});
+    commands.push_back({{"name", command.name},
+                        {"summary", command.summary},
+                        {"examples", command.examples},
+                        {"options", options_json(*app.get_subcommand(command.name))}});
   OrderedJson json = OrderedJson::object();
   json["program"] = program.name;
   json["version"] = k_version;
@@ -218,8 +217,7 @@ bool is_command(const Program& program, const std::string& word) {
   return std::any_of(program.commands.begin(), program.commands.end(), [&word](const Command& command) { return command.name == word; });
 }
 
-int run_program(const Program& program, const std::vector<std::string>& given, std::ostream& out, std::ostream& err,
-                bool is_terminal) {
+int run_program(const Program& program, const std::vector<std::string>& given, std::ostream& out, std::ostream& err, bool is_terminal) {
   Console console{out, err, is_terminal};
   start_log(err, is_terminal);
   const bool is_json = is_given(given, "--json"), is_help_in_json = is_json && given.front() == "help";
@@ -231,7 +229,9 @@ int run_program(const Program& program, const std::vector<std::string>& given, s
   CLI::App app(program.name + ": " + program.doc, program.name);
   CommonFlags flags;
   app.set_version_flag("--version", program.name + " " + k_version, "Print the version; with --json more of it");
-  app.add_flag_callback("--licences", [] { throw CLI::CallForVersion(std::string(k_licences), 0); }, "Print the licence, and those of all parts made by others")
+  app.add_flag_callback(
+         "--licences", [] { throw CLI::CallForVersion(std::string(k_licences), 0); },
+         "Print the licence, and those of all parts made by others")
       ->configurable(false);
   app.require_subcommand(1);
   const std::string exit_codes = program.exit_codes.empty() ? k_exit_codes : program.exit_codes;
@@ -266,8 +266,8 @@ int code_of_output(std::ostream& out, std::ostream& err, int code) {
 }
 
 int run_command_line(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal) {
-  return run_program({"steplap", "planar multibody dynamics with honest friction, machines described in TOML", all_commands()}, arguments, out, err,
-                     is_terminal);
+  return run_program({"steplap", "planar multibody dynamics with honest friction, machines described in TOML", all_commands()}, arguments,
+                     out, err, is_terminal);
 }
 
 } // namespace steplap

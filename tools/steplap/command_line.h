@@ -11,8 +11,7 @@ namespace steplap {
 
 /// Runs `arguments` (without the program's name). `is_terminal`: `err` is one, progress may be shown.
 /// Every error is reported on `err`; never throws. Returns the exit code (command.h).
-int run_command_line(const std::vector<std::string>& arguments, std::ostream& out,
-                     std::ostream& err, bool is_terminal);
+int run_command_line(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal);
 
 /// At the end of a program: what was to be said has been written, or that is an error, too. Returns the exit code.
 int code_of_output(std::ostream& out, std::ostream& err, int code);
@@ -28,7 +27,6 @@ struct Program {
 [[nodiscard]] bool is_command(const Program& program, const std::string& word);
 
 /// The same for a program with other commands.
-int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
-                bool is_terminal);
+int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal);
 
 } // namespace steplap

@@ -45,9 +45,7 @@ std::vector<const Core*> chosen_cores(const CoreOptions& options, const LoadedMo
   if (options.cores.empty()) return all;
   for (const std::string& name : options.cores) {
     const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end())
-      throw UsageError("'" + loaded.path + "' has no core '" + name + "'" +
-                       did_you_mean(name, known));
+    if (found == known.end()) throw UsageError("'" + loaded.path + "' has no core '" + name + "'" + did_you_mean(name, known));
     chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
   }
   return chosen;
@@ -67,23 +65,21 @@ std::string book_text(const Core& core, const CoreGeometry& geometry) {
   text += core.pitch_direction == "across"       ? "across the mitre"
           : core.pitch_direction == "along_limb" ? "along the limb"
                                                  : "along the yoke";
-  return text + ", " + std::to_string(book.sheets_per_layer) +
-         (book.sheets_per_layer > 1 ? " sheets" : " sheet") + " in a layer, clearance " +
-         metres(book.clearance);
+  return text + ", " + std::to_string(book.sheets_per_layer) + (book.sheets_per_layer > 1 ? " sheets" : " sheet") +
+         " in a layer, clearance " + metres(book.clearance);
 }
 
 void print_packets(std::ostream& out, const Core& core, const CoreGeometry& geometry) {
   const Stack& stack = geometry.stack();
-  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right,
-                   Align::right, Align::right, Align::right});
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
   table.set_head("packets", {"packet", "limb", "yoke", "depth", "sheets", "layers", "mitre", "angle"});
   for (std::size_t p = 0; p < stack.packets.size(); ++p) {
     const Packet& packet = stack.packets[p];
     const bool is_middle = core.limbs.empty();
     const Mitre m = geometry.mitre(p, is_middle);
     const CornerFrame frame = is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, 1.0, 1.0);
-    table.add_row({count_cell(p + 1), metres_cell(packet.width), metres_cell(packet.yoke_height),
-                   metres_cell(packet.depth), count_cell(static_cast<std::size_t>(sheets_in(stack, packet))),
+    table.add_row({count_cell(p + 1), metres_cell(packet.width), metres_cell(packet.yoke_height), metres_cell(packet.depth),
+                   count_cell(static_cast<std::size_t>(sheets_in(stack, packet))),
                    count_cell(static_cast<std::size_t>(layers_in(stack, packet))), metres_cell(frame.length),
                    degrees_cell(geometry.angle(p, is_middle))});
   }
@@ -91,8 +87,8 @@ void print_packets(std::ostream& out, const Core& core, const CoreGeometry& geom
                  count_cell(static_cast<std::size_t>(layers_in(stack))), "", ""});
   out << table;
   for (const Duct& duct : stack.ducts)
-    out << "  duct of " << metres(duct.width) << " behind " << metres(duct.place) << " of stack, "
-        << sheets_before(stack, duct) << " sheets\n";
+    out << "  duct of " << metres(duct.width) << " behind " << metres(duct.place) << " of stack, " << sheets_before(stack, duct)
+        << " sheets\n";
 }
 
 // Interfaces between layers, whether they carry an overlap or not.
@@ -107,12 +103,11 @@ void print_compliance(std::ostream& out, const Core& core, const CoreGeometry& g
   if (core.is_elastic()) {
     double compliance = core.contact_stiffness ? 1.0 / *core.contact_stiffness : 0.0;
     if (core.shear_modulus) compliance += core.sheet_thickness.value_or(0.0) / *core.shear_modulus;
-    out << "  yields by " << quantity_text(core.tangential_stiffness.value_or(area / compliance), "N/m")
-        << " before it slides\n";
+    out << "  yields by " << quantity_text(core.tangential_stiffness.value_or(area / compliance), "N/m") << " before it slides\n";
   }
   if (!core.edge_stiffness) return;
-  out << "  edges bear " << quantity_text(*core.edge_stiffness, "N/m^2") << " along the mitre once "
-      << metres(core.clearance.value_or(0.0)) << " have closed";
+  out << "  edges bear " << quantity_text(*core.edge_stiffness, "N/m^2") << " along the mitre once " << metres(core.clearance.value_or(0.0))
+      << " have closed";
   if (core.allowed_line_load) out << ", allowed " << quantity_text(*core.allowed_line_load, "N/m");
   if (const long sheets = core.is_counted() ? 0 : sheets_in(geometry.stack()); core.allowed_line_load && sheets > 0)
     out << ", " << quantity_text(*core.allowed_line_load / (static_cast<double>(sheets) * *core.sheet_thickness), "Pa");
@@ -132,8 +127,7 @@ void print_transverse(std::ostream& out, const Core& core, const CoreGeometry& g
       << " Pa more for every m/s² from the front face to the back\n";
 }
 
-void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geometry,
-                   std::size_t limb, const Model& model) {
+void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geometry, std::size_t limb, const Model& model) {
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
   const double reach = std::abs(middle_of_limb(core, body, part).x());
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
@@ -145,15 +139,13 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
     for (const Lap& lap : corner.laps) {
       count += lap.count;
       area += lap.count * lap.area;
-      pressed += lap.count * lap.area * geometry.pressure(corner, lap, core.joint_share(limb, corner.is_top)).middle * (1.0 - core.pressure_loss);
+      pressed +=
+          lap.count * lap.area * geometry.pressure(corner, lap, core.joint_share(limb, corner.is_top)).middle * (1.0 - core.pressure_loss);
       width += lap.count * (lap.outer - lap.inner);
     }
-    const double friction = corner.is_top
-                                ? core.static_friction
-                                : core.bottom_static_friction.value_or(core.static_friction);
-    table.add_row({corner.place, count_cell(corner.laps.size()), Cell(whole(count), count),
-                   metres_cell(width / count), Cell(quantity_text(area, "m²"), area, "m^2"),
-                   quantity_cell(pressed * friction, "N")});
+    const double friction = corner.is_top ? core.static_friction : core.bottom_static_friction.value_or(core.static_friction);
+    table.add_row({corner.place, count_cell(corner.laps.size()), Cell(whole(count), count), metres_cell(width / count),
+                   Cell(quantity_text(area, "m²"), area, "m^2"), quantity_cell(pressed * friction, "N")});
     all += area;
     capacity += pressed * friction;
   }
@@ -163,8 +155,7 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   print_transverse(out, core, geometry, corners.front());
 }
 
-void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geometry,
-                 std::size_t limb, const Model& model) {
+void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geometry, std::size_t limb, const Model& model) {
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
   const LimbSteel steel = geometry.limb_steel(core.is_middle(limb), side_of_limb(core, body, part));
   TextTable table({Align::left, Align::right, Align::right});
@@ -184,8 +175,8 @@ void print_clamping(std::ostream& out, const Core& core, const Model& model) {
   for (const bool is_top : {true, false}) {
     const YokeClamping yoke = clamping_of(core, model, is_top);
     const double half = 0.5 * yoke.length, area = yoke.length * yoke.height;
-    table.add_row({is_top ? "top" : "bottom", quantity_cell(yoke.force, "N"), Cell(quantity_text(area, "m²"), area, "m^2"), quantity_cell(yoke.pressure(), "Pa"),
-                   quantity_cell(yoke.pressure() * (yoke.share(half) - yoke.share(-half)), "Pa")});
+    table.add_row({is_top ? "top" : "bottom", quantity_cell(yoke.force, "N"), Cell(quantity_text(area, "m²"), area, "m^2"),
+                   quantity_cell(yoke.pressure(), "Pa"), quantity_cell(yoke.pressure() * (yoke.share(half) - yoke.share(-half)), "Pa")});
   }
   out << table;
 }
@@ -207,17 +198,15 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
   } else {
     out << book_text(core, geometry) << "\n";
     print_packets(out, core, geometry);
-    out << "  interfaces between layers: " << whole(interfaces_between_layers(geometry.stack()))
-        << " at every corner\n";
+    out << "  interfaces between layers: " << whole(interfaces_between_layers(geometry.stack())) << " at every corner\n";
   }
   if (const auto steel = yoke_steel(model, core.active_part))
-    out << "  yokes: " << quantity_text(*steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
-        << core.active_part << "'" << (is_one_of_several(core, model) ? ", those of all its tables together" : "") << "\n";
+    out << "  yokes: " << quantity_text(*steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg")
+        << " of '" << core.active_part << "'" << (is_one_of_several(core, model) ? ", those of all its tables together" : "") << "\n";
   print_clamping(out, core, model);
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
     out << About{core.joint_name(i)} << "\n"
-        << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'"
-        << (core.is_middle(i) ? ", T-joint" : "") << "\n";
+        << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'" << (core.is_middle(i) ? ", T-joint" : "") << "\n";
     print_corners(out, core, geometry, i, model);
     print_steel(out, core, geometry, i, model);
   }
@@ -226,9 +215,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
 // With several cores: FILE.svg, FILE-2.svg …
 void write_image(const std::string& path, std::size_t index, const Core& core, const Model& model, std::ostream& out) {
   std::filesystem::path file(path);
-  if (index > 0)
-    file.replace_filename(file.stem().string() + "-" + std::to_string(index + 1) +
-                          file.extension().string());
+  if (index > 0) file.replace_filename(file.stem().string() + "-" + std::to_string(index + 1) + file.extension().string());
   std::ofstream image(file);
   image << core_svg(core, model);
   image.close();
@@ -243,7 +230,9 @@ ExitCode core(const CoreOptions& options, Console& console) {
   std::ostream silent(nullptr);
   std::ostream& out = files.has_words() ? console.out : silent;
   const bool is_drawn_there = options.image && is_standard_output(*options.image);
-  if (is_drawn_there && cores.size() > 1) throw UsageError("--svg -: there are " + std::to_string(cores.size()) + " cores, each with a drawing of its own: choose one with --core");
+  if (is_drawn_there && cores.size() > 1)
+    throw UsageError("--svg -: there are " + std::to_string(cores.size()) +
+                     " cores, each with a drawing of its own: choose one with --core");
   for (std::size_t i = 0; i < cores.size(); ++i) {
     if (i > 0) out << "\n";
     print_core(out, clamped(*cores[i], loaded->model), loaded->model);
@@ -251,7 +240,8 @@ ExitCode core(const CoreOptions& options, Console& console) {
     else if (options.image) write_image(*options.image, i, *cores[i], loaded->model, out);
   }
   for (const CoreRemark& remark : implausible_cores(loaded->model))
-    out << (remark.is_note ? "\n  note: " : "\n  warning: ") << text_with_place({"", FindingLevel::warning, remark.text, remark.where}) << "\n";
+    out << (remark.is_note ? "\n  note: " : "\n  warning: ") << text_with_place({"", FindingLevel::warning, remark.text, remark.where})
+        << "\n";
   return ExitCode::done;
 }
 
@@ -268,12 +258,12 @@ Command core_command() {
 Capacity is the friction of a corner in translation, mu_s p times the area of all its overlaps. "Kinds" of interface
 differ in the sheets that overlap; "interfaces" are those that carry an overlap. More on a joint: steplap joint.
 )";
-  command.options = {
-      {"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
-      {"--core", &o->cores, "NAME", "this core; may be repeated (default: all)"},
-      {"--svg", &o->image, "FILE",
-       "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …; - is the standard output, which then holds nothing else"},
-      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
+                     {"--core", &o->cores, "NAME", "this core; may be repeated (default: all)"},
+                     {"--svg", &o->image, "FILE",
+                      "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …; - is the standard output, "
+                      "which then holds nothing else"},
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return core(*o, console); };
   return command;

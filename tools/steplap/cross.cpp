@@ -1,8 +1,8 @@
 #include "tools/steplap/cross.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/trust/cross_check.h"
 #include "mbd/base/number_text.h"
+#include "mbd/trust/cross_check.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
 #include "tools/steplap/log.h"
@@ -24,7 +24,8 @@ std::string where_text(const Disagreement& d) {
   if (d.ratio == 0.0) return "-";
   std::string text = d.where;
   if (d.doubt == Doubt::event || d.doubt == Doubt::channel || d.doubt == Doubt::law) text += " at " + time_text(d.t) + " s";
-  if (text.empty() || d.doubt == Doubt::self || d.doubt == Doubt::momentum) text = std::string(name_of(d.doubt)) + (text.empty() ? "" : ", " + text);
+  if (text.empty() || d.doubt == Doubt::self || d.doubt == Doubt::momentum)
+    text = std::string(name_of(d.doubt)) + (text.empty() ? "" : ", " + text);
   return text;
 }
 
@@ -43,9 +44,10 @@ void print_runs(std::ostream& out, const CrossCheck& check) {
       table.add_row({run.setting.text(), "stops", Cell(small_text(run.cpu_seconds), run.cpu_seconds), "", "", "", "", ""});
       continue;
     }
-    table.add_row({run.setting.text(), count_cell(static_cast<std::size_t>(run.result.statistics.steps)), Cell(small_text(run.cpu_seconds), run.cpu_seconds),
-                   Cell(small_text(run.estimate), run.estimate), Cell(time_text(run.known_until), run.known_until),
-                   Cell(ratio_text(run.worst.ratio), run.worst.ratio), partner(run), where_text(run.worst)});
+    table.add_row({run.setting.text(), count_cell(static_cast<std::size_t>(run.result.statistics.steps)),
+                   Cell(small_text(run.cpu_seconds), run.cpu_seconds), Cell(small_text(run.estimate), run.estimate),
+                   Cell(time_text(run.known_until), run.known_until), Cell(ratio_text(run.worst.ratio), run.worst.ratio), partner(run),
+                   where_text(run.worst)});
   }
   out << table;
 }

@@ -60,12 +60,14 @@ void print_changes(std::ostream& out, const std::vector<ModelChange>& changes) {
 
 std::size_t diff_models(const Model& before, const Model& after, std::ostream& out) {
   const std::vector<ModelChange> changes = changes_between(before, after);
-  const auto follow = static_cast<std::size_t>(std::count_if(changes.begin(), changes.end(), [](const ModelChange& c) { return c.follows; }));
+  const auto follow =
+      static_cast<std::size_t>(std::count_if(changes.begin(), changes.end(), [](const ModelChange& c) { return c.follows; }));
   if (changes.empty()) {
     out << "The models are the same, value by value.\n";
     return 0;
   }
-  out << counted(changes.size(), "value differs", "values differ") << (follow > 0 ? "; " + std::to_string(follow) + " of them follow from parameters" : "") << "\n";
+  out << counted(changes.size(), "value differs", "values differ")
+      << (follow > 0 ? "; " + std::to_string(follow) + " of them follow from parameters" : "") << "\n";
   print_changes(out, changes);
   return changes.size();
 }
@@ -95,12 +97,13 @@ ExitCode diff(const DiffOptions& options, Console& console) {
   std::error_code ignored;
   const bool is_first_folder = fs::is_directory(options.before, ignored), is_second_folder = fs::is_directory(options.after, ignored);
   if (is_first_folder != is_second_folder)
-    throw UsageError("'" + (is_first_folder ? options.before : options.after) + "' is a folder, '" + (is_first_folder ? options.after : options.before) +
-                     "' is none: compare two models, or two folders of runs");
+    throw UsageError("'" + (is_first_folder ? options.before : options.after) + "' is a folder, '" +
+                     (is_first_folder ? options.after : options.before) + "' is none: compare two models, or two folders of runs");
   std::ostream silent(nullptr);
   std::ostream& out = console.verbosity == Verbosity::quiet ? silent : console.out;
   out << About{options.before + " → " + options.after};
-  const std::size_t count = is_first_folder ? diff_results(options, out) : diff_models(given_model(options.before), given_model(options.after), out);
+  const std::size_t count =
+      is_first_folder ? diff_results(options, out) : diff_models(given_model(options.before), given_model(options.after), out);
   return options.is_sameness_required && count > 0 ? ExitCode::criterion_failed : ExitCode::done;
 }
 

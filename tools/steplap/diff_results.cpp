@@ -20,8 +20,8 @@ using Align = TextTable::Align;
 using Json = OrderedJson;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_rounding = 1e-9;      // of the larger value, where no error says more: what two runs of other steps agree to anyhow
-constexpr std::size_t k_most_rows = 20;  // of events, and of extremes, on the screen
+constexpr double k_rounding = 1e-9;     // of the larger value, where no error says more: what two runs of other steps agree to anyhow
+constexpr std::size_t k_most_rows = 20; // of events, and of extremes, on the screen
 
 double number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -44,7 +44,9 @@ struct Measured {
   std::optional<double> error;
 };
 
-Measured measured_in(const Json& json, const std::string& key, const std::string& error) { return {number_in(json, key.c_str()), error_in(json, error)}; }
+Measured measured_in(const Json& json, const std::string& key, const std::string& error) {
+  return {number_in(json, key.c_str()), error_in(json, error)};
+}
 
 // Differences within the errors are none, and neither are those of numbers whose errors are unknown.
 bool differ(const Measured& a, const Measured& b) {
@@ -66,7 +68,8 @@ std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::
 
 // What was zero within its error has no share by which it changed.
 Cell change_of(const Measured& a, const Measured& b) {
-  if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_rounding * std::abs(b.value), a.error.value_or(0.0))) return "";
+  if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_rounding * std::abs(b.value), a.error.value_or(0.0)))
+    return "";
   return change_cell(a.value, b.value);
 }
 
@@ -90,18 +93,23 @@ std::size_t print_outcome(std::ostream& out, const Json& a, const Json& b) {
 
 std::size_t print_criteria(std::ostream& out, const Json& a, const Json& b) {
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::left, Align::left});
-  table.set_head("criteria", {"criterion", "", "before", "after", "was", "is"}, {"name", "criterion", "before", "after", "outcome before", "outcome after"});
+  table.set_head("criteria", {"criterion", "", "before", "after", "was", "is"},
+                 {"name", "criterion", "before", "after", "outcome before", "outcome after"});
   static const Json none = Json::array();
   const Json& before = a.contains("judgement") ? a.at("judgement").at("criteria") : none;
   const Json& after = b.contains("judgement") ? b.at("judgement").at("criteria") : none;
   const auto same = [](const Json& list, const Json& wanted) {
-    return std::find_if(list.begin(), list.end(), [&](const Json& c) { return text_in(c, "name") == text_in(wanted, "name") && text_in(c, "criterion") == text_in(wanted, "criterion"); });
+    return std::find_if(list.begin(), list.end(), [&](const Json& c) {
+      return text_in(c, "name") == text_in(wanted, "name") && text_in(c, "criterion") == text_in(wanted, "criterion");
+    });
   };
   const auto add = [&table](const Json& c, const Json* was, const Json* is) {
-    const Measured first = was ? measured_in(*was, "value", "error") : Measured{}, second = is ? measured_in(*is, "value", "error") : Measured{};
+    const Measured first = was ? measured_in(*was, "value", "error") : Measured{},
+                   second = is ? measured_in(*is, "value", "error") : Measured{};
     const std::string outcome = was ? text_in(*was, "outcome") : "–", now = is ? text_in(*is, "outcome") : "–";
     const auto [value_before, value_after] = cells_of(first, second, text_in(c, "unit"));
-    if (outcome != now || differ(first, second)) table.add_row({text_in(c, "name"), text_in(c, "criterion"), value_before, value_after, outcome, now});
+    if (outcome != now || differ(first, second))
+      table.add_row({text_in(c, "name"), text_in(c, "criterion"), value_before, value_after, outcome, now});
   };
   for (const Json& c : before) {
     const auto other = same(after, c);
@@ -121,8 +129,10 @@ std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
   struct Figure {
     const char *name, *key, *unit;
   };
-  static constexpr Figure figures[] = {{"margin", "smallest_margin", ""}, {"required pressure", "largest_required_pressure", "Pa"},
-                                       {"slid along x", "slid_x", "m"},   {"slid along y", "slid_y", "m"}};
+  static constexpr Figure figures[] = {{"margin", "smallest_margin", ""},
+                                       {"required pressure", "largest_required_pressure", "Pa"},
+                                       {"slid along x", "slid_x", "m"},
+                                       {"slid along y", "slid_y", "m"}};
   for (const auto& [joint, before] : a.at("joints").items()) {
     const auto after = b.at("joints").find(joint);
     if (after == b.at("joints").end()) continue;
@@ -167,8 +177,13 @@ std::size_t print_events(std::ostream& out, const ShownRun& a, const ShownRun& b
       const Measured first = i < was.size() ? was[i] : Measured{}, second = i < times.size() ? times[i] : Measured{};
       if (!differ(first, second)) continue;
       const auto [time_before, time_after] = cells_of(first, second, "s");
-      const std::string change = std::isnan(first.value) ? "new" : std::isnan(second.value) ? "gone" : second.value > first.value ? "later" : "earlier";
-      rows.push_back({std::isnan(first.value) ? second.value : first.value, is_main(kinds[what]), {what.first, what.second, time_before, time_after, change}});
+      const std::string change = std::isnan(first.value)      ? "new"
+                                 : std::isnan(second.value)   ? "gone"
+                                 : second.value > first.value ? "later"
+                                                              : "earlier";
+      rows.push_back({std::isnan(first.value) ? second.value : first.value,
+                      is_main(kinds[what]),
+                      {what.first, what.second, time_before, time_after, change}});
     }
   }
   if (rows.empty()) return 0;
@@ -181,7 +196,9 @@ std::size_t print_events(std::ostream& out, const ShownRun& a, const ShownRun& b
     table.add_row(row.cells);
     ++shown;
   }
-  out << "\nEvents: " << a.events.size() << " before, " << b.events.size() << " after; " << counted(rows.size(), "differs", "differ") << "\n" << table;
+  out << "\nEvents: " << a.events.size() << " before, " << b.events.size() << " after; " << counted(rows.size(), "differs", "differ")
+      << "\n"
+      << table;
   if (shown < rows.size()) out << "  … and " << rows.size() - shown << " more, or minor ones: --json has all\n";
   return rows.size();
 }
@@ -215,7 +232,8 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
   table.set_head("extremes", {"channel", "", "before", "after", "change"}, {"channel", "extreme", "before", "after", "change"});
   const std::size_t shown = json_screen(out) ? rows.size() : std::min(rows.size(), k_most_rows);
   for (std::size_t i = 0; i < shown; ++i) table.add_row(rows[i].cells);
-  out << "\nExtremes of the whole run: " << counted(rows.size(), "differs", "differ") << ", those that changed most of their size first\n" << table;
+  out << "\nExtremes of the whole run: " << counted(rows.size(), "differs", "differ") << ", those that changed most of their size first\n"
+      << table;
   if (shown < rows.size()) out << "  … and " << rows.size() - shown << " more: --json has all\n";
   return rows.size();
 }
@@ -231,7 +249,9 @@ std::size_t print_missing(std::ostream& out, const Json& a, const Json& b) {
     std::string example;
     for (const auto& entry : from.items())
       if (!known.contains(entry.key()) && missing++ == 0) example = entry.key();
-    if (missing > 0) out << "  " << counted(missing, "channel", "channels") << " only " << (is_gone ? "before" : "after") << ", such as '" << example << "'\n";
+    if (missing > 0)
+      out << "  " << counted(missing, "channel", "channels") << " only " << (is_gone ? "before" : "after") << ", such as '" << example
+          << "'\n";
     count += missing;
   }
   return count;

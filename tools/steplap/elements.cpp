@@ -60,9 +60,8 @@ Command elements_command() {
   steplap elements simulation
   steplap elements --markdown > reference.md
 )";
-  command.options = {
-      {"KIND", &o->kind, "KIND", "a kind of element or signal, body, marker, simulation, output, model"},
-      {"--markdown", &o->is_markdown, "", "the whole reference in Markdown"}};
+  command.options = {{"KIND", &o->kind, "KIND", "a kind of element or signal, body, marker, simulation, output, model"},
+                     {"--markdown", &o->is_markdown, "", "the whole reference in Markdown"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return print_reference(*o, console); };
   return command;

@@ -30,17 +30,14 @@ struct EquilibriumOptions {
 };
 
 void print_poses(std::ostream& out, const System& system, const State& start, const State& found) {
-  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right,
-                   Align::right});
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
   table.set_head("poses", {"body", "x", "y", "angle", "moved x", "moved y", "turned"});
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
     const double* q = &found.q[3 * i];
     const double* q0 = &start.q[3 * i];
     TextTable::Row row{system.bodies[i].name};
-    for (int k = 0; k < 3; ++k)
-      row.push_back(quantity_cell(q[k], k < 2 ? "m" : "rad", k_unit));
-    for (int k = 0; k < 3; ++k)
-      row.push_back(quantity_cell(q[k] - q0[k], k < 2 ? "m" : "rad", k_unit));
+    for (int k = 0; k < 3; ++k) row.push_back(quantity_cell(q[k], k < 2 ? "m" : "rad", k_unit));
+    for (int k = 0; k < 3; ++k) row.push_back(quantity_cell(q[k] - q0[k], k < 2 ? "m" : "rad", k_unit));
     table.add_row(row);
   }
   out << table;
@@ -68,7 +65,8 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
   for (const FrictionMargin& margin : margins)
     table.add_row({system.element_names[system.frictions[margin.friction].element],
                    Cell(quantity_text(100.0 * margin.used, "%", 1.0), 100.0 * margin.used, "%"),
-                   margin.used > 0.0 ? Cell(quantity_text(1.0 / margin.used, "times its load", 1.0), 1.0 / margin.used, "times its load") : Cell("holds nothing now")});
+                   margin.used > 0.0 ? Cell(quantity_text(1.0 / margin.used, "times its load", 1.0), 1.0 / margin.used, "times its load")
+                                     : Cell("holds nothing now")});
   if (!margins.empty()) out << "\nDistance from slipping\n" << table;
 }
 

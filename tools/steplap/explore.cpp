@@ -35,7 +35,8 @@ unsigned short port_of(const ExploreOptions& options) {
   unsigned short port = 0;
   const char* const end = options.port->data() + options.port->size();
   const auto [last, error] = std::from_chars(options.port->data(), end, port);
-  if (error != std::errc() || last != end || port < 1024) throw UsageError("--port takes a whole number from 1024 to 65535, not '" + *options.port + "'");
+  if (error != std::errc() || last != end || port < 1024)
+    throw UsageError("--port takes a whole number from 1024 to 65535, not '" + *options.port + "'");
   return port;
 }
 
@@ -75,8 +76,10 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   console.out << server.address() << "\n" << std::flush;
   if (!console.out) return ExitCode::done; // nobody knows the address, which is told as an error of the output
   const bool has_screen = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
-  if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address()))) log_info("No browser could be opened: open the address in one");
-  if (console.verbosity != Verbosity::quiet) console.out << "The page is served on this computer alone, to whoever has this address. Ctrl-C ends it.\n" << std::flush;
+  if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address())))
+    log_info("No browser could be opened: open the address in one");
+  if (console.verbosity != Verbosity::quiet)
+    console.out << "The page is served on this computer alone, to whoever has this address. Ctrl-C ends it.\n" << std::flush;
   server.run([&explorer] {
     if (noted_signal() != 0) return false;
     explorer.tick();

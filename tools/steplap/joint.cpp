@@ -35,8 +35,7 @@ std::vector<JointView> chosen_joints(const JointOptions& options, const LoadedMo
   for (const JointView& view : all) known.push_back(view.joint->name);
   for (const std::string& name : options.joints) {
     const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end())
-      throw UsageError("'" + loaded.path + "' has no step-lap joint '" + name + "'" + did_you_mean(name, known));
+    if (found == known.end()) throw UsageError("'" + loaded.path + "' has no step-lap joint '" + name + "'" + did_you_mean(name, known));
     chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
   }
   return chosen;
@@ -56,8 +55,7 @@ Vec3 parse_wrench(const std::string& text) {
     std::string rest;
     if (number >> wrench[static_cast<int>(i)] && std::isfinite(wrench[static_cast<int>(i)]) && !(number >> rest)) continue;
     const Quantity quantity = parse_quantity(parts[i], units[i]);
-    if (!quantity.problem.empty())
-      throw UsageError("--wrench '" + text + "': " + quantity.problem);
+    if (!quantity.problem.empty()) throw UsageError("--wrench '" + text + "': " + quantity.problem);
     wrench[static_cast<int>(i)] = quantity.value;
   }
   return wrench;
@@ -110,7 +108,8 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
   table.add_row({"u", Cell(quantity_text(required.u, "") + (required.u > 1.0 ? ": slides" : ": holds"), required.u)});
   const double pressure = required.u * view.interfaces.front()->pressure;
   table.add_row({"p_req", Cell(quantity_text(pressure, "Pa") + " of " + quantity_text(view.interfaces.front()->pressure, "Pa") +
-                                   (view.interfaces.size() > 1 ? " at the first interface" : ""), pressure, "Pa")});
+                                   (view.interfaces.size() > 1 ? " at the first interface" : ""),
+                               pressure, "Pa")});
   table.add_row({"margin", quantity_cell(required.margin(), "")});
   table.add_row({"centre of rotation", required.centre ? point_text(*required.centre) : "at infinity"});
   out << table;
@@ -178,11 +177,10 @@ Command joint_command() {
 Capacity "sliding": the friction while the limb slides that way and no other; "alone": the largest such
 force through the limb's centre of gravity, or couple, that the joint holds. A wrench is the one on the limb.
 )";
-  command.options = {
-      {"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
-      {"--joint", &o->joints, "NAME", "this joint; may be repeated (default: all)"},
-      {"--wrench", &o->wrench, "FX,FY,M", "force and couple on the limb: say u, p_req, margin, centre of rotation"},
-      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
+                     {"--joint", &o->joints, "NAME", "this joint; may be repeated (default: all)"},
+                     {"--wrench", &o->wrench, "FX,FY,M", "force and couple on the limb: say u, p_req, margin, centre of rotation"},
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return joint(*o, console); };
   return command;

@@ -77,7 +77,8 @@ void JsonScreen::put(const std::string& name, OrderedJson document) {
 
 std::string JsonScreen::document(const std::string& program, const std::string& command, int exit_code) {
   keep_text();
-  const OrderedJson whole{{"program", program}, {"version", k_version}, {"command", command}, {"results", results_}, {"exit_code", exit_code}};
+  const OrderedJson whole{
+      {"program", program}, {"version", k_version}, {"command", command}, {"results", results_}, {"exit_code", exit_code}};
   return whole.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 

@@ -1,7 +1,7 @@
 #include "tools/steplap/modes.h"
 
-#include "mbd/vibration/modes.h"
 #include "mbd/io/csv.h"
+#include "mbd/vibration/modes.h"
 #include "report/modes_page.h"
 #include "run/run.h"
 #include "tools/steplap/log.h"
@@ -53,8 +53,7 @@ std::string shape_text(const System& system, const VibrationMode& mode) {
   }
   constexpr std::size_t k_shown = 3;
   const std::size_t shown = std::min(k_shown, parts.size());
-  std::partial_sort(parts.begin(), parts.begin() + shown, parts.end(),
-                    [](const Part& a, const Part& b) { return a.size > b.size; });
+  std::partial_sort(parts.begin(), parts.begin() + shown, parts.end(), [](const Part& a, const Part& b) { return a.size > b.size; });
   std::string text;
   for (std::size_t i = 0; i < shown && parts[i].size >= 0.05; ++i)
     text += (i ? ", " : "") + parts[i].name + " " + fixed_text(parts[i].value, "%.2f");
@@ -84,25 +83,31 @@ WantedModes wanted_modes(const ModesOptions& options) {
 std::string choice_text(const VibrationModes& found, const WantedModes& wanted) {
   double worst = 0.0;
   for (const VibrationMode& mode : found.modes) worst = std::max(worst, mode.residual);
-  return "The " + std::to_string(found.modes.size()) + (wanted.near ? " nearest to " + fixed_text(*wanted.near, "%g Hz") : std::string(" slowest")) +
+  return "The " + std::to_string(found.modes.size()) +
+         (wanted.near ? " nearest to " + fixed_text(*wanted.near, "%g Hz") : std::string(" slowest")) +
          " (--count N: more of them). None is out of balance by more than " + fixed_text(worst, "%.1g") + " of its own acceleration; " +
-         (found.is_counted ? "that none is missing was counted" : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric");
+         (found.is_counted ? "that none is missing was counted"
+                           : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric");
 }
 
 // Why there is none.
 void print_none(std::ostream& out, const VibrationModes& found) {
-  out << "None: " << (found.rigid_motions > 0 ? "of what can move nothing is held" : "joints, drives and friction that sticks leave no motion free") << "\n";
+  out << "None: "
+      << (found.rigid_motions > 0 ? "of what can move nothing is held" : "joints, drives and friction that sticks leave no motion free")
+      << "\n";
 }
 
 void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationModes& found, const WantedModes& wanted) {
   out << About{loaded.path} << loaded.name << ": small vibrations about equilibrium, closed contacts and sticking joints held\n\n";
   TextTable table({Align::right, Align::right, Align::right, Align::right, Align::left});
-  table.set_head("modes", {"mode", "frequency", "damped", "damping", "what moves most (turning as at the radius of gyration)"}, {"mode", "frequency", "damped", "damping", "what moves most"});
+  table.set_head("modes", {"mode", "frequency", "damped", "damping", "what moves most (turning as at the radius of gyration)"},
+                 {"mode", "frequency", "damped", "damping", "what moves most"});
   for (std::size_t i = 0; i < found.modes.size(); ++i) {
     const VibrationMode& mode = found.modes[i];
     table.add_row({count_cell(i + 1), Cell(fixed_text(mode.natural_frequency(), "%.4f Hz"), mode.natural_frequency(), "Hz"),
                    mode.oscillates() ? Cell(fixed_text(mode.frequency(), "%.4f Hz"), mode.frequency(), "Hz") : Cell("-"),
-                   mode.oscillates() ? Cell(fixed_text(std::round(1e5 * mode.damping_ratio()) / 1e3 + 0.0, "%.3f %%"), 100.0 * mode.damping_ratio(), "%") // no "-0.000"
+                   mode.oscillates() ? Cell(fixed_text(std::round(1e5 * mode.damping_ratio()) / 1e3 + 0.0, "%.3f %%"),
+                                            100.0 * mode.damping_ratio(), "%") // no "-0.000"
                                      : Cell(fixed_text(mode.eigenvalue.real(), "%.4g /s"), mode.eigenvalue.real(), "1/s"),
                    shape_text(*loaded.system, mode)});
   }
@@ -110,21 +115,22 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
   else out << table;
   if (!found.is_all) out << "\n" << choice_text(found, wanted) << "\n";
   if (found.rigid_motions > 0)
-    out << "\n" << (found.rigid_motions == 1 ? std::string("1 coordinate moves freely: nothing holds the scene along it")
-                                            : std::to_string(found.rigid_motions) + " coordinates move freely: nothing holds the scene along them") << "\n";
+    out << "\n"
+        << (found.rigid_motions == 1 ? std::string("1 coordinate moves freely: nothing holds the scene along it")
+                                     : std::to_string(found.rigid_motions) + " coordinates move freely: nothing holds the scene along them")
+        << "\n";
 }
 
 std::string modes_csv(const System& system, const VibrationModes& found) {
-  std::vector<std::string> names{"natural frequency [Hz]", "frequency [Hz]", "damping ratio", "real part [1/s]",
-                                 "imaginary part [1/s]", "residual"};
+  std::vector<std::string> names{"natural frequency [Hz]", "frequency [Hz]",       "damping ratio",
+                                 "real part [1/s]",        "imaginary part [1/s]", "residual"};
   for (int i = 1; i < system.body_count(); ++i)
     for (const char* coordinate : {"x", "y", "theta"})
-      for (const char* part : {"real", "imaginary"})
-        names.push_back(system.bodies[i].name + "." + coordinate + " " + part);
+      for (const char* part : {"real", "imaginary"}) names.push_back(system.bodies[i].name + "." + coordinate + " " + part);
   CsvText csv(names);
   for (const VibrationMode& mode : found.modes) {
-    std::vector<double> row{mode.natural_frequency(), mode.frequency(), mode.damping_ratio(), mode.eigenvalue.real(),
-                            mode.eigenvalue.imag(), mode.residual};
+    std::vector<double> row{mode.natural_frequency(), mode.frequency(),       mode.damping_ratio(),
+                            mode.eigenvalue.real(),   mode.eigenvalue.imag(), mode.residual};
     for (std::size_t k = 3; k < mode.shape.size(); ++k) {
       row.push_back(mode.shape[k].real());
       row.push_back(mode.shape[k].imag());
@@ -136,8 +142,7 @@ std::string modes_csv(const System& system, const VibrationModes& found) {
 
 std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found, const WantedModes& wanted) {
   std::vector<std::string> moves_most;
-  for (const VibrationMode& mode : found.modes)
-    moves_most.push_back(shape_text(*loaded.system, mode));
+  for (const VibrationMode& mode : found.modes) moves_most.push_back(shape_text(*loaded.system, mode));
   std::vector<std::string> remarks = remarks_on(*loaded.system, rest);
   if (!found.is_all) remarks.push_back(choice_text(found, wanted));
   return modes_page(loaded, rest, found, moves_most, remarks);
@@ -155,8 +160,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
     if (options.output) files.write(options.output, modes_csv(*loaded->system, found));
     if (options.page) files.write(options.page, page_of(*loaded, rest, found, wanted));
     if (files.has_words()) print_modes(console.out, *loaded, found, wanted);
-    for (const std::string& remark : remarks_on(*loaded->system, rest))
-      log_warning("'" + loaded->path + "': " + remark);
+    for (const std::string& remark : remarks_on(*loaded->system, rest)) log_warning("'" + loaded->path + "': " + remark);
   } catch (const NumericalFailure& failure) {
     log_error("'" + loaded->path + "': " + failure.what());
     return ExitCode::numerical_failure;
@@ -179,7 +183,8 @@ Of more than 1500 coordinates (three a body) the slowest 20 modes are found, or 
 A mode that does not oscillate shows its rate of decay instead of a damping ratio.
 )";
   command.options = {{"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
-                     {"-o,--output", &o->output, "FILE", "also write frequencies and shapes as CSV; - is the standard output, which then holds nothing else"},
+                     {"-o,--output", &o->output, "FILE",
+                      "also write frequencies and shapes as CSV; - is the standard output, which then holds nothing else"},
                      {"--report", &o->page, "FILE", "also write a page that shows each mode in motion; or -"},
                      {"--count", &o->count, "N", "only so many modes: the slowest, or the nearest to --near"},
                      {"--near", &o->near, "HZ", "modes near this frequency instead of the slowest"},

@@ -67,7 +67,8 @@ std::string filled(const ModelTemplate& one, const NewOptions& options, const st
   std::reverse(parameters.begin(), parameters.end()); // from the end: places before it stay
   for (const TemplateParameter& p : parameters) {
     const auto given = options.values.find(p.option());
-    if (given != options.values.end() && given->second && (only.empty() || only == p.option())) text.replace(p.begin, p.end - p.begin, *given->second);
+    if (given != options.values.end() && given->second && (only.empty() || only == p.option()))
+      text.replace(p.begin, p.end - p.begin, *given->second);
   }
   return text;
 }

@@ -12,8 +12,8 @@ namespace steplap {
 
 /// A parameter of a template that has a range: what may be given as an option.
 struct TemplateParameter {
-  std::string name;    ///< as in the file: "window_height"
-  std::string value;   ///< "1.7 m"
+  std::string name;  ///< as in the file: "window_height"
+  std::string value; ///< "1.7 m"
   std::string low, high;
   std::string meaning, source;
   std::size_t begin = 0, end = 0; ///< where the value stands in the text

@@ -21,7 +21,8 @@ struct CountStandard {
 };
 
 bool has_json(const Command& command) {
-  return command.prints_tables || std::any_of(command.options.begin(), command.options.end(), [](const Option& option) { return option.names == "--json"; });
+  return command.prints_tables ||
+         std::any_of(command.options.begin(), command.options.end(), [](const Option& option) { return option.names == "--json"; });
 }
 
 } // namespace
@@ -33,9 +34,11 @@ void refuse_wrong_streams(const Command& command) {
     if (count == 0) continue;
     const bool is_positional = option.names.front() != '-', is_folder = option.value_name == "DIR", is_store = option.value_name == "STORE";
     if (is_positional && is_folder)
-      throw UsageError(option.names + " '-': the results of a run are a folder of files, which the standard input cannot be: name the folder");
+      throw UsageError(option.names +
+                       " '-': the results of a run are a folder of files, which the standard input cannot be: name the folder");
     if (is_folder || is_store)
-      throw UsageError(option.names.substr(0, option.names.find(',')) + " -: what is written there is " + (is_folder ? "a folder of files" : "a file that is read and written in many places") +
+      throw UsageError(option.names.substr(0, option.names.find(',')) + " -: what is written there is " +
+                       (is_folder ? "a folder of files" : "a file that is read and written in many places") +
                        ", which the standard output cannot be: give it a name" +
                        (has_json(command) ? "; --json writes what was found to the standard output" : ""));
     if (is_positional) read += count;
@@ -49,7 +52,8 @@ OutputFiles::OutputFiles(Console& console, std::initializer_list<OutputFile> fil
   for (const OutputFile& file : files) {
     if (!file.path || !is_standard_output(*file.path)) continue;
     if (taken) throw UsageError(std::string(taken) + " - and " + file.option + " -: the standard output can hold one file only");
-    if (json_screen(console.out)) throw UsageError(std::string(file.option) + " - and --json: the standard output can hold one of them only");
+    if (json_screen(console.out))
+      throw UsageError(std::string(file.option) + " - and --json: the standard output can hold one of them only");
     taken = file.option;
     has_words_ = false;
   }

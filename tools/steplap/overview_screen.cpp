@@ -14,14 +14,15 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_columns = 100, k_all_columns = 1000; // the second for all digits
+constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    // the second for all digits
 constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // with them the screen has at most 30 lines
 constexpr double k_least_share = 0.005;                                         // less is 0 %, and no news
 constexpr int k_bar = 20;                                                       // characters
 
 // Characters, not bytes, of a text in UTF-8.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string cut(const std::string& text, std::size_t most) {
@@ -72,7 +73,8 @@ void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured)
   const OrderedJson& overview = summary.at("overview");
   const std::string name = text_at(overview, "verdict");
   std::string verdict = name;
-  std::transform(verdict.begin(), verdict.end(), verdict.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  std::transform(verdict.begin(), verdict.end(), verdict.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   const std::string text = wrapped(verdict + "  " + shown(text_at(overview, "reason")), verdict.size() + 2, 3);
   out << coloured(verdict, colour_of(name), is_coloured) << text.substr(verdict.size()) << "\n";
   const std::string title = text_at(summary.at("model"), "title");
@@ -81,7 +83,10 @@ void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured)
 
 void print_story(std::ostream& out, const OrderedJson& summary) {
   const auto count = summary.at("events").at("count").get<std::size_t>(), main = summary.at("events").at("main").get<std::size_t>();
-  out << "\nWhat happened: " << (count == 0 ? "no events" : main == 0 ? counted(count, "minor event", "minor events") : counted(main, "event", "events"));
+  out << "\nWhat happened: "
+      << (count == 0  ? "no events"
+          : main == 0 ? counted(count, "minor event", "minor events")
+                      : counted(main, "event", "events"));
   if (main > 0 && main < count) out << " (" << count << " with minor ones)";
   out << "\n";
   const OrderedJson& story = summary.at("overview").at("story");
@@ -116,7 +121,8 @@ void print_bars(std::ostream& out, const OrderedJson& utilisations, bool has_all
     const OrderedJson& u = utilisations[i];
     const std::string name = cut(shown(text_at(u, "name")), widest), percent = text_at(u, "percent"), detail = text_at(u, "detail");
     const std::string line = "  " + name + std::string(widest - width(name), ' ') + "  " + bar_of(share_of(u)) +
-                             std::string(width(percent) < 6 ? 6 - width(percent) : 0, ' ') + " " + percent + (detail.empty() ? "" : "   " + detail);
+                             std::string(width(percent) < 6 ? 6 - width(percent) : 0, ' ') + " " + percent +
+                             (detail.empty() ? "" : "   " + detail);
     out << cut(line, has_all_digits ? k_all_columns : k_columns) << "\n";
   }
 }
@@ -125,9 +131,11 @@ void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_colo
   std::vector<std::string> warnings;
   for (const OrderedJson& f : findings)
     if (f.at("level") == "warning")
-      warnings.push_back(text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}}));
+      warnings.push_back(
+          text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}}));
   const std::size_t count = warnings.size() > k_most_warnings ? k_most_warnings - 1 : warnings.size();
-  for (std::size_t i = 0; i < count; ++i) out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
+  for (std::size_t i = 0; i < count; ++i)
+    out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
 }
 

@@ -35,16 +35,13 @@ struct Wanted {
 
 std::vector<Wanted> plots_of_model(const Results& run, const std::vector<std::string>& names) {
   const auto drawing = nlohmann::json::parse(run.drawing, nullptr, false);
-  if (drawing.is_discarded())
-    throw UsageError("'" + run.folder + "/drawing.json' is not as steplap wrote it: run the model again");
+  if (drawing.is_discarded()) throw UsageError("'" + run.folder + "/drawing.json' is not as steplap wrote it: run the model again");
   std::vector<Wanted> wanted;
   std::vector<std::string> known;
-  for (const auto& plot : drawing["plots"])
-    known.push_back(plot["name"]);
+  for (const auto& plot : drawing["plots"]) known.push_back(plot["name"]);
   for (const std::string& name : names) {
     const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end())
-      throw UsageError("the model of '" + run.folder + "' has no plot '" + name + "'" + did_you_mean(name, known));
+    if (found == known.end()) throw UsageError("the model of '" + run.folder + "' has no plot '" + name + "'" + did_you_mean(name, known));
     const auto& plot = drawing["plots"][static_cast<std::size_t>(found - known.begin())];
     const std::string title = plot["title"];
     wanted.push_back({name + (title.empty() ? "" : ": " + title), plot["channels"], plot["bounds"]});
@@ -96,8 +93,7 @@ Figure figure_of(const std::vector<Results>& runs, const std::vector<Wanted>& fi
 
 std::string shell_quoted(const std::string& text) {
   std::string result = "'";
-  for (const char c : text)
-    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
 }
 
@@ -125,11 +121,11 @@ std::string drawn(const Figure& figure, const std::string& ending, const std::st
   const Scratch scratch;
   const std::string image = scratch.at("image"), script = scratch.at("script");
   write_file(script, gnuplot_script(figure, ending, image));
-  const int status = std::system(("gnuplot " + shell_quoted(script) + " >" + shell_quoted(scratch.at("said")) + " 2>&1").c_str()); // NOLINT: quoted
+  const int status =
+      std::system(("gnuplot " + shell_quoted(script) + " >" + shell_quoted(scratch.at("said")) + " 2>&1").c_str()); // NOLINT: quoted
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == 127) throw UsageError("gnuplot is not there: install it (Debian: apt-get install gnuplot-nox)");
-  if (code != 0 || !fs::exists(image))
-    throw FileError(output, "gnuplot could not draw '" + output + "': " + read_text(scratch.at("said")));
+  if (code != 0 || !fs::exists(image)) throw FileError(output, "gnuplot could not draw '" + output + "': " + read_text(scratch.at("said")));
   return read_text(image);
 }
 
@@ -138,11 +134,9 @@ ExitCode plot(const PlotOptions& options, Console& console) {
   const std::string ending = is_standard_output(options.output) ? ".svg" : fs::path(options.output).extension().string();
   if (ending != ".svg" && ending != ".png" && ending != ".pdf")
     throw UsageError("-o '" + options.output + "': the file must end in .svg, .png or .pdf, or be -, the standard output");
-  if (options.channels.empty() == options.plots.empty())
-    throw UsageError("say what to plot: either --channels or --plot");
+  if (options.channels.empty() == options.plots.empty()) throw UsageError("say what to plot: either --channels or --plot");
   std::vector<Results> runs;
-  for (const std::string& folder : options.results)
-    runs.push_back(read_results(folder));
+  for (const std::string& folder : options.results) runs.push_back(read_results(folder));
   std::vector<Wanted> figures{{"", options.channels, {}}};
   if (!options.plots.empty()) figures = plots_of_model(runs.front(), options.plots);
   files.write(options.output, drawn(figure_of(runs, figures, options.is_beside), ending.substr(1), options.output));

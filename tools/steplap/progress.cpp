@@ -12,8 +12,7 @@ constexpr std::chrono::milliseconds k_period{100};
 } // namespace
 
 Progress::Progress(Console& console, std::string name, double end)
-    : console_(console), name_(std::move(name)), end_(end),
-      last_(std::chrono::steady_clock::now()) {}
+    : console_(console), name_(std::move(name)), end_(end), last_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
   if (is_shown_) console_.err << "\r\x1b[K" << std::flush;

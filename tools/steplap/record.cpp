@@ -65,7 +65,10 @@ std::array<double, 3> quiet_offset(const std::string& file, const std::string& q
   QuietMean mean(from, to);
   LineSource source(file);
   static_cast<void>(read_record(source, options, mean));
-  if (mean.count() < 2) throw RecordError(source.name(), 0, 0, "The record has no two samples from " + number_text(from) + " s to " + number_text(to) + " s. Give a stretch within it with --rest.");
+  if (mean.count() < 2)
+    throw RecordError(source.name(), 0, 0,
+                      "The record has no two samples from " + number_text(from) + " s to " + number_text(to) +
+                          " s. Give a stretch within it with --rest.");
   return {mean.mean(0), mean.mean(1), mean.mean(2)};
 }
 
@@ -104,14 +107,16 @@ public:
     if (gravity_ && *gravity_ != "none") {
       const bool is_turned = gravity_->starts_with('-');
       const std::string axis = gravity_->substr(is_turned ? 1 : 0);
-      const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
+      const auto found =
+          std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
       if (found == layout.axes.end()) throw UsageError("--gravity '" + *gravity_ + "': give an axis of the record, such as z or -z");
       conditioning_.offset[static_cast<std::size_t>(found - layout.axes.begin())] = is_turned ? -k_gravity : k_gravity;
     }
     if (options_.resample) {
       conditioning_.rate = number_of(options_.resample, "--resample", 0.0, ", in Hz");
       if (*conditioning_.rate < layout.time.rate * (1.0 - 1e-9))
-        throw UsageError("--resample " + *options_.resample + ": the record has " + rounded_text(layout.time.rate) + " Hz; fewer samples would fold high frequencies into low ones. Keep the rate, and filter with --cfc");
+        throw UsageError("--resample " + *options_.resample + ": the record has " + rounded_text(layout.time.rate) +
+                         " Hz; fewer samples would fold high frequencies into low ones. Keep the rate, and filter with --cfc");
     }
     conditioner_.emplace(conditioning_, sink_);
     conditioner_->begin(layout);
@@ -134,23 +139,31 @@ std::string in_g(double a) { return std::isnan(a) ? "-" : rounded_text(a / k_gra
 
 void print_events(std::ostream& out, const RecordResult& result) {
   const RecordLayout& layout = result.recording.layout;
-  TextTable table({Align::right, Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
+  TextTable table(
+      {Align::right, Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"event", "axis", "time s", "peak g", "to 100 Hz", "to 17 Hz", "lasts ms", "dv m/s", "freq. Hz"});
   std::vector<const ShockEvent*> order;
   for (const EventResult& found : result.events) order.push_back(&found.event);
   const auto size = [](const ShockEvent* e) { return std::abs(e->axes[e->worst].peak); };
   if (order.size() > k_shown_events) { // the greatest, in order of time
-    std::partial_sort(order.begin(), order.begin() + k_shown_events, order.end(), [&](const auto* a, const auto* b) { return size(a) > size(b); });
+    std::partial_sort(order.begin(), order.begin() + k_shown_events, order.end(),
+                      [&](const auto* a, const auto* b) { return size(a) > size(b); });
     order.resize(k_shown_events);
     std::sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->number < b->number; });
   }
   for (const ShockEvent* event : order) {
     const AxisEvent& axis = event->axes[event->worst];
-    table.add_row({std::to_string(event->number) + (event->goes_on ? "+" : ""), std::string(1, layout.axes[event->worst].axis), rounded_text(axis.peak_time, 7), in_g(axis.peak), in_g(axis.at_cfc60),
-                   in_g(axis.at_cfc10), rounded_text(1e3 * axis.duration, 3), rounded_text(axis.velocity_change, 3), rounded_text(axis.frequency, 3)});
+    table.add_row({std::to_string(event->number) + (event->goes_on ? "+" : ""), std::string(1, layout.axes[event->worst].axis),
+                   rounded_text(axis.peak_time, 7), in_g(axis.peak), in_g(axis.at_cfc60), in_g(axis.at_cfc10),
+                   rounded_text(1e3 * axis.duration, 3), rounded_text(axis.velocity_change, 3), rounded_text(axis.frequency, 3)});
   }
-  out << "\n" << counted(result.events.size(), "event", "events") << " beyond " << in_g(result.rules.threshold) << " g, peaks up to " << rounded_text(result.bandwidth, 3) << " Hz"
-      << (order.size() < result.events.size() ? "; the " + std::to_string(order.size()) + " greatest:" : order.empty() ? "" : ":") << "\n";
+  out << "\n"
+      << counted(result.events.size(), "event", "events") << " beyond " << in_g(result.rules.threshold) << " g, peaks up to "
+      << rounded_text(result.bandwidth, 3) << " Hz"
+      << (order.size() < result.events.size() ? "; the " + std::to_string(order.size()) + " greatest:"
+          : order.empty()                     ? ""
+                                              : ":")
+      << "\n";
   if (!order.empty()) out << table;
 }
 
@@ -160,7 +173,8 @@ void print_peaks(std::ostream& out, const RecordResult& result) {
   std::size_t number = 0;
   for (const PeakEntry& e : result.recording.peaks) {
     if (++number > k_shown_events) break;
-    table.add_row({std::to_string(number), rounded_text(e.t, 7), in_g(e.axis[0]), in_g(e.axis[1]), in_g(e.axis[2]), in_g(e.magnitude), std::isnan(e.duration) ? "-" : rounded_text(1e3 * e.duration, 3),
+    table.add_row({std::to_string(number), rounded_text(e.t, 7), in_g(e.axis[0]), in_g(e.axis[1]), in_g(e.axis[2]), in_g(e.magnitude),
+                   std::isnan(e.duration) ? "-" : rounded_text(1e3 * e.duration, 3),
                    std::isnan(e.velocity_change) ? "-" : rounded_text(e.velocity_change, 3)});
   }
   out << "\n" << table;
@@ -172,16 +186,22 @@ void print_result(std::ostream& out, const RecordResult& result, const std::opti
   out << layout.file << "\n";
   for (const std::string& line : facts_text(result.recording)) out << "  " << line << "\n";
   if (layout.is_peaks) return print_peaks(out, result);
-  if (result.interpolated > 0) out << "  " << result.interpolated << " samples lie between those of the record: it was resampled at " << rounded_text(result.rate) << " Hz.\n";
-  if (result.conditioning.high_pass) out << "  high-pass: what is slower than " << rounded_text(*result.conditioning.high_pass) << " Hz was taken away, as asked.\n";
+  if (result.interpolated > 0)
+    out << "  " << result.interpolated << " samples lie between those of the record: it was resampled at " << rounded_text(result.rate)
+        << " Hz.\n";
+  if (result.conditioning.high_pass)
+    out << "  high-pass: what is slower than " << rounded_text(*result.conditioning.high_pass) << " Hz was taken away, as asked.\n";
   if (!result.conditioning.segment_offsets.empty()) {
     out << "  drift: of each segment a constant was taken away, as asked; of the first";
-    for (std::size_t i = 0; i < layout.axes.size(); ++i) out << (i > 0 ? ", " : " ") << layout.axes[i].axis << " " << rounded_text(result.conditioning.segment_offsets.front()[i] / k_gravity, 3) << " g";
+    for (std::size_t i = 0; i < layout.axes.size(); ++i)
+      out << (i > 0 ? ", " : " ") << layout.axes[i].axis << " "
+          << rounded_text(result.conditioning.segment_offsets.front()[i] / k_gravity, 3) << " g";
     out << ".\n";
   }
   out << "  drift: driven by this acceleration alone, a base would after " << rounded_text(result.drift.duration, 4) << " s have";
   for (std::size_t i = 0; i < layout.axes.size(); ++i)
-    out << (i > 0 ? "; " : " ") << layout.axes[i].axis << " " << rounded_text(result.drift.velocity[i], 3) << " m/s, " << rounded_text(result.drift.displacement[i], 3) << " m";
+    out << (i > 0 ? "; " : " ") << layout.axes[i].axis << " " << rounded_text(result.drift.velocity[i], 3) << " m/s, "
+        << rounded_text(result.drift.displacement[i], 3) << " m";
   out << "\n";
   if (no_events_because) out << "\nEvents are not listed: " << *no_events_because << ".\n";
   else print_events(out, result);
@@ -215,14 +235,14 @@ std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, 
     const double rest = result.recording.facts.axes[i].rest;
     if (std::abs(rest) < k_felt * result.rules.threshold) continue;
     const std::string axis = std::string(rest < 0.0 ? "-" : "") + result.recording.layout.axes[i].axis;
-    return "axis " + axis + " reads " + in_g(std::abs(rest)) + " g at rest, which counts towards the threshold of " + in_g(result.rules.threshold) +
-           " g. Say --gravity " + axis + " to subtract it, or --gravity none to keep it";
+    return "axis " + axis + " reads " + in_g(std::abs(rest)) + " g at rest, which counts towards the threshold of " +
+           in_g(result.rules.threshold) + " g. Say --gravity " + axis + " to subtract it, or --gravity none to keep it";
   }
   return {};
 }
 
 struct Outputs {
-  std::string folder; ///< where files are written; "": none are
+  std::string folder;    ///< where files are written; "": none are
   std::size_t event = 0; ///< 0: all
   DriftCorrection drift = DriftCorrection::none;
 };
@@ -247,7 +267,8 @@ void process(const std::string& file, const RecordOptions& options, const Output
   EventPictures pictures;
   ShockFinder finder(result.rules, [&](const ShockEvent& event, const Window& samples) {
     EventResult found{event, {}};
-    for (std::size_t i = 0; i < event.axes.size() && !outputs.folder.empty(); ++i) found.spectra.push_back(shock_spectrum(samples.filtered[i], samples.rate));
+    for (std::size_t i = 0; i < event.axes.size() && !outputs.folder.empty(); ++i)
+      found.spectra.push_back(shock_spectrum(samples.filtered[i], samples.rate));
     if (event.number == outputs.event) window = window_csv(samples, *layout, outputs.drift);
     if (!outputs.folder.empty()) pictures.add(event, samples, found.spectra);
     result.events.push_back(std::move(found));
@@ -275,12 +296,15 @@ void process(const std::string& file, const RecordOptions& options, const Output
   }
   const std::optional<std::string> no_events = events_hang_on_gravity(options, result);
   if (no_events && (options.is_json || !outputs.folder.empty())) throw UsageError("'" + file + "': " + *no_events);
-  if (outputs.event > 0 && !window) throw UsageError("--event " + std::to_string(outputs.event) + ": the record has " + counted(result.events.size(), "event", "events") + " beyond the threshold");
+  if (outputs.event > 0 && !window)
+    throw UsageError("--event " + std::to_string(outputs.event) + ": the record has " + counted(result.events.size(), "event", "events") +
+                     " beyond the threshold");
   if (console.verbosity != Verbosity::quiet && !options.is_json) print_result(console.out, result, no_events);
   if (options.is_json) console.out << record_json(result);
   if (outputs.folder.empty()) return;
   write_tables(result, outputs);
-  if (const std::string picture = pictures.svg(result.recording.layout, result.bandwidth); !picture.empty()) write_file(outputs.folder + "/events.svg", picture);
+  if (const std::string picture = pictures.svg(result.recording.layout, result.bandwidth); !picture.empty())
+    write_file(outputs.folder + "/events.svg", picture);
   if (window) write_file(outputs.folder + "/event_" + std::to_string(outputs.event) + ".csv", *window);
   static_cast<void>(writer.commit());
 }
@@ -291,7 +315,9 @@ std::vector<std::unique_ptr<RecordFolder>> result_folders(const RecordOptions& o
   for (const std::string& file : options.files) {
     const std::string path = options.files.size() > 1 ? (fs::path(*options.output) / fs::path(file).stem()).string() : *options.output;
     for (const auto& other : folders)
-      if (fs::path(other->path()) == fs::path(path).lexically_normal()) throw UsageError("-o: two of the files have the name '" + fs::path(file).stem().string() + "', so that their results would have the same folder. Read them one by one");
+      if (fs::path(other->path()) == fs::path(path).lexically_normal())
+        throw UsageError("-o: two of the files have the name '" + fs::path(file).stem().string() +
+                         "', so that their results would have the same folder. Read them one by one");
     folders.push_back(std::make_unique<RecordFolder>(path, options.is_overwriting));
   }
   return folders;
@@ -323,12 +349,15 @@ ExitCode make(const RecordOptions& options, Console& console) {
 ExitCode record(const RecordOptions& options, Console& console) {
   if (options.make) return make(options, console);
   Outputs outputs;
-  if (options.quiet && options.gravity) throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
+  if (options.quiet && options.gravity)
+    throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
   if (options.drift) outputs.drift = choice(*options.drift, "--drift", k_drifts);
   if (options.event) outputs.event = static_cast<std::size_t>(std::floor(number_of(options.event, "--event", 0.0)));
-  if (options.event && std::to_string(outputs.event) != *options.event) throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
+  if (options.event && std::to_string(outputs.event) != *options.event)
+    throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
   if (options.event && !options.output) throw UsageError("--event writes the window of one event: say where with -o DIR");
-  if (outputs.drift != DriftCorrection::none && options.high_pass) throw UsageError("--high-pass leaves no drift for --drift: give one of them");
+  if (outputs.drift != DriftCorrection::none && options.high_pass)
+    throw UsageError("--high-pass leaves no drift for --drift: give one of them");
   const bool is_silent = console.verbosity == Verbosity::quiet || options.is_json;
   std::vector<std::unique_ptr<RecordFolder>> folders;
   if (options.output) folders = result_folders(options);
@@ -359,8 +388,10 @@ What cannot be known from the file is asked for, with the option that settles it
       {"--event", &o->event, "N", "with -o: write the window of event N, times from 0, instead of the whole signal"},
       {"--json", &o->is_json, "", "print the result as JSON"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier files"},
-      {"--make", &o->make, "KIND", "write a synthetic record to FILE: gcdc, gcdc-epoch, phone, palt, shocklog, monilog, msr, lansmont, solve, endaq"},
-      {"--drift", &o->drift, "HOW", "of the signal, or with --event of its window: none (default), or line: less a constant, so that velocity ends where it began"},
+      {"--make", &o->make, "KIND",
+       "write a synthetic record to FILE: gcdc, gcdc-epoch, phone, palt, shocklog, monilog, msr, lansmont, solve, endaq"},
+      {"--drift", &o->drift, "HOW",
+       "of the signal, or with --event of its window: none (default), or line: less a constant, so that velocity ends where it began"},
       {"--high-pass", &o->high_pass, "HZ", "take away what is slower, without phase shift"}};
   const std::vector<Option> reading = reading_options(*o);
   command.options.insert(command.options.end() - 2, reading.begin(), reading.end());

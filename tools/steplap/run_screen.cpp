@@ -1,10 +1,10 @@
 #include "tools/steplap/run_screen.h"
 
-#include "mbd/trust/global_error.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/model/validate.h"
+#include "mbd/trust/global_error.h"
 #include "run/measured_text.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
@@ -121,24 +121,26 @@ void print_heading(std::ostream& out, const TabledRun& run) {
   if (!title.empty()) out << ": " << shown(title);
   out << "\n  " << integrator;
   if (const auto step = optional_at(settings, "step"); step && has_fixed_step(integrator)) out << ", step " << number_text(*step) << " s";
-  if (const auto tolerance = optional_at(settings, "tolerance"); tolerance && !has_fixed_step(integrator)) out << ", tolerance " << number_text(*tolerance);
+  if (const auto tolerance = optional_at(settings, "tolerance"); tolerance && !has_fixed_step(integrator))
+    out << ", tolerance " << number_text(*tolerance);
   out << ", t = 0 to " << number_text(number_at(run.summary.at("final_state"), "t")) << " s\n";
   if (run.summary.contains("failure")) out << "  STOPPED before the end: " << text_at(run.summary, "failure") << "\n";
   print_no_estimate(out, run);
 }
 
 void print_events(std::ostream& out, const std::vector<ResultEvent>& events) {
-  const auto main = static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [](const ResultEvent& event) { return is_main(event.kind); }));
+  const auto main =
+      static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [](const ResultEvent& event) { return is_main(event.kind); }));
   out << "\nEvents: " << (events.empty() ? "none" : main == 0 ? counted(events.size(), "minor one", "minor ones") : std::to_string(main));
   if (main > 0 && main < events.size()) out << " (" << events.size() << " with minor ones)";
   out << "\n";
   TextTable table({Align::right, Align::left, Align::left});
   std::size_t shown = 0;
   for (const ResultEvent& event : events)
-    if (is_main(event.kind) && shown++ < k_most_events_shown) table.add_row({measured_time_text(event.t, event.error), event.element, event.words});
+    if (is_main(event.kind) && shown++ < k_most_events_shown)
+      table.add_row({measured_time_text(event.t, event.error), event.element, event.words});
   out << table;
-  if (shown > k_most_events_shown)
-    out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
+  if (shown > k_most_events_shown) out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
 }
 
 // Channels that are told of: reactions that are not zero throughout.
@@ -149,7 +151,8 @@ bool is_shown(const ShownRange& range) {
 // What is rounding beside the channel's largest value is zero; an error says so itself.
 std::string value_text(const ShownRange& range, const ShownExtreme& extreme) {
   if (extreme.is_singular && extreme.error && std::isnan(*extreme.error)) return "diverges at a singular pose";
-  return extreme.error ? measured_text(extreme.value, extreme.error, range.unit) : quantity_text(extreme.value, range.unit, range.largest().value);
+  return extreme.error ? measured_text(extreme.value, extreme.error, range.unit)
+                       : quantity_text(extreme.value, range.unit, range.largest().value);
 }
 
 std::string extreme_time_text(double t, std::optional<double> error) {
@@ -171,7 +174,8 @@ std::string small_margin_text(double margin, std::optional<double> error) {
 
 // A row a channel: both its extremes and when.
 void add_extremes(TextTable& table, const ShownRange& range) {
-  table.add_row({range.name, value_text(range, range.low), time_of_text(range.low), value_text(range, range.high), time_of_text(range.high)});
+  table.add_row(
+      {range.name, value_text(range, range.low), time_of_text(range.low), value_text(range, range.high), time_of_text(range.high)});
 }
 
 TextTable table_of_extremes() {
@@ -267,7 +271,8 @@ void print_second_opinion(std::ostream& out, const Json& opinion, double end) {
   out << "  Second opinion, " << text_at(opinion, "method") << ": ";
   if (!text_at(opinion, "disagreement").empty()) out << "disagrees\n";
   else if (!text_at(opinion, "none_because").empty()) out << "none; " << text_at(opinion, "none_because") << "\n";
-  else if (known_until < end * (1.0 - 1e-6)) out << "agrees up to t = " << quantity_text(known_until, "s") << " and cannot tell from there on\n";
+  else if (known_until < end * (1.0 - 1e-6))
+    out << "agrees up to t = " << quantity_text(known_until, "s") << " and cannot tell from there on\n";
   else out << "agrees; the worst difference is " << small_text(number_at(opinion, "worst_ratio")) << " of what both errors allow\n";
 }
 
@@ -296,7 +301,8 @@ void print_judgement(std::ostream& out, const TabledRun& run) {
   }
   if (!run.has_errors()) out << "  judged without the errors of the numbers: " << why_not_estimated(run) << "\n";
   if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
-  if (run.summary.contains("second_opinion")) print_second_opinion(out, run.summary.at("second_opinion"), number_at(run.summary.at("final_state"), "t"));
+  if (run.summary.contains("second_opinion"))
+    print_second_opinion(out, run.summary.at("second_opinion"), number_at(run.summary.at("final_state"), "t"));
 }
 
 // "rk4, step 5e-05 s and 2.5e-05 s"
@@ -324,7 +330,8 @@ void print_global_error(std::ostream& out, const TabledRun& run) {
     return;
   }
   const double step_asked = number_at(estimate.at("run"), "step");
-  out << "\nGlobal error, estimated from " << (finer.size() > 1 ? "finer runs (" : "a finer run (") << finer_text(finer, step_asked) << "); of each channel's range\n";
+  out << "\nGlobal error, estimated from " << (finer.size() > 1 ? "finer runs (" : "a finer run (") << finer_text(finer, step_asked)
+      << "); of each channel's range\n";
   TextTable table({Align::left, Align::right, Align::left});
   double largest = 0.0;
   for (std::size_t k = 0; k < k_error_kinds; ++k) {
@@ -332,7 +339,8 @@ void print_global_error(std::ostream& out, const TabledRun& run) {
     const Json& worst = estimate.at(kind);
     const double error = number_at(worst, "error");
     const std::string where = text_at(worst, "where");
-    table.add_row({kind, std::isnan(error) ? "unknown" : small_text(error), where.empty() ? "" : where + " at " + quantity_text(number_at(worst, "t"), "s")});
+    table.add_row({kind, std::isnan(error) ? "unknown" : small_text(error),
+                   where.empty() ? "" : where + " at " + quantity_text(number_at(worst, "t"), "s")});
     if (!(error <= largest)) largest = error;
   }
   out << table;
@@ -365,25 +373,29 @@ Figure count(const char* name, const char* key) {
 }
 
 std::vector<Figure> accuracy_and_cost(bool has_making) {
-  std::vector<Figure> figures{
-      residual("energy residual", "energy_residual", " J"),
-      {"energy exchanged", [](const TabledRun& run) {
-         const Json& accuracy = run.summary.at("accuracy");
-         return measured_text(number_at(accuracy, "energy_exchanged"), exchanged_error(accuracy), "J");
-       }},
-      {"energy dissipated", [](const TabledRun& run) {
-         const Json& accuracy = run.summary.at("accuracy");
-         return measured_text(number_at(accuracy, "dissipated"), error_at(accuracy, "error_dissipated"), "J");
-       }},
-      {"energy residual, relative", [](const TabledRun& run) {
-         return rests(run) ? "nothing is exchanged" : small_text(number_at(run.summary.at("accuracy"), "relative_energy_residual"));
-       }},
-      residual("constraint residual, m or rad", "max_position_residual"),
-      residual("constraint residual, per s", "max_velocity_residual"),
-      count("steps", "steps"),
-      count("steps rejected", "rejections"),
-      count("evaluations", "evaluations")};
-  if (has_making) figures.push_back({"CPU time", [](const TabledRun& run) { return quantity_text(1e3 * run.run.making->cpu_seconds, "ms"); }});
+  std::vector<Figure> figures{residual("energy residual", "energy_residual", " J"),
+                              {"energy exchanged",
+                               [](const TabledRun& run) {
+                                 const Json& accuracy = run.summary.at("accuracy");
+                                 return measured_text(number_at(accuracy, "energy_exchanged"), exchanged_error(accuracy), "J");
+                               }},
+                              {"energy dissipated",
+                               [](const TabledRun& run) {
+                                 const Json& accuracy = run.summary.at("accuracy");
+                                 return measured_text(number_at(accuracy, "dissipated"), error_at(accuracy, "error_dissipated"), "J");
+                               }},
+                              {"energy residual, relative",
+                               [](const TabledRun& run) {
+                                 return rests(run) ? "nothing is exchanged"
+                                                   : small_text(number_at(run.summary.at("accuracy"), "relative_energy_residual"));
+                               }},
+                              residual("constraint residual, m or rad", "max_position_residual"),
+                              residual("constraint residual, per s", "max_velocity_residual"),
+                              count("steps", "steps"),
+                              count("steps rejected", "rejections"),
+                              count("evaluations", "evaluations")};
+  if (has_making)
+    figures.push_back({"CPU time", [](const TabledRun& run) { return quantity_text(1e3 * run.run.making->cpu_seconds, "ms"); }});
   return figures;
 }
 

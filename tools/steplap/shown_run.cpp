@@ -14,18 +14,22 @@ std::vector<ResultEvent> events_of(const Report& report) {
   std::vector<ResultEvent> shown;
   const std::vector<Event>& events = report.run.result.events;
   shown.reserve(events.size());
-  for (std::size_t i = 0; i < events.size(); ++i) shown.push_back({events[i].t, events[i].element, events[i].words(), events[i].kind, report.event_error(i)});
+  for (std::size_t i = 0; i < events.size(); ++i)
+    shown.push_back({events[i].t, events[i].element, events[i].words(), events[i].kind, report.event_error(i)});
   return shown;
 }
 
 } // namespace
 
-ShownRun overview_of_run(const Report& report, const std::string& folder, ShownDigits digits) { return {summary_head(report, digits), {}, folder, {}}; }
+ShownRun overview_of_run(const Report& report, const std::string& folder, ShownDigits digits) {
+  return {summary_head(report, digits), {}, folder, {}};
+}
 
 ShownRun shown_run(const Report& report, const std::string& folder) {
   const RunResult& result = report.run.result;
-  return {summary_document(report), events_of(report), folder,
-          MakingOfRun{result.statistics.cpu_seconds, report.estimate.cost, result.trajectory->size(), result.trajectory->channels().size()}};
+  return {
+      summary_document(report), events_of(report), folder,
+      MakingOfRun{result.statistics.cpu_seconds, report.estimate.cost, result.trajectory->size(), result.trajectory->channels().size()}};
 }
 
 bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs) {
@@ -53,7 +57,9 @@ ShownRun shown_run(const std::string& folder) {
   Results results = read_results(folder, Reading::without_rows);
   ShownRun run{parse_ordered(results.summary), std::move(results.events), folder, {}};
   if (!run.summary.contains("error_estimate")) // of a version before this command
-    throw FileError(folder, "'" + folder + "' was written by another version of steplap, whose results cannot be shown: run the model again, or make its page with steplap report");
+    throw FileError(folder, "'" + folder +
+                                "' was written by another version of steplap, whose results cannot be shown: run the model again, or make "
+                                "its page with steplap report");
   return run;
 }
 

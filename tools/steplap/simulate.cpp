@@ -2,8 +2,8 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
-#include "run/quantity_text.h"
 #include "run/findings.h"
+#include "run/quantity_text.h"
 #include "run/report.h"
 #include "run/result_files.h"
 #include "tools/steplap/interruption.h"
@@ -36,8 +36,7 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::string output = "out";
   std::optional<std::string> end, step, integrator, tolerance, output_step, digits;
-  bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false,
-       is_hold_required = false;
+  bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false;
 
   /// --set and its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
@@ -65,9 +64,7 @@ struct SimulateOptions {
 
   /// The trajectory alone, to the standard output.
   [[nodiscard]] bool is_streamed() const { return is_standard_output(output); }
-  [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const {
-    return (std::filesystem::path(output) / loaded.name).string();
-  }
+  [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const { return (std::filesystem::path(output) / loaded.name).string(); }
 };
 
 /// A run and where its files are.
@@ -86,7 +83,8 @@ std::string page_of(const SimulateOptions& options, const Models& models) {
 
 void check_folders(const SimulateOptions& options, const Models& models) {
   if (options.is_streamed()) {
-    if (models.size() > 1) throw UsageError("-o -: the standard output can hold the trajectory of one model only, not of " + std::to_string(models.size()));
+    if (models.size() > 1)
+      throw UsageError("-o -: the standard output can hold the trajectory of one model only, not of " + std::to_string(models.size()));
     if (options.is_reported) throw UsageError("-o - writes no folder that --report could make its page of: name a folder");
     return;
   }
@@ -94,8 +92,7 @@ void check_folders(const SimulateOptions& options, const Models& models) {
   for (const auto& loaded : models) {
     const std::string folder = options.folder_of(*loaded);
     if (!folders.insert(folder).second)
-      throw UsageError("two models are called '" + loaded->name +
-                       "' and would be written to the same folder, '" + folder +
+      throw UsageError("two models are called '" + loaded->name + "' and would be written to the same folder, '" + folder +
                        "': run them one after the other with different -o");
     check_result_folder(folder, options.is_overwriting);
   }
@@ -121,7 +118,8 @@ void log_run(const Report& report) {
   const LoadedModel& loaded = *report.run.loaded;
   if (report.estimate.status == EstimateStatus::failed)
     log_warning("'" + loaded.path + "': the error is not known: " + report.estimate.reason);
-  for (const Event& event : report.run.result.events) log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
+  for (const Event& event : report.run.result.events)
+    log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
 }
 
 FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
@@ -150,7 +148,8 @@ FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const 
   }
   if (const std::optional<Failure>& failure = report.run.failure)
     log_error("'" + loaded->path + "': " + failure->text + (failure->text.ends_with('.') ? "" : ".") +
-              (options.is_streamed() ? " What was computed up to there has been written" : " What was computed up to there is in '" + finished.folder + "' as partial_*"));
+              (options.is_streamed() ? " What was computed up to there has been written"
+                                     : " What was computed up to there is in '" + finished.folder + "' as partial_*"));
   return finished;
 }
 
@@ -174,8 +173,7 @@ void show_runs(const SimulateOptions& options, const std::vector<FinishedRun>& r
 }
 
 ExitCode simulate(const SimulateOptions& options, Console& console) {
-  if (options.is_error_estimated && options.is_estimate_left_out)
-    throw UsageError("--estimate-error and --no-estimate exclude each other");
+  if (options.is_error_estimated && options.is_estimate_left_out) throw UsageError("--estimate-error and --no-estimate exclude each other");
   (void)options.shown_digits();
   const OutputFiles files(console, {{"-o", options.output}});
   const Models models = load_models(options.models, options.all_overrides());
@@ -195,18 +193,15 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     }
   }
   if (runs.empty()) return code;
-  const bool is_held = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
-    return run.report.judgement.verdict == Verdict::hold;
-  });
-  const bool is_trusted = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
-    return run.report.judgement.distrust.empty();
-  });
+  const bool is_held =
+      std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) { return run.report.judgement.verdict == Verdict::hold; });
+  const bool is_trusted =
+      std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) { return run.report.judgement.distrust.empty(); });
   if (options.is_hold_required && !is_held && code == ExitCode::done)
     code = is_trusted ? ExitCode::criterion_failed : ExitCode::numerical_failure;
   if (options.is_reported) {
     std::vector<std::string> folders;
-    for (const FinishedRun& run : runs)
-      folders.push_back(run.folder);
+    for (const FinishedRun& run : runs) folders.push_back(run.folder);
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
   if (!files.has_words()) return code;
@@ -235,13 +230,13 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
 )";
   command.options = {
       {"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},
-      {"-o,--output", &o->output, "DIR|-", "folder for the results (default: out); - writes the trajectory of one model to the standard output, as CSV, and nothing else"},
+      {"-o,--output", &o->output, "DIR|-",
+       "folder for the results (default: out); - writes the trajectory of one model to the standard output, as CSV, and nothing else"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the run, s; short for --set simulation.end=T"},
       {"--output-step", &o->output_step, "H", "time between two rows of the trajectory, s; short for --set output.step=H"},
       {"--step", &o->step, "H", "step of a fixed-step integrator, s"},
-      {"--integrator", &o->integrator, "NAME",
-       "integration method; see steplap elements simulation"},
+      {"--integrator", &o->integrator, "NAME", "integration method; see steplap elements simulation"},
       {"--tolerance", &o->tolerance, "TOL",
        "relative tolerance of an adaptive integrator, for each step; the estimated error tells what "
        "it comes to"},
@@ -257,7 +252,9 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
        "exit code 5 unless the verdict on every run is hold, 4 if a second method, which is run for it, disagrees beyond both "
        "errors; see steplap elements acceptance"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
-  command.retired = {{"--threads", "a run takes one thread: leave --threads out. Many runs side by side take all processors: steplap study, steplap assess"}};
+  command.retired = {
+      {"--threads",
+       "a run takes one thread: leave --threads out. Many runs side by side take all processors: steplap study, steplap assess"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;

@@ -44,7 +44,8 @@ StaticProofOptions options_of(const StaticProofArguments& arguments, const Stati
   if (arguments.plane && *arguments.plane != "lengthwise" && *arguments.plane != "transverse")
     throw UsageError("--plane '" + *arguments.plane + "': give lengthwise or transverse");
   if (!arguments.plane && depends_on_plane(preset))
-    throw UsageError("the loads of '" + preset.name + "' differ between the planes: say which one the models show, with --plane lengthwise or --plane transverse");
+    throw UsageError("the loads of '" + preset.name +
+                     "' differ between the planes: say which one the models show, with --plane lengthwise or --plane transverse");
   if (arguments.plane == "transverse") options.plane = Plane::transverse;
   if (arguments.directions) {
     const double count = number_of(*arguments.directions, "--directions", 0, k_most_directions);
@@ -88,8 +89,9 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
   TextTable table({Align::left, Align::right, Align::left, Align::right, Align::left, Align::left, Align::left});
   table.add_row({"case", "pull, m/s²", "verdict", "least margin", "reaction, of allowed", "feet that lift", "first, while the pull grows"});
   for (const StaticCase& one : proof.cases)
-    table.add_row({one.load.name, rounded_text(one.load.pull.x(), 4) + ", " + rounded_text(one.load.pull.y(), 4), steplap::name_of(one.verdict),
-                   margin_text(one), reaction_text(one), feet_text(one), one.first.empty() ? "-" : one.first});
+    table.add_row({one.load.name, rounded_text(one.load.pull.x(), 4) + ", " + rounded_text(one.load.pull.y(), 4),
+                   steplap::name_of(one.verdict), margin_text(one), reaction_text(one), feet_text(one),
+                   one.first.empty() ? "-" : one.first});
   out << table;
   for (const StaticCase& one : proof.cases)
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
@@ -113,18 +115,22 @@ void print_weakest(std::ostream& out, const StaticProof& proof) {
     if (!weakest) continue;
     const StaticLimit& limit = weakest->ray.limits[which];
     if (!std::exchange(is_any, true)) table.add_row({"weakest direction", "towards", "pull", "error"});
-    table.add_row({limit_words(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°", acceleration_text(limit.acceleration),
-                   small_text(limit.error) + " m/s²"});
+    table.add_row({limit_words(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°",
+                   acceleration_text(limit.acceleration), small_text(limit.error) + " m/s²"});
   }
   if (is_any) out << "\n" << table;
-  else out << "\n  Nothing gives way up to " << acceleration_text(proof.largest) << " in " << counted(proof.polar.size(), "direction", "directions") << ".\n";
+  else
+    out << "\n  Nothing gives way up to " << acceleration_text(proof.largest) << " in "
+        << counted(proof.polar.size(), "direction", "directions") << ".\n";
   const auto open = std::count_if(proof.polar.begin(), proof.polar.end(), [](const StaticDirection& d) { return !d.is_unique; });
-  if (open > 0) out << "  In " << counted(static_cast<std::size_t>(open), "direction", "directions") << " of " << proof.polar.size() << " the first limit hangs on what came before.\n";
+  if (open > 0)
+    out << "  In " << counted(static_cast<std::size_t>(open), "direction", "directions") << " of " << proof.polar.size()
+        << " the first limit hangs on what came before.\n";
 }
 
 void print_proof(std::ostream& out, const StaticProof& proof) {
-  out << proof.model << ", " << name_of(proof.plane) << ", " << proof.preset.name << ": " << steplap::name_of(proof.verdict) << "\n  " << proof.reason
-      << "\n  Loads: " << proof.preset.source << "\n\n";
+  out << proof.model << ", " << name_of(proof.plane) << ", " << proof.preset.name << ": " << steplap::name_of(proof.verdict) << "\n  "
+      << proof.reason << "\n  Loads: " << proof.preset.source << "\n\n";
   print_cases(out, proof);
   print_weakest(out, proof);
   if (!proof.unasked.empty()) {

@@ -52,7 +52,9 @@ int run_study_program(char** words) {
     execv(program.c_str(), words);
     cause = errno;
   }
-  if (cause == ENOENT) std::cerr << "steplap: error: Studies need a second program, which is not built. Build it with: cmake --build --preset release --target steplap-study\n";
+  if (cause == ENOENT)
+    std::cerr << "steplap: error: Studies need a second program, which is not built. Build it with: cmake --build --preset release "
+                 "--target steplap-study\n";
   else std::cerr << "steplap: error: '" << program << "', which runs studies, cannot be started: " << std::strerror(cause) << "\n";
   return static_cast<int>(ExitCode::usage);
 }
@@ -70,7 +72,8 @@ Command study_command() {
   Command command;
   command.name = "study";
   command.summary = "what if, how likely, how much does it matter: many runs of a model; see steplap study --help";
-  command.examples = "  steplap study models/studies/slip_probability.toml\n  mpirun -n 8 steplap study FILE\n  steplap study show FILE\n  steplap study report FILE\n";
+  command.examples = "  steplap study models/studies/slip_probability.toml\n  mpirun -n 8 steplap study FILE\n  steplap study show FILE\n  "
+                     "steplap study report FILE\n";
   command.run = [](Console&) { return static_cast<ExitCode>(run_study_program({"--help"})); };
   return command;
 }

@@ -12,8 +12,8 @@ namespace {
 
 // UTF-8: continuation bytes take no room.
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 } // namespace
@@ -28,8 +28,7 @@ Cell measured_cell(double value, std::optional<double> error, const std::string&
 
 Cell count_cell(std::size_t count) { return {std::to_string(count), static_cast<double>(count)}; }
 
-TextTable::TextTable(std::vector<Align> columns, int indent)
-    : columns_(std::move(columns)), indent_(indent) {}
+TextTable::TextTable(std::vector<Align> columns, int indent) : columns_(std::move(columns)), indent_(indent) {}
 
 void TextTable::set_head(std::string name, const std::vector<std::string>& heads, std::vector<std::string> keys) {
   name_ = std::move(name);
@@ -49,8 +48,7 @@ std::ostream& operator<<(std::ostream& stream, const TextTable& table) {
   }
   std::vector<std::size_t> widths(table.columns_.size(), 0);
   for (const auto& row : table.rows_)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], width_of(row[i].text));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i].text));
   for (const auto& row : table.rows_) {
     std::string line(static_cast<std::size_t>(table.indent_), ' ');
     for (std::size_t i = 0; i < row.size(); ++i) {

@@ -31,7 +31,8 @@ std::string part_name(const System& system, const Tipping& t) {
 void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& state) {
   using Align = TextTable::Align;
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right});
-  table.set_head("tipping", {"what stands", "tips over", "lifts", "tilted by", "", "or accelerated by"}, {"what stands", "tips over", "lifts", "tilted by", "turning", "accelerated by"});
+  table.set_head("tipping", {"what stands", "tips over", "lifts", "tilted by", "", "or accelerated by"},
+                 {"what stands", "tips over", "lifts", "tilted by", "turning", "accelerated by"});
   bool is_any = false;
   for (const Tipping& t : tipping_of(loaded, state)) {
     if (t.margin < 0.0) continue;
@@ -43,7 +44,8 @@ void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& st
   const std::vector<Unjudged> unjudged = not_judged_for_tipping(loaded, state);
   if (is_any || !unjudged.empty()) out << "\nDistance from tipping over\n";
   if (is_any) out << table;
-  for (const Unjudged& one : unjudged) out << "  '" << loaded.system->bodies[one.body].name << "' is not judged, because " << one.why << "\n";
+  for (const Unjudged& one : unjudged)
+    out << "  '" << loaded.system->bodies[one.body].name << "' is not judged, because " << one.why << "\n";
 }
 
 } // namespace steplap

@@ -25,8 +25,13 @@ namespace fs = std::filesystem;
 using namespace assess;
 using Align = TextTable::Align;
 
-constexpr OptionWords<RecordFault, 7> k_faults{{{"clipped", RecordFault::clipped}, {"gaps", RecordFault::gaps}, {"peaks", RecordFault::peaks_only}, {"cut", RecordFault::cut},
-                                                {"fall", RecordFault::fall}, {"dead", RecordFault::dead}, {"slow", RecordFault::slow}}};
+constexpr OptionWords<RecordFault, 7> k_faults{{{"clipped", RecordFault::clipped},
+                                                {"gaps", RecordFault::gaps},
+                                                {"peaks", RecordFault::peaks_only},
+                                                {"cut", RecordFault::cut},
+                                                {"fall", RecordFault::fall},
+                                                {"dead", RecordFault::dead},
+                                                {"slow", RecordFault::slow}}};
 constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
 
 // Made before anything is computed, so that hours of work do not end in a folder that cannot be; gone again if nothing came into it.
@@ -36,7 +41,9 @@ public:
     std::error_code error;
     is_new_ = fs::create_directories(path_, error);
     if (!error && !fs::is_directory(path_, error) && !error) error = std::make_error_code(std::errc::not_a_directory);
-    if (error) throw FileError(path_.string(), "cannot write to the folder '" + path_.string() + "': " + error.message() + ". Choose another one with -o");
+    if (error)
+      throw FileError(path_.string(),
+                      "cannot write to the folder '" + path_.string() + "': " + error.message() + ". Choose another one with -o");
   }
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -63,8 +70,7 @@ long whole_number(const std::optional<std::string>& text, const char* option, lo
 
 std::vector<RecordFault> accepted_faults(const AssessOptions& options) {
   std::vector<RecordFault> faults;
-  for (const std::string& word : options.accepted)
-    faults.push_back(choice(word, "--accept", k_faults));
+  for (const std::string& word : options.accepted) faults.push_back(choice(word, "--accept", k_faults));
   return faults;
 }
 
@@ -79,11 +85,14 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   if (o.quiet) options.reading.rest = rest_stretch(*o.quiet);
   if (o.pulse) {
     options.reading.pulse = parse_assumed_pulse(*o.pulse);
-    if (!options.reading.pulse) throw UsageError("--pulse '" + *o.pulse + "': give half-sine, haversine or triangle, and how long where the list does not tell: \"half-sine 50 ms\"");
+    if (!options.reading.pulse)
+      throw UsageError("--pulse '" + *o.pulse +
+                       "': give half-sine, haversine or triangle, and how long where the list does not tell: \"half-sine 50 ms\"");
   }
   if (o.pulse_axis) {
     if (!o.pulse) throw UsageError("--pulse-axis says along which axis pulses are: give --pulse, too");
-    if (*o.pulse_axis != "x" && *o.pulse_axis != "y" && *o.pulse_axis != "z") throw UsageError("--pulse-axis '" + *o.pulse_axis + "': give x, y or z");
+    if (*o.pulse_axis != "x" && *o.pulse_axis != "y" && *o.pulse_axis != "z")
+      throw UsageError("--pulse-axis '" + *o.pulse_axis + "': give x, y or z");
     options.reading.pulse->axis = o.pulse_axis->front();
   }
   options.overrides = o.overrides;
@@ -130,16 +139,19 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
   const AxisEvent& axis = shock.axes[shock.worst];
   for (std::size_t m = 0; m < e.passages.size(); ++m) {
     const Passage& p = e.passages[m];
-    const auto weakest = std::min_element(p.joints.begin(), p.joints.end(), [](const JointPassage& x, const JointPassage& y) { return x.margin < y.margin; });
+    const auto weakest = std::min_element(p.joints.begin(), p.joints.end(),
+                                          [](const JointPassage& x, const JointPassage& y) { return x.margin < y.margin; });
     const bool slips = std::any_of(p.joints.begin(), p.joints.end(), [](const JointPassage& j) { return j.slips; });
     double slid = 0.0;
     for (const JointPassage& joint : p.joints) slid = std::max(slid, joint.slid_total);
     const char* const event = words_of(EventKind::slips);
     const char* const outcome = p.is_made ? "holds" : "not run";
     const bool is_first = m == 0;
-    table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "", is_first ? std::string(1, record.axes()[shock.worst]) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
-                   a.models[m].recorder.plane, name_of(p.verdict), slips ? event : outcome, weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3),
-                   quantity_text(slid, "m"), m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
+    table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "",
+                   is_first ? std::string(1, record.axes()[shock.worst]) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
+                   a.models[m].recorder.plane, name_of(p.verdict), slips ? event : outcome,
+                   weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3), quantity_text(slid, "m"),
+                   m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
   }
 }
 
@@ -165,18 +177,25 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
   for (std::size_t i = 0; i < a.reasons.size() && i < k_shown_reasons; ++i)
     out << "  " << name_of(a.reasons[i].outcome) << "  " << a.reasons[i].criterion << ": " << a.reasons[i].text << "\n";
   const std::vector<std::size_t> shown = shown_events(a);
-  out << "\n" << counted(a.events.size(), "event", "events") << " of " << counted(a.records.size(), "record", "records")
-      << (shown.size() < a.events.size() ? "; the " + std::to_string(shown.size()) + " with the least margins:" : shown.empty() ? "" : ":") << "\n";
-  TextTable table({Align::right, Align::right, Align::left, Align::left, Align::left, Align::left, Align::right, Align::right, Align::right});
+  out << "\n"
+      << counted(a.events.size(), "event", "events") << " of " << counted(a.records.size(), "record", "records")
+      << (shown.size() < a.events.size() ? "; the " + std::to_string(shown.size()) + " with the least margins:"
+          : shown.empty()                ? ""
+                                         : ":")
+      << "\n";
+  TextTable table(
+      {Align::right, Align::right, Align::left, Align::left, Align::left, Align::left, Align::right, Align::right, Align::right});
   table.add_row({"event", "time s", "peak g", "plane", "verdict", "joints", "margin", "slid in all", "P(slip)"});
   for (const std::size_t i : shown) print_event(table, a, i);
   if (!shown.empty()) out << table;
   if (a.damage.runs > 0)
-    out << "\nProbability of damage in the voyage: " << percent(a.damage.value) << " (95 %: " << percent(a.damage.low) << " to " << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
+    out << "\nProbability of damage in the voyage: " << percent(a.damage.value) << " (95 %: " << percent(a.damage.low) << " to "
+        << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
   for (std::size_t i = 0; i < a.hangs_on.size() && i < k_shown_sentences; ++i) out << a.hangs_on[i] << "\n";
   for (const RecordEvents& record : a.records)
     for (const std::string& warning : record.warnings()) out << "'" << record.file << "': " << warning << "\n";
-  for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i) out << (i == 0 ? "What would show it: " : "  ") << a.tests[i] << "\n";
+  for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i)
+    out << (i == 0 ? "What would show it: " : "  ") << a.tests[i] << "\n";
   out << "Written to " << file << "\n";
 }
 
@@ -210,7 +229,8 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
   if (o.records.empty()) throw UsageError("name a recorder's file: steplap assess RECORD --model MODEL");
   if (o.models.empty()) throw UsageError("name a model with --model: what a record did to a machine is asked of a model of it");
   const std::string file = (output_folder(o) / "assessment.json").string();
-  if (!o.is_overwriting && fs::exists(file)) throw UsageError("'" + file + "' exists. Choose another folder with -o, or give --force to overwrite it.");
+  if (!o.is_overwriting && fs::exists(file))
+    throw UsageError("'" + file + "' exists. Choose another folder with -o, or give --force to overwrite it.");
   const InterruptionGuard guard;
   const OutputFolder folder(output_folder(o));
   std::optional<Assessment> assessment;

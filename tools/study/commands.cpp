@@ -51,7 +51,9 @@ FileError with_options(const StoreError& error) {
 
 // What is given is the study file or the store itself.
 std::string store_of(const Options& o) {
-  if (is_standard_output(o.file)) throw UsageError("FILE '-': a study is known by its file, or by the store of its results, which the standard input cannot be: name one of them");
+  if (is_standard_output(o.file))
+    throw UsageError(
+        "FILE '-': a study is known by its file, or by the store of its results, which the standard input cannot be: name one of them");
   return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file);
 }
 
@@ -59,14 +61,11 @@ long whole_number(const std::string& text, const char* option, long least) {
   long value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc() || end != text.data() + text.size() || value < least)
-    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + text +
-                     "'");
+    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + text + "'");
   return value;
 }
 
-std::string page_of(const std::string& store) {
-  return std::filesystem::path(store).replace_extension(".html").string();
-}
+std::string page_of(const std::string& store) { return std::filesystem::path(store).replace_extension(".html").string(); }
 
 std::string page_text(const std::string& path) {
   Store store(path);
@@ -133,13 +132,12 @@ Command run_command(const Ranks& ranks) {
   mpirun -n 8 steplap study friction.toml
 A study that was interrupted goes on when it is run again.
 )";
-  command.options = {
-      {"FILE", &o->file, "FILE", "study file (TOML)", true},
-      store_option(o),
-      {"--restart", &o->is_restarted, "", "drop what the store holds"},
-      {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
-      {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
-      {"--threads", &o->threads, "N", "threads (default: all processors)"}};
+  command.options = {{"FILE", &o->file, "FILE", "study file (TOML)", true},
+                     store_option(o),
+                     {"--restart", &o->is_restarted, "", "drop what the store holds"},
+                     {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
+                     {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
+                     {"--threads", &o->threads, "N", "threads (default: all processors)"}};
   command.prints_tables = true;
   command.run = [o, &ranks](Console& console) { return run_command_of(*o, ranks, console); };
   return command;
@@ -189,14 +187,12 @@ Command export_command() {
   Command command;
   command.name = "export";
   command.summary = "all samples as CSV, or all findings";
-  command.examples =
-      "  steplap study export friction.toml > samples.csv\n  steplap study export friction.toml --findings\n";
-  command.options = {
-      {"FILE", &o->file, "FILE", "study file or store", true},
-      store_option(o),
-      {"--findings", &o->is_findings, "", "what was found instead of the samples"},
-      {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
-      {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
+  command.examples = "  steplap study export friction.toml > samples.csv\n  steplap study export friction.toml --findings\n";
+  command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
+                     store_option(o),
+                     {"--findings", &o->is_findings, "", "what was found instead of the samples"},
+                     {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
+                     {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
   command.run = [o](Console& console) {
     Store store(store_of(*o));
     if (o->is_findings) export_findings(store.findings(), console.out);
@@ -218,7 +214,7 @@ ExitCode replay(const Options& o, Console& console) {
     throw UsageError("the store has " + std::to_string(store.size()) + " samples: there is no sample " + *o.sample);
   if (store.identity().scene != identity_of(loaded).scene)
     throw StoreError(o.file, "the models, variables or responses of '" + o.file +
-                     "' are not those of the store any more: its samples cannot be replayed");
+                                 "' are not those of the store any more: its samples cannot be replayed");
   if (!loaded.variants.empty())
     throw UsageError("a sample of the kind 'needs' is another model, not other values of one: it cannot be replayed");
   if (loaded.models.empty()) throw UsageError("the study has no model: its samples are numbers only");
@@ -226,8 +222,7 @@ ExitCode replay(const Options& o, Console& console) {
   store.read(number, 1, rows);
   int worst = 0;
   for (const auto& model : loaded.models) {
-    std::vector<std::string> arguments{"simulate", model->path, "-o", o.output.value_or("out/replay"),
-                                       "--force",  "--report"};
+    std::vector<std::string> arguments{"simulate", model->path, "-o", o.output.value_or("out/replay"), "--force", "--report"};
     for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
       const Variable& v = loaded.study.variables[i];
       if (!is_set_in(v, *model)) continue;
@@ -274,7 +269,8 @@ Command schema_command() {
 } // namespace
 
 std::vector<Command> study_commands(const Ranks& ranks) {
-  std::vector<Command> commands = {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command(), help_command()};
+  std::vector<Command> commands = {run_command(ranks), show_command(),   report_command(), export_command(),
+                                   replay_command(),   schema_command(), help_command()};
   for (Command& command : commands)
     command.run = [run = std::move(command.run)](Console& console) {
       try {
@@ -287,8 +283,8 @@ std::vector<Command> study_commands(const Ranks& ranks) {
 }
 
 Program study_program(const Ranks& ranks) {
-  return {"steplap study", "studies: what if, how likely, how much does it matter; see docs/reference/studies.md",
-          study_commands(ranks), R"(Exit codes:
+  return {"steplap study", "studies: what if, how likely, how much does it matter; see docs/reference/studies.md", study_commands(ranks),
+          R"(Exit codes:
   0  done
   1  a fault of the program itself
   2  wrong command line, or a store that cannot be used: of another study, damaged, held by another process

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
     return code_of_output(std::cout, std::cerr, run_program(assessment, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1));
   }
   const Program program = study::study_program(mpi.ranks());
-  const bool is_file = !arguments.empty() && (arguments.front() == "-" || !arguments.front().starts_with('-')) && !is_command(program, arguments.front());
+  const bool is_file =
+      !arguments.empty() && (arguments.front() == "-" || !arguments.front().starts_with('-')) && !is_command(program, arguments.front());
   if (is_file) arguments.insert(arguments.begin(), "run");
   const int code = run_program(program, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
   return code_of_output(std::cout, std::cerr, code);

@@ -60,8 +60,8 @@ void show_reasons(Store& store, std::ostream& out) {
 void show(Store& store, const std::string& title, std::ostream& out) {
   if (!title.empty()) out << title << "\n";
   const std::string standing = store.setting("standing");
-  out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": "
-      << store.size() << " samples" << (standing.empty() ? ", not finished" : "") << "\n";
+  out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": " << store.size() << " samples"
+      << (standing.empty() ? ", not finished" : "") << "\n";
   show_reasons(store, out);
   std::vector<Finding> findings = store.findings();
   if (standing.empty()) {
@@ -70,10 +70,12 @@ void show(Store& store, const std::string& title, std::ostream& out) {
   }
   using Align = TextTable::Align;
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right, Align::left});
-  if (!findings.empty()) table.set_head("findings", {"method", "of", "quantity", "value", "interval", "samples", ""}, {"method", "of", "quantity", "value", "interval", "samples", "status"});
+  if (!findings.empty())
+    table.set_head("findings", {"method", "of", "quantity", "value", "interval", "samples", ""},
+                   {"method", "of", "quantity", "value", "interval", "samples", "status"});
   for (const Finding& f : findings)
-    table.add_row(
-        {f.method, f.subject, f.quantity, Cell(digits(f.value), f.value), interval_text(f), count_cell(static_cast<std::size_t>(f.samples)), f.status});
+    table.add_row({f.method, f.subject, f.quantity, Cell(digits(f.value), f.value), interval_text(f),
+                   count_cell(static_cast<std::size_t>(f.samples)), f.status});
   out << table;
   for (const std::string& note : store.notes()) out << note << "\n";
   std::istringstream files(store.setting("files"));

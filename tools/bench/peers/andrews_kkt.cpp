@@ -44,9 +44,7 @@ struct Equations {
   Vector6 gamma;
 };
 
-Vector2 perp(const Vector2& a) {
-  return {-a.y(), a.x()};
-}
+Vector2 perp(const Vector2& a) { return {-a.y(), a.x()}; }
 
 Equations equations(const double* y) {
   Equations eq;
@@ -59,9 +57,7 @@ Equations equations(const double* y) {
     s[i] = std::sin(y[i]);
   }
   const double* rate = y + 7;
-  auto turn = [&](int i, const Vector2& a) {
-    return Vector2(c[i] * a.x() - s[i] * a.y(), s[i] * a.x() + c[i] * a.y());
-  };
+  auto turn = [&](int i, const Vector2& a) { return Vector2(c[i] * a.x() - s[i] * a.y(), s[i] * a.x() + c[i] * a.y()); };
   for (int i = 0; i < 7; ++i) {
     const Body& b = k_bodies[i];
     const Vector2 centre = turn(i, b.centre);
@@ -90,8 +86,7 @@ Equations equations(const double* y) {
     eq.g.block<2, 1>(2 * loop, a) = perp(pin);
     eq.g.block<2, 1>(2 * loop, i) = perp(tip);
     eq.g.block<2, 1>(2 * loop, k_triangle) = -perp(meeting);
-    eq.gamma.segment<2>(2 * loop) = pin * rate[a] * rate[a] + tip * rate[i] * rate[i] -
-                                    meeting * rate[k_triangle] * rate[k_triangle];
+    eq.gamma.segment<2>(2 * loop) = pin * rate[a] * rate[a] + tip * rate[i] * rate[i] - meeting * rate[k_triangle] * rate[k_triangle];
   }
   return eq;
 }
@@ -125,12 +120,10 @@ void andrews_kkt_rates(const double* y, double* dydt, double* lambda) {
     dydt[7 + i] = acceleration[i];
   }
   if (lambda == nullptr) return;
-  for (int i = 0; i < 6; ++i)
-    lambda[i] = multiplier[i];
+  for (int i = 0; i < 6; ++i) lambda[i] = multiplier[i];
 }
 
-void andrews_kkt_residual(const double* y, const double* a, const double* lambda,
-                          double* residual) {
+void andrews_kkt_residual(const double* y, const double* a, const double* lambda, double* residual) {
   const Equations eq = equations(y);
   const Eigen::Map<const Vector7> acceleration(a);
   const Eigen::Map<const Vector6> multiplier(lambda);

@@ -15,18 +15,10 @@ namespace {
 struct Jet {
   double v, d, dd;
 };
-inline Jet operator+(const Jet& a, const Jet& b) {
-  return {a.v + b.v, a.d + b.d, a.dd + b.dd};
-}
-inline Jet operator-(const Jet& a, const Jet& b) {
-  return {a.v - b.v, a.d - b.d, a.dd - b.dd};
-}
-inline Jet operator*(double s, const Jet& a) {
-  return {s * a.v, s * a.d, s * a.dd};
-}
-inline Jet operator*(const Jet& a, const Jet& b) {
-  return {a.v * b.v, a.d * b.v + a.v * b.d, a.dd * b.v + 2.0 * a.d * b.d + a.v * b.dd};
-}
+inline Jet operator+(const Jet& a, const Jet& b) { return {a.v + b.v, a.d + b.d, a.dd + b.dd}; }
+inline Jet operator-(const Jet& a, const Jet& b) { return {a.v - b.v, a.d - b.d, a.dd - b.dd}; }
+inline Jet operator*(double s, const Jet& a) { return {s * a.v, s * a.d, s * a.dd}; }
+inline Jet operator*(const Jet& a, const Jet& b) { return {a.v * b.v, a.d * b.v + a.v * b.d, a.dd * b.v + 2.0 * a.d * b.d + a.v * b.dd}; }
 inline Jet inverse(const Jet& a) {
   const double r = 1.0 / a.v;
   const double d = -a.d * r * r;
@@ -42,21 +34,11 @@ inline Jet root(const Jet& a) {
 struct Point {
   Jet x, y;
 };
-inline Point operator+(const Point& a, const Point& b) {
-  return {a.x + b.x, a.y + b.y};
-}
-inline Point operator-(const Point& a, const Point& b) {
-  return {a.x - b.x, a.y - b.y};
-}
-inline Point operator*(double s, const Point& a) {
-  return {s * a.x, s * a.y};
-}
-inline Point perp(const Point& a) {
-  return {-1.0 * a.y, a.x};
-}
-inline Point fixed(double x, double y) {
-  return {{x, 0, 0}, {y, 0, 0}};
-}
+inline Point operator+(const Point& a, const Point& b) { return {a.x + b.x, a.y + b.y}; }
+inline Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y}; }
+inline Point operator*(double s, const Point& a) { return {s * a.x, s * a.y}; }
+inline Point perp(const Point& a) { return {-1.0 * a.y, a.x}; }
+inline Point fixed(double x, double y) { return {{x, 0, 0}, {y, 0, 0}}; }
 
 // The point at distances r from p and s from q, on the given side of p → q.
 inline Point intersect(const Point& p, double r, const Point& q, double s, double side) {
@@ -122,9 +104,7 @@ inline void add(Inertia& total, const Body& body, const Point& pin, const Point&
   total.half_slope += body.mass * (c.x.d * c.x.dd + c.y.d * c.y.dd) + body.inertia * turn * turn2;
 }
 
-double angle(const Point& axis) {
-  return std::atan2(axis.y.v, axis.x.v);
-}
+double angle(const Point& axis) { return std::atan2(axis.y.v, axis.x.v); }
 
 } // namespace
 
@@ -154,8 +134,7 @@ AndrewsAngles assemble_andrews(double beta) {
   double theta = angle(p.axis2) - beta;
   const double delta = angle(p.axis5);
   const double epsilon = angle(p.axis7);
-  return {beta,   theta, angle(p.axis3), angle(p.axis4) - delta, delta, angle(p.axis6) - epsilon,
-          epsilon};
+  return {beta, theta, angle(p.axis3), angle(p.axis4) - delta, delta, angle(p.axis6) - epsilon, epsilon};
 }
 
 double andrews_start(AndrewsVariant variant) {
@@ -173,8 +152,7 @@ double andrews_start(AndrewsVariant variant) {
 AndrewsResult run_andrews_dop853(AndrewsVariant variant, double tolerance) {
   std::array<double, 2> y = {andrews_start(variant), 0.0};
   auto rates = [](double, const double* x, double* f) { andrews_reduced_rates(x, f); };
-  const SmoothCounts counts = run_dop853(rates, y, k_andrews_end[static_cast<int>(variant)],
-                                         1e-3 * std::pow(tolerance, 0.125), tolerance);
+  const SmoothCounts counts = run_dop853(rates, y, k_andrews_end[static_cast<int>(variant)], 1e-3 * std::pow(tolerance, 0.125), tolerance);
   return {assemble_andrews(y[0]), counts.steps, counts.evaluations};
 }
 

@@ -28,9 +28,7 @@ std::array<double, 14> start_state(AndrewsVariant variant) {
   return {q[0], q[0] + q[1], q[2], q[3] + q[4], q[4], q[5] + q[6], q[6]};
 }
 
-AndrewsAngles relative_angles(const double* y) {
-  return {y[0], y[1] - y[0], y[2], y[3] - y[4], y[4], y[5] - y[6], y[6]};
-}
+AndrewsAngles relative_angles(const double* y) { return {y[0], y[1] - y[0], y[2], y[3] - y[4], y[4], y[5] - y[6], y[6]}; }
 
 constexpr int k_unknowns = 20; // seven angles, seven rates, six multipliers
 
@@ -43,8 +41,7 @@ int residual(double, N_Vector y, N_Vector dydt, N_Vector out, void* counter) {
   const double* rate = data_of(dydt);
   double* r = data_of(out);
   ++static_cast<IdaCounter*>(counter)->evaluations;
-  for (int i = 0; i < 7; ++i)
-    r[i] = rate[i] - u[7 + i];
+  for (int i = 0; i < 7; ++i) r[i] = rate[i] - u[7 + i];
   andrews_kkt_residual(u, rate + 7, u + 14, r + 7);
   return 0;
 }

@@ -7,13 +7,11 @@ namespace steplap::peers {
 ArkodeRunner::ArkodeRunner(const ArkodeProblem& problem, double* y, double tolerance)
     : problem_(problem), y_(problem.size, y, sundials_.context) {
   memory_ = ARKStepCreate(problem.rates, nullptr, 0.0, y_.get(), sundials_.context);
-  require(ARKStepSetTableNum(memory_, ARKODE_DIRK_NONE, ARKODE_DORMAND_PRINCE_7_4_5),
-          "SetTableNum");
+  require(ARKStepSetTableNum(memory_, ARKODE_DIRK_NONE, ARKODE_DORMAND_PRINCE_7_4_5), "SetTableNum");
   require(ARKStepSStolerances(memory_, tolerance, tolerance), "SStolerances");
   require(ARKStepSetUserData(memory_, problem.data), "SetUserData");
   require(ARKStepSetMaxNumSteps(memory_, 10000000), "SetMaxNumSteps");
-  if (problem.longest_step > 0.0)
-    require(ARKStepSetMaxStep(memory_, problem.longest_step), "SetMaxStep");
+  if (problem.longest_step > 0.0) require(ARKStepSetMaxStep(memory_, problem.longest_step), "SetMaxStep");
   if (problem.switches == 0) return;
   require(ARKStepRootInit(memory_, problem.switches, problem.roots), "RootInit");
   std::vector<int> falling(static_cast<std::size_t>(problem.switches), -1);
@@ -21,9 +19,7 @@ ArkodeRunner::ArkodeRunner(const ArkodeProblem& problem, double* y, double toler
   require(ARKStepSetNoInactiveRootWarn(memory_), "SetNoInactiveRootWarn");
 }
 
-ArkodeRunner::~ArkodeRunner() {
-  ARKStepFree(&memory_);
-}
+ArkodeRunner::~ArkodeRunner() { ARKStepFree(&memory_); }
 
 int ArkodeRunner::run(double until, int task) {
   require(ARKStepSetStopTime(memory_, until), "SetStopTime");
@@ -39,14 +35,11 @@ int ArkodeRunner::run(double until, int task) {
 
 int ArkodeRunner::advance(double until) {
   int slot = -1;
-  while (slot < 0 && t_ < until)
-    slot = run(until, ARK_NORMAL);
+  while (slot < 0 && t_ < until) slot = run(until, ARK_NORMAL);
   return slot;
 }
 
-int ArkodeRunner::step(double until) {
-  return run(until, ARK_ONE_STEP);
-}
+int ArkodeRunner::step(double until) { return run(until, ARK_ONE_STEP); }
 
 void ArkodeRunner::restart(double first_step) {
   past_steps_ = steps();

@@ -16,9 +16,7 @@ constexpr double k_contact_step = 1e-3; // first step after landing; contact las
 
 enum class Mode { flight, contact, held };
 
-double force_law(const double* y) {
-  return -k_stiffness * y[0] - k_damping * y[1];
-}
+double force_law(const double* y) { return -k_stiffness * y[0] - k_damping * y[1]; }
 
 int rates(double, N_Vector y, N_Vector dydt, void* mode) {
   const double* u = data_of(y);
@@ -32,12 +30,8 @@ int roots(double, N_Vector y, double* g, void* mode) {
   const double* u = data_of(y);
   g[0] = g[1] = 1.0;
   switch (*static_cast<const Mode*>(mode)) {
-  case Mode::flight:
-    g[0] = u[0];
-    break;
-  case Mode::contact:
-    g[0] = force_law(u);
-    break;
+  case Mode::flight: g[0] = u[0]; break;
+  case Mode::contact: g[0] = force_law(u); break;
   case Mode::held:
     g[0] = -u[0];
     g[1] = -force_law(u);

@@ -15,8 +15,7 @@ struct SmoothCounts {
 };
 
 template <std::size_t N, class F>
-SmoothCounts run_dop853(F rates, std::array<double, N>& y, double end, double first_step,
-                        double tolerance) {
+SmoothCounts run_dop853(F rates, std::array<double, N>& y, double end, double first_step, double tolerance) {
   Dop853Step<static_cast<int>(N)> step;
   SmoothCounts counts;
   auto counted = [&](double t, const double* x, double* f) {
@@ -32,16 +31,14 @@ SmoothCounts run_dop853(F rates, std::array<double, N>& y, double end, double fi
     if (last) h = end - t;
     step.advance(counted, t, y, h);
     std::array<double, N> weight;
-    for (std::size_t i = 0; i < N; ++i)
-      weight[i] = 1.0 / (tolerance * (1.0 + std::max(std::abs(y[i]), std::abs(step.y1[i]))));
+    for (std::size_t i = 0; i < N; ++i) weight[i] = 1.0 / (tolerance * (1.0 + std::max(std::abs(y[i]), std::abs(step.y1[i]))));
     const double error = std::max(step.error(h, weight), 1e-30);
     if (!(error <= 1.0)) { // also a trial that left the domain
       h *= std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.125)) : 0.2;
       continue;
     }
     ++counts.steps;
-    const double factor =
-        0.9 * std::pow(error, -(0.125 - 0.75 * 0.04)) * std::pow(last_error, 0.04);
+    const double factor = 0.9 * std::pow(error, -(0.125 - 0.75 * 0.04)) * std::pow(last_error, 0.04);
     t = last ? end : t + h;
     y = step.y1;
     if (!last) counted(t, y.data(), step.k[0].data());

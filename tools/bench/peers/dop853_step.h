@@ -62,11 +62,7 @@ public:
   void dense(const Vector& y, double s, Vector& out) const {
     const double z = 1.0 - s;
     for (int i = 0; i < N; ++i)
-      out[i] =
-          y[i] +
-          s * (r[0][i] +
-               z * (r[1][i] +
-                    s * (r[2][i] + z * (r[3][i] + s * (r[4][i] + z * (r[5][i] + s * r[6][i]))))));
+      out[i] = y[i] + s * (r[0][i] + z * (r[1][i] + s * (r[2][i] + z * (r[3][i] + s * (r[4][i] + z * (r[5][i] + s * r[6][i]))))));
   }
 
   alignas(64) std::array<Vector, 16> k;
@@ -76,12 +72,10 @@ private:
   enum class Weights { e5, e3 };
   alignas(64) std::array<Vector, 7> r;
 
-  template <int S, int... J>
-  [[nodiscard]] double stage_sum(int i, std::integer_sequence<int, J...>) const {
+  template <int S, int... J> [[nodiscard]] double stage_sum(int i, std::integer_sequence<int, J...>) const {
     double sum = dop853::a[S][0] * k[0][i];
     auto add = [&]<int Column>() {
-      if constexpr (Column > 0 && dop853::a[S][Column] != 0.0)
-        sum += dop853::a[S][Column] * k[Column][i];
+      if constexpr (Column > 0 && dop853::a[S][Column] != 0.0) sum += dop853::a[S][Column] * k[Column][i];
     };
     (add.template operator()<J>(), ...);
     return sum;
@@ -89,19 +83,15 @@ private:
 
   template <int S> void combine(const Vector& y, double h, Vector& out) const {
     constexpr int columns = S;
-    for (int i = 0; i < N; ++i)
-      out[i] = y[i] + h * stage_sum<S>(i, std::make_integer_sequence<int, columns>{});
+    for (int i = 0; i < N; ++i) out[i] = y[i] + h * stage_sum<S>(i, std::make_integer_sequence<int, columns>{});
   }
 
-  template <class F, int... J>
-  void stages(F& f, double t, const Vector& y, double h, std::integer_sequence<int, J...>) {
+  template <class F, int... J> void stages(F& f, double t, const Vector& y, double h, std::integer_sequence<int, J...>) {
     alignas(64) Vector stage;
-    ((combine<J + 1>(y, h, stage), f(t + dop853::c[J + 1] * h, stage.data(), k[J + 1].data())),
-     ...);
+    ((combine<J + 1>(y, h, stage), f(t + dop853::c[J + 1] * h, stage.data(), k[J + 1].data())), ...);
   }
 
-  template <Weights W, int... J>
-  [[nodiscard]] double weigh(int i, std::integer_sequence<int, J...>) const {
+  template <Weights W, int... J> [[nodiscard]] double weigh(int i, std::integer_sequence<int, J...>) const {
     constexpr auto& row = W == Weights::e5 ? dop853::e5 : dop853::e3;
     double sum = row[0] * k[0][i];
     auto add = [&]<int Column>() {
@@ -111,12 +101,10 @@ private:
     return sum;
   }
 
-  template <int Row, int... J>
-  [[nodiscard]] double dense_row(int i, std::integer_sequence<int, J...>) const {
+  template <int Row, int... J> [[nodiscard]] double dense_row(int i, std::integer_sequence<int, J...>) const {
     double sum = dop853::d[Row][0] * k[0][i];
     auto add = [&]<int Column>() {
-      if constexpr (Column > 0 && dop853::d[Row][Column] != 0.0)
-        sum += dop853::d[Row][Column] * k[Column][i];
+      if constexpr (Column > 0 && dop853::d[Row][Column] != 0.0) sum += dop853::d[Row][Column] * k[Column][i];
     };
     (add.template operator()<J>(), ...);
     return sum;

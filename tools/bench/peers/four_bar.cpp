@@ -28,17 +28,14 @@ double pull_of(int windows) {
   return k_gravity * ((n + 1.0) / 2.0 + n) / ((n + 1.0) / 3.0 + n);
 }
 
-double error_of(const FourBarExact& exact, double x, double y) {
-  return std::max(std::abs(x - exact.x), std::abs(y - exact.y));
-}
+double error_of(const FourBarExact& exact, double x, double y) { return std::max(std::abs(x - exact.x), std::abs(y - exact.y)); }
 
 // State: α0 … αN, β1 … βN, then their rates. Rods and bars: 1 m, 1 kg, uniform.
 class FourBarChain {
 public:
   explicit FourBarChain(int windows)
-      : n_(windows), count_(2 * windows + 1), mass_(count_), coupling_(windows),
-        g_(2 * windows, count_), reached_(count_, 2 * windows), gamma_(2 * windows), force_(count_),
-        free_(count_), schur_(2 * windows) {}
+      : n_(windows), count_(2 * windows + 1), mass_(count_), coupling_(windows), g_(2 * windows, count_), reached_(count_, 2 * windows),
+        gamma_(2 * windows), force_(count_), free_(count_), schur_(2 * windows) {}
 
   [[nodiscard]] Eigen::VectorXd start() const {
     Eigen::VectorXd y = Eigen::VectorXd::Zero(2 * count_);
@@ -131,8 +128,7 @@ MechanismResult run_four_bar_dop853(const FourBarExact& exact, double tolerance)
     f[0] = x[1];
     f[1] = pull * std::sin(x[0]);
   };
-  const SmoothCounts counts =
-      run_dop853(rates, y, k_four_bar_end, 0.5 * std::pow(tolerance, 0.125), tolerance);
+  const SmoothCounts counts = run_dop853(rates, y, k_four_bar_end, 0.5 * std::pow(tolerance, 0.125), tolerance);
   return {error_of(exact, std::sin(y[0]), std::cos(y[0])), counts.steps, counts.evaluations, 0};
 }
 

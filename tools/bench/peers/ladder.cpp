@@ -15,25 +15,22 @@ double cpu_seconds() {
 void write_csv(std::FILE* file, const std::vector<Rung>& rungs) {
   std::fprintf(file, "problem,program,setting,error,cpu_ms,steps,evaluations,events\n");
   for (const Rung& r : rungs)
-    std::fprintf(file, "%s,\"%s\",%s,%.6e,%.6f,%ld,%ld,%ld\n", r.problem.c_str(), r.program.c_str(),
-                 r.setting.c_str(), r.error, r.cpu_ms, r.steps, r.evaluations, r.events);
+    std::fprintf(file, "%s,\"%s\",%s,%.6e,%.6f,%ld,%ld,%ld\n", r.problem.c_str(), r.program.c_str(), r.setting.c_str(), r.error, r.cpu_ms,
+                 r.steps, r.evaluations, r.events);
 }
 
 void print_table(const std::vector<Rung>& rungs) {
-  std::printf("%-22s %-22s %-10s %10s %12s %9s %11s %7s\n", "problem", "program", "setting",
-              "error", "CPU ms", "steps", "evaluations", "events");
+  std::printf("%-22s %-22s %-10s %10s %12s %9s %11s %7s\n", "problem", "program", "setting", "error", "CPU ms", "steps", "evaluations",
+              "events");
   for (const Rung& r : rungs)
-    std::printf("%-22s %-22s %-10s %10.2e %12.4f %9ld %11ld %7ld\n", r.problem.c_str(),
-                r.program.c_str(), r.setting.c_str(), r.error, r.cpu_ms, r.steps, r.evaluations,
-                r.events);
+    std::printf("%-22s %-22s %-10s %10.2e %12.4f %9ld %11ld %7ld\n", r.problem.c_str(), r.program.c_str(), r.setting.c_str(), r.error,
+                r.cpu_ms, r.steps, r.evaluations, r.events);
 }
 
-double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem,
-                 const std::string& program, double error) {
+double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, const std::string& program, double error) {
   std::vector<std::pair<double, double>> front; // error, time
   for (const Rung& r : rungs)
-    if (r.problem == problem && r.program == program && std::isfinite(r.error))
-      front.emplace_back(std::max(r.error, 1e-16), r.cpu_ms);
+    if (r.problem == problem && r.program == program && std::isfinite(r.error)) front.emplace_back(std::max(r.error, 1e-16), r.cpu_ms);
   std::sort(front.begin(), front.end());
   double best = -1.0;
   for (const auto& [e, ms] : front)
@@ -51,8 +48,7 @@ double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem,
 
 void print_summary(const std::vector<Rung>& rungs) {
   std::vector<std::pair<std::string, std::string>> seen;
-  std::printf("\n%-22s %-22s %12s %12s %12s   (CPU ms at error)\n", "problem", "program", "1e-3",
-              "1e-6", "1e-9");
+  std::printf("\n%-22s %-22s %12s %12s %12s   (CPU ms at error)\n", "problem", "program", "1e-3", "1e-6", "1e-9");
   for (const Rung& r : rungs) {
     const std::pair<std::string, std::string> key{r.problem, r.program};
     if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
@@ -60,10 +56,8 @@ void print_summary(const std::vector<Rung>& rungs) {
     std::printf("%-22s %-22s", r.problem.c_str(), r.program.c_str());
     for (const double error : {1e-3, 1e-6, 1e-9}) {
       const double ms = cpu_ms_at(rungs, r.problem, r.program, error);
-      if (ms < 0.0)
-        std::printf(" %12s", "-");
-      else
-        std::printf(" %12.4f", ms);
+      if (ms < 0.0) std::printf(" %12s", "-");
+      else std::printf(" %12.4f", ms);
     }
     std::printf("\n");
   }

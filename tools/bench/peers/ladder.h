@@ -43,8 +43,7 @@ void print_table(const std::vector<Rung>& rungs);
 
 // CPU time at an error, by straight lines in the logarithms between the rungs of
 // the Pareto set; negative if no rung reaches it.
-[[nodiscard]] double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem,
-                               const std::string& program, double error);
+[[nodiscard]] double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, const std::string& program, double error);
 
 // One line per problem and program: CPU time at errors 1e-3, 1e-6, 1e-9.
 void print_summary(const std::vector<Rung>& rungs);

@@ -28,16 +28,14 @@ struct Entry {
 
 std::vector<double> decades(double from, double to, double ratio = 10.0) {
   std::vector<double> ladder;
-  for (double x = from; x > to * 0.9; x /= ratio)
-    ladder.push_back(x);
+  for (double x = from; x > to * 0.9; x /= ratio) ladder.push_back(x);
   return ladder;
 }
 
 MechanismResult judged(const AndrewsResult& r, AndrewsVariant variant) {
   MechanismResult result{0.0, r.steps, r.evaluations, 0};
   const AndrewsAngles& exact = k_andrews_exact[static_cast<int>(variant)];
-  for (std::size_t i = 0; i < exact.size(); ++i)
-    result.error = std::max(result.error, std::abs(r.angles[i] - exact[i]));
+  for (std::size_t i = 0; i < exact.size(); ++i) result.error = std::max(result.error, std::abs(r.angles[i] - exact[i]));
   return result;
 }
 
@@ -45,8 +43,7 @@ void add_andrews(std::vector<Entry>& all) {
   for (const AndrewsVariant v : {AndrewsVariant::test_set, AndrewsVariant::a03}) {
     const std::string problem = v == AndrewsVariant::a03 ? "B1 A03 0.05 s" : "B1 Andrews 0.03 s";
     auto add = [&](const char* name, AndrewsResult (*run)(AndrewsVariant, double), double last) {
-      all.push_back({problem, name, decades(1e-3, last),
-                     [run, v](double tolerance) { return judged(run(v, tolerance), v); }});
+      all.push_back({problem, name, decades(1e-3, last), [run, v](double tolerance) { return judged(run(v, tolerance), v); }});
     };
     add("reduced, own DOP853", run_andrews_dop853, 1e-13);
 #ifdef STEPLAP_PEER_ARKODE
@@ -55,8 +52,7 @@ void add_andrews(std::vector<Entry>& all) {
     add("KKT, IDA", run_andrews_kkt_ida, 1e-11);
 #endif
 #ifdef STEPLAP_PEER_SIMBODY
-    all.push_back({problem, "Simbody", decades(1e-3, 1e-11),
-                   [v](double accuracy) { return run_andrews_simbody(v, accuracy); }});
+    all.push_back({problem, "Simbody", decades(1e-3, 1e-11), [v](double accuracy) { return run_andrews_simbody(v, accuracy); }});
 #endif
   }
 }
@@ -65,14 +61,11 @@ void add_four_bar(std::vector<Entry>& all, bool slow) {
   for (const FourBarExact& exact : k_four_bar_exact) {
     const bool large = exact.windows > 2;
     const std::string problem = "B2 N = " + std::to_string(exact.windows);
-    all.push_back({problem, "one coordinate, DOP853", decades(1e-2, 1e-13),
-                   [&exact](double e) { return run_four_bar_dop853(exact, e); }});
+    all.push_back({problem, "one coordinate, DOP853", decades(1e-2, 1e-13), [&exact](double e) { return run_four_bar_dop853(exact, e); }});
 #ifdef STEPLAP_PEER_ARKODE
-    all.push_back({problem, "one coordinate, ARKODE", decades(1e-2, 1e-13),
-                   [&exact](double e) { return run_four_bar_arkode(exact, e); }});
+    all.push_back({problem, "one coordinate, ARKODE", decades(1e-2, 1e-13), [&exact](double e) { return run_four_bar_arkode(exact, e); }});
 #endif
-    all.push_back({problem, "KKT RK4 (step)",
-                   decades(8e-2, large ? (slow ? 5e-3 : 2e-2) : 6e-4, 2.0),
+    all.push_back({problem, "KKT RK4 (step)", decades(8e-2, large ? (slow ? 5e-3 : 2e-2) : 6e-4, 2.0),
                    [&exact](double h) { return run_four_bar_kkt_rk4(exact, h); }});
 #ifdef STEPLAP_PEER_SIMBODY
     if (large && !slow) continue;
@@ -97,8 +90,7 @@ constexpr double k_bounce_tightest = 1e-14;
 
 void add_switching(std::vector<Entry>& all) {
   all.push_back({"B4a belt", "ARKODE with roots", decades(1e-2, 1e-13), run_belt_arkode});
-  all.push_back(
-      {"B4b Den Hartog", "ARKODE with roots", decades(1e-2, 1e-13), run_den_hartog_arkode});
+  all.push_back({"B4b Den Hartog", "ARKODE with roots", decades(1e-2, 1e-13), run_den_hartog_arkode});
   std::vector<double> reference;
   (void)run_bounce_arkode(k_bounce_tightest, &reference);
   auto bounce = [reference](double tolerance) {
@@ -124,11 +116,9 @@ Rung measure(const Entry& entry, double setting) {
   if (result.cpu_ms == 0.0) {
     result.cpu_ms = least_ms([&] { (void)entry.run(setting); }, 0.1);
   } else { // the program times its own integration
-    for (double spent = result.cpu_ms; spent < 100.0; spent += 10.0)
-      result.cpu_ms = std::min(result.cpu_ms, entry.run(setting).cpu_ms);
+    for (double spent = result.cpu_ms; spent < 100.0; spent += 10.0) result.cpu_ms = std::min(result.cpu_ms, entry.run(setting).cpu_ms);
   }
-  return {entry.problem, entry.program,      text,         result.error, result.cpu_ms,
-          result.steps,  result.evaluations, result.events};
+  return {entry.problem, entry.program, text, result.error, result.cpu_ms, result.steps, result.evaluations, result.events};
 }
 
 } // namespace
@@ -153,8 +143,7 @@ int main(int argc, char** argv) {
   std::vector<Rung> rungs;
   for (const Entry& entry : all) {
     if (!only.empty() && entry.problem.compare(0, only.size(), only) != 0) continue;
-    for (const double setting : entry.settings)
-      rungs.push_back(measure(entry, setting));
+    for (const double setting : entry.settings) rungs.push_back(measure(entry, setting));
   }
   print_table(rungs);
   print_summary(rungs);

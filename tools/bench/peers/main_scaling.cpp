@@ -21,13 +21,12 @@ struct Table {
   bool agrees = true;
 
   void print(const char* scene, int bodies, const char* program, const ScalingResult& r) {
-    std::printf("%-6s %7d  %-16s %10.3f %12.2f %14.4f\n", scene, bodies, program, r.step_us, r.evaluations,
-                r.step_us / r.evaluations);
+    std::printf("%-6s %7d  %-16s %10.3f %12.2f %14.4f\n", scene, bodies, program, r.step_us, r.evaluations, r.step_us / r.evaluations);
     std::fflush(stdout);
     if (std::isnan(reference)) reference = r.probe;
     if (!(std::abs(r.probe - reference) < k_agreement)) {
-      std::fprintf(stderr, "%s of %d: %s has the last body at %.9f m, the first program at %.9f m\n", scene, bodies,
-                   program, r.probe, reference);
+      std::fprintf(stderr, "%s of %d: %s has the last body at %.9f m, the first program at %.9f m\n", scene, bodies, program, r.probe,
+                   reference);
       agrees = false;
     }
   }

@@ -21,8 +21,7 @@
 namespace steplap::peers {
 namespace {
 
-constexpr std::array<Condition, 2> k_conditions = {Condition::no_interference,
-                                                   Condition::interference};
+constexpr std::array<Condition, 2> k_conditions = {Condition::no_interference, Condition::interference};
 constexpr std::array<const char*, 2> k_names = {"no_interference", "interference"};
 constexpr double k_tightest = 1e-12;
 
@@ -35,8 +34,7 @@ struct Program {
 
 std::vector<double> decades(double from, double to) {
   std::vector<double> ladder;
-  for (double e = std::log10(from); e > std::log10(to) - 0.1; e -= 0.5)
-    ladder.push_back(std::pow(10.0, e));
+  for (double e = std::log10(from); e > std::log10(to) - 0.1; e -= 0.5) ladder.push_back(std::pow(10.0, e));
   return ladder;
 }
 
@@ -66,8 +64,7 @@ double scaled_error(const History& run, const History& reference, double Outputs
 }
 
 double error_of(const History& run, const History& reference) {
-  return std::max(scaled_error(run, reference, &Outputs::theta1),
-                  scaled_error(run, reference, &Outputs::bottom_arrest));
+  return std::max(scaled_error(run, reference, &Outputs::theta1), scaled_error(run, reference, &Outputs::bottom_arrest));
 }
 
 // The two columns that are compared, by name; empty if the file is not there.
@@ -104,11 +101,10 @@ void climb(const Program& program, const std::array<History, 2>& files, std::vec
     (void)program.run(k_conditions[c], program.tightest, &record);
     own[c] = record.samples;
   }
-  std::printf("%-22s its tightest run (%.0e) against the reference files: %.2e %.2e\n",
-              program.name, program.tightest, error_of(own[0], files[0]),
-              error_of(own[1], files[1]));
-  std::printf("%9s %11s %11s %10s %7s %9s %11s %7s %7s\n", "tolerance", "error", "error(file)",
-              "CPU ms", "steps", "rejected", "evaluations", "events", "ns/eval");
+  std::printf("%-22s its tightest run (%.0e) against the reference files: %.2e %.2e\n", program.name, program.tightest,
+              error_of(own[0], files[0]), error_of(own[1], files[1]));
+  std::printf("%9s %11s %11s %10s %7s %9s %11s %7s %7s\n", "tolerance", "error", "error(file)", "CPU ms", "steps", "rejected",
+              "evaluations", "events", "ns/eval");
   for (const double tolerance : program.tolerances) {
     Rung rung{"transformer", program.name, short_number(tolerance)};
     double file_error = 0.0;
@@ -128,9 +124,8 @@ void climb(const Program& program, const std::array<History, 2>& files, std::vec
       (void)program.run(k_conditions[0], tolerance, nullptr);
       (void)program.run(k_conditions[1], tolerance, nullptr);
     });
-    std::printf("%9s %11.2e %11.2e %10.4f %7ld %9ld %11ld %7ld %7.0f\n", rung.setting.c_str(),
-                rung.error, file_error, rung.cpu_ms, rung.steps, rejected, rung.evaluations,
-                rung.events, 1e6 * rung.cpu_ms / static_cast<double>(rung.evaluations));
+    std::printf("%9s %11.2e %11.2e %10.4f %7ld %9ld %11ld %7ld %7.0f\n", rung.setting.c_str(), rung.error, file_error, rung.cpu_ms,
+                rung.steps, rejected, rung.evaluations, rung.events, 1e6 * rung.cpu_ms / static_cast<double>(rung.evaluations));
     rungs.push_back(rung);
   }
   std::printf("\n");
@@ -142,8 +137,7 @@ void print_events(double tolerance) {
       Record record;
       (void)program.run(k_conditions[c], tolerance, &record);
       std::printf("%s, %s\n", program.name, k_names[c]);
-      for (const Happening& h : record.happenings)
-        std::printf("  %.9f  %s\n", h.time, h.what);
+      for (const Happening& h : record.happenings) std::printf("  %.9f  %s\n", h.time, h.what);
     }
 }
 
@@ -177,12 +171,10 @@ int main(int argc, char** argv) {
     }
   }
   std::array<History, 2> files;
-  for (int c = 0; c < 2; ++c)
-    files[c] = read_reference(directory + "/" + k_names[c] + ".csv");
+  for (int c = 0; c < 2; ++c) files[c] = read_reference(directory + "/" + k_names[c] + ".csv");
   print_evaluation_cost();
   std::vector<Rung> rungs;
-  for (const Program& program : programs())
-    climb(program, files, rungs);
+  for (const Program& program : programs()) climb(program, files, rungs);
   print_summary(rungs);
   if (!csv.empty()) {
     std::FILE* file = std::fopen(csv.c_str(), "w");

@@ -23,8 +23,7 @@ struct FourBarExact {
   int windows;
   double x, y;
 };
-inline constexpr FourBarExact k_four_bar_exact[2] = {{2, 0.328458111540815, 0.944518538178601},
-                                                     {40, 0.180512226686728, 0.983572740582312}};
+inline constexpr FourBarExact k_four_bar_exact[2] = {{2, 0.328458111540815, 0.944518538178601}, {40, 0.180512226686728, 0.983572740582312}};
 inline constexpr double k_four_bar_end = 10.0;
 
 [[nodiscard]] MechanismResult run_four_bar_dop853(const FourBarExact& exact, double tolerance);

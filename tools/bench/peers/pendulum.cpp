@@ -20,18 +20,14 @@ void rates(const double* y, double* dydt) {
   dydt[1] = -k_gravity * std::sin(y[0]);
 }
 
-double error_of(double theta) {
-  return std::max(std::abs(std::sin(theta) - k_pendulum_x),
-                  std::abs(-std::cos(theta) - k_pendulum_y));
-}
+double error_of(double theta) { return std::max(std::abs(std::sin(theta) - k_pendulum_x), std::abs(-std::cos(theta) - k_pendulum_y)); }
 
 } // namespace
 
 MechanismResult run_pendulum_dop853(double tolerance) {
   std::array<double, 2> y = {-0.5 * std::numbers::pi, 0.0};
   const SmoothCounts counts =
-      run_dop853([](double, const double* x, double* f) { rates(x, f); }, y, k_pendulum_end,
-                 0.5 * std::pow(tolerance, 0.125), tolerance);
+      run_dop853([](double, const double* x, double* f) { rates(x, f); }, y, k_pendulum_end, 0.5 * std::pow(tolerance, 0.125), tolerance);
   return {error_of(y[0]), counts.steps, counts.evaluations, 0};
 }
 

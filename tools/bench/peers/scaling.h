@@ -16,9 +16,9 @@ constexpr double k_rod_inertia = 0.083;
 constexpr double k_grid_stiffness = 1e4, k_grid_damping = 1.0;
 
 struct ScalingResult {
-  double step_us = 0.0;      // CPU time of a step for each body
-  double evaluations = 0.0;  // a step
-  double probe = 0.0;        // y of the last body at the end, to compare programs
+  double step_us = 0.0;     // CPU time of a step for each body
+  double evaluations = 0.0; // a step
+  double probe = 0.0;       // y of the last body at the end, to compare programs
 };
 
 [[nodiscard]] inline int steps_for(int bodies) { return bodies > 6000 ? 3 : 20000 / bodies; }

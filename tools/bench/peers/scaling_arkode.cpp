@@ -28,8 +28,7 @@ ScalingResult run_arkode(ByHand& scene, int bodies) {
   double t = 0.0;
   int done = 0;
   result.step_us = least_step_us(bodies, [&](int steps) {
-    for (int s = 0; s < steps; ++s)
-      require(ARKStepEvolve(memory, 1e3, y.get(), &t, ARK_ONE_STEP), "Evolve");
+    for (int s = 0; s < steps; ++s) require(ARKStepEvolve(memory, 1e3, y.get(), &t, ARK_ONE_STEP), "Evolve");
     done += steps;
   });
   long explicit_rates = 0, implicit_rates = 0;

@@ -55,8 +55,7 @@ ScalingResult run_chain_simbody(int rods) {
   Scene scene;
   const SimTK::Body::Rigid rod = flat_body(k_rod_inertia, Vec3(0.5, 0, 0));
   MobilizedBody last = scene.matter.Ground();
-  for (int i = 0; i < rods; ++i)
-    last = MobilizedBody::Pin(last, Transform(Vec3(i == 0 ? 0.0 : 1.0, 0, 0)), rod, Transform());
+  for (int i = 0; i < rods; ++i) last = MobilizedBody::Pin(last, Transform(Vec3(i == 0 ? 0.0 : 1.0, 0, 0)), rod, Transform());
   const SimTK::State state = scene.system.realizeTopology();
   return run(scene, state, rods, last, Vec3(0.5, 0, 0));
 }
@@ -79,8 +78,7 @@ ScalingResult run_grid_simbody(int side) {
     }
   SimTK::State state = scene.system.realizeTopology();
   for (int r = 0; r < side; ++r)
-    for (int c = 0; c < side; ++c)
-      bodies[static_cast<std::size_t>(r * side + c)].setQ(state, Vec3(0, c, -r));
+    for (int c = 0; c < side; ++c) bodies[static_cast<std::size_t>(r * side + c)].setQ(state, Vec3(0, c, -r));
   return run(scene, state, side * side, bodies.back(), Vec3(0));
 }
 

@@ -21,9 +21,7 @@ struct Oscillator {
   int direction = 0; // of slip relative to the surface; 0: sticking
 };
 
-double pull(const Oscillator& o, double t, double x) {
-  return o.drive * std::cos(3.0 * t) - k_stiffness * x;
-}
+double pull(const Oscillator& o, double t, double x) { return o.drive * std::cos(3.0 * t) - k_stiffness * x; }
 
 int rates(double t, N_Vector y, N_Vector dydt, void* data) {
   const auto& o = *static_cast<const Oscillator*>(data);
@@ -54,10 +52,8 @@ void change_mode(Oscillator& o, int slot, double t, std::array<double, 2>& y) {
   }
   y[1] = o.belt;
   const double force = pull(o, t, y[0]);
-  if (std::abs(force) <= k_friction)
-    o.direction = 0;
-  else
-    o.direction = force > 0.0 ? 1 : -1;
+  if (std::abs(force) <= k_friction) o.direction = 0;
+  else o.direction = force > 0.0 ? 1 : -1;
 }
 
 MechanismResult run(Oscillator o, double end, double x_exact, double v_exact, double tolerance) {
@@ -79,9 +75,7 @@ MechanismResult run(Oscillator o, double end, double x_exact, double v_exact, do
 
 } // namespace
 
-MechanismResult run_belt_arkode(double tolerance) {
-  return run({0.2, 0.0, -1}, 3.0, 0.0314469318813080, -0.198980397472595, tolerance);
-}
+MechanismResult run_belt_arkode(double tolerance) { return run({0.2, 0.0, -1}, 3.0, 0.0314469318813080, -0.198980397472595, tolerance); }
 
 MechanismResult run_den_hartog_arkode(double tolerance) {
   return run({0.0, 8.0, 1}, 10.0, -0.0363829137728667, 0.370762125122938, tolerance);

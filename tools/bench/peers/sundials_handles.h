@@ -24,8 +24,7 @@ struct SundialsContext {
 // A serial vector over memory that the caller keeps.
 class VectorView {
 public:
-  VectorView(int size, double* data, SUNContext context)
-      : vector_(N_VMake_Serial(size, data, context)) {}
+  VectorView(int size, double* data, SUNContext context) : vector_(N_VMake_Serial(size, data, context)) {}
   ~VectorView() { N_VDestroy(vector_); }
   VectorView(const VectorView&) = delete;
   VectorView& operator=(const VectorView&) = delete;
@@ -35,9 +34,7 @@ private:
   N_Vector vector_;
 };
 
-[[nodiscard]] inline double* data_of(N_Vector v) {
-  return N_VGetArrayPointer(v);
-}
+[[nodiscard]] inline double* data_of(N_Vector v) { return N_VGetArrayPointer(v); }
 
 // A failure here is a fault of the peer program itself: stop and say where.
 inline void require(int flag, const char* what) {

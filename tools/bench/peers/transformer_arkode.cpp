@@ -18,14 +18,11 @@ constexpr double k_longest_step = 6e-3;
 
 class Run {
 public:
-  Run(Condition condition, double tolerance, Record* record)
-      : model_(condition), record_(record), y_(model_.initial_state()) {
-    for (int i = 0; i < k_states; ++i)
-      weights_[i] = tolerance * k_scale[i];
+  Run(Condition condition, double tolerance, Record* record) : model_(condition), record_(record), y_(model_.initial_state()) {
+    for (int i = 0; i < k_states; ++i) weights_[i] = tolerance * k_scale[i];
     const VectorView weights(k_states, weights_.data(), sundials_.context);
     memory_ = ARKStepCreate(rates, nullptr, 0.0, y_vector_.get(), sundials_.context);
-    require(ARKStepSetTableNum(memory_, ARKODE_DIRK_NONE, ARKODE_DORMAND_PRINCE_7_4_5),
-            "SetTableNum");
+    require(ARKStepSetTableNum(memory_, ARKODE_DIRK_NONE, ARKODE_DORMAND_PRINCE_7_4_5), "SetTableNum");
     require(ARKStepSVtolerances(memory_, 0.0, weights.get()), "SVtolerances");
     require(ARKStepSetUserData(memory_, &model_), "SetUserData");
     require(ARKStepRootInit(memory_, k_switches, roots), "RootInit");
@@ -47,8 +44,7 @@ public:
       require(ARKStepSetStopTime(memory_, stop), "SetStopTime");
       while (t_ < stop) {
         const double before = t_;
-        const int flag = ARKStepEvolve(memory_, stop, y_vector_.get(), &t_,
-                                       record_ != nullptr ? ARK_ONE_STEP : ARK_NORMAL);
+        const int flag = ARKStepEvolve(memory_, stop, y_vector_.get(), &t_, record_ != nullptr ? ARK_ONE_STEP : ARK_NORMAL);
         require(flag, "Evolve");
         if (record_ != nullptr) sample(before);
         if (flag != ARK_ROOT_RETURN) continue;

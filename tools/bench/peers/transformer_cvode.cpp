@@ -22,10 +22,8 @@ constexpr double k_restart_share = 0.02;
 
 class Run {
 public:
-  Run(Condition condition, double tolerance, Record* record)
-      : model_(condition), record_(record), y_(model_.initial_state()) {
-    for (int i = 0; i < k_states; ++i)
-      weights_[i] = tolerance * k_scale[i];
+  Run(Condition condition, double tolerance, Record* record) : model_(condition), record_(record), y_(model_.initial_state()) {
+    for (int i = 0; i < k_states; ++i) weights_[i] = tolerance * k_scale[i];
     const VectorView weights(k_states, weights_.data(), sundials_.context);
     memory_ = CVodeCreate(CV_ADAMS, sundials_.context);
     require(CVodeInit(memory_, rates, 0.0, y_vector_.get()), "Init");
@@ -55,8 +53,7 @@ public:
       require(CVodeSetStopTime(memory_, stop), "SetStopTime");
       while (t_ < stop) {
         const double before = t_;
-        const int flag = CVode(memory_, stop, y_vector_.get(), &t_,
-                               record_ != nullptr ? CV_ONE_STEP : CV_NORMAL);
+        const int flag = CVode(memory_, stop, y_vector_.get(), &t_, record_ != nullptr ? CV_ONE_STEP : CV_NORMAL);
         require(flag, "Evolve");
         if (record_ != nullptr) sample(before);
         if (flag != CV_ROOT_RETURN) continue;

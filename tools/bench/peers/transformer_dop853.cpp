@@ -26,8 +26,7 @@ class Run {
 public:
   Run(Condition condition, double tolerance, Record* record)
       : model_(condition), tolerance_(tolerance), record_(record), y_(model_.initial_state()) {
-    for (int i = 0; i < k_states; ++i)
-      weight_[i] = 1.0 / (tolerance * k_scale[i]);
+    for (int i = 0; i < k_states; ++i) weight_[i] = 1.0 / (tolerance * k_scale[i]);
   }
 
   RunCounts integrate() {
@@ -35,8 +34,7 @@ public:
     double proposal = k_breakpoints[0]; // at rest until braking begins
     for (const double stop : k_breakpoints) {
       if (stop == k_breakpoints[1]) proposal = first_step();
-      while (t_ < stop)
-        proposal = advance(stop, proposal);
+      while (t_ < stop) proposal = advance(stop, proposal);
     }
     counts_.evaluations = model_.evaluations();
     return counts_;
@@ -64,11 +62,9 @@ private:
     model_.stick_switches(w.value.data());
     const double dt = k_slope_probe * probe_;
     State ahead;
-    for (int i = 0; i < k_states; ++i)
-      ahead[i] = y[i] + dt * k[i];
+    for (int i = 0; i < k_states; ++i) ahead[i] = y[i] + dt * k[i];
     model_.kinematic_switches(ahead.data(), w.slope.data());
-    for (int i = 0; i < k_switches; ++i)
-      w.slope[i] = (w.slope[i] - w.value[i]) / dt;
+    for (int i = 0; i < k_switches; ++i) w.slope[i] = (w.slope[i] - w.value[i]) / dt;
     if (model_.sticking()) w.slope[k_friction_upper] = w.slope[k_friction_lower] = 0.0;
   }
 
@@ -85,8 +81,7 @@ private:
       return h * std::max(k_shrink, k_safety * std::pow(error, -0.125));
     }
     ++counts_.steps;
-    const double factor =
-        k_safety * std::pow(error, -(0.125 - 0.75 * k_beta)) * std::pow(last_error_, k_beta);
+    const double factor = k_safety * std::pow(error, -(0.125 - 0.75 * k_beta)) * std::pow(last_error_, k_beta);
     const double next = h * std::clamp(factor, k_shrink, k_growth);
     const double end = last ? stop : t_ + h;
     model_.rates(end, step_.y1.data(), step_.k[12].data());
@@ -172,8 +167,7 @@ private:
   // First zero of a falling function in (0, 1], or 2. A function that starts at
   // zero (its mode has just begun) counts from where it has become positive.
   double slot_crossing(int slot, const Watch& fresh, double h) {
-    const bool plain = old_.value[slot] > k_armed && fresh.value[slot] <= 0.0 &&
-                       old_.slope[slot] < 0.0 && fresh.slope[slot] < 0.0;
+    const bool plain = old_.value[slot] > k_armed && fresh.value[slot] <= 0.0 && old_.slope[slot] < 0.0 && fresh.slope[slot] < 0.0;
     if (plain) return root(slot, 0.0, 1.0, old_.value[slot], fresh.value[slot], h);
     double before = 0.0;
     double g_before = old_.value[slot];

@@ -30,8 +30,7 @@ inline Ratios ratios(double x, const Turn& of_x) {
   if (std::abs(x) > k_small) [[unlikely]]
     return {1.0 / of_x.cosine, of_x.sine / of_x.cosine};
   const double z = x * x;
-  return {1.0 + z * (0.5 + z * (5.0 / 24.0 + z * (61.0 / 720.0))),
-          x + x * z * (1.0 / 3.0 + z * (2.0 / 15.0 + z * (17.0 / 315.0)))};
+  return {1.0 + z * (0.5 + z * (5.0 / 24.0 + z * (61.0 / 720.0))), x + x * z * (1.0 / 3.0 + z * (2.0 / 15.0 + z * (17.0 / 315.0)))};
 }
 
 // Pose and velocity of body 1 seen from body 5, in the axes of body 5:

@@ -62,18 +62,16 @@ void Transformer::rates(double t, const double* y, double* dydt) {
     pphi += f * lever;
     ps -= f * k.sp;
   }
-  const double top = -k_top_stiffness * (k.rx - k_top_arrest * k.sp - s4) -
-                     k_top_damping * (k.rxd - k_top_arrest * k.cp * k.phid - s4d);
-  const double bottom = -k_bottom_stiffness * (k.rx - k_bottom_arrest * k.sp) -
-                        k_bottom_damping * (k.rxd - k_bottom_arrest * k.cp * k.phid);
+  const double top = -k_top_stiffness * (k.rx - k_top_arrest * k.sp - s4) - k_top_damping * (k.rxd - k_top_arrest * k.cp * k.phid - s4d);
+  const double bottom =
+      -k_bottom_stiffness * (k.rx - k_bottom_arrest * k.sp) - k_bottom_damping * (k.rxd - k_bottom_arrest * k.cp * k.phid);
   px += top + bottom;
   pphi -= (k_top_arrest * top + k_bottom_arrest * bottom) * k.cp;
   ps -= top + k_tank_stiffness * s4 + k_tank_damping * s4d;
 
   const double s_phi = (k.d + k_place[foot_] * k.sp) * k.sec2; // ∂s/∂φ
   if (friction_ == FrictionMode::slip_forward || friction_ == FrictionMode::slip_backward) {
-    const double force =
-        friction_ == FrictionMode::slip_forward ? -k_friction * normal : k_friction * normal;
+    const double force = friction_ == FrictionMode::slip_forward ? -k_friction * normal : k_friction * normal;
     px += force;
     py += force * k.tan;
     pphi += force * s_phi;
@@ -88,16 +86,13 @@ void Transformer::rates(double t, const double* y, double* dydt) {
   const double heave_rate = y[9] - k_suspension_drop * k.s * w;
   const double lift = (k_mass_active + k_mass_upper + k_mass_lower) * k_gravity -
                       2.0 * (k_suspension_stiffness * heave + k_suspension_damping * heave_rate);
-  const double righting = 2.0 * k_suspension_arm * k_suspension_arm *
-                          (k_suspension_stiffness * k.s + k_suspension_damping * k.c * w);
+  const double righting = 2.0 * k_suspension_arm * k_suspension_arm * (k_suspension_stiffness * k.s + k_suspension_damping * k.c * w);
   const double bx = -w * w * s4;
   const double by = w * (2.0 * s4d - w * k_rise_upper);
-  const double q_y =
-      lift - fy - (k_mass_upper + k_mass_lower) * k_gravity - k_mass_upper * (k.s * bx + k.c * by);
-  const double q_theta =
-      px * k.ry - py * k.rx - pphi - k_suspension_drop * k.s * lift - k.c * righting -
-      k_mass_upper * k_gravity * (k.c * s4 - k.s * k_rise_upper) -
-      2.0 * k_mass_upper * s4 * w * s4d + k_mass_upper * (k.s * s4 + k.c * k_rise_upper) * a5;
+  const double q_y = lift - fy - (k_mass_upper + k_mass_lower) * k_gravity - k_mass_upper * (k.s * bx + k.c * by);
+  const double q_theta = px * k.ry - py * k.rx - pphi - k_suspension_drop * k.s * lift - k.c * righting -
+                         k_mass_upper * k_gravity * (k.c * s4 - k.s * k_rise_upper) - 2.0 * k_mass_upper * s4 * w * s4d +
+                         k_mass_upper * (k.s * s4 + k.c * k_rise_upper) * a5;
   const double q_s = ps - k_mass_upper * (k_gravity * k.s + bx + k.c * a5);
 
   // Active part: diagonal. Tank: s4 eliminated, two by two left.
@@ -118,17 +113,14 @@ void Transformer::rates(double t, const double* y, double* dydt) {
     const double jx = k.c - k.s * k.tan;
     const double jy = k.s + k.c * k.tan;
     const double j5 = k.ry - k.tan * k.rx - s_phi;
-    const double bias = w * (2.0 * k.un - w * k.rx) - w * (2.0 * k.ut + w * k.ry) * k.tan +
-                        k.sec2 * k.phid *
-                            (2.0 * k.ryd + 2.0 * k.d * k.tan * k.phid +
-                             k_place[foot_] * k.sec * (1.0 + k.sp * k.sp) * k.phid);
+    const double bias =
+        w * (2.0 * k.un - w * k.rx) - w * (2.0 * k.ut + w * k.ry) * k.tan +
+        k.sec2 * k.phid * (2.0 * k.ryd + 2.0 * k.d * k.tan * k.phid + k_place[foot_] * k.sec * (1.0 + k.sp * k.sp) * k.phid);
     const double u1 = -m22 * jy - m12 * j5; // M⁻¹ Jᵀ of the tank, times the determinant
     const double u2 = m11 * j5 + m12 * jy;
-    const double mobility =
-        k.sec2 * k_inv_mass + s_phi * s_phi * k_inv_inertia + (j5 * u2 - jy * u1) * inv_det;
+    const double mobility = k.sec2 * k_inv_mass + s_phi * s_phi * k_inv_inertia + (j5 * u2 - jy * u1) * inv_det;
     const double inv_mobility = 1.0 / mobility;
-    const double lambda =
-        -(bias + jx * ax + jy * (ay - ay5) + s_phi * at + j5 * at5) * inv_mobility;
+    const double lambda = -(bias + jx * ax + jy * (ay - ay5) + s_phi * at + j5 * at5) * inv_mobility;
     const double by_det = lambda * inv_det;
     ax += jx * (lambda * k_inv_mass);
     ay += jy * (lambda * k_inv_mass);
@@ -140,8 +132,7 @@ void Transformer::rates(double t, const double* y, double* dydt) {
     stick_margin_ = std::min(stick_margin_, k_friction * normal - std::abs(lambda));
   }
   normal_ = normal;
-  for (int i = 0; i < 6; ++i)
-    dydt[i] = y[6 + i];
+  for (int i = 0; i < 6; ++i) dydt[i] = y[6 + i];
   dydt[6] = ax;
   dydt[7] = ay;
   dydt[8] = at;

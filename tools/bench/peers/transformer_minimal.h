@@ -33,8 +33,8 @@ inline constexpr double k_end_time = 0.8;
 inline constexpr std::array<double, 3> k_breakpoints = {0.05, 0.15, k_end_time};
 
 // Slots of the switching functions. Each is positive while its mode lasts.
-inline constexpr int k_leave = 0;  // + contact: closed → held, held → open, open → closed
-inline constexpr int k_return = 4; // + contact: held → closed
+inline constexpr int k_leave = 0;          // + contact: closed → held, held → open, open → closed
+inline constexpr int k_return = 4;         // + contact: held → closed
 inline constexpr int k_friction_upper = 8; // stick: μN − λ; slip: σ ṡ
 inline constexpr int k_friction_lower = 9; // stick: μN + λ
 inline constexpr int k_foot_switch = 10;
@@ -47,8 +47,8 @@ using State = std::array<double, k_states>;
 using Switches = std::array<double, k_switches>;
 
 struct Outputs { // one row of the reference files
-  double x1, y1, theta1, y5, theta5, s4, friction, normal, foot_front, foot_rear, wood_front,
-      wood_rear, top_arrest, bottom_arrest, tank, slide, fx2, fy2, m2, fx3, fy3, m3;
+  double x1, y1, theta1, y5, theta5, s4, friction, normal, foot_front, foot_rear, wood_front, wood_rear, top_arrest, bottom_arrest, tank,
+      slide, fx2, fy2, m2, fx3, fy3, m3;
 };
 inline constexpr int k_outputs = 22;
 

@@ -12,8 +12,7 @@ double Transformer::effective_gap(int contact, const Kinematics& k, const double
 }
 
 double Transformer::force_law(int contact, const Kinematics& k, const double* y) const {
-  return -k_stiffness[contact] * effective_gap(contact, k, y) -
-         k_damping[contact] * gap_rate(contact, k, y);
+  return -k_stiffness[contact] * effective_gap(contact, k, y) - k_damping[contact] * gap_rate(contact, k, y);
 }
 
 // Rate of s = rx + d tan φ + L sec φ, the tip's place along the floor.
@@ -26,23 +25,17 @@ void Transformer::kinematic_switches(const double* y, double* g) const {
   for (int i = 0; i < k_contacts; ++i) {
     g[k_leave + i] = g[k_return + i] = k_unwatched;
     switch (contacts_[i]) {
-    case ContactMode::closed:
-      g[k_leave + i] = k_force_scale * force_law(i, k, y);
-      break;
+    case ContactMode::closed: g[k_leave + i] = k_force_scale * force_law(i, k, y); break;
     case ContactMode::held:
       g[k_leave + i] = -k_length_scale * effective_gap(i, k, y);
       g[k_return + i] = -k_force_scale * force_law(i, k, y);
       break;
-    case ContactMode::open:
-      g[k_leave + i] = k_length_scale * effective_gap(i, k, y);
-      break;
+    case ContactMode::open: g[k_leave + i] = k_length_scale * effective_gap(i, k, y); break;
     }
   }
   g[k_friction_upper] = g[k_friction_lower] = k_unwatched;
-  if (friction_ == FrictionMode::slip_forward)
-    g[k_friction_upper] = k_speed_scale * slide_speed(k);
-  else if (friction_ == FrictionMode::slip_backward)
-    g[k_friction_upper] = -k_speed_scale * slide_speed(k);
+  if (friction_ == FrictionMode::slip_forward) g[k_friction_upper] = k_speed_scale * slide_speed(k);
+  else if (friction_ == FrictionMode::slip_backward) g[k_friction_upper] = -k_speed_scale * slide_speed(k);
   const double phi = y[2] - y[4];
   g[k_foot_switch] = k_length_scale * ((foot_ == 0 ? phi : -phi) + k_dead_band);
 }
@@ -62,8 +55,7 @@ void Transformer::stick_switches(double* g) const {
 }
 
 double Transformer::switch_value(int slot, double t, const double* y) {
-  const bool needs_multiplier =
-      sticking() && (slot == k_friction_upper || slot == k_friction_lower);
+  const bool needs_multiplier = sticking() && (slot == k_friction_upper || slot == k_friction_lower);
   if (needs_multiplier) {
     double unused[k_states];
     rates(t, y, unused);
@@ -104,10 +96,8 @@ void Transformer::settle_friction(double t, State& y) {
   }
   if (friction_ == FrictionMode::none) {
     const double speed = slide_speed(kinematics(y.data()));
-    if (std::abs(speed) > k_still)
-      friction_ = speed > 0.0 ? FrictionMode::slip_forward : FrictionMode::slip_backward;
-    else
-      try_stick(t, y);
+    if (std::abs(speed) > k_still) friction_ = speed > 0.0 ? FrictionMode::slip_forward : FrictionMode::slip_backward;
+    else try_stick(t, y);
   } else if (friction_ == FrictionMode::stick) {
     try_stick(t, y);
   }
@@ -131,25 +121,18 @@ void Transformer::cross(int slot, double t, State& y) {
     settle_friction(t, y);
   } else {
     ContactMode& mode = contacts_[slot];
-    if (mode == ContactMode::closed)
-      mode = ContactMode::held;
-    else if (mode == ContactMode::held)
-      mode = ContactMode::open;
-    else
-      mode = ContactMode::closed;
+    if (mode == ContactMode::closed) mode = ContactMode::held;
+    else if (mode == ContactMode::held) mode = ContactMode::open;
+    else mode = ContactMode::closed;
     settle_friction(t, y);
   }
 }
 
 const char* Transformer::describe(int slot) const {
-  static constexpr const char* k_closed[] = {"rear foot unloaded", "front foot unloaded",
-                                             "rear block unloaded", "front block unloaded"};
-  static constexpr const char* k_held[] = {"rear foot lifts", "front foot lifts",
-                                           "rear block lifts", "front block lifts"};
-  static constexpr const char* k_open[] = {"rear foot lands", "front foot lands",
-                                           "rear block lands", "front block lands"};
-  static constexpr const char* k_back[] = {"rear foot loaded", "front foot loaded",
-                                           "rear block loaded", "front block loaded"};
+  static constexpr const char* k_closed[] = {"rear foot unloaded", "front foot unloaded", "rear block unloaded", "front block unloaded"};
+  static constexpr const char* k_held[] = {"rear foot lifts", "front foot lifts", "rear block lifts", "front block lifts"};
+  static constexpr const char* k_open[] = {"rear foot lands", "front foot lands", "rear block lands", "front block lands"};
+  static constexpr const char* k_back[] = {"rear foot loaded", "front foot loaded", "rear block loaded", "front block loaded"};
   if (slot == k_foot_switch) return "foot switch";
   if (slot >= k_friction_upper) return sticking() ? "slip" : "stick";
   if (slot >= k_return) return k_back[slot - k_return];

@@ -19,8 +19,7 @@ inline constexpr double k_mass_limb = 9000.0;
 inline constexpr double k_inertia_limb = 6500.0;
 inline constexpr double k_limb_x = 1.25;
 inline constexpr double k_mass_active = 47000.0 + 2.0 * k_mass_limb;
-inline constexpr double k_inertia_active =
-    65200.0 + 2.0 * (k_inertia_limb + k_mass_limb * k_limb_x * k_limb_x);
+inline constexpr double k_inertia_active = 65200.0 + 2.0 * (k_inertia_limb + k_mass_limb * k_limb_x * k_limb_x);
 inline constexpr double k_inv_mass = 1.0 / k_mass_active;
 inline constexpr double k_inv_inertia = 1.0 / k_inertia_active;
 inline constexpr double k_mass_upper = 20000.0;
@@ -28,13 +27,12 @@ inline constexpr double k_inertia_upper = 28000.0;
 inline constexpr double k_mass_lower = 34600.0;
 inline constexpr double k_inertia_lower = 55000.0;
 
-inline constexpr double k_height_active = 1.95;               // centre of gravity over the floor
-inline constexpr double k_height_lower = 0.79;                // of body 5
-inline constexpr double k_rise_upper = 3.20 - k_height_lower; // of body 4 over body 5
-inline constexpr double k_cover = 3.90 - k_height_lower;      // wooden blocks over body 5
-inline constexpr double k_block_plane =
-    3.90 - k_height_active;                                    // top line of body 1 over its centre
-inline constexpr double k_top_arrest = 3.30 - k_height_active; // height over the centre of body 1
+inline constexpr double k_height_active = 1.95;                   // centre of gravity over the floor
+inline constexpr double k_height_lower = 0.79;                    // of body 5
+inline constexpr double k_rise_upper = 3.20 - k_height_lower;     // of body 4 over body 5
+inline constexpr double k_cover = 3.90 - k_height_lower;          // wooden blocks over body 5
+inline constexpr double k_block_plane = 3.90 - k_height_active;   // top line of body 1 over its centre
+inline constexpr double k_top_arrest = 3.30 - k_height_active;    // height over the centre of body 1
 inline constexpr double k_bottom_arrest = 0.30 - k_height_active; // (negative: below)
 inline constexpr double k_suspension_drop = -0.50 - k_height_lower;
 
@@ -48,10 +46,8 @@ inline constexpr double k_suspension_arm = 1.5;
 inline constexpr double k_friction = 0.35;
 
 inline constexpr double k_place[k_contacts] = {-1.0, 1.0, -1.2, 1.2};
-inline constexpr double k_stiffness[k_contacts] = {k_foot_stiffness, k_foot_stiffness,
-                                                   k_wood_stiffness, k_wood_stiffness};
-inline constexpr double k_damping[k_contacts] = {k_foot_damping, k_foot_damping, k_wood_damping,
-                                                 k_wood_damping};
+inline constexpr double k_stiffness[k_contacts] = {k_foot_stiffness, k_foot_stiffness, k_wood_stiffness, k_wood_stiffness};
+inline constexpr double k_damping[k_contacts] = {k_foot_damping, k_foot_damping, k_wood_damping, k_wood_damping};
 
 inline constexpr double k_interference_force = 98100.0; // both blocks
 inline constexpr double k_wood_clearance = 0.5e-3;

@@ -37,7 +37,6 @@ using TransformerProgram = RunCounts (*)(Condition, double tolerance, Record*);
 [[nodiscard]] RunCounts run_transformer_cvode(Condition, double tolerance, Record* record);
 
 // Ranges of the coordinates and of their rates, to scale errors with.
-inline constexpr State k_scale = {1e-3, 2e-4, 2e-3, 2e-4, 2e-3, 3e-3,
-                                  0.04, 0.01, 0.05, 0.02, 0.05, 0.08};
+inline constexpr State k_scale = {1e-3, 2e-4, 2e-3, 2e-4, 2e-3, 3e-3, 0.04, 0.01, 0.05, 0.02, 0.05, 0.08};
 
 } // namespace steplap::peers
