@@ -3,6 +3,7 @@
 #include "mbd/events/blow.h"
 #include "mbd/friction/rest_rate.h"
 #include "mbd/system/approximate_place.h"
+#include "mbd/system/evaluation_arrays.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/rope_end.h"
 #include "mbd/system/rounding.h"
@@ -274,6 +275,24 @@ std::vector<int> fallen(const std::vector<double>& before, const std::vector<dou
   return slots;
 }
 
+// Watch values of units from each body's own motion: bodies that a joint is about to close on are one to an evaluation already.
+void watch_apart(const System& system, const State& state, std::vector<double>& watch) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  motion.resize(static_cast<std::size_t>(system.links.slot_count()));
+  place_links(system.links, motion);
+  EvaluationArrays arrays(system);
+  Evaluation e;
+  arrays.connect(e, motion);
+  e.t = state.t;
+  e.mode = state.mode.data();
+  e.friction = state.friction.data();
+  e.memory = state.memory.data();
+  e.inner = state.inner.data();
+  for (const auto& group : system.groups) group->add_forces(e);
+  for (const Unit& unit : system.units) std::copy_n(arrays.watch.begin() + unit.watch, unit.watch_count, watch.begin() + unit.watch);
+}
+
 } // namespace
 
 void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
@@ -381,9 +400,12 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
 // Contacts and friction behind a blow are those of the new velocities. True if a contact has changed its mode.
 bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   modes_.evaluate(state);
-  const std::vector<double> watch = dynamics_.watch();
+  std::vector<double> watch = dynamics_.watch();
   const State unhurt = state;
-  if (blow == Blow::rows) close_rows(system_, dynamics_, state);
+  if (blow == Blow::rows) {
+    watch_apart(system_, state, watch);
+    close_rows(system_, dynamics_, state);
+  }
   take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   std::fill(has_switched_.begin(), has_switched_.end(), 0);

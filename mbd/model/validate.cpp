@@ -57,12 +57,6 @@ std::string reference_noun(FieldType type) {
   }
 }
 
-// Not given: empty text, also what an optional number without a value is read as.
-bool is_absent(const FieldValue& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text && text->empty();
-}
-
 std::string number_problem(const Field& field, double value) {
   std::string need;
   if (!std::isfinite(value)) need = "finite";
@@ -94,6 +88,11 @@ template <class T> std::string first_problem(const Field& field, const std::vect
 }
 
 } // namespace
+
+bool is_absent(const FieldValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text && text->empty();
+}
 
 std::string range_problem(const Field& field, const FieldValue& value) {
   switch (field.type) {

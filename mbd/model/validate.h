@@ -48,6 +48,9 @@ private:
   int suggestions_left_ = 20;                   // each looks at all names
 };
 
+/// Not given: empty text, also what an optional number without a value is read as.
+[[nodiscard]] bool is_absent(const FieldValue& value);
+
 /// "must be at least 0 kg, got -1" of a number, or of numbers in the value, that the field does not allow, or "must be
 /// one of ...": "" if all is well, and for values that are neither.
 [[nodiscard]] std::string range_problem(const Field& field, const FieldValue& value);

@@ -27,8 +27,7 @@ bool is_same(const FieldTable& fields, const void* a, const void* b) {
 // As FieldChecker has it; what is not given is no text of its field.
 bool is_in_range(const Field& field, const void* object) {
   const FieldValue value = field.get(object);
-  const auto* const text = std::get_if<std::string>(&value);
-  return (text && text->empty()) || range_problem(field, value).empty();
+  return is_absent(value) || range_problem(field, value).empty();
 }
 
 bool is_in_range(const ElementEntry& entry) {
