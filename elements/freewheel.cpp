@@ -120,7 +120,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
                       [self](const Snapshot& s) { return evaluate_row<false>(self->row, s.motion).rate; });
   builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
-  builder.add_channel("impulse", "N m s", {"of the last blow that locked it, zero before the first", ""},
+  builder.add_channel("impulse", "N m s", {"of the last blow that locked it, zero before the first", "never negative"},
                       [blow = clutch->blow](const Snapshot& s) { return s.memory[blow]; });
   builder.add_friction(std::move(clutch));
 }
