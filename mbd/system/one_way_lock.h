@@ -16,6 +16,8 @@ public:
 
   /// Sign of the rate that it refuses whatever it takes; 0: what it holds has a bound either way.
   [[nodiscard]] virtual int refuses() const = 0;
+  /// N or N m: what it holds the way that it lets go.
+  [[nodiscard]] virtual double drag() const = 0;
 };
 
 /// Null where a friction element is none, or one whose bounds are finite.

@@ -4,6 +4,11 @@
 // Tolerances: a blow is a projection of velocities, exact to 1e-12 of rates near 10; a run at 1e-11 adds 1e-10.
 #include "tests/physics/rest_scene.h"
 
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/simulation/check_sticking.h"
+#include "mbd/system/element_failure.h"
+#include "mbd/system/one_way_lock.h"
+#include "mbd/trust/audit.h"
 #include "tests/random/random_number.h"
 
 #include <doctest/doctest.h>
@@ -274,4 +279,42 @@ TEST_CASE("time stepping, which knows no blows, comes to the same") {
   const auto system = compile(model);
   const RunResult result = simulate(*system, system->initial_state(), o);
   for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs(result.final_state.v[3 * (i + 1) + 2] - truth[i]) < 1e-10);
+}
+
+TEST_CASE("a locked clutch that holds back is found out, by the run and by the audit, though the couple that it holds has no bound") {
+  for (const double drags : {0.0, 0.2}) {
+    CAPTURE(drags);
+    const std::vector<Disc> discs{{2.0, 1.0}, {3.0, 1.0}};
+    const std::string text = discs_text(discs) + clutch_text("clutch", {0, 1}, "; drags = " + number(drags));
+    const Model model = scene(text + "[simulation]\nstep = 1e-3\n");
+    const auto system = compile(model);
+    State state = system->initial_state();
+    state.friction[0].phase = FrictionPhase::stick;
+    std::vector<double> watch(static_cast<std::size_t>(system->watch_count), 1.0);
+    // Bounds less what it bears, either way: of the way that it locks nothing is known but that it is far.
+    const auto holds_back = [&](double couple) {
+      watch[system->frictions[0].watch] = OneWayLock::k_without_bound;
+      watch[system->frictions[0].watch + 1] = drags - couple;
+      check_sticking(*system, state, nullptr, 0.5, watch);
+    };
+    CHECK_NOTHROW(holds_back(drags - 0.1));
+    CHECK_NOTHROW(holds_back(drags + 1e-9)); // of 2 kg m² (π/s)²: a part of 5e-11
+    CHECK_THROWS_AS(holds_back(drags + 0.01), ElementFailure);
+
+    add_audit_channels(*system, model);
+    Dynamics dynamics(*system);
+    dynamics.set_state(state);
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+    dynamics.pack(state, y.data());
+    dynamics.rates(0.0, y.data(), dy.data());
+    Snapshot snapshot = dynamics.snapshot(dy.data());
+    const auto overload = [&](double couple) { // of the clutch's, on a
+      snapshot.friction_force = &couple;
+      return system->find_channel("audit: clutch.overload")->value(snapshot);
+    };
+    CHECK(overload(0.0) == -1.0);
+    CHECK(overload(1e6) < 0.0);
+    CHECK(overload(-drags - 1e-9) < 1e-6);
+    CHECK(overload(-drags - 0.01) > 0.01);
+  }
 }
