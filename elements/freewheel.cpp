@@ -2,6 +2,7 @@
 
 #include "elements/bounded_friction.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/system/one_way_lock.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -12,16 +13,16 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_whatever = 1e30; // N m: no machine turns with as much
-
 // Along λ, the couple on a counter-clockwise: between `low` and `high`.
-class OneWayClutch final : public FrictionElement {
+class OneWayClutch final : public OneWayLock {
 public:
   RowSpec row;
   double low = 0.0, high = 0.0;
   double rest = 0.0; ///< N m: less is rounding
   std::string name;  ///< of the element
 
+  [[nodiscard]] int refuses() const override { return low <= -k_without_bound ? 1 : high >= k_without_bound ? -1 : 0; }
+  [[nodiscard]] double drag() const override { return std::min(-low, high); }
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
@@ -70,13 +71,13 @@ private:
   [[nodiscard]] double least() const { return low * (1.0 + k_friction_bound_slack) - rest; }
   [[nodiscard]] double most() const { return high * (1.0 + k_friction_bound_slack) + rest; }
   [[nodiscard]] double sliding(const FrictionState& state) const { return state.sign > 0 ? low : high; }
-  // Bodies that turn against the lock would be joined by a blow, of which friction without a bound knows nothing.
+  // Bodies that turn against a lock without bound are joined by a blow, but those that drives turn so.
   [[nodiscard]] double bound(const FrictionState& state) const {
     const double couple = sliding(state);
-    if (std::abs(couple) < k_whatever) return couple;
+    if (std::abs(couple) < k_without_bound) return couple;
     throw ElementFailure(
-        "the bodies of the one-way clutch '" + name +
-            "' turn against its lock, where it would have to join them at once: let them begin with the same rate, or give it 'holds'",
+        "drives turn the bodies of the one-way clutch '" + name +
+            "' against its lock, which no couple keeps them from: turn 'free' round, give it 'holds', or drive one of them only",
         {name});
   }
   template <class S> void watch_between(const S& wrench, S* watch) const {
@@ -90,7 +91,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const Freewheel&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("locks a body against itself: name markers on two different bodies");
-  const double holds = e.holds.value_or(k_whatever);
+  const double holds = e.holds.value_or(OneWayLock::k_without_bound);
   if (!(e.drags < holds)) return builder.error("'drags' must be less than 'holds'");
   auto clutch = std::make_unique<OneWayClutch>();
   clutch->name = e.name;
@@ -111,6 +112,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   row.quantity = "angle";
   row.element = builder.element_index();
   row.memory = builder.add_memory();
+  clutch->blow = builder.add_memory();
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   const OneWayClutch* const self = clutch.get();
   builder.add_channel("couple", "N m", {"with which b takes a along, or drags on it", "positive: counter-clockwise on a"},
@@ -119,6 +121,8 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
                       [self](const Snapshot& s) { return evaluate_row<false>(self->row, s.motion).rate; });
   builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_channel("impulse", "N m s", {"of the last blow that locked it, zero before the first", "never negative"},
+                      [blow = clutch->blow](const Snapshot& s) { return s.memory[blow]; });
   builder.add_friction(std::move(clutch));
 }
 

@@ -5,7 +5,8 @@
 //   ω = 0: −drags ≤ M ≤ holds           locked: b drives a
 //   ω < 0: M = holds                    it slips, if what it holds has a bound
 // An exact constraint while it is locked; free from the moment on at which a would be braked by it; locked again where ω has come down
-// to zero. It has no play and no spring.
+// to zero. It has no play and no spring. Where the bodies begin, or are brought by a blow, to turn against a lock without bound, they
+// are joined at once: by an impulse, without rebound (mbd/events/blow.h).
 #pragma once
 
 #include "mbd/model/model.h"

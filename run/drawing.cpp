@@ -94,7 +94,11 @@ private:
   [[nodiscard]] MarkerPlace place_of(const std::string& name) const {
     const Marker& marker = *markers_.at(name);
     const bool is_in_ground = !marker.point;
-    return {marker.body, about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, body(marker.body)), marker.angle};
+    const Body* const carrier = body(marker.body);
+    const Vec2 point = about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, carrier);
+    if (!carrier) return {marker.body, point, marker.angle, point, marker.angle};
+    const Vec3 pose = carrier->reference_pose();
+    return {marker.body, point, marker.angle, Vec2(pose.x(), pose.y()) + rotated(point, pose.z()), pose.z() + marker.angle};
   }
 
   [[nodiscard]] static Json places_json(const std::vector<MarkerPlace>& places) {

@@ -1,9 +1,12 @@
 #include "run/symbols.h"
 
+#include "elements/lift_curve.h"
 #include "elements/spring_laws.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace steplap {
@@ -167,13 +170,53 @@ void gear(Sketch& s) {
   s.draw({"touch", "gear", "", {*a, *b}, {}, {s.number("radius_a"), s.number("radius_b"), s.is("inside") ? 1.0 : 0.0}});
 }
 
-// Where the follower is lifted: an arrow with the force.
+// The outline that lifts a pointed follower as the curve's points say: where its point is, seen from the cam that turns. None of a
+// curve that would pass through the cam's axis, as where the follower's place is not its point.
+std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, const MarkerPlace& frame, const MarkerPlace& cam) {
+  constexpr int k_corners = 180;
+  const std::vector<Vec2> points = s.points("lift");
+  const auto axis = s.vector("axis");
+  if (points.size() < 3 || !LiftCurve::is_whole_turn(points) || points.back().y() != points.front().y() || !axis || !(axis->norm() > 0.0))
+    return {};
+  const LiftCurve curve(points);
+  const Vec2 along = rotated(axis->normalized(), frame.axes), from_axis = follower.at - cam.at;
+  const double start = s.number("start_angle"), now = curve.at(start).value + s.number("gap");
+  std::vector<Vec2> corners;
+  double turned = 0.0; // twice the area, to tell whether the axis is inside
+  for (int i = 0; i < k_corners; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / k_corners;
+    const Vec2 place = from_axis + along * (curve.at(start + turn).value - now);
+    if (!(place.dot(along) > 0.0)) return {};
+    corners.push_back(rotated(place, -turn - cam.axes));
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2 &one = corners[i], &next = corners[(i + 1) % corners.size()];
+    turned += one.x() * next.y() - one.y() * next.x();
+  }
+  if (turned < 0.0) std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
+// Where the follower is lifted an arrow with the force.
 void cam(Sketch& s) {
-  const auto b = s.place("b");
-  if (b) s.draw({"arrow", "motor", "force", s.places(), s.direction("axis"), {}});
+  const auto a = s.place("a"), b = s.place("b"), turning = s.place("cam");
+  if (!a || !b) return;
+  if (turning) s.polygon(*turning, outline_of_cam(s, *a, *b, *turning));
+  s.draw({"arrow", "motor", "force", {*a, *b}, s.direction("axis"), {}});
 }
 void freewheel(Sketch& s) { s.draw({"arc", "brake", "couple", s.places(), {}, {}}); }
-void lossy_gear(Sketch& s) { s.draw({"arc", "drive", "couple", s.places(), {}, {}}); }
+// Two wheels that turn against each other on axles apart: their pitch circles. Others may be whole gear boxes.
+void lossy_gear(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  const double ratio = s.number("ratio"), apart = a && b ? (a->at - b->at).norm() : 0.0;
+  if (apart > 0.0 && ratio < 0.0) {
+    const double radius_a = apart / (1.0 - ratio), radius_b = apart - radius_a;
+    s.circle(*a, radius_a);
+    s.circle(*b, radius_b);
+    s.draw({"touch", "gear", "", {*a, *b}, {}, {radius_a, radius_b, 0.0}});
+  }
+  s.draw({"arc", "drive", "couple", s.places(), {}, {}});
+}
 
 void rack(Sketch& s) {
   const auto a = s.place("a");

@@ -23,6 +23,8 @@ struct MarkerPlace {
   std::string body;          ///< its name, "ground" for the ground
   Vec2 point = Vec2::Zero(); ///< m
   double angle = 0.0;        ///< of the marker's axes against the body's
+  Vec2 at = Vec2::Zero();    ///< m: the same place in the ground's axes, bodies in the reference pose
+  double axes = 0.0;         ///< rad: of the marker's axes against the ground's, likewise
 
   /// A point and a direction given in the marker's axes, in the body's.
   [[nodiscard]] Vec2 in_body(const Vec2& p) const { return point + rotated(p, angle); }

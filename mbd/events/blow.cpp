@@ -2,8 +2,9 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/friction/box_problem.h"
+#include "mbd/friction/rest_rate.h"
 #include "mbd/system/element_failure.h"
-#include "mbd/system/one_sided_row.h"
+#include "mbd/system/one_way_lock.h"
 
 #include <cmath>
 #include <utility>
@@ -13,8 +14,6 @@ namespace steplap {
 namespace {
 
 constexpr double k_projection_tolerance = 1e-12; // m, rad
-constexpr double k_rest_velocity = 1e-12;        // m/s: far above the rounding of a projected one
-constexpr double k_rest_share = 1e-9;            // of the velocities that make up a rate
 // Ropes that are this near to their lengths, of these, share a blow, whether or not they lengthen before it: as far as a
 // flight that is none.
 constexpr double k_same_length = 1e-9;
@@ -28,28 +27,55 @@ double rest_rate(const OneSidedRow& rope, const std::vector<Motion<double>>& mot
   return k_rest_velocity + k_rest_share * rope.speed(motion.data());
 }
 
+// What can take a part in a blow, and what impulses along its row it can give.
 struct Struck {
-  std::vector<int> ropes;
-  std::vector<double> rate, rounding;
-  std::vector<double> acceleration; ///< with all of them slack
+  std::vector<int> elements;
+  std::vector<double> rate, rounding, lower, upper;
+  std::vector<double> acceleration; ///< with nothing of it acting
+
+  void add(int f, double at_rate, double rounding_of_it, int refuses) { // the impulse is against the rate that is refused
+    constexpr double k_any = std::numeric_limits<double>::infinity();
+    elements.push_back(f);
+    rate.push_back(at_rate);
+    rounding.push_back(rounding_of_it);
+    lower.push_back(refuses > 0 ? -k_any : 0.0);
+    upper.push_back(refuses > 0 ? 0.0 : k_any);
+  }
 };
 
-// Those that can take a part in the blow.
-Struck ropes_at_length(const System& system, const State& state) {
+struct LockRate {
+  int refuses = 0;
+  double rate = 0.0, rounding = 0.0, rest = 0.0; ///< rad/s
+  [[nodiscard]] bool is_against() const { return refuses * rate > rest; }
+};
+
+LockRate rate_of(const OneWayLock& lock, const FrictionState& friction, const std::vector<Motion<double>>& motion) {
+  const RowSpec& row = *lock.rows(friction);
+  const auto m = evaluate_row<false>(row, motion.data());
+  const double speed = point_speed(motion[row.a], m.lever_a, m.couple) + point_speed(motion[row.b], m.lever_b, m.couple);
+  return {lock.refuses(), m.rate, k_rest_velocity + k_rounded_share * speed, rest_rate(row, m, motion.data())};
+}
+
+// Ropes at their length, and clutches, whose lock may be reached by any blow.
+Struck struck_in(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   Struck struck;
+  bool is_any_rope = false;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction)) {
+      const LockRate now = rate_of(*lock, state.friction[f], motion);
+      struck.add(static_cast<int>(f), now.rate, now.rounding, now.refuses);
+    }
     const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
     if (!rope) continue;
     const auto m = rope->measured(motion.data());
     const bool is_reached = rope->length - m.value <= k_same_length * rope->length;
     if (state.friction[f].phase != FrictionPhase::stick && !is_reached) continue;
-    struck.ropes.push_back(static_cast<int>(f));
-    struck.rate.push_back(m.rate);
-    struck.rounding.push_back(k_rest_velocity + k_rounded_share * rope->speed(motion.data()));
+    struck.add(static_cast<int>(f), m.rate, k_rest_velocity + k_rounded_share * rope->speed(motion.data()), 1);
+    is_any_rope = true;
   }
-  return struck;
+  return is_any_rope || turns_against_lock(system, state) ? struck : Struck{};
 }
 
 BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& loose, Struck& struck) {
@@ -58,16 +84,17 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
   dynamics.pack(loose, y.data());
   dynamics.rates(loose.t, y.data(), dy.data());
   Dynamics::Candidates answer;
-  for (const int f : struck.ropes) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
+  for (const int f : struck.elements) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
   dynamics.respond(answer, dy.data());
   struck.acceleration = answer.acceleration;
-  const auto n = static_cast<Eigen::Index>(struck.ropes.size());
+  const auto n = static_cast<Eigen::Index>(struck.elements.size());
   const MatX a = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(answer.compliance.data(), n, n);
   const VecX u = Eigen::Map<const VecX>(struck.rate.data(), n), rounding = Eigen::Map<const VecX>(struck.rounding.data(), n);
-  BoxSolution solution = solve_box_problem(a, u, VecX::Constant(n, -std::numeric_limits<double>::infinity()), VecX::Zero(n), rounding);
+  const VecX lower = Eigen::Map<const VecX>(struck.lower.data(), n), upper = Eigen::Map<const VecX>(struck.upper.data(), n);
+  BoxSolution solution = solve_box_problem(a, u, lower, upper, rounding);
   if (solution.is_solved) return solution;
-  throw ElementFailure("at t = " + rounded_text(loose.t, 12) + " s it cannot be decided which ropes take the blow",
-                       {system.element_names[system.frictions[struck.ropes.front()].element]});
+  throw ElementFailure("at t = " + rounded_text(loose.t, 12) + " s it cannot be decided which ropes and one-way clutches take the blow",
+                       {system.element_names[system.frictions[struck.elements.front()].element]});
 }
 
 // What holds in the modes of `state` is met by its places and velocities.
@@ -84,6 +111,33 @@ bool is_any_driven(const System& system) {
   for (const RowSpec& row : system.rows)
     if (row.drive) return true;
   return false;
+}
+
+// A clutch that gives an impulse is locked behind the blow, at the angle that it has.
+void note_lock(const OneWayLock& lock, int f, double impulse, double rate, State& state, State& after) {
+  if (!(std::abs(impulse) > 0.0)) return;
+  state.memory[lock.blow] = std::abs(impulse);
+  state.memory[lock.blow + 1] -= 0.5 * impulse * rate;
+  FrictionState& friction = after.friction[static_cast<std::size_t>(f)];
+  friction.phase = FrictionPhase::stick;
+  std::vector<Motion<double>> motion;
+  place_bodies(after.q, after.v, motion);
+  const RowSpec& row = *lock.rows(friction);
+  after.memory[row.memory] = evaluate_row<false>(row, motion.data()).value;
+}
+
+// No impulse does that which drives and joints do not let it.
+void check_locks(const System& system, const State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction);
+    if (!lock || !rate_of(*lock, state.friction[f], motion).is_against()) continue;
+    const std::string& name = system.element_names[system.frictions[f].element];
+    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s drives turn the bodies of the one-way clutch '" + name +
+                             "' against its lock, and no blow can join them: turn 'free' round, give it 'holds', or drive one of them only",
+                         {name});
+  }
 }
 
 } // namespace
@@ -113,30 +167,47 @@ bool set_ropes(const System& system, State& state) {
   return is_any_pulled;
 }
 
+bool turns_against_lock(const System& system, const State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction);
+        lock && rate_of(*lock, state.friction[f], motion).is_against())
+      return true;
+  return false;
+}
+
 void take_blow(const System& system, Dynamics& dynamics, State& state) {
-  Struck struck = ropes_at_length(system, state);
-  if (struck.ropes.empty()) return;
+  Struck struck = struck_in(system, state);
+  if (struck.elements.empty()) return;
   State after = state;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionElement& friction = *system.frictions[f].friction;
     if (!friction.never_slips() && after.friction[f].phase != FrictionPhase::apart) after.friction[f].phase = FrictionPhase::free;
   }
-  for (const int f : struck.ropes) after.friction[f].phase = FrictionPhase::slip;
+  for (const int f : struck.elements)
+    if (one_sided_row(*system.frictions[f].friction)) after.friction[f].phase = FrictionPhase::slip;
   const BoxSolution solution = impulses_of(system, dynamics, after, struck);
-  for (std::size_t i = 0; i < struck.ropes.size(); ++i) {
-    const int f = struck.ropes[i];
+  for (std::size_t i = 0; i < struck.elements.size(); ++i) {
+    const int f = struck.elements[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction)) {
+      note_lock(*lock, f, solution.w[at], struck.rate[i], state, after);
+      continue;
+    }
     FrictionState& friction = after.friction[f];
     const OneSidedRow& rope = *one_sided_row(*system.frictions[f].friction);
-    const double left_with = solution.g[static_cast<Eigen::Index>(i)];
+    const double left_with = solution.g[at];
     const bool hardly_leaves = left_with * left_with <= 2.0 * k_shortest_flight * rope.length * std::abs(struck.acceleration[i]);
     friction.phase = solution.is_free[i] != 0 || hardly_leaves ? FrictionPhase::stick : FrictionPhase::slip;
     friction.sign = 0;
-    const double impulse = -solution.w[static_cast<Eigen::Index>(i)];
+    const double impulse = -solution.w[at];
     if (!(impulse > 0.0)) continue;
     state.memory[rope.blow] = impulse;
     state.memory[rope.blow + 1] += 0.5 * impulse * std::max(struck.rate[i], 0.0);
   }
   meet(dynamics, after);
+  check_locks(system, after);
   const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
   State jump = after;
   for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
@@ -145,7 +216,8 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   state.work += gained + lost;
   state.q = std::move(after.q);
   state.v = std::move(after.v);
-  for (const int f : struck.ropes) state.friction[f] = after.friction[f];
+  for (const int f : struck.elements)
+    if (one_sided_row(*system.frictions[f].friction)) state.friction[f] = after.friction[f];
 }
 
 void close_rows(const System& system, Dynamics& dynamics, State& state) {
@@ -167,14 +239,16 @@ void close_rows(const System& system, Dynamics& dynamics, State& state) {
 }
 
 bool was_struck(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
-  const int blow = one_sided_row(*system.frictions[f].friction)->blow;
-  return before[blow + 1] != state.memory[blow + 1];
+  const int blow = blow_slot(*system.frictions[f].friction);
+  return blow >= 0 && before[blow + 1] != state.memory[blow + 1];
 }
 
 std::string blow_text(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
-  const int blow = one_sided_row(*system.frictions[f].friction)->blow;
   if (!was_struck(system, f, before, state)) return {};
-  return "with " + rounded_text(state.memory[blow], 4) + " N s, " + rounded_text(state.memory[blow + 1] - before[blow + 1], 4) + " J lost";
+  const FrictionElement& friction = *system.frictions[f].friction;
+  const int blow = blow_slot(friction);
+  return "with " + rounded_text(state.memory[blow], 4) + (one_sided_row(friction) ? " N s, " : " N m s, ") +
+         rounded_text(state.memory[blow + 1] - before[blow + 1], 4) + " J lost";
 }
 
 } // namespace steplap

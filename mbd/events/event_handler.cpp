@@ -4,7 +4,7 @@
 #include "mbd/friction/rest_rate.h"
 #include "mbd/system/approximate_place.h"
 #include "mbd/system/evaluation_arrays.h"
-#include "mbd/system/one_sided_row.h"
+#include "mbd/system/one_way_lock.h"
 #include "mbd/system/rope_end.h"
 #include "mbd/system/rounding.h"
 
@@ -116,7 +116,8 @@ void EventHandler::start(State& state) {
     const Unit& unit = system_.units[u];
     state.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
   }
-  if (set_ropes(system_, state)) take_blow(system_, dynamics_, state);
+  const bool is_any_tight = set_ropes(system_, state);
+  if (is_any_tight || turns_against_lock(system_, state)) take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
@@ -250,8 +251,9 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
     if (state.friction[f].phase == FrictionPhase::slip && has_capacity(state, f))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
   for (std::size_t f = 0; f < state.friction.size(); ++f)
-    if (one_sided_row(*system_.frictions[f].friction) && was_struck(system_, f, system_.initial_memory, state))
-      events.push_back({state.t, system_.element_names[system_.frictions[f].element], EventKind::closes_gap,
+    if (was_struck(system_, f, system_.initial_memory, state))
+      events.push_back({state.t, system_.element_names[system_.frictions[f].element],
+                        one_sided_row(*system_.frictions[f].friction) ? EventKind::closes_gap : EventKind::sticks,
                         blow_text(system_, f, system_.initial_memory, state)});
 }
 
@@ -320,7 +322,7 @@ void EventHandler::note_friction(const std::vector<FrictionState>& before, const
     case FrictionPhase::slip: kind = slip_kind(f, old, now); break;
     case FrictionPhase::apart: kind = EventKind::comes_apart; break;
     }
-    events.push_back({state.t, name, kind});
+    events.push_back({state.t, name, kind, kind == EventKind::sticks ? blow_text(system_, f, memory_before, state) : std::string()});
     if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart()) stop_reason_ = "'" + name + "' came apart";
     if (!unit.friction->is_rigid()) continue;
     dynamics_.forget_layouts();

@@ -1,4 +1,4 @@
-// The kinds of signal that are loads of a transport: a road under an axle, random vibration, a ship in waves.
+// The kinds of signal that are loads of a transport, or of a test: a road under an axle, random vibration, a ship in waves, a swept sine.
 //
 // Laws, limits and sources stand in docs/reference/loads.md.
 #pragma once
@@ -13,5 +13,7 @@ namespace steplap {
 [[nodiscard]] const SignalKind& random_kind();
 /// "sea": roll or pitch and heave of a vessel, or what a place on it feels of them.
 [[nodiscard]] const SignalKind& sea_kind();
+/// "chirp": a sine whose frequency runs from one value to another.
+[[nodiscard]] const SignalKind& chirp_kind();
 
 } // namespace steplap

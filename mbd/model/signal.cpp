@@ -366,7 +366,8 @@ double Signal::mean(double from, double to) const {
 }
 
 double Signal::fastest_at(double t) const {
-  constexpr int k_tame_power = 3; // a cubic is followed by every method
+  constexpr int k_tame_power = 3;   // a cubic is followed by every method
+  constexpr double k_slight = 1e-2; // of the piece: humps so low hide no extreme, and errors of steps see them
   double fastest = 0.0;
   const Piece* piece = piece_at(t);
   if (!piece) return fastest;
@@ -376,7 +377,10 @@ double Signal::fastest_at(double t) const {
   for (const Modulated& m : piece->modulated) {
     if (m.amplitude == 0.0) continue;
     fastest = std::max(fastest, std::abs(m.frequency));
-    if (m.power > k_tame_power && !is_last) fastest = std::max(fastest, m.power * std::numbers::pi / ((piece + 1)->start - piece->start));
+    if (m.power <= k_tame_power || is_last) continue;
+    const double length = (piece + 1)->start - piece->start;
+    if (std::abs(m.amplitude) * power(length, m.power) <= k_slight * magnitude(*piece, length)) continue;
+    fastest = std::max(fastest, m.power * std::numbers::pi / length);
   }
   return fastest;
 }
@@ -398,17 +402,6 @@ struct Sides {
   [[nodiscard]] bool differ() const { return std::abs(after - before) > k_rounding * scale; }
 };
 
-Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
-  const Signal::Piece& right = pieces.at(k);
-  Sides sides{0.0, evaluate(right, 0.0).value, magnitude(right, 0.0)};
-  if (k == 0) return sides;
-  const Signal::Piece& left = pieces[k - 1];
-  const double length = right.start - left.start;
-  sides.before = evaluate(left, length).value;
-  sides.scale = std::max(sides.scale, magnitude(left, length));
-  return sides;
-}
-
 // A bound of the terms of a piece's rate up to τ.
 double rate_magnitude(const Signal::Piece& piece, double tau) {
   double sum = std::abs(piece.c[1]) + tau * (2.0 * std::abs(piece.c[2]) + tau * 3.0 * std::abs(piece.c[3]));
@@ -418,6 +411,22 @@ double rate_magnitude(const Signal::Piece& piece, double tau) {
     sum += std::abs(m.amplitude) * (slope + std::abs(m.frequency) * power(tau, m.power));
   }
   return sum;
+}
+
+// What the value at a piece's end is known to no better than: delays round the times of its start and end, and with them its length.
+double time_rounding(const Signal::Piece& piece, double end, double length) {
+  return 4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(piece.start), std::abs(end)) * rate_magnitude(piece, length);
+}
+
+Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
+  const Signal::Piece& right = pieces.at(k);
+  Sides sides{0.0, evaluate(right, 0.0).value, magnitude(right, 0.0)};
+  if (k == 0) return sides;
+  const Signal::Piece& left = pieces[k - 1];
+  const double length = right.start - left.start;
+  sides.before = evaluate(left, length).value;
+  sides.scale = std::max(sides.scale, magnitude(left, length)) + time_rounding(left, right.start, length) / k_rounding;
+  return sides;
 }
 
 // The slope of a line between two samples is rounded as their values and times are, over its length.

@@ -138,7 +138,7 @@ struct SignalKind {
   }
 };
 
-/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, sum, product, scaled, road, random, sea
+/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, chirp, sum, product, scaled, road, random, sea
 /// (mbd/io adds `record`).
 [[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
 

@@ -12,7 +12,7 @@
 namespace steplap {
 
 inline constexpr std::size_t k_most_terms = 10'000; ///< of one piece: a road and a vibration that grow have some thousands
-inline constexpr int k_most_power = 12;             ///< of time, in one piece
+inline constexpr int k_most_power = 20;             ///< of time, in one piece: of a chirp times a cubic, and one more
 
 /// Σ factor · part; as many factors as parts.
 [[nodiscard]] Signal sum_of(const std::vector<const Signal*>& parts, const std::vector<double>& factors);

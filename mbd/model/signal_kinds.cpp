@@ -232,7 +232,7 @@ const SignalKind& harmonics_kind() {
 const std::vector<const SignalKind*>& signal_kinds() {
   static const std::vector<const SignalKind*> kinds{
       &constant_kind(), &haversine_kind(), &half_sine_kind(), &triangle_kind(), &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
-      &sum_kind(),      &product_kind(),   &scaled_kind(),    &road_kind(),     &random_kind(),    &sea_kind()};
+      &chirp_kind(),    &sum_kind(),       &product_kind(),   &scaled_kind(),   &road_kind(),      &random_kind(),    &sea_kind()};
   return kinds;
 }
 

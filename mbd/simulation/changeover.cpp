@@ -2,7 +2,7 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
-#include "mbd/system/one_sided_row.h"
+#include "mbd/system/one_way_lock.h"
 #include "mbd/system/own_states.h"
 
 #include <algorithm>
@@ -96,7 +96,7 @@ bool Changeover::closes_rows() const {
   const auto is_new = [this](int element) { return begins[static_cast<std::size_t>(element)] != 0; };
   return std::any_of(to.rows.begin(), to.rows.end(), [&](const RowSpec& row) { return is_new(row.element); }) ||
          std::any_of(to.frictions.begin(), to.frictions.end(),
-                     [&](const FrictionUnit& unit) { return is_new(unit.element) && one_sided_row(*unit.friction); });
+                     [&](const FrictionUnit& unit) { return is_new(unit.element) && blow_slot(*unit.friction) >= 0; });
 }
 
 State carried(const Changeover& change, const State& state) {

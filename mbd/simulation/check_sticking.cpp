@@ -3,7 +3,8 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
-#include "mbd/system/one_sided_row.h"
+#include "mbd/system/one_way_lock.h"
+#include "mbd/system/slight_force.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,16 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
     if (unit.friction->dimension() != 1 || unit.friction->never_slips() || one_sided_row(*unit.friction)) continue;
     if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
     const double one = watch[unit.watch], other = watch[unit.watch + 1];
-    if (std::min(one, other) >= -k_stuck_beyond * (std::abs(one) + std::abs(other))) continue;
     const std::string& name = system.element_names[unit.element];
+    if (const OneWayLock* const lock = one_way_lock(*unit.friction)) {
+      const double beyond = -std::min(one, other); // of the side that has a bound
+      if (beyond <= k_stuck_beyond * lock->drag() + slight_force(system, *lock->rows(state.friction[f]))) continue;
+      throw ElementFailure("at t = " + number_text(t) + " s the one-way clutch '" + name + "' holds back with " +
+                               rounded_text(beyond + lock->drag()) + " where it drags with " + rounded_text(lock->drag()) +
+                               ": the run contradicts itself, for it has to let go. Try a smaller tolerance or step, or another integrator",
+                           {name});
+    }
+    if (std::min(one, other) >= -k_stuck_beyond * (std::abs(one) + std::abs(other))) continue;
     throw ElementFailure("at t = " + number_text(t) + " s '" + name + "' sticks with " + rounded_text(0.5 * std::abs(other - one)) +
                              " where it holds " + rounded_text(0.5 * (one + other)) +
                              ": the run contradicts itself, for it has to slip. Try a smaller tolerance or step, or another integrator",

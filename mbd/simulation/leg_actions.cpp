@@ -30,8 +30,9 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
       state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
   }
   book_stored_energy(change, before.state_, state_);
+  const std::vector<double> unhurt = state_.memory;
   handler_.take_over(state_, change.closes_rows(), record_->events);
-  make_parts(before.ledger_.get());
+  make_parts(before.ledger_.get(), unhurt);
 }
 
 // True, and the leg is interrupted, where one is due; `known`: events that there were before this one was handled.

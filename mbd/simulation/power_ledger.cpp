@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace steplap {
 
@@ -50,9 +51,9 @@ double integral(const double* coefficient, int count, double theta) {
 
 } // namespace
 
-PowerLedger::PowerLedger(const System& system, int max_dimension)
-    : system_(system), count_(system.integrands.size()), pieces_(k_kept), total_(count_, 0.0), stored_(count_, 0.0),
-      y_(static_cast<std::size_t>(max_dimension)), dy_(y_.size()) {
+PowerLedger::PowerLedger(const System& system, int max_dimension, std::vector<double> memory)
+    : system_(system), unhurt_(std::move(memory)), count_(system.integrands.size()), pieces_(k_kept), total_(count_, 0.0),
+      stored_(count_, 0.0), y_(static_cast<std::size_t>(max_dimension)), dy_(y_.size()) {
   for (Piece& piece : pieces_) {
     piece.base.resize(count_);
     piece.coefficient.resize(count_ * k_nodes);
@@ -84,6 +85,13 @@ void PowerLedger::end(const Snapshot& snapshot) {
 }
 
 void PowerLedger::begin(double t, const Snapshot& snapshot) {
+  // What blows have taken as the motion began is remembered; nothing else that is stored hangs on what is remembered.
+  if (known_ == 0) {
+    Snapshot unhurt = snapshot;
+    unhurt.memory = unhurt_.data();
+    for (std::size_t i = 0; i < count_; ++i)
+      if (const auto& stored = system_.integrands[i].stored) total_[i] += stored(unhurt) - stored(snapshot);
+  }
   if (is_ended_)
     for (std::size_t i = 0; i < count_; ++i)
       if (const auto& stored = system_.integrands[i].stored) total_[i] += stored_[i] - stored(snapshot);

@@ -17,8 +17,8 @@ namespace steplap {
 /// Integrates powers beside a run; one per Simulation.
 class PowerLedger final : public Integrals {
 public:
-  /// `max_dimension`: of the packed state. Refers to the system.
-  PowerLedger(const System& system, int max_dimension);
+  /// `max_dimension`: of the packed state; `memory`: the state's, before the blows that it took as the motion began. Refers to the system.
+  PowerLedger(const System& system, int max_dimension, std::vector<double> memory);
 
   /// What `before` had come to counts from here on: of another system with the same integrands.
   void go_on_from(const PowerLedger& before) { total_ = before.total_; }
@@ -48,6 +48,7 @@ private:
   void close(const Piece& piece);
 
   const System& system_;
+  std::vector<double> unhurt_; ///< memory before the first blows
   std::size_t count_;
   std::vector<Piece> pieces_; ///< a ring
   std::size_t last_ = 0, known_ = 0;

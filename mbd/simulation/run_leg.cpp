@@ -55,12 +55,12 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   dynamics_.set_time_limit(next_limit());
   handler_.start(state_);
   handler_.note_start(state_, record_->events);
-  make_parts(nullptr);
+  make_parts(nullptr, system_.initial_memory);
   if (options_.output_step > 0.0) record_sample(state_.t);
 }
 
 // Places and velocities are such that what holds is met to rounding by now, or to the digits of the file.
-void RunLeg::make_parts(const PowerLedger* before) {
+void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& unhurt) {
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
@@ -74,7 +74,7 @@ void RunLeg::make_parts(const PowerLedger* before) {
   }
   if (options_.has_extremes) extremes_ = std::make_unique<ExtremeFinder>(system_, system_.largest_dimension());
   if (!system_.integrands.empty()) {
-    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension());
+    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension(), unhurt);
     if (before) ledger_->go_on_from(*before);
     dynamics_.show_integrals(ledger_.get());
   }

@@ -59,7 +59,7 @@ public:
   void break_off();
 
 private:
-  void make_parts(const PowerLedger* before);
+  void make_parts(const PowerLedger* before, const std::vector<double>& unhurt); // memory before the blows of the start
   void finish_extremes();
   [[nodiscard]] bool is_action_due(std::size_t known);
   [[nodiscard]] bool begin_advance();

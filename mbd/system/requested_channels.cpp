@@ -5,7 +5,7 @@
 #include "mbd/system/actions.h"
 #include "mbd/system/formula_channel.h"
 #include "mbd/system/measured_channel.h"
-#include "mbd/system/one_sided_row.h"
+#include "mbd/system/one_way_lock.h"
 #include "mbd/system/own_states.h"
 
 #include <algorithm>
@@ -223,9 +223,9 @@ void RequestedChannels::add_share(const Share& share) {
   for (std::size_t r = share.first_row; r < share.row_end; ++r)
     if (system.rows[r].drive) driven.push_back(r);
 
-  std::vector<int> blows; // of ropes: where the memory keeps what they have lost
+  std::vector<int> blows; // of ropes and one-way clutches: where the memory keeps what they have lost
   for (const std::size_t f : frictions)
-    if (const OneSidedRow* rope = one_sided_row(*system.frictions[f].friction)) blows.push_back(rope->blow + 1);
+    if (const int slot = blow_slot(*system.frictions[f].friction); slot >= 0) blows.push_back(slot + 1);
 
   const auto stored = [givers, inner](const Snapshot& s) {
     double sum = 0.0;

@@ -2,6 +2,7 @@
 
 #include "mbd/math/portable_math.h"
 #include "mbd/system/actions.h"
+#include "mbd/system/slight_force.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,9 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
   double normal[3], against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0}; // of what holds one way only, the side that bears
-  if (!(unit.friction->support(*s.evaluation, state, against) > 0.0)) return 0.0;    // as good as unloaded
+  // No bound to be a share of: what it bears has to be rounding.
+  if (!(unit.friction->support(*s.evaluation, state, against) > 0.0))
+    return n == 1 ? std::abs(wrench[0]) / slight_force(system, *unit.friction->rows(state)) - 1.0 : 0.0;
   return unit.friction->gauge(*s.evaluation, state, wrench, normal) - 1.0;
 }
 

@@ -74,6 +74,7 @@ std::vector<std::pair<std::string, Signal>> samples() {
                                            {"phases", std::vector<double>{0.2, -1.0}},
                                            {"start", 0.01},
                                            {"duration", 0.2}})},
+          {"chirp", make("chirp", {{"amplitude", 1.3}, {"from", 2.0}, {"to", 30.0}, {"start", 0.02}, {"duration", 0.17}, {"phase", 0.4}})},
           {"starts before zero", Signal({cubic, later})}};
 }
 

@@ -101,3 +101,36 @@ TEST_CASE("a drive whose velocity would jump is refused where a sum of signals m
                             "[[signal]]\nkind = \"sum\"\nname = \"whole\"\nsignals = [\"pulse\", \"step\"]\n";
   CHECK_THROWS_AS(static_cast<void>(run(k_block + drive)), ModelError);
 }
+
+// x'' + 2 D ω x' + ω² x = F/m: x(t) = ∫ e^{−Dω(t−s)} sin(ω_d (t−s)) F(s) ds / (m ω_d), by Gauss' rule on parts within which neither turns by
+// more than 0.1 rad.
+TEST_CASE("a damped oscillator answers a chirp as Duhamel's integral says, through its resonance") {
+  const double m = 2.0, k = 300.0, c = 3.0, omega = std::sqrt(k / m), decay = 0.5 * c / m,
+               damped = std::sqrt(omega * omega - decay * decay);
+  const double pi = std::acos(-1.0), from = 0.3, to = 6.0, end = 1.0;
+  for (const bool is_exponential : {false, true})
+    for (const char* method : {"dop853", "tsit5", "rodas5p"}) {
+      CAPTURE(is_exponential);
+      CAPTURE(std::string(method));
+      std::string text = k_block + load("shaker", "sweep") +
+                         "[[signal]]\nkind = \"chirp\"\nname = \"sweep\"\namplitude = 40.0\nfrom = 0.3\nto = 6.0\n" +
+                         "duration = 1.0\ncourse = \"" + (is_exponential ? "exponential" : "linear") + "\"\nphase = 0.4\n";
+      text.replace(text.find("stiffness = 300.0"), 17, "stiffness = 300.0\ndamping = 3.0");
+      text.replace(text.find("dop853"), 6, method);
+      const RunResult found = run(text);
+      const auto force = [&](double s) {
+        const double growth = std::log(to / from) / end;
+        const double turns = is_exponential ? from * std::expm1(growth * s) / growth : from * s + 0.5 * (to - from) / end * s * s;
+        return 40.0 * std::sin(2.0 * pi * turns + 0.4);
+      };
+      double x = 0.0;
+      const int parts = 800;
+      for (int i = 0; i < parts; ++i)
+        for (const double place : {0.5 - 0.5 * std::sqrt(0.6), 0.5, 0.5 + 0.5 * std::sqrt(0.6)}) {
+          const double s = end * (i + place) / parts, weight = place == 0.5 ? 4.0 / 9.0 : 5.0 / 18.0;
+          x += weight * end / parts * std::exp(-decay * (end - s)) * std::sin(damped * (end - s)) * force(s) / (m * damped);
+        }
+      CHECK(std::abs(x) > 1e-3);
+      CHECK(std::abs(found.final_state.q[3] - x) < 1e-10); // a tolerance of 1e-11 a step
+    }
+}

@@ -89,6 +89,8 @@ TEST_CASE("methods agree on random scenes within their own error estimates") {
     if (seed != 9023) seeds.push_back(seed);                                                  // KNOWN_ISSUES.md
   for (std::uint64_t seed = 12001; seed <= 12000 + k_scenes / 4; ++seed)
     seeds.push_back(seed); // with belts, bands, cams, clutches, gears with losses, beams
+  for (std::uint64_t seed = 15001; seed <= 15000 + k_scenes / 4; ++seed)
+    seeds.push_back(seed); // with chirps, and clutches that begin locked
   seeds.push_back(100);    // one of two feet turns at the instant at which the other begins to slip
   seeds.push_back(261);    // the frictions of two gears turn together, known apart by what dense output leaves of the gear
   seeds.push_back(582);    // a joint's slip passes through rest and goes on another way
@@ -160,6 +162,8 @@ TEST_CASE("a seed gives the same scene everywhere, and seeds reach all kinds of 
   CHECK(hash == 0x324C1ECAAE0BF187ULL);
   take(12001, 12100); // with actions, and belts, bands, cams, clutches, gears with losses, beams
   CHECK(hash == 0x435184324F3C8A1DULL);
+  take(15001, 15100); // with chirps, and clutches that begin against their lock
+  CHECK(hash == 0x2622943EA234778BULL);
   for (const ElementKind* kind : transformer_catalog().elements) CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
   for (const SignalKind* kind : transformer_catalog().signals) CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
 }

@@ -31,11 +31,25 @@ const char* const k_from_zero = "-1.5707963267948966";
 
 // Seeds up to here mean the scenes that they have always meant: what is known of them stays true.
 constexpr std::uint64_t k_last_without_transport = 1500;
+// Behind this one there are chirps as well.
+constexpr std::uint64_t k_last_without_chirps = 15000;
 
 std::string lines(const SceneWriter::Fields& fields) {
   std::string text;
   for (const auto& [key, value] : fields) text += key + " = " + value + "\n";
   return text;
+}
+
+// Up or down between one wave and thirty in the scene's time, without a random number.
+std::string chirp(const SceneWriter& w, double amplitude, double start, double length, bool is_up) {
+  const std::string low = number(1.0 / w.duration), high = number(30.0 / w.duration);
+  return lines({{"amplitude", number(amplitude)},
+                {"from", is_up ? low : high},
+                {"to", is_up ? high : low},
+                {"course", quoted(w.scene.seed % 3 == 0 ? "exponential" : "linear")},
+                {"start", number(start)},
+                {"duration", number(length)},
+                {"phase", std::to_string(w.scene.seed % 5)}});
 }
 
 } // namespace
@@ -95,6 +109,10 @@ std::string SceneWriter::signal(double peak, bool is_smooth) {
     block.fields =
         lines({{"amplitudes", "[" + amplitudes + "]"}, {"frequencies", "[" + frequencies + "]"}, {"phases", "[" + phases + "]"}});
     if (!is_smooth && r.chance(0.3)) block.fields += lines({{"start", number(start)}, {"duration", number(length)}});
+    if (!is_smooth && scene.seed > k_last_without_chirps && (scene.seed + static_cast<std::uint64_t>(count_)) % 2 == 0) {
+      block.kind = "chirp";
+      block.fields = chirp(*this, 0.5 * peak, start, length, count % 2 == 0);
+    }
   } else {
     block.fields = lines({{"peak", number(peak)}, {"start", number(start)}, {"duration", number(length)}});
     if (kind == "trapezoid")

@@ -39,7 +39,7 @@ bool can_play_older_processor() {
   return false;
 }
 
-// Powers of the depth, harmonics, the angle of a line of centres.
+// Powers of the depth, harmonics, chirps both ways, the angle of a line of centres.
 constexpr const char* k_round_things = R"(title = "A ball with a Hertzian skin on a hill, geared wheels that are shaken"
 [simulation]
 end = 0.8
@@ -51,6 +51,26 @@ kind = "harmonics"
 amplitudes = [30.0, 10.0]
 frequencies = [7.3, 19.1]
 phases = [0.4, 1.1]
+[[signal]]
+name = "sweep"
+kind = "chirp"
+amplitude = 15.0
+from = 2.0
+to = 40.0
+start = 0.1
+duration = 0.6
+[[signal]]
+name = "octaves"
+kind = "chirp"
+amplitude = 20.0
+from = 50.0
+to = 3.0
+course = "exponential"
+duration = 0.7
+[[signal]]
+name = "swept"
+kind = "sum"
+signals = ["sweep", "octaves"]
 [[body]]
 name = "ball"
 mass = 857.1
@@ -99,6 +119,11 @@ kind = "load"
 name = "drive"
 at = "wheel"
 torque = "shaking"
+[[element]]
+kind = "load"
+name = "shaker"
+at = "pinion"
+torque = "swept"
 )";
 
 std::string first_difference(const std::string& a, const std::string& b) {
