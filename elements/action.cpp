@@ -1,5 +1,6 @@
 #include "elements/action.h"
 
+#include "elements/joints.h"
 #include "mbd/base/number_text.h"
 #include "mbd/formula/formula.h"
 #include "mbd/io/units.h"
@@ -94,6 +95,10 @@ private:
     if (!field)
       throw std::invalid_argument("'" + text.name + "' is a " + entry.kind->name + " and has no '" + text.field + "'" +
                                   did_you_mean(text.field, known));
+    if (dynamic_cast<const Joint*>(entry.element.get()))
+      throw std::invalid_argument("'" + text.field + "' of '" + text.name +
+                                  "' cannot be set: it says where a run begins, and a joint goes on from there. A prescribed_motion or a "
+                                  "motor moves it");
     step.field = text.field;
     if (field->type == FieldType::signal) {
       std::vector<std::string> signals;
@@ -120,7 +125,8 @@ private:
   [[nodiscard]] static double checked(double value, const ActionStepText& text, const Field& field) {
     const std::string subject = "'" + text.name + "." + text.field + "'";
     const bool is_low = value < field.minimum || (field.is_minimum_excluded && value <= field.minimum);
-    if (is_low || value > field.maximum || !std::isfinite(value))
+    if (!std::isfinite(value)) throw std::invalid_argument(subject + " cannot be " + text.value + ": it is a finite number");
+    if (is_low || value > field.maximum)
       throw std::invalid_argument(subject + " cannot be " + text.value + ": it is " +
                                   (is_low ? (field.is_minimum_excluded ? "larger than " : "at least ") + number_text(field.minimum)
                                           : "at most " + number_text(field.maximum)));

@@ -1,5 +1,7 @@
 #include "elements/road.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -36,6 +38,61 @@ double Road::nearest_x(double x, double y) const {
     }
   }
   return here;
+}
+
+// x grows with the place z that is touched: x = z − r sin φ(z), x′ = 1 − r κ > 0. Where a step of Newton's method leaves what encloses z,
+// it is halved.
+double Road::touched_below(double x, double radius, double near) const {
+  double low = x - radius, high = x + radius, here = std::clamp(near, low, high); // |z − x| ≤ r
+  for (int i = 0; i < k_most_tries; ++i) {
+    const CurveJet<double> jet = curve_.jet(here);
+    const double grown = std::sqrt(1.0 + jet.slope * jet.slope);
+    const double off = here - radius * jet.slope / grown - x;
+    (off > 0.0 ? high : low) = here;
+    double next = here - off / (1.0 - radius * jet.curvature / (grown * grown * grown));
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (std::abs(next - here) <= k_settled * (std::abs(x) + radius)) return next;
+    here = next;
+  }
+  return here;
+}
+
+void Road::find_pieces() {
+  const std::vector<Vec2>& points = curve_.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const CurveJet<double> left = curve_.jet(points[i].x());
+    Piece piece{left.slope, left.curvature};
+    if (i + 1 < points.size())
+      piece.third = 0.5 * (curve_.jet(points[i + 1].x()).curvature - left.curvature) / (points[i + 1].x() - points[i].x());
+    if (i > 0) piece.length = pieces_.back().length + pieces_.back().length_over(points[i].x() - points[i - 1].x());
+    pieces_.push_back(piece);
+  }
+  pieces_.back().bend = 0.0; // of the end, but for rounding
+}
+
+double Road::length_to(double x) const {
+  const std::vector<Vec2>& points = curve_.points();
+  const Piece& first = pieces_.front();
+  if (x <= points.front().x()) return (x - points.front().x()) * std::sqrt(1.0 + first.slope * first.slope);
+  const auto after = std::upper_bound(points.begin(), points.end(), x, [](double value, const Vec2& p) { return value < p.x(); });
+  const auto i = static_cast<std::size_t>(after - points.begin()) - 1;
+  return pieces_[i].length + pieces_[i].length_over(x - points[i].x());
+}
+
+// By the rule of Gauss with ten nodes: the slope is a parabola.
+double Road::Piece::length_over(double d) const {
+  constexpr std::array<double, 5> k_node = {0.14887433898163122, 0.43339539412924719, 0.67940956829902441, 0.86506336668898451,
+                                            0.97390652851717172};
+  constexpr std::array<double, 5> k_weight = {0.29552422471475287, 0.26926671930999636, 0.21908636251598204, 0.14945134915058059,
+                                              0.066671344308688138};
+  const auto grown = [this](double at) {
+    const double y = slope + at * (bend + at * third);
+    return std::sqrt(1.0 + y * y);
+  };
+  const double half = 0.5 * d;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < k_node.size(); ++k) sum += k_weight[k] * (grown(half - k_node[k] * half) + grown(half + k_node[k] * half));
+  return half * sum;
 }
 
 // h″ is straight between the points. What the slope takes from it is found by samples.

@@ -9,8 +9,10 @@
 
 #include "elements/spring_laws.h"
 #include "mbd/math/dual.h"
+#include "mbd/math/portable_math.h"
 
-#include <optional>
+#include <cmath>
+#include <vector>
 
 namespace steplap {
 
@@ -19,11 +21,19 @@ template <class S> struct RoadPoint {
   S x{0.0}, height{0.0}, slope{0.0};
 };
 
+/// How far a wheel's centre has come along a road, m, and by how much that grows with its place.
+template <class S> struct RoadWay {
+  S value{0.0}, by_x{1.0}, by_y{0.0};
+};
+
 class Road {
 public:
   Road() = default; ///< flat
   /// At least two points, ascending in x; m.
-  explicit Road(std::vector<Vec2> points) : is_flat_(false), curve_(std::move(points)) { find_hollowest(); }
+  explicit Road(std::vector<Vec2> points) : is_flat_(false), curve_(std::move(points)) {
+    find_hollowest();
+    find_pieces();
+  }
 
   [[nodiscard]] bool is_flat() const { return is_flat_; }
   /// The largest curvature κ = h″/(1 + h′²)^(3/2) of its hollows, 1/m, and where that is; 0: it has none.
@@ -42,7 +52,38 @@ public:
     return {place, jet.value, jet.slope};
   }
 
+  /// A function of the place (x, y) of a wheel's centre, smooth everywhere, whose gradient is the road's direction where the wheel
+  /// touches: there it is the length of the curve that the centre of a wheel that rolls goes along, and above that the length that it
+  /// has straight below itself, with what the slope makes of the height. Of a road in whose hollows the wheel finds room. `near`: a place
+  /// of the road not far off.
+  template <class S> [[nodiscard]] RoadWay<S> way(const S& x, const S& y, double radius, double near) const {
+    if (is_flat_) return {x, S(1.0), S(0.0)};
+    using std::sqrt;
+    const double touched = touched_below(value_of(x), radius, near);
+    const CurveJet<double> at = curve_.jet(touched);
+    const double grown_at = std::sqrt(1.0 + at.slope * at.slope), room = 1.0 - radius * at.curvature / (grown_at * grown_at * grown_at);
+    const S ahead = S(1.0 / room) * (x - S(touched - radius * at.slope / grown_at)); // zero, with derivatives
+    const CurveJet<S> jet = curve_.jet(S(touched) + ahead);
+    const S grown = sqrt(S(1.0) + jet.slope * jet.slope), sine = jet.slope / grown, bend = jet.curvature / (grown * grown * grown);
+    const S above = y - jet.value - S(radius) / grown;
+    const S length = S(length_to(touched)) + S(grown_at) * ahead;
+    const S inclined = S(portable::atan2(at.slope, 1.0)) + (jet.slope - S(at.slope)) * S(1.0 / (grown_at * grown_at));
+    return {length - S(radius) * inclined + sine * above, S(1.0) / grown + bend / (S(1.0) - S(radius) * bend) * above, sine};
+  }
+
 private:
+  /// From a point to the next: y′ = slope + d (bend + d third), d from the point.
+  struct Piece {
+    double slope = 0.0, bend = 0.0, third = 0.0;
+    double length = 0.0; ///< of the road from its first point to this one, m
+    /// Of the road over the first d.
+    [[nodiscard]] double length_over(double d) const;
+  };
+  /// Where a wheel touches whose centre is at x; looked for from `near` on.
+  [[nodiscard]] double touched_below(double x, double radius, double near) const;
+  /// Of the road, from its first point to x.
+  [[nodiscard]] double length_to(double x) const;
+  void find_pieces();
   /// Half of the second derivative of the squared distance from a point at height y, by x.
   static double pull_of(const CurveJet<double>& at, double y) { return 1.0 + at.slope * at.slope - (y - at.value) * at.curvature; }
   [[nodiscard]] double nearest_x(double x, double y) const;
@@ -50,6 +91,7 @@ private:
   bool is_flat_ = true;
   SmoothCurve curve_;
   double hollowest_ = 0.0, hollowest_at_ = 0.0;
+  std::vector<Piece> pieces_; ///< the last one goes on beyond the last point
 };
 
 } // namespace steplap

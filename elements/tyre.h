@@ -15,8 +15,9 @@
 // bristles have it: those of a locked wheel stay.) With μ N reached at the slip μ N/C the curve has a corner where that of a
 // measured tyre is round.
 //
-// Stored: ½ k (r − d)² and ½ C/σ u². The bristles dissipate as long as V ≤ 4 C/b. The wheel's radius counts for rolling as for touching,
-// so that T has the arm r: it acts below the road's surface by what the tyre is pressed in.
+// Stored: ½ k (r − d)² and ½ C/σ u². The bristles dissipate b (u̇ + V u/2σ)² + (4 C − b V) V u²/4σ², so that with V > 4 C/b they would drive: beyond it b is 4 C/V.
+// The wheel's radius counts for rolling as for touching, so that T has the arm r: it acts below the road's surface by what the tyre is
+// pressed in.
 // Valid for roads whose hollows are less curved than the wheel (checked), and penetrations that are small against both.
 #pragma once
 

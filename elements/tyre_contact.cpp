@@ -13,13 +13,26 @@ namespace {
 
 using D12 = Dual<12>;
 
-// Modes: the contact's in two bits, above it the tread's, above that whether the wheel turns as it does rolling forward.
+// Modes: the contact's in two bits, above it the tread's, above that whether the wheel turns as it does rolling forward, and whether so fast
+// that its bristles are damped less.
 enum Sliding : UnitMode { k_adheres = 0, k_slides_forward = 1, k_slides_backward = 2 };
 
 UnitMode contact_of(UnitMode mode) { return mode & 3U; }
 UnitMode sliding_of(UnitMode mode) { return mode >> 2U & 3U; }
 bool turns_forward(UnitMode mode) { return (mode >> 4U & 1U) != 0; }
-UnitMode mode_of(UnitMode contact, UnitMode sliding, bool is_forward) { return contact | sliding << 2U | (is_forward ? 1U : 0U) << 4U; }
+bool turns_fast(UnitMode mode) { return (mode >> 5U & 1U) != 0; }
+struct Turning {
+  bool is_forward = false, is_fast = false;
+};
+Turning turning_of(UnitMode mode) { return {turns_forward(mode), turns_fast(mode)}; }
+UnitMode mode_of(UnitMode contact, UnitMode sliding, Turning turning) {
+  return contact | sliding << 2U | (turning.is_forward ? 1U : 0U) << 4U | (turning.is_fast ? 1U : 0U) << 5U;
+}
+
+// b, of bristles through which the tread passes with V.
+template <class S> S damping_at(const TreadLaw& law, const S& through, UnitMode mode) {
+  return turns_fast(mode) ? S(law.slow() * law.damping) / through : S(law.damping);
+}
 
 template <class S>
 TreadState<S> tread_at(const TyreGroup::Entry& entry, const WheelMotion<S>& w, const S& p, const S& normal, UnitMode mode) {
@@ -31,15 +44,15 @@ TreadState<S> tread_at(const TyreGroup::Entry& entry, const WheelMotion<S>& w, c
     return t;
   }
   const S through = turns_forward(mode) ? -w.rolling : w.rolling;
-  const S held = w.slip_rate - through * t.bent * S(1.0 / law.relaxation);
+  const S held = w.slip_rate - through * t.bent * S(1.0 / law.relaxation), damping = damping_at(law, through, mode);
   t.most = S(law.friction) * normal;
-  t.trial = S(law.stiffness) * t.bent + S(law.damping) * held;
+  t.trial = S(law.stiffness) * t.bent + damping * held;
   if (sliding_of(mode) == k_adheres) {
     t.force = t.trial;
     t.rate = held;
   } else {
     t.force = sliding_of(mode) == k_slides_forward ? t.most : -t.most;
-    t.rate = S(1.0 / law.damping) * (t.force - S(law.stiffness) * t.bent);
+    t.rate = (t.force - S(law.stiffness) * t.bent) / damping;
   }
   return t;
 }
@@ -51,11 +64,11 @@ UnitMode sliding_at(double trial, double most) {
 
 // What the wheel does, found with the contact's mode alone; sense and sliding follow from it.
 UnitMode mode_with(const TyreGroup::Entry& entry, const WheelMotion<double>& w, double p, UnitMode contact) {
-  const bool is_forward = w.rolling < 0.0;
-  if (contact != k_contact_pressed) return mode_of(contact, k_adheres, is_forward);
+  const Turning turning{w.rolling<0.0, std::abs(w.rolling)> entry.tread.slow()};
+  if (contact != k_contact_pressed) return mode_of(contact, k_adheres, turning);
   const TreadState<double> t =
-      tread_at(entry, w, p, entry.press.force(w.gap.value, w.gap.rate, contact), mode_of(contact, k_adheres, is_forward));
-  return mode_of(contact, sliding_at(t.trial, t.most), is_forward);
+      tread_at(entry, w, p, entry.press.force(w.gap.value, w.gap.rate, contact), mode_of(contact, k_adheres, turning));
+  return mode_of(contact, sliding_at(t.trial, t.most), turning);
 }
 
 WheelMotion<double> wheel_at(const TyreGroup::Entry& entry, const Motion<double>* motion) {
@@ -93,7 +106,7 @@ void TyreGroup::add_forces(Evaluation& e) const {
     e.inner_rate[entry.inner] = w.tread.rate - t.rate;
     e.dissipation += (entry.press.elastic_force(w.gap.value, contact) - normal) * w.gap.rate + t.force * w.slip_rate -
                      entry.tread.stiffness * t.bent * t.rate;
-    watch[2] = watch[3] = watch[4] = 1.0;
+    watch[2] = watch[3] = watch[4] = watch[5] = 1.0;
     if (contact != k_contact_pressed) continue;
     apply_force(e.link_force[entry.link], w.gap, normal);
     apply_force(e.link_force[entry.link], w.tread, -t.force);
@@ -104,7 +117,9 @@ void TyreGroup::add_forces(Evaluation& e) const {
     } else {
       watch[2] = (sliding == k_slides_forward ? t.trial : -t.trial) - t.most;
     }
-    watch[4] = (turns_forward(mode) ? -w.rolling : w.rolling) + k_met + rate_rounding(w.tread, e.motion[entry.a], e.motion[entry.b]);
+    const double through = turns_forward(mode) ? -w.rolling : w.rolling;
+    watch[4] = through + k_met + rate_rounding(w.tread, e.motion[entry.a], e.motion[entry.b]);
+    watch[5] = turns_fast(mode) ? through - entry.tread.slow() : entry.tread.slow() - through;
   }
 }
 
@@ -147,9 +162,10 @@ void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobia
     const UnitMode mode = e.mode[entry.unit];
     const Derivatives d(entry, e);
     const bool adheres = tyre_presses(mode) && sliding_of(mode) == k_adheres;
-    const double passing = (turns_forward(mode) ? -1.0 : 1.0) * d.wheel.rolling.v / entry.tread.relaxation;
-    const double rate_by_bent = adheres ? -passing : -entry.tread.stiffness / entry.tread.damping;
-    const double force_by_bent = adheres ? entry.tread.stiffness - entry.tread.damping * passing : 0.0;
+    const double through = (turns_forward(mode) ? -1.0 : 1.0) * d.wheel.rolling.v, passing = through / entry.tread.relaxation;
+    const double damping = tyre_presses(mode) ? damping_at(entry.tread, through, mode) : entry.tread.damping;
+    const double rate_by_bent = adheres ? -passing : -entry.tread.stiffness / damping;
+    const double force_by_bent = adheres ? entry.tread.stiffness - damping * passing : 0.0;
     const RowGradient<D12> g = gradient_of(d.wheel.tread);
     const D12 rate = d.wheel.tread.rate - d.tread.rate; // of p
     InnerJacobian& j = out.emplace_back();
@@ -208,9 +224,11 @@ UnitMode TyreGroup::next_mode(int element, UnitMode mode, int slot, const Evalua
     const UnitMode next = entry.press.next_mode(contact, slot, w.gap.value, w.gap.rate, rounding);
     return next == contact ? mode : mode_with(entry, w, e.inner[entry.inner], next);
   }
-  if (slot == 4) return mode_of(contact, sliding, !turns_forward(mode));
-  if (sliding != k_adheres) return mode_of(contact, k_adheres, turns_forward(mode));
-  return mode_of(contact, slot == 2 ? k_slides_forward : k_slides_backward, turns_forward(mode));
+  const Turning turning = turning_of(mode);
+  if (slot == 4) return mode_of(contact, sliding, {!turning.is_forward, turning.is_fast});
+  if (slot == 5) return mode_of(contact, sliding, {turning.is_forward, !turning.is_fast});
+  if (sliding != k_adheres) return mode_of(contact, k_adheres, turning);
+  return mode_of(contact, slot == 2 ? k_slides_forward : k_slides_backward, turning);
 }
 
 bool TyreGroup::is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const {
@@ -225,8 +243,12 @@ WatchKind TyreGroup::watch_kind(int slot) const { return slot == 4 ? WatchKind::
 EventKind TyreGroup::transition(UnitMode from, UnitMode to) const {
   if (contact_of(from) != contact_of(to)) return KelvinVoigtContact::transition(contact_of(from), contact_of(to));
   if (sliding_of(from) == sliding_of(to)) return EventKind::none;
-  if (sliding_of(to) == k_adheres) return EventKind::sticks;
-  return sliding_of(to) == k_slides_forward ? EventKind::slips_forward : EventKind::slips_backward;
+  return sliding_of(to) == k_adheres ? EventKind::sticks : sliding_in(to);
+}
+
+EventKind TyreGroup::sliding_in(UnitMode mode) const {
+  if (!tyre_presses(mode) || sliding_of(mode) == k_adheres) return EventKind::none;
+  return sliding_of(mode) == k_slides_forward ? EventKind::slips_forward : EventKind::slips_backward;
 }
 
 WheelMotion<double> TyreGroup::measured(int element, const Evaluation& e) const { return wheel_at(entries[element], e.motion); }

@@ -1,11 +1,13 @@
 // The forces of tyres (tyre.h): normal force and tread together, as force elements with modes and an inner state.
 //
-// The inner state is p, with u = s − p and s = e·(p_A − p_B) + r (θ_A − θ_B), e the road's level direction: a function of the pose, so
-// that at rest the tread is a spring between places. Its rate is that of s less that of u.
+// The inner state is p, with u = s − p and s the way of the centre along the road (RoadWay; of a flat one the coordinate along it) + r (θ_A − θ_B):
+// a function of the pose whose gradient is the direction in which the tread acts, so that at rest the tread is a spring between places.
+// Its rate is that of s less that of u.
 #pragma once
 
 #include "elements/contact_laws.h"
 #include "elements/road.h"
+#include "mbd/system/sliding_units.h"
 
 #include <memory>
 
@@ -40,8 +42,9 @@ struct WheelMeasure {
     w.gap.lever_a = w.tread.lever_a = ra;
     w.gap.lever_b = w.tread.lever_b = reach;
     w.rolling = S(radius) * relative_spin(a, b);
-    w.tread.value = x + S(radius) * relative_angle(a, b);
-    w.tread.rate = dot(e, velocity) + w.rolling;
+    const RoadWay<S> way = road->way(x, y, radius, value_of(foot.x));
+    w.tread.value = way.value + S(radius) * relative_angle(a, b);
+    w.tread.rate = way.by_x * dot(e, velocity) + way.by_y * dot(up, velocity) + w.rolling;
     w.tread.direction = along;
     w.tread.couple = S(radius);
     w.slip_rate = dot(along, velocity) + w.rolling;
@@ -54,6 +57,9 @@ struct TreadLaw {
   double stiffness = 0.0;  ///< C/σ, N/m
   double damping = 0.0;    ///< b, N s/m
   double relaxation = 1.0; ///< σ, m
+
+  /// V up to which bristles with b dissipate, 4 C/b, m/s. Beyond it they have 4 C/V.
+  [[nodiscard]] double slow() const { return 4.0 * stiffness * relaxation / damping; }
 };
 
 /// Bristles at one instant: N, N, m, m/s.
@@ -65,7 +71,7 @@ template <class S> struct TreadState {
   S rate{0.0};  ///< u̇
 };
 
-class TyreGroup final : public ForceGroup, public GapSource {
+class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -75,7 +81,7 @@ public:
     int inner = 0; ///< p
     int link = 0, unit = 0, watch = 0, contact = 0;
   };
-  static constexpr int k_watches = 5; ///< two of the contact, two of the tread, one of the sense in which the wheel turns
+  static constexpr int k_watches = 6; ///< two of the contact, two of the tread, of the sense in which the wheel turns, of how fast
   std::vector<Entry> entries;
 
   void add_forces(Evaluation& e) const override;
@@ -92,6 +98,7 @@ public:
   [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override;
   [[nodiscard]] WatchKind watch_kind(int slot) const override;
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] EventKind sliding_in(UnitMode mode) const override;
 
   /// For channels.
   [[nodiscard]] WheelMotion<double> measured(int element, const Evaluation& e) const;

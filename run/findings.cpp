@@ -12,6 +12,7 @@
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/freedom.h"
 #include "mbd/simulation/simulation.h"
+#include "run/action_findings.h"
 #include "run/edges.h"
 #include "run/far_joints.h"
 #include "run/plausible_scene.h"
@@ -329,6 +330,7 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
   Findings findings = doubled_corners(loaded);
   append(findings, start_findings(loaded));
   append(findings, implausible_findings(loaded));
+  append(findings, idle_actions(loaded));
   if (const std::optional<Finding> moved = note_of_moves(loaded)) {
     findings.push_back(*moved);
     append(findings, stepped_feet(loaded));
@@ -346,6 +348,7 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
            "channel '" + range.channel->name +
                "' had no value at some time (a division by zero, a root of what is negative): its extremes are of the other times");
   append(findings, contacts_too_deep(loaded, result.ranges));
+  append(findings, actions_that_wait(loaded, result));
   return findings;
 }
 
@@ -362,6 +365,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
          s.where);
   warn_of_unused_parameters(model, findings);
   warn_of_idle_elements(model, findings);
+  append(findings, idle_actions(loaded));
   append(findings, far_joints(loaded));
   append(findings, stepped_feet(loaded));
   append(findings, doubled_corners(loaded));

@@ -15,7 +15,7 @@ struct RunResult;
 [[nodiscard]] std::vector<Finding> findings_of(const LoadedModel& loaded);
 /// Of these what bears on what a run can say.
 [[nodiscard]] std::vector<Finding> findings_before(const LoadedModel& loaded);
-/// What a run came to: feet beyond the parts they stood on, contacts through each other, channels without a value.
+/// What a run came to: feet beyond the parts they stood on, contacts through each other, channels without a value, actions that wait.
 [[nodiscard]] std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result);
 /// Those about where the run begins: contacts and stops that contradict the poses, inertias that contradict outlines.
 [[nodiscard]] std::vector<Finding> start_findings(const LoadedModel& loaded);

@@ -41,7 +41,10 @@ public:
     if (j.verdict == Verdict::reject || j.verdict == Verdict::inspect) return unmet(j.verdict);
     if (j.verdict == Verdict::open) return open();
     const std::size_t count = j.criteria.size();
-    const std::string all = count == 1 ? "The one criterion is met" : "All " + std::to_string(count) + " criteria are met";
+    const std::string& ended_by = report_.run.result.ended_by;
+    const std::string until =
+        ended_by.empty() ? "" : " up to " + time(report_.run.result.final_state.t) + ", where action " + quoted(ended_by) + " ends the run";
+    const std::string all = (count == 1 ? "The one criterion is met" : "All " + std::to_string(count) + " criteria are met") + until;
     const auto nearest =
         std::find_if(overview_.utilisations.begin(), overview_.utilisations.end(), [&](const Utilisation& u) { return is_criterion(u); });
     if (nearest == overview_.utilisations.end()) return all + ".";

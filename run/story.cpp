@@ -6,6 +6,7 @@
 #include "elements/unilateral_contact.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/model/action.h"
 #include "run/places.h"
 
 #include <algorithm>
@@ -158,8 +159,10 @@ private:
     return size > 0.0 && -normal.dot(model.header.gravity) > k_upright * size;
   }
 
+  static std::string place_name(What what, const std::string& who) { return who + '\0' + static_cast<char>('a' + static_cast<int>(what)); }
+
   Happening& entry(What what, const std::string& who) {
-    const auto [place, is_new] = place_.try_emplace(who + '\0' + static_cast<char>('a' + static_cast<int>(what)), found_.size());
+    const auto [place, is_new] = place_.try_emplace(place_name(what, who), found_.size());
     if (is_new) found_.push_back({what, who, 0, 0.0, 0.0, {}, {}, {}, {}, true});
     return found_[place->second];
   }
@@ -178,8 +181,9 @@ private:
   }
 
   void end(What what, const Event& event, std::optional<double> error) {
-    Happening& h = entry(what, event.element);
-    if (h.is_over) return;
+    const auto place = place_.find(place_name(what, event.element));
+    if (place == place_.end() || found_[place->second].is_over) return;
+    Happening& h = found_[place->second];
     h.is_over = true;
     h.to = event.t;
     h.to_error = error;
@@ -206,6 +210,22 @@ private:
     }
   }
 
+  // What an action releases slides, bears and hangs slack no more.
+  void take_action(const Event& event, std::optional<double> error) {
+    begin(What::happens, event, error);
+    entry(What::happens, event.element).detail = event.detail;
+    const ElementEntry* const found = entry_of(event.element);
+    const auto* const action = found ? dynamic_cast<const Action*>(found->element.get()) : nullptr;
+    if (!action) return;
+    for (const std::string& text : action->steps) {
+      const ActionStepText step = action_step(text);
+      if (step.verb != ActionVerb::release) continue;
+      for (const What what : {What::slips, What::lifts, What::opens, What::touches, What::slack, What::taut, What::leaves_gap,
+                              What::closes_gap, What::strikes, What::leaves_stop})
+        end(what, {event.t, step.name, EventKind::none}, error);
+    }
+  }
+
   void take(const Event& event, std::optional<double> error) {
     switch (event.kind) {
     case EventKind::slips:
@@ -214,8 +234,9 @@ private:
     case EventKind::slips_another_way: return begin(What::slips, event, error);
     case EventKind::sticks:
     case EventKind::loses_normal_force: return end(What::slips, event, error);
+    case EventKind::force_reaches_zero: return end(What::slips, event, error); // of a tyre, whose contact and tread are one element
     case EventKind::opens:
-    case EventKind::enters_gap:
+    case EventKind::enters_gap: end(What::slips, event, error); return toggle(true, event, error);
     case EventKind::reaches_lower_stop:
     case EventKind::reaches_upper_stop: return toggle(true, event, error);
     case EventKind::closes:
@@ -224,10 +245,7 @@ private:
     case EventKind::breaks: return begin(What::breaks, event, error);
     case EventKind::comes_apart: end(What::slips, event, error); return begin(What::apart, event, error);
     case EventKind::loses_interface: return begin(What::interface, event, error);
-    case EventKind::happens:
-      begin(What::happens, event, error);
-      entry(What::happens, event.element).detail = event.detail;
-      return;
+    case EventKind::happens: return take_action(event, error);
     case EventKind::storm: return begin(What::storm, event, error);
     case EventKind::storm_over: return end(What::storm, event, error);
     default: return;

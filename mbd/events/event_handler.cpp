@@ -7,6 +7,7 @@
 #include "mbd/system/one_way_lock.h"
 #include "mbd/system/rope_end.h"
 #include "mbd/system/rounding.h"
+#include "mbd/system/sliding_units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -154,6 +155,9 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std
       fresh_[unit.watch + w] = !unit.group->is_surely_positive(unit.index, to, w, dynamics_.evaluation());
     const EventKind kind = unit.group->transition(from, to);
     if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
+    const EventKind slide = sliding_of(*unit.group, to); // it closes, and slides from there
+    if (!is_slip(kind) && slide != EventKind::none && slide != sliding_of(*unit.group, from))
+      events.push_back({state.t, system_.element_names[unit.element], slide});
   }
   return is_any;
 }
@@ -247,6 +251,9 @@ bool EventHandler::has_capacity(const State& state, std::size_t f) const {
 }
 
 void EventHandler::note_start(const State& state, std::vector<Event>& events) const {
+  for (std::size_t u = 0; u < system_.units.size(); ++u)
+    if (const EventKind slide = sliding_of(*system_.units[u].group, state.mode[u]); slide != EventKind::none)
+      events.push_back({state.t, system_.element_names[system_.units[u].element], slide});
   for (std::size_t f = 0; f < state.friction.size(); ++f)
     if (state.friction[f].phase == FrictionPhase::slip && has_capacity(state, f))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
@@ -411,7 +418,14 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   std::fill(has_switched_.begin(), has_switched_.end(), 0);
-  bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
+  std::vector<int> slots = fallen(watch, dynamics_.watch());
+  if (blow == Blow::rows) // what joins bodies gives them their velocities behind the blow wherever they are evaluated
+    for (std::size_t slot = 0; slot < watch.size(); ++slot) {
+      const int u = unit_of_slot_[slot];
+      const bool is_beyond = watch[slot] < 0.0 && dynamics_.watch()[slot] < 0.0; // by more than rounding, of which units know
+      if (is_beyond && u >= 0 && system_.units[u].group->follows_jumps()) slots.push_back(static_cast<int>(slot));
+    }
+  bool is_contact_changed = switch_units(state, slots, events);
   if (follow_jumps(state, nullptr, events)) is_contact_changed = true;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionPhase phase = state.friction[f].phase;

@@ -2,7 +2,9 @@
 
 #include "mbd/base/event_kind.h"
 #include "mbd/base/number_text.h"
+#include "mbd/io/possible_events.h"
 #include "mbd/io/units.h"
+#include "mbd/model/action.h"
 #include "mbd/simulation/trajectory.h"
 
 #include <algorithm>
@@ -58,33 +60,6 @@ Quantity read_limit(const std::string& text, const std::string& unit) {
   return bare;
 }
 
-// Every kind of event that a unit or a friction element can have.
-EventKinds event_kinds_of(const System& system, const std::string& element) {
-  EventKinds kinds;
-  const auto add = [&kinds](EventKind kind) { kinds.set(static_cast<std::size_t>(kind)); };
-  const auto matches = [&](int index) { return matches_pattern(system.element_names[index], element); };
-  constexpr std::uint8_t k_modes = 4;
-  for (const Unit& unit : system.units)
-    if (matches(unit.element))
-      for (std::uint8_t from = 0; from < k_modes; ++from)
-        for (std::uint8_t to = 0; to < k_modes; ++to)
-          if (from != to) add(unit.group->transition(from, to));
-  for (const FrictionUnit& unit : system.frictions) {
-    if (!matches(unit.element)) continue;
-    FrictionState here, there;
-    there.foot = 1;
-    for (const EventKind kind : {EventKind::sticks, EventKind::loses_normal_force, unit.friction->place_change(here, there),
-                                 unit.friction->place_change(there, here)})
-      add(kind);
-    if (unit.friction->dimension() == 3)
-      for (const EventKind kind : {EventKind::slips, EventKind::slips_another_way, EventKind::comes_apart}) add(kind);
-    else
-      for (const EventKind kind : {EventKind::slips_forward, EventKind::slips_backward}) add(kind);
-  }
-  kinds.reset(static_cast<std::size_t>(EventKind::none));
-  return kinds;
-}
-
 std::vector<std::string> words_of(const EventKinds& kinds) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < kinds.size(); ++i)
@@ -113,6 +88,8 @@ public:
       return !is_written(plot);
     });
     for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
+    for (const ElementEntry& entry : model_.elements)
+      if (const auto* const action = dynamic_cast<const Action*>(entry.element.get())) check_action(*action);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
     return std::move(left_out_);
   }
@@ -173,14 +150,26 @@ private:
     check_event(c);
   }
 
-  void check_event(const Criterion& c) {
-    const EventKinds kinds = event_kinds_of(system_, c.element.empty() ? "*" : c.element);
-    if ((kinds & event_kinds_matching(c.event)).any()) return;
+  // What is wrong with an event of such elements; nothing: they may have it.
+  std::string no_event(const std::string& element, const std::string& event) const {
+    const EventKinds kinds = possible_events(model_, system_, element.empty() ? "*" : element);
+    if ((kinds & event_kinds_matching(event)).any()) return "";
     const std::vector<std::string> words = words_of(kinds);
-    const std::string whose = c.element.empty() ? "of the model" : "of '" + c.element + "'";
-    if (words.empty()) return complain(c, "event", "nothing " + whose + " has events");
-    complain(c, "event",
-             "no event " + whose + " is called '" + c.event + "'" + did_you_mean(c.event, words) + "; there are " + list_of(words));
+    const std::string whose = element.empty() ? "of the model" : "of '" + element + "'";
+    if (words.empty()) return "nothing " + whose + " has events";
+    return "no event " + whose + " is called '" + event + "'" + did_you_mean(event, words) + "; there are " + list_of(words);
+  }
+
+  void check_event(const Criterion& c) {
+    if (const std::string problem = no_event(c.element, c.event); !problem.empty()) complain(c, "event", problem);
+  }
+
+  // An action that waits for what cannot be would never happen.
+  void check_action(const Action& action) {
+    const auto event = event_text(action.when);
+    if (!event) return;
+    const std::string problem = no_event(event->element, words_of(event->kind));
+    if (!problem.empty()) problems_.push_back({action.place("when"), "action '" + action.name + "': 'when': " + problem});
   }
 
   void check_limits(Criterion& c) {

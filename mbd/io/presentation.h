@@ -14,8 +14,8 @@ namespace steplap {
 [[nodiscard]] const TableKind& acceptance_kind();
 
 /// Reads the limits of the model's criteria in the unit of the channels that they are for. Throws ModelError for
-/// limits of another dimension, for patterns that no channel, event or element matches, and for a plot or a
-/// criterion whose channels are of different units. Plots of channels that are not written are taken out of the model;
+/// limits of another dimension, for patterns that no channel, event or element matches, for actions that wait for an event which their
+/// element cannot have, and for a plot or a criterion whose channels are of different units. Plots of channels that are not written are taken out of the model;
 /// returns their names.
 std::vector<std::string> check_presentation(Model& model, const System& system);
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace steplap {
 
@@ -54,13 +53,21 @@ ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
   return both;
 }
 
+// A field that is given for the first time may make channels that a run has no columns for.
+void refuse_other_channels(const System& first, const System& system) {
+  const std::size_t own = system.channels.size();
+  std::size_t i = 0;
+  while (i < own && i < first.channels.size() && system.channels[i].name == first.channels[i].name) ++i;
+  if (i == own && own <= first.channels.size() && system.integrands.size() == first.integrands.size()) return;
+  const std::string name = i < own ? system.channels[i].name : first.channels[std::min(i, first.channels.size() - 1)].name;
+  throw ModelError({}, "it has other channels than at the start ('" + name +
+                           "'): give the element a value of the field that is set from the start, which the action then changes");
+}
+
 // What was added to the first system behind its own channels, in the same order: what hangs on an element that does not act is zero.
 void add_channels(const ActionGroup& group, const System& first, System& system) {
   const std::size_t own = system.channels.size();
   const auto is_same = [](const Channel& a, const Channel& b) { return a.name == b.name; };
-  if (own > first.channels.size() || system.integrands.size() != first.integrands.size() ||
-      !std::equal(system.channels.begin(), system.channels.end(), first.channels.begin(), is_same))
-    throw std::logic_error("actions have changed the channels of '" + system.title + "'");
   for (const auto& addition : group.additions) addition(system);
   const std::vector<Channel> added(system.channels.begin() + static_cast<std::ptrdiff_t>(own), system.channels.end());
   system.channels.resize(own);
@@ -152,6 +159,7 @@ std::unique_ptr<System> ActionFollower::compiled(const Arrangement& arrangement,
   }
   acts = acting_elements(model);
   auto system = compile(model, group_.channels ? &*group_.channels : nullptr);
+  refuse_other_channels(first_, *system);
   add_channels(group_, first_, *system);
   return system;
 }

@@ -114,8 +114,10 @@ State carried(const Changeover& change, const State& state) {
         [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
   carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on,
         [&](std::size_t a, std::size_t b) { next.friction[b] = state.friction[a]; });
-  carry(change.from.memory_elements, change.to.memory_elements, goes_on,
-        [&](std::size_t a, std::size_t b) { next.memory[b] = state.memory[a]; });
+  carry(change.from.memory_elements, change.to.memory_elements, goes_on, [&](std::size_t a, std::size_t b) {
+    const bool is_set_anew = change.from.initial_memory[a] != change.to.initial_memory[b]; // the length of a rod or a rope
+    if (!is_set_anew) next.memory[b] = state.memory[a];
+  });
   const OwnStateGroup *const had = own_state_group(change.from), *const has = own_state_group(change.to);
   const int own_states = had && has ? static_cast<int>(has->entries.size()) : 0;
   carry(elements_of_inner(change.from, own_states), elements_of_inner(change.to, own_states), goes_on,
@@ -136,8 +138,8 @@ void place_what_closes(const Changeover& change, State& state) {
     if (std::abs(off) > fits) fail_to_close(change.to, state, row, off);
   }
   for (std::size_t f = 0; f < change.to.frictions.size(); ++f)
-    if (change.closes(change.to.frictions[f].element) && one_sided_row(*change.to.frictions[f].friction))
-      place_rope(change, f, motion, state);
+    if (change.begins[static_cast<std::size_t>(change.to.frictions[f].element)] != 0 && one_sided_row(*change.to.frictions[f].friction))
+      place_rope(change, f, motion, state); // one whose length is set, too
 }
 
 void book_stored_energy(const Changeover& change, const State& before, State& after) {

@@ -2,6 +2,7 @@
 #include "mbd/simulation/run_leg.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/system/sliding_units.h"
 
 #include <algorithm>
 #include <span>
@@ -26,8 +27,11 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
   dynamics_.rates(state_.t, y_.data(), dy_.data());
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
-    if (change.begins[static_cast<std::size_t>(unit.element)] != 0)
-      state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+    if (change.begins[static_cast<std::size_t>(unit.element)] == 0) continue;
+    const EventKind was = sliding_of(*unit.group, state_.mode[u]);
+    state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+    if (const EventKind is = sliding_of(*unit.group, state_.mode[u]); is != was)
+      record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});
   }
   book_stored_energy(change, before.state_, state_);
   const std::vector<double> unhurt = state_.memory;

@@ -47,35 +47,37 @@ struct Train {
 
 // --- the vehicles of the two files
 
-TwoAxles car() {
+// As the files have it, in their order.
+struct OwnTyre {
+  double stiffness, damping, friction, slip_stiffness, relaxation, tread;
+};
+
+TwoAxles vehicle(double mass, double inertia, double height, const OwnTyre& tyre, const std::array<OwnWheel, 2>& wheels) {
   TwoAxles v;
-  v.mass = 1000.0;
-  v.inertia = 1500.0;
-  v.stiffness = 3e5;
-  v.damping = 4e3;
-  v.friction = 0.9;
-  v.slip_stiffness = 8e4;
-  v.relaxation = 0.3;
-  v.tread = 3000.0;
-  v.wheel = {OwnWheel{1.1, -0.2, 40.0, 2.0, 1400.0}, OwnWheel{-1.4, -0.2, 40.0, 2.0, 1200.0}};
-  v.state[1] = 0.5;
+  v.mass = mass;
+  v.inertia = inertia;
+  v.state[1] = height;
+  v.stiffness = tyre.stiffness;
+  v.damping = tyre.damping;
+  v.friction = tyre.friction;
+  v.slip_stiffness = tyre.slip_stiffness;
+  v.relaxation = tyre.relaxation;
+  v.tread = tyre.tread;
+  v.wheel = wheels;
+  return v;
+}
+
+TwoAxles car() {
+  TwoAxles v = vehicle(1000.0, 1500.0, 0.5, {3e5, 4e3, 0.9, 8e4, 0.3, 3000.0},
+                       {OwnWheel{1.1, -0.2, 40.0, 2.0, 1400.0}, OwnWheel{-1.4, -0.2, 40.0, 2.0, 1200.0}});
   v.drive = [](double t, double) { return t < 4.0 ? 1200.0 : 0.0; };
   v.pressure = [](double t) { return std::clamp((t - 5.0) / 0.2, 0.0, 1.0); };
   return v;
 }
 
 TwoAxles bike() {
-  TwoAxles v;
-  v.mass = 250.0;
-  v.inertia = 30.0;
-  v.stiffness = 1.5e5;
-  v.damping = 3000.0;
-  v.friction = 1.2;
-  v.slip_stiffness = 3e4;
-  v.relaxation = 0.2;
-  v.tread = 200.0;
-  v.wheel = {OwnWheel{0.75, -0.35, 12.0, 0.6, 0.0}, OwnWheel{-0.65, -0.35, 15.0, 0.8, 0.0}};
-  v.state[1] = 0.65;
+  TwoAxles v = vehicle(250.0, 30.0, 0.65, {1.5e5, 3000.0, 1.2, 3e4, 0.2, 200.0},
+                       {OwnWheel{0.75, -0.35, 12.0, 0.6, 0.0}, OwnWheel{-0.65, -0.35, 15.0, 0.8, 0.0}});
   v.road = OwnSpline({{-3, 0},     {2, 0},       {4, 0.02},     {6, -0.015}, {8.5, 0.03}, {11.5, 0},      {15, 0.025},
                       {17, -0.02}, {19.5, 0.01}, {22.5, 0.03},  {26, -0.01}, {28, 0.02},  {30.5, -0.025}, {33.5, 0.015},
                       {37, 0},     {39, 0.03},   {41.5, -0.01}, {44.5, 0},   {48, 0},     {50, 0}});

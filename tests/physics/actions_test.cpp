@@ -6,6 +6,7 @@
 #include "tests/physics/scene.h"
 
 #include "mbd/rest/start.h"
+#include "mbd/system/element_failure.h"
 
 #include <doctest/doctest.h>
 
@@ -351,6 +352,31 @@ TEST_CASE("a rope that begins to act is slack, or catches what falls into it") {
   CHECK(std::abs(r.last("whole.dissipated") - 2.0 * k_g) < 1e-8);
 }
 
+TEST_CASE("a rope whose length is set bears from that length on, and may not be too short for where its ends are") {
+  // From 1 m below the ground 2 kg fall into 1.5 m, and hang there.
+  const auto text = [](const std::string& length) {
+    return body("mass", "mass = 2; inertia = 1; position = [0, -1]") +
+           element("rope", "rope", "a = \"mass\"; inextensible = true; length = 1.5") +
+           action("set", "when = \"1 s\"; do = [\"set rope.length = " + length + "\"]");
+  };
+  const double falls = std::sqrt(2.0 * 0.5 / k_g); // over the half metre that is paid out, from 1 s on
+  const Run paid = run(text("2 m"), {"dop853", 1e-12, 1.0 + 0.5 * falls});
+  CHECK(std::abs(paid.last("mass.y") - (-1.5 - 0.5 * k_g * 0.25 * falls * falls)) < k_tolerance);
+  const Run caught = run(text("2 m"), {"dop853", 1e-12, 2.0});
+  REQUIRE(caught.event_times("rope", "closes its gap").size() == 2);
+  CHECK(std::abs(caught.event_times("rope", "closes its gap").at(1) - (1.0 + falls)) < k_tolerance);
+  CHECK(std::abs(caught.last("mass.y") + 2.0) < k_tolerance);
+  CHECK_THROWS_WITH_AS((void)run(text("1.2 m"), {"dop853", 1e-12, 2.0}), doctest::Contains("farther apart than its length"),
+                       ElementFailure);
+}
+
+TEST_CASE("a value that makes other channels than a run began with ends it with a message") {
+  const std::string text = body("sledge", "mass = 2; inertia = 1") + element("skate", "edge", "a = \"sledge\"; axis = [0, 1]") +
+                           action("worn", "when = \"0.5 s\"; do = [\"set edge.grip = 1 N\"]");
+  CHECK_THROWS_WITH_AS((void)run(text, {"dop853", 1e-10, 1.0}), doctest::Contains("other channels than at the start ('edge.slip_rate')"),
+                       NumericalFailure);
+}
+
 TEST_CASE("a drive that gets another signal goes on from where it is") {
   const std::string text = k_no_gravity + signal_entry("constant", "slow", "value = 1") + signal_entry("constant", "fast", "value = 3") +
                            body("cart", "mass = 2; inertia = 1") +
@@ -489,6 +515,8 @@ TEST_CASE("what is wrong with an action is said with its place") {
   says("when = \"2 s\"; do = [\"set push.cuple = 1\"]", "did you mean 'couple'");
   says("when = \"2 s\"; do = [\"set push.couple = 1 N\"]", "'push.couple'");
   says("when = \"2 s\"; do = [\"set push.torque = wave\"]", "there is no signal 'wave'");
+  says("when = \"2 s\"; do = [\"set push.couple = nan\"]", "a finite number");
+  says("when = \"2 s\"; do = [\"set hook.angle = 1\"]", "it says where a run begins");
   says("when = \"2 m\"; do = [\"stop\"]", "no time");
   says("when = \"-2 s\"; do = [\"stop\"]", "a run begins at 0 s");
   says("when = \"load.y\"; do = [\"stop\"]", "compares nothing");

@@ -107,6 +107,24 @@ TEST_CASE("a tyre that stands does not creep") {
   CHECK(r.last("tyre.mode") == 1.0);
 }
 
+TEST_CASE("a tread that slides from the start, from where the wheel lands or from where an action lets it says so") {
+  const auto kinds = [](const Run& r) {
+    std::string words;
+    for (const Event& event : r.result.events)
+      if (event.element == "tyre") words += (words.empty() ? "" : ", ") + event.words();
+    return words;
+  };
+  CHECK(kinds(run(wheel(20.0, 0.0) + tyre() + moved("turn", "angle", 0.0), {"dop853", 1e-10, 0.1})) == "slips forward");
+  const std::string falls = body("wheel", "mass = 400; inertia = 9; position = [0.0, 0.35]; velocity = [20.0, 0.0]");
+  CHECK(kinds(run(falls + tyre() + moved("turn", "angle", 0.0), {"dop853", 1e-10, 0.11})) == "closes, slips forward");
+  const std::string ice = "[[action]]\nname = 'ice'\nwhen = '0.5 s'\ndo = ['set tyre.friction = 0.01']\n"; // 39 N of 300
+  const Run r =
+      run(wheel(0.0, 0.0) + tyre() + moved("turn", "angle", 0.0) + element("load", "push", "at = 'wheel'; force = [300.0, 0.0]") + ice,
+          {"dop853", 1e-10, 1.0});
+  CHECK(kinds(r).starts_with("slips forward")); // bristles let go while the wheel swings back on them, and may hold once more
+  CHECK(r.event_times("tyre", "slips forward").front() == 0.5);
+}
+
 TEST_CASE("a wheel that is locked comes to rest by μ g") {
   const double speed = 20.0;
   for (const char* method : k_methods) {
@@ -205,6 +223,113 @@ TEST_CASE("a wheel on a slope that is held against turning rests on its bristles
   for (std::size_t i = 0; i < r.times().size(); ++i) {
     CHECK(r.series("tyre.friction")[i] == doctest::Approx(k_mass * k_g * std::sin(slope)).epsilon(1e-8));
     CHECK(r.series("tyre.force")[i] == doctest::Approx(k_mass * k_g * std::cos(slope)).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("how far a wheel has come along a road grows as its centre goes along it, and as fast as it says") {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Vec2> points;
+  for (int i = 0; i <= 20; ++i) points.emplace_back(0.5 * i + 0.1 * unit(generator), 0.12 * unit(generator));
+  const Road road(points);
+  const double radius = 0.6 / road.hollowest();
+  REQUIRE(radius > 0.05);
+  const SmoothCurve curve(points);
+  for (int i = 0; i < 300; ++i) { // beyond the ends, too
+    const double touched = 5.0 + 6.0 * unit(generator), grown = std::sqrt(1.0 + std::pow(curve.jet(touched).slope, 2));
+    const Vec2 along = Vec2(1.0, curve.jet(touched).slope) / grown, normal(-along.y(), along.x());
+    const Vec2 centre = Vec2(touched, curve.jet(touched).value) + radius * normal;
+    const RoadWay<double> there = road.way(centre.x(), centre.y(), radius, touched);
+    CHECK(std::abs(there.by_x - along.x()) < 1e-12);
+    CHECK(std::abs(there.by_y - along.y()) < 1e-12);
+    // Anywhere else, in the air and inside the road, by differences; third derivatives of the road jump at its points.
+    const double x = centre.x(), y = centre.y() + 0.5 * unit(generator);
+    constexpr double h = 1e-5;
+    const RoadWay<Dual<2>> d = road.way(Dual<2>::variable(x, 0), Dual<2>::variable(y, 1), radius, x);
+    const double by_x = (road.way(x + h, y, radius, x).value - road.way(x - h, y, radius, x).value) / (2.0 * h);
+    CHECK(std::abs(d.value.d[0] - by_x) < 1e-4 * (1.0 + std::abs(by_x)));
+    CHECK(std::abs(d.value.d[0] - road.way(x, y, radius, x).by_x) < 1e-12 * (1.0 + std::abs(by_x)));
+    CHECK(std::abs(d.value.d[1] - road.way(x, y, radius, x).by_y) < 1e-12);
+  }
+}
+
+namespace {
+
+// On two wheels that are held by the frame, all brakes on; its front springs are the softer ones.
+std::string braked(const std::string& road, double slope) {
+  const auto axle = [&](const std::string& name, double along, double stiffness) {
+    return element("tyre", name,
+                   "a = { body = 'frame', point = [" + number(along) + ", -0.2] }; radius = 0.3; stiffness = " + number(stiffness) +
+                       "; damping = 2e3; friction = 0.9; slip_stiffness = 4e4; relaxation_length = 0.2; tread_damping = 500; " + road);
+  };
+  return body("frame", "mass = 1000; inertia = 1500; position = [" + number(-0.48 * std::sin(slope)) + ", " +
+                           number(0.48 * std::cos(slope)) + "]; angle = " + number(slope)) +
+         axle("front", 1.2, 1e5) + axle("rear", -1.2, 3e5);
+}
+
+} // namespace
+
+TEST_CASE("a slope that the road has by its points is one that its marker has: same rest, same treads, same vibrations") {
+  constexpr double k_slope = 0.3;
+  const double rise = 10.0 * std::tan(k_slope);
+  const std::string roads[2] = {"b = { body = 'ground', point = [0.0, 0.0], angle = 0.3 }",
+                                "road = [[-10.0, " + number(-rise) + "], [10.0, " + number(rise) + "]]"};
+  State rest[2];
+  Run r[2];
+  for (int i = 0; i < 2; ++i) {
+    Found found = settle(braked(roads[i], k_slope));
+    rest[i] = found.rest.state;
+    found.rest.state.v[3] = 0.01; // it swings on its springs and treads
+    r[i].system = std::move(found.system);
+    r[i].result = simulate(*r[i].system, found.rest.state, options({"dop853", 1e-11, 1.0, 0.1}));
+  }
+  for (std::size_t k = 3; k < 6; ++k) CHECK(std::abs(rest[0].q[k] - rest[1].q[k]) < 1e-9); // settled to 1e-10
+  for (const char* channel : {"frame.x", "frame.y", "frame.theta"})
+    for (std::size_t k = 0; k < r[0].times().size(); ++k) CHECK(std::abs(r[0].series(channel)[k] - r[1].series(channel)[k]) < 1e-8);
+  for (const char* channel : {"front.friction", "rear.friction", "front.force", "rear.force"}) // 1e-9 m of 3e5 N/m
+    for (std::size_t k = 0; k < r[0].times().size(); ++k) CHECK(std::abs(r[0].series(channel)[k] - r[1].series(channel)[k]) < 1e-3);
+}
+
+TEST_CASE("bristles never give back what they have dissipated, however fast the tread passes") {
+  // 60 m/s where 4 C/b is 4 m/s: what shakes the wheel has the frequency at which bristles of b alone would drive it.
+  const std::string text =
+      body("wheel", "mass = 400; inertia = 9; position = [0.0, " + number(k_radius - k_mass * k_g / k_stiffness) +
+                        "]; velocity = [60.0, 0.0]; angular_velocity = -200.0") +
+      element("tyre", "tyre",
+              "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 5.0; slip_stiffness = 1e3; relaxation_length = 0.5; "
+              "tread_damping = 1e3") +
+      signal_entry("harmonics", "shake", "amplitudes = [300.0]; frequencies = [10.0]; phases = [-1.5707963]") +
+      element("load", "shaker", "at = 'wheel'; torque = 'shake'") + "[output]\nalso = [\"*.dissipated\"]\n";
+  for (const char* method : k_methods) {
+    CAPTURE(method);
+    const Run r = run(text, {method, 1e-10, 1.0, 0.001});
+    const std::vector<double> lost = r.series("tyre.dissipated");
+    for (std::size_t i = 1; i < lost.size(); ++i) CHECK(lost[i] >= lost[i - 1] - 1e-7); // 1e-10 of the 7e5 J that roll, per step, and less
+    CHECK(lost.back() > 0.1);
+    CHECK(r.result.statistics.energy_residual < 1e-3);
+  }
+}
+
+TEST_CASE("a wheel that gets fast and slow again dissipates all that its energy loses") {
+  // Driven through 4 C/b = 8 m/s by some 7 m/s, and braked back through it, with slip.
+  const std::string text =
+      wheel(6.0, -20.0) +
+      element("tyre", "tyre",
+              "a = 'wheel'; radius = 0.3; stiffness = 2e5; friction = 0.8; slip_stiffness = 4e3; relaxation_length = 0.2; "
+              "tread_damping = 2000") +
+      signal_entry("harmonics", "turn", "amplitudes = [900.0]; frequencies = [0.25]; phases = [1.5707963]") +
+      element("load", "engine", "at = 'wheel'; torque = 'turn'");
+  for (const char* method : k_methods) {
+    CAPTURE(method);
+    const Run r = run(text, {method, 1e-11, 4.0, 0.05});
+    double fastest = 0.0, slowest = 100.0;
+    for (const double omega : r.series("wheel.omega")) {
+      fastest = std::max(fastest, -0.3 * omega);
+      slowest = std::min(slowest, -0.3 * omega);
+    }
+    CHECK(fastest > 8.5);
+    CHECK(slowest < 7.5);
+    CHECK(r.result.statistics.energy_residual < 1e-7 * r.result.statistics.energy_exchanged);
   }
 }
 

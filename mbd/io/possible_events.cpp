@@ -1,0 +1,71 @@
+#include "mbd/io/possible_events.h"
+
+#include "mbd/base/name_pattern.h"
+#include "mbd/model/action.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+void add(EventKinds& kinds, EventKind kind) { kinds.set(static_cast<std::size_t>(kind)); }
+
+// Modes are bits: those of the first six tell all that a kind of element tells apart.
+void add_transitions(const ForceGroup& group, EventKinds& kinds) {
+  constexpr UnitMode k_modes = 64;
+  for (UnitMode from = 0; from < k_modes; ++from)
+    for (UnitMode to = 0; to < k_modes; ++to)
+      if (from != to) add(kinds, group.transition(from, to));
+}
+
+void add_friction(const FrictionElement& friction, EventKinds& kinds) {
+  FrictionState here, there;
+  there.foot = 1;
+  for (const EventKind kind :
+       {EventKind::sticks, EventKind::loses_normal_force, friction.place_change(here, there), friction.place_change(there, here)})
+    add(kinds, kind);
+  if (friction.dimension() == 3)
+    for (const EventKind kind : {EventKind::slips, EventKind::slips_another_way, EventKind::comes_apart}) add(kinds, kind);
+  else
+    for (const EventKind kind : {EventKind::slips_forward, EventKind::slips_backward}) add(kinds, kind);
+}
+
+EventKinds events_of(const System& system, const std::string& element) {
+  EventKinds kinds;
+  const auto matches = [&](int index) { return matches_pattern(system.element_names[static_cast<std::size_t>(index)], element); };
+  std::unordered_set<const ForceGroup*> known;
+  for (const Unit& unit : system.units)
+    if (matches(unit.element) && known.insert(unit.group).second) add_transitions(*unit.group, kinds);
+  for (const FrictionUnit& unit : system.frictions)
+    if (matches(unit.element)) add_friction(*unit.friction, kinds);
+  return kinds;
+}
+
+} // namespace
+
+EventKinds possible_events(const Model& model, const System& system, const std::string& element) {
+  EventKinds kinds = events_of(system, element);
+  Model all = model;
+  bool is_any_asleep = false;
+  for (ElementEntry& entry : all.elements) {
+    if (!matches_pattern(entry.element->name, element)) continue;
+    if (dynamic_cast<const Action*>(entry.element.get())) add(kinds, EventKind::happens);
+    if (entry.element->active) continue;
+    entry.element->active = true;
+    is_any_asleep = true;
+  }
+  if (is_any_asleep) {
+    try {
+      const std::vector<std::string> no_channels;
+      kinds |= events_of(*compile(all, &no_channels), element);
+    } catch (const ModelError&) { // they do not act at one time: any of them may have any event
+      kinds.set();
+    }
+  }
+  kinds.reset(static_cast<std::size_t>(EventKind::none));
+  return kinds;
+}
+
+} // namespace steplap
