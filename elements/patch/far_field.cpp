@@ -161,8 +161,8 @@ template <bool WithCurvature>
     now *= norm;
   }
   power[0] = Two{1, 0};
-  for (int l = 1; l < k_order + 4; ++l)
-    power[l] = Two{power[l - 1][0] * z.x() - power[l - 1][1] * z.y(), power[l - 1][0] * z.y() + power[l - 1][1] * z.x()};
+  const Two by_x{z.x(), z.x()}, by_y{-z.y(), z.y()};
+  for (int l = 1; l < k_order + 4; ++l) power[l] = power[l - 1] * by_x + __builtin_shufflevector(power[l - 1], power[l - 1], 1, 0) * by_y;
   for (int first = 0; first <= k_order; first += 4)
     for (int l = first; l < first + 2 && l <= k_order; ++l, a += row) {
       const bool has_second = l + 2 <= k_order; // else no row is there
