@@ -4,7 +4,9 @@
 #include "elements/step_lap_joint.h"
 #include "run/core_drawing.h"
 #include "run/core_windows.h"
+#include "run/ordered_json.h"
 #include "run/symbols.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -60,14 +62,16 @@ public:
   Json json() {
     Json elements = Json::array();
     for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
-    return {{"bodies", bodies_json()}, // after the elements, which tell of their geometry
-            {"elements", std::move(elements)},
-            {"ground", ground_json()},
-            {"planes", planes_},
-            {"sheets", sheets_json()},
-            {"plots", plots_json()},
-            {"cores", cores_json()},
-            {"seen_from", model_.output.seen_from}};
+    Json json = object_with_room(8);
+    append(json, "bodies") = bodies_json(); // after the elements, which tell of their geometry
+    append(json, "elements") = std::move(elements);
+    append(json, "ground") = ground_json();
+    append(json, "planes") = planes_;
+    append(json, "sheets") = sheets_json();
+    append(json, "plots") = plots_json();
+    append(json, "cores") = cores_json();
+    append(json, "seen_from") = model_.output.seen_from;
+    return json;
   }
 
 private:
@@ -112,9 +116,10 @@ private:
         entry, [this](const std::string& marker) { return place_of(marker); },
         [this](const std::string& body) -> BodyGeometry& { return geometry_[body]; });
     draw_element(sketch);
-    Json json{{"name", entry.element->name},
-              {"kind", entry.kind->name},
-              {"symbol", sketch.shapes().empty() ? "hidden" : sketch.shapes().front().type}};
+    Json json = object_with_room(12);
+    append(json, "name") = entry.element->name;
+    append(json, "kind") = entry.kind->name;
+    append(json, "symbol") = sketch.shapes().empty() ? "hidden" : sketch.shapes().front().type;
     Json shapes = Json::array();
     for (const Shape& shape : sketch.shapes()) shapes.push_back(shape_json(shape));
     json["shapes"] = std::move(shapes);
@@ -127,7 +132,9 @@ private:
   }
 
   Json shape_json(const Shape& shape) {
-    Json json{{"type", shape.type}, {"at", places_json(shape.at)}};
+    Json json = object_with_room(7);
+    append(json, "type") = shape.type;
+    append(json, "at") = places_json(shape.at);
     if (!shape.style.empty()) json["style"] = shape.style;
     if (!shape.quantity.empty()) json["quantity"] = shape.quantity;
     if (shape.direction) json["direction"] = point_json(*shape.direction);
@@ -178,15 +185,17 @@ private:
     for (const Body& body : model_.bodies) {
       const Vec3 pose = body.reference_pose();
       const BodyGeometry& geometry = geometry_[body.name];
-      json.push_back({{"name", body.name},
-                      {"label", body.label},
-                      {"pose", {pose.x(), pose.y(), pose.z()}},
-                      {"fixed", body.fixed},
-                      {"is_outline_given", !body.outline.empty()},
-                      {"outline", outline_json(outline_of(body, geometry))}});
-      add_geometry(geometry, json.back());
-      json.back()["holes"] = Json::array();
-      for (const std::vector<Vec2>& window : core_windows(body, model_)) json.back()["holes"].push_back(outline_json(window));
+      Json entry = object_with_room(10);
+      append(entry, "name") = body.name;
+      append(entry, "label") = body.label;
+      append(entry, "pose") = {pose.x(), pose.y(), pose.z()};
+      append(entry, "fixed") = body.fixed;
+      append(entry, "is_outline_given") = !body.outline.empty();
+      append(entry, "outline") = outline_json(outline_of(body, geometry));
+      add_geometry(geometry, entry);
+      Json& holes = append(entry, "holes") = Json::array();
+      for (const std::vector<Vec2>& window : core_windows(body, model_)) holes.push_back(outline_json(window));
+      json.push_back(std::move(entry));
     }
     return json;
   }
@@ -222,15 +231,17 @@ private:
       const auto* face = dynamic_cast<const StepLapInterface*>(entry.element.get());
       if (!face || joints.count(face->joint) == 0) continue;
       const StepLapJoint& joint = *joints[face->joint];
-      json.push_back({{"name", face->name},
-                      {"joint", joint.name},
-                      {"limb", joint.limb},
-                      {"active_part", joint.active_part},
-                      {"count", face->count},
-                      {"yoke", outline_json(sheet(face->yoke, face->frame, joint.active_part))},
-                      {"limb_sheet", outline_json(sheet(face->limb, face->frame, joint.limb))},
-                      {"yoke_holes", holes_json(*face, true, joint.active_part)},
-                      {"limb_holes", holes_json(*face, false, joint.limb)}});
+      Json pair = object_with_room(9);
+      append(pair, "name") = face->name;
+      append(pair, "joint") = joint.name;
+      append(pair, "limb") = joint.limb;
+      append(pair, "active_part") = joint.active_part;
+      append(pair, "count") = face->count;
+      append(pair, "yoke") = outline_json(sheet(face->yoke, face->frame, joint.active_part));
+      append(pair, "limb_sheet") = outline_json(sheet(face->limb, face->frame, joint.limb));
+      append(pair, "yoke_holes") = holes_json(*face, true, joint.active_part);
+      append(pair, "limb_holes") = holes_json(*face, false, joint.limb);
+      json.push_back(std::move(pair));
     }
     return json;
   }

@@ -57,6 +57,12 @@ private:
 
 } // namespace
 
+OrderedJson object_with_room(std::size_t entries) {
+  OrderedJson object = OrderedJson::object();
+  object.get_ref<OrderedJson::object_t&>().reserve(entries);
+  return object;
+}
+
 OrderedJson& append(OrderedJson& object, std::string name) {
   auto& entries = object.get_ref<OrderedJson::object_t&>();
   entries.emplace_back(std::move(name), OrderedJson());

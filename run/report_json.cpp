@@ -164,11 +164,13 @@ private:
 };
 
 Json extremes_json(const Report& report, Meanings& meanings) {
-  Json json = Json::object();
+  constexpr std::size_t k_most_entries = 16;
+  Json json = object_with_room(report.ranges().size());
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
   for (const ChannelRange& range : report.ranges()) {
-    Json& entry = append(json, range.channel->name);
-    entry = {{"unit", range.channel->unit}, {"meaning", meanings.place_of(*range.channel)}};
+    Json& entry = append(json, range.channel->name) = object_with_room(k_most_entries);
+    append(entry, "unit") = range.channel->unit;
+    append(entry, "meaning") = meanings.place_of(*range.channel);
     add_number(entry, "min", range.low.value);
     entry["t_min"] = time(range.low);
     add_number(entry, "max", range.high.value);
@@ -365,7 +367,7 @@ Json state_json(const System& system, const State& state, const Report& report) 
 OrderedJson summary_head(const Report& report, ShownDigits digits) {
   const Run& run = report.run;
   const LoadedModel& loaded = *run.loaded;
-  Json json;
+  Json json = object_with_room(32); // those of summary_document(), too
   json["program"] = {{"name", "steplap"}, {"version", k_version}};
   json["model"] = {{"file", loaded.path},
                    {"name", loaded.name},

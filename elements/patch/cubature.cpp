@@ -48,6 +48,10 @@ int nodes_at(double x, int more) {
   return std::clamp(n, 2 + more, k_most);
 }
 
+#if defined(__x86_64__)
+const bool has_three_operands = __builtin_cpu_supports("avx") != 0;
+#endif
+
 double spin(double a_x, double a_y, double b_x, double b_y) { return a_x * b_y - a_y * b_x; }
 
 /// A twist about the piece's centroid, and what it makes of quadrilaterals there.
@@ -71,6 +75,22 @@ public:
 
 private:
   void add(const Vec2& p0, const Vec2& p1, const Vec2& p2, const Vec2& p3) {
+#if defined(__x86_64__)
+    if (has_three_operands) return more_ == 0 ? add_by_three_operands<true>(p0, p1, p2, p3) : add_by_three_operands<false>(p0, p1, p2, p3);
+#endif
+    more_ == 0 ? add_quadrilateral<true>(p0, p1, p2, p3) : add_quadrilateral<false>(p0, p1, p2, p3);
+  }
+
+#if defined(__x86_64__)
+  // The same operations, without the copies that instructions of two operands need.
+  template <bool IsUniform>
+  [[gnu::target("avx")]] void add_by_three_operands(const Vec2& p0, const Vec2& p1, const Vec2& p2, const Vec2& p3) {
+    add_quadrilateral<IsUniform>(p0, p1, p2, p3);
+  }
+#endif
+
+  template <bool IsUniform>
+  [[gnu::always_inline]] inline void add_quadrilateral(const Vec2& p0, const Vec2& p1, const Vec2& p2, const Vec2& p3) {
     const Vec2 bottom = p1 - p0, top = p2 - p3;
     const PairedRule& along = rule_for(bottom, top);
     const PairedRule& across = rule_for(p3 - p0, p2 - p1);
@@ -78,26 +98,30 @@ private:
       const double s = along.x[i];
       const Vec2 p = p0 + s * bottom, d = (p3 + s * top) - p;
       const double j0 = along.w[i] * cross(bottom, d), j1 = along.w[i] * cross(top, d) - j0;
-      add_row(p, d, j0, j1, across);
+      add_row<IsUniform>(p, d, j0, j1, across);
     }
   }
 
-  const PairedRule& rule_for(const Vec2& one, const Vec2& other) const {
+  [[gnu::always_inline]] inline const PairedRule& rule_for(const Vec2& one, const Vec2& other) const {
     const double length = std::sqrt(std::max(one.squaredNorm(), other.squaredNorm()));
     return rules()[static_cast<std::size_t>(nodes_at(0.5 * length * by_half_length_, more_))];
   }
 
-  /// r = p + t d, Jacobian j0 + t j1.
-  void add_row(const Vec2& p, const Vec2& d, double j0, double j1, const PairedRule& rule) {
+  /// r = p + t d, Jacobian j0 + t j1. A traction that is the same everywhere is not added up anew: to the bit it is what it is.
+  template <bool IsUniform>
+  [[gnu::always_inline]] inline void add_row(const Vec2& p, const Vec2& d, double j0, double j1, const PairedRule& rule) {
     const double ax = v_.x() - omega_ * p.y(), ay = v_.y() + omega_ * p.x();
     const double bx = -omega_ * d.y(), by = omega_ * d.x();
-    const double w0 = traction_.at_centroid + traction_.gradient.dot(p), w1 = traction_.gradient.dot(d);
+    const double w0 = traction_.at_centroid + (IsUniform ? 0.0 : traction_.gradient.dot(p)),
+                 w1 = IsUniform ? 0.0 : traction_.gradient.dot(d);
     Two s0 = Two::Zero(), s1 = s0, s2 = s0, c0 = s0, c1 = s0, c2 = s0;
     for (int i = 0; 2 * i < rule.count; ++i) {
       const Two t = rule.pair_x[i];
       const Two x = ax + t * bx, y = ay + t * by;
       const Two square = x * x + y * y;
-      const Two share = rule.pair_w[i] * (j0 + t * j1) * (w0 + t * w1) / square.sqrt();
+      Two traction = Two::Constant(w0);
+      if constexpr (!IsUniform) traction += t * w1;
+      const Two share = rule.pair_w[i] * (j0 + t * j1) * traction / square.sqrt();
       const Two st = share * t;
       s0 += share;
       s1 += st;

@@ -75,22 +75,43 @@ template <bool WithCurvature>
   return rows;
 }
 
-/// Both numbers times (x, y), given as (x, x, …) and (−y, y, …).
-[[gnu::always_inline]] inline void turn(Four& r, const Four& x, const Four& y) {
-  r = x * r + y * __builtin_shufflevector(r, r, 1, 0, 3, 2);
+/// e^{−ilφ} of one l and of the one two farther on, as their numbers are wanted: x, x, … and −y, y, …
+struct TwoTurns {
+  Four x, y;
+  [[gnu::always_inline]] inline TwoTurns(const Two& one, const Two& other)
+      : x{one[0], one[0], other[0], other[0]}, y{-one[1], one[1], -other[1], other[1]} {}
+};
+
+// By value, and never by way of their addresses: what is kept in memory is cleared there, each time, by an instruction that takes as long as
+// all its sums.
+template <bool WithCurvature> [[gnu::always_inline]] inline TwoRows turned(const TwoRows& rows, const TwoTurns& by) {
+  TwoRows out{by.x * rows.r0 + by.y * __builtin_shufflevector(rows.r0, rows.r0, 1, 0, 3, 2),
+              by.x * rows.r1 + by.y * __builtin_shufflevector(rows.r1, rows.r1, 1, 0, 3, 2), Four{}};
+  if constexpr (WithCurvature) out.r2 = by.x * rows.r2 + by.y * __builtin_shufflevector(rows.r2, rows.r2, 1, 0, 3, 2);
+  return out;
 }
+
+/// Of each l: 1, l, l², l²
+constexpr auto k_degrees = [] {
+  std::array<std::array<double, 4>, FarField::k_order + 4> degrees{};
+  for (int l = 0; l < FarField::k_order + 4; ++l) degrees[l] = {1.0, double(l), double(l * l), double(l * l)};
+  return degrees;
+}();
 
 /// Sums over l; beside g there is d/dφ, Re(−il e·r) = l Im(e·r).
 template <bool WithCurvature> class PolarSums {
 public:
   /// `half`: 0 for l, 1 for l + 2.
   template <int Half> [[gnu::always_inline]] inline void add(const TwoRows& rows, int l) {
-    const Two r0 = half<Half>(rows.r0), r1 = half<Half>(rows.r1), by_l{1.0, double(l)};
+    Two by_l, by_square;
+    std::memcpy(&by_l, k_degrees[l].data(), sizeof by_l);
+    std::memcpy(&by_square, k_degrees[l].data() + 2, sizeof by_square);
+    const Two r0 = half<Half>(rows.r0), r1 = half<Half>(rows.r1);
     value_ += by_l * r0;
     by_kappa_ += by_l * r1;
     if constexpr (WithCurvature) {
       twice_by_kappa_ += half<Half>(rows.r2);
-      twice_by_phi_ -= double(l * l) * r0;
+      twice_by_phi_ -= by_square * r0;
     }
   }
   [[nodiscard]] Polar sum() const { return {value_[0], by_kappa_[0], value_[1], twice_by_kappa_[0], by_kappa_[1], twice_by_phi_[0]}; }
@@ -106,24 +127,14 @@ template <bool WithCurvature>
 [[gnu::always_inline]] inline Polar sum_polar(const double* a, int row, double kappa, int order, double cx, double cy) {
   const Powers<WithCurvature> power(kappa, order);
   PolarSums<WithCurvature> sums;
-  double ex = 1, ey = 0; // e^{−ilφ}
-  const auto next = [&] {
-    const double turned = ex * cx + ey * cy;
-    ey = ey * cx - ex * cy;
-    ex = turned;
-  };
+  const Two along{cx, cx}, across{cy, -cy};
+  const auto next = [&](const Two& e) { return along * e + across * __builtin_shufflevector(e, e, 1, 0); };
+  Two e0{1.0, 0.0}; // e^{−ilφ}
   for (int l = 0; l <= order; l += 4, a += 2 * row) {
-    TwoRows even = sum_rows(a, power, l, order), odd = sum_rows(a + row, power, l + 1, order);
-    const double x0 = ex, y0 = ey;
-    next();
-    const double x1 = ex, y1 = ey;
-    next();
-    const double x2 = ex, y2 = ey;
-    next();
-    const double x3 = ex, y3 = ey;
-    next();
-    for (Four* r : {&even.r0, &even.r1, &even.r2}) turn(*r, Four{x0, x0, x2, x2}, Four{-y0, y0, -y2, y2});
-    for (Four* r : {&odd.r0, &odd.r1, &odd.r2}) turn(*r, Four{x1, x1, x3, x3}, Four{-y1, y1, -y3, y3});
+    const Two e1 = next(e0), e2 = next(e1), e3 = next(e2);
+    const TwoRows even = turned<WithCurvature>(sum_rows(a, power, l, order), {e0, e2}),
+                  odd = turned<WithCurvature>(sum_rows(a + row, power, l + 1, order), {e1, e3});
+    e0 = next(e3);
     sums.template add<0>(even, l);
     if (l + 1 > order) break;
     sums.template add<0>(odd, l + 1);
@@ -138,7 +149,7 @@ template <bool WithCurvature>
 /// Moments of a node at z, added to a.
 [[gnu::always_inline]] inline void add_moments(double* a, int row, const Vec2& z, double uniform, double linear) {
   constexpr int k_order = FarField::k_order, k_rows = k_order / 2 + 1;
-  std::array<double, k_order + 1> weight{};
+  std::array<double, k_order + 1> weight;
   std::array<Four, k_rows> square;    // |z|^2k of row l, one power less of l + 2; of the first place no more than a zero
   std::array<Two, k_order + 4> power; // z^l
   for (int n = 0; n <= k_order; ++n) weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
@@ -150,8 +161,8 @@ template <bool WithCurvature>
     now *= norm;
   }
   power[0] = Two{1, 0};
-  for (int l = 1; l < k_order + 4; ++l)
-    power[l] = Two{power[l - 1][0] * z.x() - power[l - 1][1] * z.y(), power[l - 1][0] * z.y() + power[l - 1][1] * z.x()};
+  const Two by_x{z.x(), z.x()}, by_y{-z.y(), z.y()};
+  for (int l = 1; l < k_order + 4; ++l) power[l] = power[l - 1] * by_x + __builtin_shufflevector(power[l - 1], power[l - 1], 1, 0) * by_y;
   for (int first = 0; first <= k_order; first += 4)
     for (int l = first; l < first + 2 && l <= k_order; ++l, a += row) {
       const bool has_second = l + 2 <= k_order; // else no row is there

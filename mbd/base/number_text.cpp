@@ -1,9 +1,17 @@
 // The text is that of std::to_chars: of fixed and scientific notation the shorter, fixed if both are as long. Its
-// digits are fmt's shortest (Dragonbox), which take a third of the instructions.
+// digits are found as in Schubfach (R. Giulietti, The Schubfach way to render doubles, 2020) from one product alone, to 2^-60 of the
+// seventeenth digit; where that does not decide, which nearly never happens, fmt's Dragonbox does.
 #include "mbd/base/number_text.h"
 
 #define FMT_HEADER_ONLY // its shared object would be loaded at every start
 #define FMT_USE_FULL_CACHE_DRAGONBOX 1
+// A namespace of its own: spdlog brings fmt with a smaller table of the same name, and the linker would take one of them for both.
+#define FMT_BEGIN_NAMESPACE                                                                                                                \
+  namespace fmt {                                                                                                                          \
+  inline namespace full_cache {
+#define FMT_END_NAMESPACE                                                                                                                  \
+  }                                                                                                                                        \
+  }
 #include <fmt/format-inl.h>
 
 #include <array>
@@ -12,6 +20,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 namespace steplap {
 
@@ -27,15 +39,15 @@ constexpr auto k_powers = [] {
   return powers;
 }();
 
-/// The characters of eight digits, with zeros before the first, all at once: two numbers of four in one word, four of
-/// two, eight of one. The first is in the lowest byte.
-std::uint64_t eight(std::uint64_t value) {
-  const std::uint64_t high = value / 10000, fours = high | (value - high * 10000) << 32;
-  const std::uint64_t hundreds = (fours * 10486 >> 20) & 0x0000007f0000007f; // of each four, two digits
-  const std::uint64_t twos = hundreds | (fours - hundreds * 100) << 16;
-  const std::uint64_t tens = (twos * 103 >> 10) & 0x000f000f000f000f, ones = tens | (twos - tens * 10) << 8;
-  return ones + 0x3030303030303030;
-}
+static_assert(std::endian::native == std::endian::little, "characters are put together in words");
+__extension__ typedef unsigned __int128 Sixteen;
+
+/// A number above zero, digit by digit.
+struct Decimal {
+  std::uint64_t first; ///< sixteen of its digits, the first of which is not 0
+  unsigned last;       ///< the seventeenth: no double needs any behind that
+  int exponent;        ///< of the first
+};
 
 /// How many digits; of 0 none.
 int digit_count(std::uint64_t value) {
@@ -44,52 +56,112 @@ int digit_count(std::uint64_t value) {
   return about + (value >= k_powers[static_cast<std::size_t>(about)] ? 1 : 0);
 }
 
-static_assert(std::endian::native == std::endian::little, "characters are put together in words");
-__extension__ typedef unsigned __int128 Sixteen;
+[[gnu::noinline]] Decimal decimal_by_dragonbox(double value) {
+  const auto [digits, exponent] = fmt::detail::dragonbox::to_decimal(value);
+  const int count = digit_count(digits);
+  if (count > 16) return {digits / 10, static_cast<unsigned>(digits % 10), exponent + count - 1};
+  return {digits * k_powers[static_cast<std::size_t>(16 - count)], 0, exponent + count - 1};
+}
 
-/// The digits of a number, the first in the lowest byte, and the seventeenth, beyond which no double needs any. They
-/// are put in their places by stores alone: loading again what was just stored in other pieces would wait for it.
-class Digits {
-public:
-  Digits(std::uint64_t value, int count) : count_(count) {
-    if (count > 16) {
-      const std::uint64_t others = value / 10;
-      last_ = static_cast<char>('0' + (value - others * 10));
-      value = others;
-      count = 16;
-    }
-    const std::uint64_t high = value / 100000000;
-    text_ = (Sixteen(eight(value - high * 100000000)) << 64 | eight(high)) >> (8 * (16 - count));
-  }
-  [[nodiscard]] int count() const { return count_; }
-  /// Seventeen bytes, of which the first are the digits.
-  void put(char* at) const {
-    std::memcpy(at, &text_, sizeof text_);
-    at[16] = last_;
-  }
-  /// With a point after the first few of them; eighteen bytes. 0 < before < count().
-  void put_with_point(char* at, int before) const {
-    const Sixteen behind = before < 16 ? text_ >> (8 * before) : 0;
-    std::memcpy(at, &text_, sizeof text_);
-    std::memcpy(at + before + 1, &behind, sizeof behind);
-    at[before] = '.';
-    if (count_ > 16) at[17] = last_;
-  }
+/// The shortest decimal number between those doubles' halfway points that enclose the value, of several the nearest one.
+Decimal decimal_of(double value) {
+  constexpr std::uint64_t k_fraction = (std::uint64_t{1} << 52) - 1, k_one = std::uint64_t{1} << 60, k_half = std::uint64_t{1} << 63;
+  constexpr std::uint64_t k_sure = 8, k_sure_of_half = 64; // what products may be off by is a third of that, and less
+  constexpr std::uint64_t k_sixteen_digits = 1000000000000000;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const int biased = static_cast<int>(bits >> 52);
+  // Powers of two, below which doubles lie closer, and what has fewer bits.
+  if ((bits & k_fraction) == 0 || biased == 0) return decimal_by_dragonbox(value);
+  const int q = biased - 1075;
+  const int k = q * 1262611 >> 22;            // ⌊log₁₀ 2^q⌋
+  const int h = q + (-k * 1741647 >> 19) + 1; // 2^q 10^-k = 2^h g / 2^128, from 1 on and below 10; 1 ≤ h ≤ 4
+  const auto g = fmt::detail::dragonbox::cache_accessor<double>::get_cached_power(-k);
+  const std::uint64_t c = ((bits & k_fraction) | (k_fraction + 1)) << h;
+  const Sixteen scaled = Sixteen(g.high()) * c + static_cast<std::uint64_t>(Sixteen(g.low()) * c >> 64);  // 10^-k value, in 2^-64
+  const auto whole = static_cast<std::uint64_t>(scaled >> 64), part = static_cast<std::uint64_t>(scaled); // sixteen or seventeen digits
+  std::uint64_t tens = whole / 10;
+  const std::uint64_t ones = whole - 10 * tens;
+  // Of the last digit, in 2^-60: to the halfway point, and to the next multiples of ten. One of these lies within halfway points at most.
+  const std::uint64_t reach = g.high() >> (5 - h), down = ones * k_one + (part >> 4), up = 10 * k_one - down;
+  const bool is_down = down < reach, is_up = up < reach;
+  if (down - reach + k_sure < 2 * k_sure || up - reach + k_sure < 2 * k_sure || part - k_half + k_sure_of_half < 2 * k_sure_of_half)
+      [[unlikely]]
+    return decimal_by_dragonbox(value);
+  const unsigned last = is_down || is_up ? 0U : static_cast<unsigned>(ones + (part >> 63)); // 9.5 is near 10, which lies within reach
+  tens += is_up ? 1 : 0;
+  if (tens >= k_sixteen_digits) return {tens, last, k + 16};
+  return {10 * tens + last, 0, k + 15};
+}
 
-private:
-  Sixteen text_;
-  int count_;
-  char last_ = '0';
+/// The characters of sixteen digits: the first is the lowest byte of `low`.
+struct Digits {
+  std::uint64_t low, high;
 };
 
-char* put_scientific(char* at, const Digits& digits, int exponent) {
-  if (digits.count() > 1) {
-    digits.put_with_point(at, 1);
-    at += digits.count() + 1;
-  } else {
-    digits.put(at);
-    ++at;
+#if defined(__SSE2__)
+// All at once: two numbers of eight digits become four of four, eight of two and sixteen of one.
+Digits digits_of(std::uint64_t value) {
+  const auto all = [](int x) { return _mm_set1_epi32(x); };
+  const auto each = [](short x) { return _mm_set1_epi16(x); };
+  const std::uint64_t eights = value / 100000000;
+  const __m128i eight = _mm_unpacklo_epi64(_mm_cvtsi64_si128(static_cast<long long>(eights)),
+                                           _mm_cvtsi64_si128(static_cast<long long>(value - eights * 100000000)));
+  const __m128i fours = _mm_srli_epi64(_mm_mul_epu32(eight, all(static_cast<int>(3518437209U))), 45); // / 10000
+  const __m128i four = _mm_or_si128(fours, _mm_slli_epi64(_mm_sub_epi32(eight, _mm_mul_epu32(fours, all(10000))), 32));
+  const __m128i twos = _mm_srli_epi16(_mm_mulhi_epu16(four, each(10486)), 4); // / 100
+  const __m128i two = _mm_or_si128(twos, _mm_slli_epi32(_mm_sub_epi16(four, _mm_mullo_epi16(twos, each(100))), 16));
+  const __m128i tens = _mm_mulhi_epu16(two, each(6554)); // / 10
+  const __m128i one = _mm_or_si128(tens, _mm_slli_epi16(_mm_sub_epi16(two, _mm_mullo_epi16(tens, each(10))), 8));
+  const __m128i text = _mm_or_si128(one, _mm_set1_epi8('0'));
+  return {static_cast<std::uint64_t>(_mm_cvtsi128_si64(text)),
+          static_cast<std::uint64_t>(_mm_cvtsi128_si64(_mm_unpackhi_epi64(text, text)))};
+}
+#else
+/// Of eight digits: two numbers of four in one word, four of two, eight of one.
+std::uint64_t eight(std::uint64_t value) {
+  const std::uint64_t high = value / 10000, fours = high | (value - high * 10000) << 32;
+  const std::uint64_t hundreds = (fours * 10486 >> 20) & 0x0000007f0000007f; // of each four, two digits
+  const std::uint64_t twos = hundreds | (fours - hundreds * 100) << 16;
+  const std::uint64_t tens = (twos * 103 >> 10) & 0x000f000f000f000f, ones = tens | (twos - tens * 10) << 8;
+  return ones + 0x3030303030303030;
+}
+Digits digits_of(std::uint64_t value) { return {eight(value / 100000000), eight(value % 100000000)}; }
+#endif
+
+constexpr std::uint64_t k_zeros = 0x3030303030303030;
+
+/// How many are left without the zeros at the end; the first is none.
+int without_zeros(const Digits& d) {
+  const std::uint64_t high = d.high ^ k_zeros;
+  return high != 0 ? 16 - (__builtin_clzll(high) >> 3) : 8 - (__builtin_clzll(d.low ^ k_zeros) >> 3);
+}
+
+/// Seventeen bytes.
+void put_digits(char* at, const Digits& d, unsigned last) {
+  std::memcpy(at, &d.low, sizeof d.low);
+  std::memcpy(at + 8, &d.high, sizeof d.high);
+  at[16] = static_cast<char>('0' + last);
+}
+
+/// With a point behind the first few of them; eighteen bytes. 0 < before < 17. By stores alone: loading again what was just stored in other
+/// pieces would wait for it.
+void put_with_point(char* at, const Digits& d, unsigned last, int before) {
+  put_digits(at + 1, d, last); // those behind the point are in their places
+  std::uint64_t word = d.low;
+  if (before < 8) {
+    const std::uint64_t bit = std::uint64_t{1} << (8 * before), mask = bit - 1;
+    word = (d.low & mask) | (d.low & ~mask) << 8 | bit * '.';
   }
+  std::memcpy(at, &word, sizeof word);
+  if (before < 8) return;
+  for (int i = 8; i < before; ++i) at[i] = static_cast<char>(d.high >> (8 * (i - 8)));
+  at[before] = '.';
+}
+
+char* put_scientific(char* at, const Digits& d, unsigned last, int count, int exponent) {
+  if (count > 1) put_with_point(at, d, last, 1);
+  else *at = static_cast<char>(d.low);
+  at += count > 1 ? count + 1 : 1;
   *at++ = 'e';
   *at++ = exponent < 0 ? '-' : '+';
   int size = std::abs(exponent);
@@ -100,18 +172,6 @@ char* put_scientific(char* at, const Digits& digits, int exponent) {
   *at++ = static_cast<char>('0' + size / 10);
   *at++ = static_cast<char>('0' + size % 10);
   return at;
-}
-
-/// digits · 10^exponent, exponent < 0.
-char* put_fixed(char* at, const Digits& digits, int exponent) {
-  const int before = digits.count() + exponent; // the point
-  if (before > 0) {
-    digits.put_with_point(at, before);
-    return at + digits.count() + 1;
-  }
-  std::memcpy(at, "0.000000", 8); // no more zeros than scientific notation takes for its exponent
-  digits.put(at + 2 - before);
-  return at + 2 - before + digits.count();
 }
 
 } // namespace
@@ -128,16 +188,23 @@ char* write_number(char* at, double value) {
     *at = '0';
     return at + 1;
   }
-  const auto [digits, exponent] = fmt::detail::dragonbox::to_decimal(value);
-  const int count = digit_count(digits);
-  const int scientific = exponent + count - 1; // exponent of that notation, which takes its sign and two or three digits
-  const int length = (count > 1 ? count + 1 : 1) + 2 + (std::abs(scientific) >= 100 ? 3 : 2);
-  const int fixed_length = exponent >= 0 ? count + exponent : (count + exponent > 0 ? count + 1 : 2 - exponent);
-  if (fixed_length > length) return put_scientific(at, {digits, count}, scientific);
-  if (exponent < 0) return put_fixed(at, {digits, count}, exponent);
-  if (fixed_length > k_exact) return as_always(); // all digits of a whole number, more than the shortest
-  Digits(digits * k_powers[static_cast<std::size_t>(exponent)], fixed_length).put(at);
-  return at + fixed_length;
+  const auto [first, last, exponent] = decimal_of(value);
+  const Digits digits = digits_of(first);
+  const int count = last != 0 ? 17 : without_zeros(digits);
+  const int scientific = (count > 1 ? count + 1 : 1) + 2 + (std::abs(exponent) >= 100 ? 3 : 2); // characters of that notation
+  const int whole = exponent + 1;                                                               // digits before the point
+  const int fixed = whole >= count ? whole : (whole > 0 ? count + 1 : count + 2 - whole);
+  if (fixed > scientific) return put_scientific(at, digits, last, count, exponent);
+  if (whole >= count) {
+    if (fixed > k_exact) return as_always(); // all digits of a whole number, more than the shortest
+    put_digits(at, digits, last);
+  } else if (whole > 0) {
+    put_with_point(at, digits, last, whole);
+  } else {
+    std::memcpy(at, "0.000000", 8); // no more zeros than scientific notation takes for its exponent
+    put_digits(at + 2 - whole, digits, last);
+  }
+  return at + fixed;
 }
 
 void append_number(std::string& text, double value) {

@@ -35,16 +35,21 @@ public:
     if (!is_dense_ready_) prepare_dense(dynamics);
     dense_of_pair(theta, out);
   }
+  // y + s (r0 + u (r1 + s (r2 + u (r3 + s (r4 + u (r5 + s r6))))))
   void dense_of_pair(double theta, double* out) {
     const double s = theta, u = 1.0 - theta;
-    const double* __restrict r = r_.data();
-    const double* __restrict y = y0_.data();
-    double* __restrict result = out;
-    const int m = stride_;
-    for (int i = 0; i < n_; ++i)
-      result[i] =
-          y[i] + s * (r[i] + u * (r[m + i] +
-                                  s * (r[2 * m + i] + u * (r[3 * m + i] + s * (r[4 * m + i] + u * (r[5 * m + i] + s * r[6 * m + i]))))));
+    for_numbers(
+        n_, [ s, u, out, m = stride_, r = r_.data(), y = y0_.data() ]<class S>(int i) __attribute__((always_inline)) {
+          S sum, part;
+          read_numbers(r + 6 * m + i, sum);
+          for (int p = 5; p >= 0; --p) {
+            read_numbers(r + p * m + i, part);
+            sum = part + (p % 2 == 1 ? s : u) * sum;
+          }
+          read_numbers(y + i, part);
+          sum = part + s * sum;
+          std::memcpy(out + i, &sum, sizeof sum);
+        });
   }
 
   [[nodiscard]] double share_of_stability(Dynamics&) override {
@@ -86,13 +91,20 @@ private:
     stage<a, 13>(dynamics, c[13]);
     stage<a, 14>(dynamics, c[14]);
     stage<a, 15>(dynamics, c[15]);
-    double* r = r_.data();
+    double* const r = r_.data();
     const int m = stride_;
-    for (int i = 0; i < n_; ++i) {
-      r[i] = y1_[i] - y0_[i];
-      r[m + i] = h_ * k(0)[i] - r[i];
-      r[2 * m + i] = 2.0 * r[i] - h_ * (k(0)[i] + k(12)[i]);
-    }
+    for_numbers(
+        n_, [ r, m, h = h_, y0 = y0_.data(), y1 = y1_.data(), k0 = k(0), k1 = k(12) ]<class S>(int i) __attribute__((always_inline)) {
+          S begin, end, rate0, rate1;
+          read_numbers(y0 + i, begin);
+          read_numbers(y1 + i, end);
+          read_numbers(k0 + i, rate0);
+          read_numbers(k1 + i, rate1);
+          const S way = end - begin, first = h * rate0 - way, second = 2.0 * way - h * (rate0 + rate1);
+          std::memcpy(r + i, &way, sizeof way);
+          std::memcpy(r + m + i, &first, sizeof first);
+          std::memcpy(r + 2 * m + i, &second, sizeof second);
+        });
     weighted_row<d, 0, 16>(h_, k_.data(), m, n_, r + 3 * m);
     weighted_row<d, 1, 16>(h_, k_.data(), m, n_, r + 4 * m);
     weighted_row<d, 2, 16>(h_, k_.data(), m, n_, r + 5 * m);

@@ -23,6 +23,28 @@ using FourNumbers [[gnu::vector_size(32)]] = double;
 /// Numbers from there on, as many as S has. (By reference: as results their registers would hang on the processor.)
 template <class S> STEPLAP_INLINE void read_numbers(const double* from, S& numbers) { std::memcpy(&numbers, from, sizeof numbers); }
 
+/// f.operator()<S>(i) for the numbers from each i on, as many as S has, up to n: four, then two at a time.
+template <class F> STEPLAP_INLINE void for_numbers_by_two(int i, int n, const F& f) {
+  for (; i + 1 < n; i += 2) f.template operator()<TwoNumbers>(i);
+  if (i < n) f.template operator()<double>(i);
+}
+
+#if defined(__x86_64__)
+template <class F> [[gnu::target("avx")]] void for_numbers_by_four(int n, const F& f) {
+  int i = 0;
+  for (; i + 3 < n; i += 4) f.template operator()<FourNumbers>(i);
+  for_numbers_by_two(i, n, f);
+}
+inline const bool has_registers_of_four = __builtin_cpu_supports("avx") != 0;
+#endif
+
+template <class F> inline void for_numbers(int n, const F& f) {
+#if defined(__x86_64__)
+  if (has_registers_of_four) return for_numbers_by_four(n, f);
+#endif
+  for_numbers_by_two(0, n, f);
+}
+
 /// sum += coefficient k
 template <class S> STEPLAP_INLINE void add_stage(double coefficient, const double* k, S& sum) {
   S numbers;
@@ -60,7 +82,6 @@ template <auto Coefficient, std::size_t Count, class F>
   for (; i + 3 < n; i += 4) put_sums<FourNumbers, Coefficient, Count>(k, stride, i, out, f);
   put_sums_by_two<Coefficient, Count>(k, stride, i, n, out, f);
 }
-inline const bool has_registers_of_four = __builtin_cpu_supports("avx") != 0;
 #endif
 
 /// The same for all i < n.

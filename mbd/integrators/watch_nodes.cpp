@@ -1,7 +1,10 @@
 #include "mbd/integrators/watch_nodes.h"
 
+#include "mbd/integrators/explicit_runge_kutta.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace steplap {
@@ -34,20 +37,21 @@ template <class Curve> bool tells_bend(const Curve& c) {
   return c.last > 2 || (c.last == 2 && !std::isnan(c.start_slope) && !std::isnan(c.end_slope));
 }
 
-// Ranges by the values at four places.
-void widen(int slots, const std::array<const double*, 4>& values, double* __restrict low, double* __restrict high) {
-  const double* __restrict a = values[0], * __restrict b = values[1], * __restrict c = values[2], * __restrict d = values[3];
-  for (int i = 0; i < slots; ++i) {
-    double least = low[i], most = high[i];
-    least = a[i] < least ? a[i] : least;
-    most = a[i] > most ? a[i] : most;
-    least = b[i] < least ? b[i] : least;
-    most = b[i] > most ? b[i] : most;
-    least = c[i] < least ? c[i] : least;
-    most = c[i] > most ? c[i] : most;
-    low[i] = d[i] < least ? d[i] : least;
-    high[i] = d[i] > most ? d[i] : most;
-  }
+// Ranges by the values at four places. Of those that are no numbers, what was known stays.
+void widen(int slots, const std::array<const double*, 4>& values, double* low, double* high) {
+  for_numbers(
+      slots, [&values, low, high ]<class S>(int i) __attribute__((always_inline)) {
+        S least, most, value;
+        read_numbers(low + i, least);
+        read_numbers(high + i, most);
+        for (const double* const at : values) {
+          read_numbers(at + i, value);
+          least = value < least ? value : least;
+          most = value > most ? value : most;
+        }
+        std::memcpy(low + i, &least, sizeof least);
+        std::memcpy(high + i, &most, sizeof most);
+      });
 }
 
 } // namespace
@@ -77,7 +81,7 @@ void WatchNodes::close(const double* watch0, const double* watch1) {
     high_[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
   }
   const auto at = [this](int place) { return values_.data() + static_cast<std::ptrdiff_t>(std::min(place, count_ - 1)) * stride_; };
-  for (int k = 0; k < count_; k += 4) widen(slots_, {at(k), at(k + 1), at(k + 2), at(k + 3)}, low_.data(), high_.data());
+  for (int k = 0; k < count_; k += 4) widen(stride_, {at(k), at(k + 1), at(k + 2), at(k + 3)}, low_.data(), high_.data());
   if (count_ > 1) return;
   // One place inside, as of rk4, does not see where parts of a sum of harmonics cancel: it may be lower than there.
   for (int i = 0; i < slots_; ++i) low_[i] -= k_unseen_by_one * (high_[i] - low_[i]);

@@ -135,6 +135,10 @@ TEST_CASE("numbers are the text that the C++ library makes of them") {
     const double power = std::pow(10.0, digits);
     compare(std::round(of_one * power) / power);
     compare(std::round(of_one * power) * 100.0);
+    // And those beside them, whose seventeenth digit lies nearest to where it would be another.
+    const double decimal = std::round(of_one * power) * std::pow(10.0, static_cast<double>(bits >> 8 & 63U) - 32.0);
+    for (const double x : {decimal, std::nextafter(decimal, 0.0), std::nextafter(decimal, std::numeric_limits<double>::infinity())})
+      compare(x);
   }
   CHECK(wrong == 0);
 }

@@ -7,7 +7,10 @@
 #include <doctest/doctest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 #include <vector>
 
 using namespace steplap;
@@ -56,6 +59,35 @@ TEST_CASE("sums of stages: the same bits by one, two and four numbers at a time"
         are_same = are_same && is_same(scaled[i], h * sum_of(&dop853::d[2][0], &k[i], 16));
       }
       for (int i = n; i < k_stride; ++i) are_same = are_same && combined[i] == 7.0 && weighted[i] == 7.0 && scaled[i] == 7.0;
+      CHECK(are_same);
+    }
+  }
+}
+
+TEST_CASE("what is done with each number by itself: the same bits by one, two and four at a time") {
+  random::RandomNumber draw(8);
+  for (int run = 0; run < 200; ++run) {
+    const double factor = draw.either(0.1, 1.0);
+    std::vector<double> x = numbers(draw, k_stride), y = numbers(draw, k_stride);
+    x[static_cast<std::size_t>(run) % k_stride] = std::numeric_limits<double>::quiet_NaN(); // is not less than anything
+    for (int n = 1; n <= k_stride; ++n) {
+      std::vector<double> line(k_stride, 7.0), least(k_stride, 7.0);
+      for_numbers(
+          n, [&]<class S>(int i) __attribute__((always_inline)) {
+            S a, b;
+            read_numbers(x.data() + i, a);
+            read_numbers(y.data() + i, b);
+            const S sum = b + factor * (a - b), less = a < b ? a : b;
+            std::memcpy(line.data() + i, &sum, sizeof sum);
+            std::memcpy(least.data() + i, &less, sizeof less);
+          });
+      bool are_same = true;
+      for (int i = 0; i < n; ++i) {
+        const double sum = y[i] + factor * (x[i] - y[i]);
+        are_same = are_same && (is_same(line[i], sum) || (std::isnan(line[i]) && std::isnan(sum)));
+        are_same = are_same && is_same(least[i], x[i] < y[i] ? x[i] : y[i]);
+      }
+      for (int i = n; i < k_stride; ++i) are_same = are_same && line[i] == 7.0 && least[i] == 7.0;
       CHECK(are_same);
     }
   }
