@@ -1,4 +1,5 @@
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/dynamics/sliding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,21 +96,11 @@ STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i) {
   const int f = layout_->sliding[i], link = layout_->sliding_link[i];
   const FrictionUnit& unit = system_.frictions[f];
   const FrictionState& friction = state_->friction[f];
-  const RowSpec* rows = unit.friction->rows(friction);
-  const int n = unit.friction->dimension();
-  MeasureValue<double> m[3];
-  double rate[3], wrench[3];
-  for (int r = 0; r < n; ++r) {
-    m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
-    rate[r] = m[r].rate;
-  }
-  unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
-  for (int r = 0; r < n; ++r) {
-    apply_force(arrays_.force[link], m[r], wrench[r]);
-    evaluation_.dissipation -= wrench[r] * rate[r];
-    friction_force_[unit.row + r] = wrench[r];
-  }
-  unit.friction->watch_slip(evaluation_, friction, rate, &arrays_.watch[unit.watch]);
+  const SlidingRows<double> rows(unit.friction->rows(friction), unit.friction->dimension(), motion_[link]);
+  double* const wrench = &friction_force_[unit.row];
+  unit.friction->slip_wrench(evaluation_, friction, rows.rate, wrench);
+  rows.pull(wrench, arrays_.force[link], evaluation_.dissipation);
+  unit.friction->watch_slip(evaluation_, friction, rows.rate, &arrays_.watch[unit.watch]);
 }
 
 // Forces of all elements, on clusters and on the bodies that ride on them.

@@ -1,16 +1,15 @@
 // Rows of a mechanism in its own coordinates: what SchurSolver does for clusters.
 #include "mbd/dynamics/dependent_rows.h"
 #include "mbd/dynamics/mechanism_work.h"
+#include "mbd/dynamics/refinement.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace steplap {
 
 namespace {
 
-constexpr int k_max_refinements = 4;
 constexpr double k_doubtful_pivot = 1e-8; // as in schur.cpp
 
 struct Pivots {
@@ -55,38 +54,33 @@ void eliminate(const MechanismWork& w, int m, double* x) {
   }
 }
 
-// x += A⁻¹ (right − J M⁻¹ Jᵀ x) while that makes the correction smaller, factor by factor as SchurSolver does it.
+// right − J M⁻¹ Jᵀ x
+void find_lack(const MechanismWork& w, int m, const double* right, const double* x, double* lack) {
+  std::array<double, MechanismWork::k_most> response{};
+  for (int r = 0; r < m; ++r)
+    for (int p = 0; p < w.patterns[r].count; ++p) {
+      const int i = w.patterns[r].at[p];
+      response[i] += w.scaled[static_cast<std::size_t>(r) * MechanismWork::k_most + i] * x[r];
+    }
+  for (int r = 0; r < m; ++r) {
+    double sum = right[r];
+    for (int p = 0; p < w.patterns[r].count; ++p) {
+      const int i = w.patterns[r].at[p];
+      sum -= w.white[static_cast<std::size_t>(r) * MechanismWork::k_most + i] * response[i];
+    }
+    lack[r] = sum;
+  }
+}
+
 void refine(const MechanismWork& w, int m, double* x) {
-  std::array<double, MechanismWork::k_most> right, correction, response;
+  std::array<double, MechanismWork::k_most> right, correction;
   std::copy(x, x + m, right.begin());
   eliminate(w, m, x);
-  double previous = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < k_max_refinements; ++iteration) {
-    response.fill(0.0);
-    for (int r = 0; r < m; ++r)
-      for (int p = 0; p < w.patterns[r].count; ++p) {
-        const int i = w.patterns[r].at[p];
-        response[i] += w.scaled[static_cast<std::size_t>(r) * MechanismWork::k_most + i] * x[r];
-      }
-    for (int r = 0; r < m; ++r) {
-      double sum = right[r];
-      for (int p = 0; p < w.patterns[r].count; ++p) {
-        const int i = w.patterns[r].at[p];
-        sum -= w.white[static_cast<std::size_t>(r) * MechanismWork::k_most + i] * response[i];
-      }
-      correction[r] = sum;
-    }
+  refine_solution(m, x, [&](const double* now) {
+    find_lack(w, m, right.data(), now, correction.data());
     eliminate(w, m, correction.data());
-    double size = 0.0, scale = 0.0;
-    for (int r = 0; r < m; ++r) {
-      size = std::max(size, std::abs(correction[r]));
-      scale = std::max(scale, std::abs(x[r]));
-    }
-    if (!(size < 0.5 * previous)) return;
-    for (int r = 0; r < m; ++r) x[r] += correction[r];
-    if (size <= std::numeric_limits<double>::epsilon() * scale) return;
-    previous = size;
-  }
+    return correction.data();
+  });
 }
 
 } // namespace

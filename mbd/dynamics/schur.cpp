@@ -2,6 +2,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/types.h"
 #include "mbd/dynamics/dependent_rows.h"
+#include "mbd/dynamics/refinement.h"
 #include "mbd/system/motion.h"
 
 #include <Eigen/OrderingMethods>
@@ -27,7 +28,6 @@ namespace {
 
 using Pattern = Eigen::SparseMatrix<double>;
 
-constexpr int k_max_refinements = 4;
 // With all pivots above this no row is so near to others that it has to be asked which stay out: the square of
 // SchurSolver::k_dependent, and for a row that enters another's dependence with a hundredth.
 constexpr double k_doubtful_pivot = 1e-8;
@@ -475,19 +475,18 @@ template <class F> void SchurSolver::for_parts(const F& f, const std::vector<Sch
       if (const SchurRow& row = rows[part.row]; row.body[side] >= 0) f(part, row, side, &response_[3 * row.body[side]]);
 }
 
-// x += A⁻¹ (right − J (W Jᵀ x)) while that makes the correction smaller.
+// By A⁻¹ (right − J (W Jᵀ x)).
 void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right, double* x) const {
   double* const correction = correction_.data();
-  double previous = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < k_max_refinements; ++iteration) {
+  refine_solution(n_, x, [&](const double* now) {
     std::fill(response_.begin(), response_.end(), 0.0);
     for (int r = 0; r < n_; ++r)
       for (int side = 0; side < 2; ++side)
         if (rows[r].body[side] >= 0)
-          for (int c = 0; c < 3; ++c) response_[3 * rows[r].body[side] + c] += rows[r].wj[side][c] * x[r];
+          for (int c = 0; c < 3; ++c) response_[3 * rows[r].body[side] + c] += rows[r].wj[side][c] * now[r];
     for_parts(
         [&](const SchurPart& part, const SchurRow& row, int side, double* response) {
-          for (int c = 0; c < 3; ++c) response[c] += row.wj[side][c] * x[part.of];
+          for (int c = 0; c < 3; ++c) response[c] += row.wj[side][c] * now[part.of];
         },
         rows);
     for (int r = 0; r < n_; ++r) {
@@ -503,16 +502,8 @@ void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right,
         },
         rows);
     eliminate(correction);
-    double size = 0.0, scale = 0.0;
-    for (int r = 0; r < n_; ++r) {
-      size = std::max(size, std::abs(correction[r]));
-      scale = std::max(scale, std::abs(x[r]));
-    }
-    if (!(size < 0.5 * previous)) return;
-    for (int r = 0; r < n_; ++r) x[r] += correction[r];
-    if (size <= std::numeric_limits<double>::epsilon() * scale) return;
-    previous = size;
-  }
+    return correction;
+  });
 }
 
 void SchurSolver::eliminate(double* x) const {

@@ -4,6 +4,7 @@
 #include "mbd/dynamics/kinematics.h"
 #include "mbd/dynamics/reactions.h"
 #include "mbd/dynamics/row_pull.h"
+#include "mbd/dynamics/sliding.h"
 #include "mbd/dynamics/traced_mechanism.h"
 
 #include <algorithm>
@@ -53,6 +54,7 @@ public:
     watch_rate_.assign(system.watch_count, Traced(std::numeric_limits<double>::quiet_NaN()));
     friction_force_.assign(system.friction_row_count, Traced(0.0));
     for (auto* const numbers : {&q_, &v_, &inner_, &time_, &a_, &multiplier_, &cluster_a_}) numbers->clear();
+    if (layout.has_mechanisms()) cluster_a_.resize(3 * layout.clusters.size());
     rows_.clear();
     inner_rate_.assign(static_cast<std::size_t>(system.inner_count()), Traced(0.0));
     e_.motion = motion_.data();
@@ -165,19 +167,10 @@ private:
 
   void slide(int f, int link) {
     const FrictionUnit& unit = system_.frictions[f];
-    const RowSpec* const rows = unit.friction->rows(state_.friction[f]);
-    const int n = unit.friction->dimension();
-    MeasureValue<Traced> m[3];
-    Traced rate[3], wrench[3];
-    for (int r = 0; r < n; ++r) {
-      m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
-      rate[r] = m[r].rate;
-    }
-    trace_friction(f, rate, wrench);
-    for (int r = 0; r < n; ++r) {
-      apply_force(force_[link], m[r], wrench[r]);
-      e_.dissipation -= wrench[r] * rate[r];
-    }
+    const SlidingRows<Traced> rows(unit.friction->rows(state_.friction[f]), unit.friction->dimension(), motion_[link]);
+    Traced wrench[3];
+    trace_friction(f, rows.rate, wrench);
+    rows.pull(wrench, force_[link], e_.dissipation);
   }
 
   void accelerate() {
@@ -219,7 +212,6 @@ private:
     Traced* const s = &a_[static_cast<std::size_t>(of.first_coordinate)];
     m.accelerate(force_.data(), s);
     if (of.row_count == 0) return;
-    cluster_a_.resize(3 * layout_.clusters.size());
     m.expand(s, cluster_a_.data());
     for (auto r = static_cast<std::size_t>(of.first_row), end = r + static_cast<std::size_t>(of.row_count); r < end; ++r)
       multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], cluster_a_.data());
@@ -295,7 +287,6 @@ private:
 
   [[nodiscard]] const Traced* cluster_accelerations() {
     if (mechanisms_.empty()) return a_.data();
-    cluster_a_.resize(3 * layout_.clusters.size());
     std::copy_n(a_.begin(), 3 * absolute_count(), cluster_a_.begin());
     for (TracedMechanism& m : mechanisms_) m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
     return cluster_a_.data();

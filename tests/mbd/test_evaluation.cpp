@@ -1,11 +1,14 @@
 // What an evaluation leaves, and for how long: multipliers, motions, forces of bodies that change their company.
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/io/reader.h"
+#include "mbd/tape/machine_code.h"
+#include "tests/elements/step_lap_scene.h"
 #include "tests/physics/scene.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace steplap;
@@ -181,4 +184,66 @@ TEST_CASE("what acted on a body in other modes acts no more when it rides on ano
   Dynamics used(*system), fresh(*system);
   REQUIRE(wrenches(used, sliding) != wrenches(fresh, holding));
   CHECK(wrenches(used, holding) == wrenches(fresh, holding));
+}
+
+TEST_CASE("a snapshot shows the energies that the state has booked") {
+  EvaluatedScene e(k_pendulum);
+  const std::size_t booked = 2 * static_cast<std::size_t>(e.dynamics.coordinate_count());
+  e.y[booked] = 3.5;
+  e.y[booked + 1] = -2.25;
+  e.dynamics.rates(0.0, e.y.data(), e.dy.data());
+  const Snapshot snapshot = e.dynamics.snapshot(e.dy.data());
+  CHECK(snapshot.dissipated == 3.5);
+  CHECK(snapshot.work == -2.25);
+}
+
+namespace {
+
+// A limb of 10 kg that a joint of 400 N holds to a yoke of 30 kg, drawn by a spring of 10 kN/m along x: of what the spring pulls, the joint
+// bears three quarters.
+std::string drawn_limb() {
+  using namespace step_lap_scene;
+  return header("end = 0.01", 0.01) + body("limb", 10.0, 1.0, {0.0, 0.0}) + body("yoke", 30.0, 3.0, {0.0, 0.0}) + joint("limb", "yoke") +
+         interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 5e4, 0.4) +
+         "[[element]]\nkind = \"spring_damper\"\nname = \"rope\"\na = { body = \"limb\", at = [0.0, 0.0] }\n"
+         "b = { body = \"ground\", at = [2.0, 0.0] }\nstiffness = 1e4\n";
+}
+
+} // namespace
+
+// Whether stages look at a merged joint hangs on both ends of the step before; by code or not.
+TEST_CASE("a joint inside a cluster is looked at from one step's end near its limit to the second one that is far from it") {
+  const auto system = compile(scene(drawn_limb()));
+  const State state = system->initial_state();
+  for (const StageCode code : {StageCode::never, StageCode::at_once}) {
+    Dynamics dynamics(*system);
+    dynamics.use_stage_code(code);
+    dynamics.set_state(state);
+    REQUIRE(dynamics.layout().merged.size() == 1);
+    std::vector<double> y(system->largest_dimension()), dy(y.size());
+    dynamics.pack(state, y.data());
+    dynamics.begin_stages();
+    const double x = y[0];
+    const double* const watch = &dynamics.watch()[static_cast<std::size_t>(system->frictions[0].watch)];
+    const auto at = [&](Request request, double force) {
+      y[0] = x - force / 1e4;
+      dynamics.evaluate(request, 0.0, y.data(), dy.data());
+    };
+    const auto left_of = [&](double force) { // of its capacity, the share that is left
+      at(Request::end, force);
+      return std::min(watch[0], watch[1]);
+    };
+    // Of stages nobody looks at the joint; code is made of them all the same, and is believed for what it finds there.
+    for (int stage = 0; stage < 6; ++stage) at(Request::stage, 10.0 + stage);
+    CHECK((dynamics.coded_stages() > 0) == (code == StageCode::at_once && MachineCode::is_available()));
+    CHECK(!dynamics.looks_at_merged(false));
+    CHECK(std::abs(left_of(40.0) - (1.0 - 0.75 * 40.0 / 400.0)) < 1e-6); // known to the polygons' sums
+    CHECK(!dynamics.looks_at_merged(false));
+    CHECK(left_of(440.0) < 0.5);
+    CHECK(dynamics.looks_at_merged(false));
+    CHECK(left_of(44.0) > 0.5);
+    CHECK(dynamics.looks_at_merged(false)); // the step that ends here began near the limit
+    CHECK(left_of(48.0) > 0.5);
+    CHECK(!dynamics.looks_at_merged(false));
+  }
 }

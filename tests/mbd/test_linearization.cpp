@@ -223,6 +223,46 @@ rotational_damping = 2.0
   CHECK(deviation(dynamics, moving, k_step, k_step) < 3e-8);
 }
 
+// Nothing but weight and what pins bear: columns of angles that no spring asks about.
+TEST_CASE("linearisation: pendulums that weight alone moves") {
+  for (int count = 1; count <= 4; ++count) {
+    CAPTURE(count);
+    std::string text = "gravity = [0.0, -9.0]\n[simulation]\nstep = 1e-3\n";
+    for (int i = 0; i < count; ++i) {
+      const std::string name = "rod " + std::to_string(i), above = i > 0 ? "rod " + std::to_string(i - 1) : "ground";
+      const std::string place = "[" + std::to_string(0.5 * i) + ", 0.0]";
+      text += "[[body]]\nname = '" + name + "'\nmass = " + std::to_string(1.0 + 0.5 * i) + "\ninertia = 0.1\nposition = [" +
+              std::to_string(0.5 * i + 0.3) + ", 0.1]\n[[element]]\nkind = 'revolute'\nname = 'pin of " + name + "'\na = { body = '" +
+              name + "', at = " + place + " }\nb = { body = '" + above + "', at = " + place + " }\n";
+    }
+    const auto system = compile(scene(text));
+    Dynamics dynamics(*system);
+    dynamics.use_coordinates(Coordinates::joint);
+    dynamics.set_time_limit(1.0);
+    const State state = system->initial_state();
+    dynamics.set_state(state);
+    REQUIRE(dynamics.coordinate_count() == count);
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension()));
+    dynamics.pack(state, y.data());
+    for (int i = 0; i < count; ++i) {
+      y[i] += 0.7 - 0.5 * i;
+      y[count + i] = 0.9 - 0.6 * i;
+    }
+    State moving = state;
+    dynamics.unpack(0.0, y.data(), moving);
+    CHECK(deviation(dynamics, moving, k_step, k_step) < 3e-8);
+    if (count > 1) continue;
+    // θ̈ = −m g l cos φ/(J + m l²), φ the angle of the way from the pin to the centre against x.
+    Linearization linear;
+    linear.evaluate(dynamics, 0.0, y.data());
+    MatX by_pose, by_rate;
+    linear.acceleration_by_state(by_pose, by_rate);
+    const double angle = 0.7 + std::atan2(0.1, 0.3);
+    CHECK(by_pose(0, 0) == doctest::Approx(9.0 * std::sqrt(0.1) * std::sin(angle) / (0.1 + 0.1)).epsilon(1e-13));
+    CHECK(by_rate(0, 0) == 0.0);
+  }
+}
+
 // Stiffness over mass is 1e5 1/s² and more here, and friction sits on springs of 1.6e9 N/m.
 TEST_CASE("linearisation: the paper's transformer sticking, sliding, with feet lifted and blocks pressed") {
   for (const char* name : {"paper/no_interference", "paper/weak_clamping"}) {

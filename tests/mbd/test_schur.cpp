@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include <doctest/doctest.h>
 
@@ -260,4 +261,85 @@ TEST_CASE("constraint equations: asked again at nearly the same place, the same 
   CHECK(decided(3e-6) == 0);
   CHECK(decided(1e-6) == 0); // and from the other side
   CHECK(decided(3e-7) == 1);
+}
+
+// Each diagonal entry is raised by its own fraction, in all sizes: rows that depend on each other can be solved with it.
+TEST_CASE("constraint equations: damped ones against a dense factorisation") {
+  std::mt19937 generator(21);
+  for (int rows = 1; rows <= 24; ++rows)
+    for (const double shift : {1e-3, 0.1}) {
+      CAPTURE(rows);
+      CAPTURE(shift);
+      Problem p = random_problem(rows, std::max(2, rows), 0.0, generator);
+      if (rows > 1) copy_row(p, 0, rows - 1, -1.3);
+      MatX a = p.matrix();
+      a.diagonal() *= 1.0 + shift;
+      const Eigen::SelfAdjointEigenSolver<MatX> eigen(a, Eigen::EigenvaluesOnly);
+      const double condition = eigen.eigenvalues()[rows - 1] / eigen.eigenvalues()[0];
+      SchurSolver solver;
+      solver.analyze(p.rows);
+      solver.factor(p.rows, shift);
+      CHECK(!solver.is_singular());
+      const VecX wanted = VecX::Random(rows);
+      VecX x = a * wanted;
+      solver.solve(p.rows, x.data());
+      CHECK((x - wanted).norm() < 2e-15 * rows * condition * wanted.norm()); // as above
+      solver.factor(p.rows);                                                 // and no more once it is not asked for
+      CHECK(solver.is_singular() == (rows > 1));
+    }
+}
+
+// A pivot of δ² costs elimination the digits of δ²; what is refined keeps all but those of δ, with parts of rows too. Wanted is what
+// orthogonal factors of the rows in 64 bits give.
+TEST_CASE("constraint equations: rows that are nearly the same keep the digits that their difference has") {
+  using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  using LongVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+  std::mt19937 generator(22);
+  int compared = 0;
+  for (int rows = 2; rows <= 14; ++rows)
+    for (int draw = 0; draw < 8; ++draw) {
+      const double delta = draw % 2 == 0 ? 1e-4 : 1e-5;
+      Problem p = random_problem(rows, rows + 2, 0.0, generator);
+      const Problem other = random_problem(1, rows + 2, 0.0, generator); // what the last row is beyond the first
+      copy_row(p, 0, rows - 1, 1.0);
+      const auto add_part = [&p](int of, const SchurRow& from, double factor, std::vector<SchurPart>& parts) {
+        SchurRow part = from;
+        for (int side = 0; side < 2; ++side)
+          for (int c = 0; c < 3 && part.body[side] >= 0; ++c) {
+            const int k = 3 * part.body[side] + c;
+            part.j[side][c] *= factor;
+            part.wj[side][c] = p.w(k, k) * part.j[side][c];
+            p.j(of, k) += part.j[side][c];
+          }
+        parts.push_back({static_cast<int>(p.rows.size()), of});
+        p.rows.push_back(part);
+      };
+      std::vector<SchurPart> parts;
+      add_part(rows - 1, other.rows[0], delta, parts);
+      if (draw % 4 > 1) add_part(0, random_problem(1, rows + 2, 0.0, generator).rows[0], delta, parts);
+      const MatX a = p.matrix();
+      const double condition = [&] {
+        const Eigen::SelfAdjointEigenSolver<MatX> eigen(a, Eigen::EigenvaluesOnly);
+        return std::sqrt(eigen.eigenvalues()[rows - 1] / std::max(1e-300, eigen.eigenvalues()[0]));
+      }();
+      if (condition > 1e6) continue; // beyond what counts as independent
+      CAPTURE(rows);
+      CAPTURE(draw);
+      const LongMatrix white = p.w.cast<long double>().cwiseSqrt() * p.j.transpose().cast<long double>();
+      const Eigen::HouseholderQR<LongMatrix> qr(white);
+      const LongMatrix upper = qr.matrixQR().topRows(rows).template triangularView<Eigen::Upper>();
+      const VecX right = VecX::Random(rows);
+      const LongVector half = upper.transpose().template triangularView<Eigen::Lower>().solve(LongVector(right.cast<long double>()));
+      const VecX wanted = LongVector(upper.template triangularView<Eigen::Upper>().solve(half)).cast<double>();
+      SchurSolver solver;
+      solver.analyze(p.rows, rows, parts);
+      solver.factor(p.rows);
+      CHECK(solver.is_near_singular());
+      CHECK(!solver.is_singular());
+      VecX x = right;
+      solver.solve(p.rows, x.data());
+      CHECK((x - wanted).norm() < 1e-14 * rows * condition * wanted.norm()); // rounding of as many terms in each row
+      ++compared;
+    }
+  CHECK(compared > 60);
 }

@@ -113,7 +113,15 @@ template <class Check> void on_random_scenes(const Check& check) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("steplap_code_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   const char* const methods[] = {"dop853", "tsit5", "rk4"};
-  for (std::uint64_t seed = 1; seed <= k_scenes; ++seed) {
+  std::vector<std::uint64_t> seeds;
+  const auto take = [&seeds](std::uint64_t first, std::uint64_t count) {
+    for (std::uint64_t seed = first; seed < first + count; ++seed) seeds.push_back(seed);
+  };
+  take(1, k_scenes);
+  take(3001, k_scenes / 6);  // with buffers, brakes and forces by formula
+  take(6001, k_scenes / 6);  // with wheels and skates
+  take(12001, k_scenes / 6); // with belts, bands, cams, clutches, gears with losses, beams
+  for (const std::uint64_t seed : seeds) {
     const Scene scene = seed % 4 == 0 ? random_friction_scene(seed) : random_scene(seed);
     const std::string method = methods[seed % 3];
     CAPTURE(seed);
@@ -247,6 +255,118 @@ name = "push"
 a = "low"
 coordinate = "x"
 formula = "'5 N' * exp(-value / '1 m') - '2 N' * (1 + (rate / '1 m/s')^2)^0.3"
+)"},
+      {"a damper between a driven body and another", R"(
+kind = "prescribed_motion"
+name = "drive"
+a = "high"
+coordinate = "x"
+signal = "grip"
+as = "velocity"
+[[element]]
+kind = "spring_damper"
+name = "strut"
+a = "high"
+b = "low"
+stiffness = 50.0
+damping = 8.0
+)"},
+      {"a force along y between two bodies", R"(
+kind = "force"
+name = "push"
+a = "high"
+b = "low"
+coordinate = "y"
+formula = "'-3 N' * value / '1 m' - '2 N' * rate / '1 m/s'"
+)"},
+      {"a belt", R"(
+kind = "belt"
+name = "belt"
+a = "low"
+b = "high"
+radius_a = 0.1
+radius_b = 0.15
+friction_a = 0.3
+friction_b = 0.4
+stiffness = 900.0
+damping = 2.0
+pretension = 30.0
+)"},
+      {"a band", R"(
+kind = "band"
+name = "band"
+a = "high"
+b = { body = "ground", at = [-1.0, 1.0] }
+drum = { body = "low", at = [0.0, 0.0] }
+radius = -0.2
+friction = 0.3
+stiffness = 900.0
+damping = 2.0
+pretension = 30.0
+)"},
+      {"a cam", R"(
+kind = "cam"
+name = "cam"
+a = "low"
+cam = "high"
+axis = [1.0, 0.0]
+formula = "sin(value) * '0.05 m'"
+holds = true
+stiffness = 2000.0
+damping = 3.0
+)"},
+      {"a tyre", R"(
+kind = "tyre"
+name = "tyre"
+a = "high"
+radius = 0.61
+stiffness = 4e3
+damping = 20.0
+friction = 0.8
+slip_stiffness = 300.0
+relaxation_length = 0.2
+tread_damping = 5.0
+)"},
+      {"a part of a beam", R"(
+kind = "beam_part"
+name = "beam"
+a = "high"
+b = { body = "low", at = [-0.3, 0.6] }
+length = 0.3
+bending_stiffness = 20.0
+axial_stiffness = 5e3
+damping_time = 0.01
+)"},
+      {"a gear with losses", R"(
+kind = "lossy_gear"
+name = "gear"
+a = "high"
+b = "low"
+ratio = 3.0
+efficiency = 0.8
+stiffness = 50.0
+damping = 0.5
+)"},
+      {"a one-way clutch", R"(
+kind = "freewheel"
+name = "clutch"
+a = "high"
+b = "low"
+holds = 5.0
+drags = 0.1
+[[element]]
+kind = "load"
+name = "turning"
+at = "high"
+couple = 2.0
+)"},
+      {"a skate that slides", R"(
+kind = "skate"
+name = "skate"
+a = "high"
+axis = [0.6, 0.8]
+grip = 0.5
+drags = 0.4
 )"},
       {"a tie that may break", R"(
 kind = "tie"
