@@ -1,5 +1,4 @@
 #include "mbd/dynamics/constraint_solution.h"
-#include "mbd/dynamics/row_pull.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,16 +32,11 @@ MeasureValue<double> ConstraintSolution::load(const RowSpec& spec, SchurRow& row
 
 // --- an evaluation ------------------------------------------------------------------------------------
 
-// Row r at the placed motion; returns γ.
-STEPLAP_INLINE double ConstraintSolution::pull(std::size_t r) {
-  return pull_row(*layout_, layout_->active[r], motion_, layout_->schur_rows[r]);
-}
-
 void ConstraintSolution::prepare() {
   Layout& layout = *layout_;
   const auto count = static_cast<std::size_t>(layout.schur.size());
   if (count == 0) return;
-  for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
+  pull_rows(layout, 0, count, motion_, layout.schur_rows.data(), multiplier_.data());
   if (layout.has_long_rows()) [[unlikely]]
     pull_parts();
   layout.schur.factor(layout.schur_rows);
@@ -53,8 +47,9 @@ STEPLAP_INLINE void ConstraintSolution::accelerate_mechanism(Mechanism& m, const
   m.accelerate(force, a + m.first_coordinate);
   if (m.row_count == 0) return;
   m.expand(a + m.first_coordinate, cluster_a_.data());
-  for (int r = m.first_row; r < m.first_row + m.row_count; ++r)
-    multiplier_[r] = less_accelerations(layout_->schur_rows[r], pull(r), cluster_a_.data());
+  const auto first = static_cast<std::size_t>(m.first_row), end = first + static_cast<std::size_t>(m.row_count);
+  pull_rows(*layout_, first, end, motion_, layout_->schur_rows.data(), multiplier_.data());
+  take_accelerations(layout_->schur_rows.data(), first, end, cluster_a_.data(), multiplier_.data());
 }
 
 void ConstraintSolution::solve_mechanisms(const BodyForce* force, double* a) {
@@ -84,7 +79,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   Layout& layout = *layout_;
   const auto count = static_cast<std::size_t>(layout.schur.size());
   double* const right = multiplier_.data();
-  for (std::size_t r = 0; r < count; ++r) right[r] = less_accelerations(layout.schur_rows[r], right[r], a);
+  take_accelerations(layout.schur_rows.data(), 0, count, a, right);
   if (layout.has_long_rows()) [[unlikely]]
     take_part_accelerations(a, right);
   if (layout.has_mechanisms()) solve_mechanisms(force, a);
@@ -97,12 +92,6 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   add_responses(layout.schur_rows.data(), count, right, a);
   if (layout.has_long_rows()) [[unlikely]]
     add_part_responses(right, a);
-}
-
-double ConstraintSolution::power_of_drives() const {
-  double power = 0.0;
-  for (const int r : layout_->driven_rows) power += multiplier_[r] * target_rate_[r];
-  return power;
 }
 
 // --- a projection -------------------------------------------------------------------------------------

@@ -35,8 +35,8 @@ public:
   void solve(double t, const BodyForce* force, double* a);
   /// Of the layout's active rows.
   [[nodiscard]] const std::vector<double>& multipliers() const { return multiplier_; }
-  /// Work of drives that are rows, W.
-  [[nodiscard]] double power_of_drives() const;
+  /// Of the targets of active rows that are driven, at the time of the last solve().
+  [[nodiscard]] const std::vector<double>& target_rates() const { return target_rate_; }
 
   // --- of a projection ------------------------------------------------------------------------------
   /// Gradients, values and rates against the targets at the motion placed.
@@ -58,7 +58,6 @@ public:
   MeasureValue<double> load(const RowSpec& spec, SchurRow& row) const;
 
 private:
-  double pull(std::size_t r);
   void solve_mechanisms(const BodyForce* force, double* a);
   void accelerate_mechanism(Mechanism& m, const BodyForce* force, double* a);
   void respond(Mechanism& m, double* a);

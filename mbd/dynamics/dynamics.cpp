@@ -1,5 +1,4 @@
 #include "mbd/dynamics/dynamics.h"
-#include "mbd/dynamics/sliding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,24 +113,15 @@ void Dynamics::apply_forces() {
   for (const int i : layout.riding) force[i] = {};
   for (const auto& group : system_.groups) group->add_forces(evaluation_);
   for (std::size_t i = 0; i < layout.sliding.size(); ++i) apply_sliding(i);
-  const Motion<double>* const motion = motion_;
-  for (const ActiveLink& link : layout.links) {
-    const BodyForce& f = force[link.slot];
-    if (f.fx == 0.0 && f.fy == 0.0 && f.m == 0.0) continue; // rows alone, or contacts that are open
-    add_link_force(f, motion[link.slot], motion[link.b], force[link.a], force[link.b]);
-  }
-  for (const int i : layout.riding) {
-    const int slot = layout.slots[layout.placements[i].cluster];
-    add_member_force(force[i], motion[i], motion[slot], force[slot]);
-  }
+  gather_forces(layout, motion_, force);
 }
 
-// Work of drives: multiplier times the rate of the target.
 void Dynamics::finish_power(const double* a) {
   const Layout& layout = *layout_;
-  evaluation_.work += rows_.power_of_drives();
-  for (std::size_t i = 0; i < layout.locks.size(); ++i)
-    evaluation_.work += reactions_.of_lock(layout.locks[i], a, multipliers().data()) * kinematics_.lock_target(i).rate;
+  add_power_of_drives(
+      layout, arrays_.force.data(), layout.schur_rows.data(), multipliers().data(), a,
+      [&](std::size_t i) { return rows_.target_rates()[layout.driven_rows[i]]; },
+      [this](std::size_t i) -> const SignalJet& { return kinematics_.lock_target(i); }, evaluation_.work);
 }
 
 void Dynamics::finish_watches() {
@@ -202,6 +192,13 @@ STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy)
   }
 }
 
+// Those of coordinates: what y says, or drives.
+STEPLAP_INLINE void Dynamics::put_place_rates(const double* y, double* dy) const {
+  std::copy_n(y + coordinate_count(), coordinate_count(), dy);
+  for (std::size_t i = 0; i < layout_->locks.size(); ++i)
+    dy[3 * layout_->locks[i].cluster + layout_->locks[i].coordinate] = kinematics_.lock_target(i).rate;
+}
+
 void Dynamics::rates_at(double t, const double* y, double* dy) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
@@ -212,31 +209,9 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   apply_forces();
 
   double* const a = dy + n;
-  const double* rate = y + n;
-  double* place_rate = dy;
-  const double* weight = layout.weight.data();
-  const double* w = layout.inverse_mass.data();
-  double* out = a;
-  for (int k = 0; k < layout.absolute_count; ++k) {
-    const BodyForce& f = arrays_.force[layout.slots[k]];
-    out[0] = w[0] * (weight[0] + f.fx);
-    out[1] = w[1] * (weight[1] + f.fy);
-    out[2] = w[2] * (weight[2] + f.m);
-    place_rate[0] = rate[0];
-    place_rate[1] = rate[1];
-    place_rate[2] = rate[2];
-    place_rate += 3;
-    rate += 3;
-    out += 3;
-    w += 3;
-    weight += 3;
-  }
-  for (int k = 3 * layout.absolute_count; k < n; ++k) *place_rate++ = *rate++;
-  for (std::size_t i = 0; i < layout.locks.size(); ++i) {
-    const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
-    a[k] = kinematics_.lock_target(i).acceleration;
-    dy[k] = kinematics_.lock_target(i).rate;
-  }
+  const auto target = [this](std::size_t i) -> const SignalJet& { return kinematics_.lock_target(i); };
+  accelerate_clusters(layout, arrays_.force.data(), target, a);
+  put_place_rates(y, dy);
   rows_.solve(t, arrays_.force.data(), a);
   finish_rates(y, dy);
 }
@@ -268,9 +243,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   ++coded_stages_;
   pending_.end();
   rows_.forget_factors();
-  std::copy_n(y + coordinate_count(), coordinate_count(), dy);
-  for (std::size_t i = 0; i < layout_->locks.size(); ++i)
-    dy[3 * layout_->locks[i].cluster + layout_->locks[i].coordinate] = kinematics_.lock_target(i).rate;
+  put_place_rates(y, dy);
   return true;
 }
 

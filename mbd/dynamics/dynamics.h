@@ -214,6 +214,7 @@ private:
   void sliding_rates(std::size_t i, double* rate) const;
   void apply_forces();
   void begin_rates(double t, const double* y, double* dy);
+  void put_place_rates(const double* y, double* dy) const;
   void finish_rates(const double* y, double* dy);
   void finish_power(const double* a);
   void finish_watches();

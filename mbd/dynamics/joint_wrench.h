@@ -42,6 +42,20 @@ void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, co
   }
 }
 
+/// What every member of a cluster lacks that a joint carries, per body: on it act the forces and what the rows of its cluster bear.
+/// `cluster_a`: 3 per cluster; `lambda`: per active row.
+template <class S>
+void find_lacks(const System& system, const Layout& layout, const Motion<S>* motion, const BodyForceOf<S>* force, const S* cluster_a,
+                const S* lambda, BodyForceOf<S>* lack) {
+  for (const RigidEdge& edge : layout.edges) {
+    const Placement& place = layout.placements[edge.child];
+    const Motion<S>& k = motion[layout.clusters[place.cluster].motion];
+    lack[edge.child] = member_lack(system.bodies[edge.child], place, system.gravity, k, cluster_a + 3 * place.cluster, force[edge.child]);
+  }
+  for (const int r : layout.carried_rows)
+    for (const RowSpec* part = layout.active[r].spec; part; part = part->next) take_carried(layout, *part, lambda[r], motion, lack);
+}
+
 /// Hands on what members lack from child to parent. `bears(edge, along)`: the wrench on the rows' body a about the
 /// joint's point, along the rows (two axes fixed in b, then the angle).
 template <class S, class F>

@@ -26,29 +26,15 @@ void Kinematics::aim_locks(double t) {
   }
 }
 
-STEPLAP_INLINE void Kinematics::place_lock(std::size_t i) {
-  const Lock& lock = layout_->locks[i];
-  place_locked(lock.coordinate, lock_target_[i].value, lock_target_[i].rate, motion_[layout_->slots[lock.cluster]]);
-}
-
 void Kinematics::place(double t, const double* q, const double* v) {
   const Layout& layout = *layout_;
   time_ = t;
   is_complete_ = false;
   Motion<double>* const motion = motion_.data();
   for (Mechanism& m : layout_->mechanisms) m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
-  const int* const slots = layout.slots.data();
-  for (int k = 0; k < layout.absolute_count; ++k) {
-    place_cluster(q, v, motion[slots[k]]);
-    q += 3;
-    v += 3;
-  }
-  if (!layout.locks.empty()) {
-    aim_locks(t);
-    for (std::size_t i = 0; i < layout.locks.size(); ++i) place_lock(i);
-  }
-  for (const int i : layout.riding) place_member(i);
-  for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
+  if (!layout.locks.empty()) aim_locks(t);
+  place_all(
+      layout, q, v, [this](std::size_t i) -> const SignalJet& { return lock_target_[i]; }, motion);
 }
 
 bool Kinematics::is_placed(double t, const double* y) const {
@@ -65,15 +51,9 @@ bool Kinematics::is_placed(double t, const double* y) const {
   return true;
 }
 
-// A body that moves with others: from its cluster's motion.
-void Kinematics::place_member(int i) {
-  const Placement& place = layout_->placements[i];
-  place_in_cluster(place, motion_[layout_->clusters[place.cluster].motion], motion_[i]);
-}
-
 void Kinematics::place_rest() {
   is_complete_ = true;
-  for (const int i : layout_->riding_along) place_member(i);
+  place_members(*layout_, layout_->riding_along, motion_.data());
 }
 
 } // namespace steplap

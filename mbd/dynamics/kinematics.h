@@ -6,42 +6,12 @@
 // parts of a core that hold to each other, wait for complete(), which whoever looks at every body calls.
 #pragma once
 
-#include "mbd/dynamics/layout.h"
+#include "mbd/dynamics/equations.h"
 
 #include <limits>
 #include <vector>
 
 namespace steplap {
-
-/// A body that moves with its cluster k, at a place of it.
-template <class S> STEPLAP_INLINE void place_in_cluster(const Placement& place, const Motion<S>& k, Motion<S>& m) {
-  const Pair<S> lever = to_ground(k, place.offset);
-  m.x = k.x + lever.x;
-  m.y = k.y + lever.y;
-  m.theta = k.theta + place.angle;
-  m.c = k.c * place.c - k.s * place.s;
-  m.s = k.s * place.c + k.c * place.s;
-  m.vx = k.vx - k.omega * lever.y;
-  m.vy = k.vy + k.omega * lever.x;
-  m.omega = k.omega;
-}
-
-/// A cluster in absolute coordinates: 3 numbers of each.
-template <class S> STEPLAP_INLINE void place_cluster(const S* q, const S* v, Motion<S>& m) {
-  m.x = q[0];
-  m.y = q[1];
-  m.vx = v[0];
-  m.vy = v[1];
-  m.omega = v[2];
-  set_angle(m, q[2]);
-}
-
-/// A coordinate that a drive prescribes.
-template <class S> STEPLAP_INLINE void place_locked(int coordinate, const S& value, const S& rate, Motion<S>& m) {
-  if (coordinate == 2) set_angle(m, value);
-  else (coordinate == 0 ? m.x : m.y) = value;
-  (coordinate == 0 ? m.vx : coordinate == 1 ? m.vy : m.omega) = rate;
-}
 
 class Kinematics {
 public:
@@ -69,8 +39,6 @@ public:
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
 
 private:
-  void place_member(int body);
-  void place_lock(std::size_t lock);
   void place_rest();
 
   const System& system_;

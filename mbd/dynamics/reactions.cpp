@@ -85,13 +85,7 @@ void Reactions::find_pins(const double* cluster_a, const double* lambda) {
 
 void Reactions::find_joints(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
-  for (const RigidEdge& edge : layout.edges) {
-    const Placement& place = layout.placements[edge.child];
-    wrench_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, motion_[layout.clusters[place.cluster].motion],
-                                      cluster_a + 3 * place.cluster, force_[edge.child]);
-  }
-  for (const int r : layout.carried_rows)
-    for (const RowSpec* part = layout.active[r].spec; part; part = part->next) add_carried(*part, lambda[r]);
+  find_lacks(system_, layout, motion_, force_, cluster_a, lambda, wrench_.data());
   if (layout.is_carried_by_pins) {
     find_pins(cluster_a, lambda);
     for (const Mechanism& mechanism : layout.mechanisms)

@@ -11,21 +11,6 @@
 
 namespace steplap {
 
-/// What is missing in the equation of motion of a locked coordinate of a cluster. `f`: on the cluster;
-/// `lambda`, `rows`: per active row.
-template <class S>
-[[nodiscard]] STEPLAP_INLINE S missing_force(const Layout& layout, const Lock& lock, const BodyForceOf<S>& f, const S* a,
-                                             const SchurRowOf<S>* rows, const S* lambda) {
-  const int k = 3 * lock.cluster + lock.coordinate;
-  const Cluster& cluster = layout.clusters[lock.cluster];
-  S force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
-            (lock.coordinate == 0   ? f.fx
-             : lock.coordinate == 1 ? f.fy
-                                    : f.m);
-  for (const LockedTerm& term : lock.terms) force -= rows[term.row].j[term.side][lock.coordinate] * lambda[term.multiplier];
-  return force;
-}
-
 class Reactions {
 public:
   /// `force`: per slot, on clusters and the bodies that ride on them; the same memory for the life of this object.

@@ -1,10 +1,7 @@
 #include "mbd/dynamics/traced_evaluation.h"
 
+#include "mbd/dynamics/equations.h"
 #include "mbd/dynamics/joint_wrench.h"
-#include "mbd/dynamics/kinematics.h"
-#include "mbd/dynamics/reactions.h"
-#include "mbd/dynamics/row_pull.h"
-#include "mbd/dynamics/sliding.h"
 #include "mbd/dynamics/traced_mechanism.h"
 
 #include <algorithm>
@@ -17,6 +14,11 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
+
+struct LockTarget {
+  Traced value, rate, acceleration;
+};
+
 // Beyond these the code of an evaluation, some 80 instructions for each, leaves the cache that loops stay in.
 constexpr int k_most_coordinates = 100;
 
@@ -110,7 +112,12 @@ private:
     e_.inner_rate = inner_rate_.data();
     for (const double x : time_inputs) time_.push_back(Traced::input(x));
   }
-  [[nodiscard]] const Traced* of_lock(std::size_t lock) const { return time_.data() + k_of_lock * lock; }
+  [[nodiscard]] auto target_of_lock() const {
+    return [this](std::size_t lock) {
+      const Traced* const of_lock = time_.data() + k_of_lock * lock;
+      return LockTarget{of_lock[0], of_lock[1], of_lock[2]};
+    };
+  }
   [[nodiscard]] const Traced* of_driven_row(std::size_t i) const {
     return time_.data() + k_of_lock * layout_.locks.size() + k_of_driven_row * i;
   }
@@ -120,14 +127,7 @@ private:
       const auto first = static_cast<std::size_t>(m.first_coordinate);
       mechanisms_.emplace_back(m).place(&q_[first], &v_[first], motion_.data());
     }
-    for (std::size_t k = 0; k < absolute_count(); ++k) place_cluster(&q_[3 * k], &v_[3 * k], motion_[layout_.slots[k]]);
-    for (std::size_t i = 0; i < layout_.locks.size(); ++i) {
-      const Lock& lock = layout_.locks[i];
-      place_locked(lock.coordinate, of_lock(i)[0], of_lock(i)[1], motion_[layout_.slots[lock.cluster]]);
-    }
-    for (const int i : layout_.riding)
-      place_in_cluster(layout_.placements[i], motion_[layout_.clusters[layout_.placements[i].cluster].motion], motion_[i]);
-    for (const ActiveLink& link : layout_.links) motion_[link.slot] = seen_from(motion_[link.a], motion_[link.b]);
+    place_all(layout_, q_.data(), v_.data(), target_of_lock(), motion_.data());
   }
 
   // The parts of long rows stand behind all rows.
@@ -145,27 +145,19 @@ private:
         }
       }
     }
-    for (std::size_t r = 0; r < layout_.active.size(); ++r)
-      multiplier_.push_back(pull_row(layout_, layout_.active[r], motion_.data(), rows_[r]));
+    multiplier_.resize(layout_.active.size());
+    pull_rows(layout_, 0, layout_.active.size(), motion_.data(), rows_.data(), multiplier_.data());
     pull_parts(layout_, motion_.data(), rows_.data(), multiplier_.data());
   }
 
   void apply_forces() {
     for (const auto& group : system_.groups)
       if (!group->trace_forces(e_)) call_element().trace(*group, e_);
-    for (std::size_t i = 0; i < layout_.sliding.size(); ++i) slide(layout_.sliding[i], layout_.sliding_link[i]);
-    for (const ActiveLink& link : layout_.links) {
-      const BodyForceOf<Traced>& f = force_[link.slot];
-      if (is_surely_zero(f.fx) && is_surely_zero(f.fy) && is_surely_zero(f.m)) continue;
-      add_link_force(f, motion_[link.slot], motion_[link.b], force_[link.a], force_[link.b]);
-    }
-    for (const int i : layout_.riding) {
-      const int slot = layout_.slots[layout_.placements[i].cluster];
-      add_member_force(force_[i], motion_[i], motion_[slot], force_[slot]);
-    }
+    for (std::size_t i = 0; i < layout_.sliding.size(); ++i) apply_sliding(layout_.sliding[i], layout_.sliding_link[i]);
+    gather_forces(layout_, motion_.data(), force_.data());
   }
 
-  void slide(int f, int link) {
+  void apply_sliding(int f, int link) {
     const FrictionUnit& unit = system_.frictions[f];
     const SlidingRows<Traced> rows(unit.friction->rows(state_.friction[f]), unit.friction->dimension(), motion_[link]);
     Traced wrench[3];
@@ -174,22 +166,13 @@ private:
   }
 
   void accelerate() {
-    for (std::size_t k = 0; k < absolute_count(); ++k) {
-      const BodyForceOf<Traced>& f = force_[layout_.slots[k]];
-      const double* const w = &layout_.inverse_mass[3 * k];
-      const double* const weight = &layout_.weight[3 * k];
-      a_.push_back(w[0] * (weight[0] + f.fx));
-      a_.push_back(w[1] * (weight[1] + f.fy));
-      a_.push_back(w[2] * (weight[2] + f.m));
-    }
     a_.resize(coordinate_count());
-    for (std::size_t i = 0; i < layout_.locks.size(); ++i)
-      a_[static_cast<std::size_t>(3 * layout_.locks[i].cluster + layout_.locks[i].coordinate)] = of_lock(i)[2];
+    accelerate_clusters(layout_, force_.data(), target_of_lock(), a_.data());
   }
 
   void solve_rows(double least_pivot) {
     const auto of_absolute = static_cast<std::size_t>(layout_.schur.size());
-    for (std::size_t r = 0; r < of_absolute; ++r) multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], a_.data());
+    take_accelerations(rows_.data(), 0, of_absolute, a_.data(), multiplier_.data());
     take_part_accelerations(layout_, rows_.data(), a_.data(), multiplier_.data());
     for (TracedMechanism& m : mechanisms_) accelerate(m);
     for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) multiplier_[layout_.driven_rows[i]] += of_driven_row(i)[0];
@@ -213,19 +196,13 @@ private:
     m.accelerate(force_.data(), s);
     if (of.row_count == 0) return;
     m.expand(s, cluster_a_.data());
-    for (auto r = static_cast<std::size_t>(of.first_row), end = r + static_cast<std::size_t>(of.row_count); r < end; ++r)
-      multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], cluster_a_.data());
+    const auto first = static_cast<std::size_t>(of.first_row);
+    take_accelerations(rows_.data(), first, first + static_cast<std::size_t>(of.row_count), cluster_a_.data(), multiplier_.data());
   }
 
   void find_power() {
-    Traced of_drives(0.0);
-    for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) of_drives += multiplier_[layout_.driven_rows[i]] * of_driven_row(i)[1];
-    e_.work += of_drives;
-    for (std::size_t i = 0; i < layout_.locks.size(); ++i) {
-      const Lock& lock = layout_.locks[i];
-      e_.work += missing_force(layout_, lock, force_[layout_.clusters[lock.cluster].motion], a_.data(), rows_.data(), multiplier_.data()) *
-                 of_lock(i)[1];
-    }
+    const auto row_rate = [this](std::size_t i) { return of_driven_row(i)[1]; };
+    add_power_of_drives(layout_, force_.data(), rows_.data(), multiplier_.data(), a_.data(), row_rate, target_of_lock(), e_.work);
   }
 
   void watch_friction() {
@@ -266,15 +243,8 @@ private:
     traced.wrenches.clear();
     traced.has_wrenches = !layout_.is_carried_by_pins; // forces of pins are not traced
     if (!traced.has_wrenches || !layout_.is_merged_watched) return;
-    const Traced* const a = cluster_accelerations();
     lack_.assign(system_.bodies.size(), {});
-    for (const RigidEdge& edge : layout_.edges) {
-      const Placement& place = layout_.placements[edge.child];
-      const Motion<Traced>& k = motion_[layout_.clusters[place.cluster].motion];
-      lack_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, k, a + 3 * place.cluster, force_[edge.child]);
-    }
-    for (const int r : layout_.carried_rows)
-      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(), lack_.data());
+    find_lacks(system_, layout_, motion_.data(), force_.data(), cluster_accelerations(), multiplier_.data(), lack_.data());
     place_edges(system_, layout_, state_, edges_);
     hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const Traced* along) {
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
