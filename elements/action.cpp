@@ -1,14 +1,12 @@
 #include "elements/action.h"
 
-#include "mbd/base/number_text.h"
+#include "elements/action_value.h"
 #include "mbd/formula/formula.h"
 #include "mbd/io/units.h"
-#include "mbd/model/field_units.h"
 #include "mbd/system/actions.h"
 #include "mbd/system/own_states.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -90,7 +88,7 @@ private:
     const Field* const field = entry.kind->fields.find(text.field);
     std::vector<std::string> known;
     for (const Field& each : entry.kind->fields.fields())
-      if (each.type == FieldType::number || each.type == FieldType::signal) known.push_back(each.name);
+      if (can_be_set(each) || each.type == FieldType::signal) known.push_back(each.name);
     if (!field)
       throw std::invalid_argument("'" + text.name + "' is a " + entry.kind->name + " and has no '" + text.field + "'" +
                                   did_you_mean(text.field, known));
@@ -103,28 +101,25 @@ private:
       step.value = text.value;
       return;
     }
-    if (field->type != FieldType::number)
-      throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers and signals can");
-    step.value = number(text, *field, entry);
+    if (!can_be_set(*field))
+      throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers, lists of them and signals can");
+    step.value = action_value(text, *field, entry);
+    if (field->type != FieldType::number) try_out(step, *field);
   }
 
-  [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const ElementEntry& entry) {
-    double plain = 0.0; // SI, as a number of a file is
-    const char *const begin = text.value.data(), *const end = begin + text.value.size();
-    if (const auto read = std::from_chars(begin, end, plain); read.ec == std::errc() && read.ptr == end) return checked(plain, text, field);
-    const Quantity quantity = parse_quantity(text.value, unit_in(entry.kind->fields, field, entry.element.get()));
-    if (!quantity.problem.empty()) throw std::invalid_argument("'" + text.name + "." + text.field + "': " + quantity.problem);
-    return checked(quantity.value, text, field);
-  }
-
-  [[nodiscard]] static double checked(double value, const ActionStepText& text, const Field& field) {
-    const std::string subject = "'" + text.name + "." + text.field + "'";
-    const bool is_low = value < field.minimum || (field.is_minimum_excluded && value <= field.minimum);
-    if (is_low || value > field.maximum || !std::isfinite(value))
-      throw std::invalid_argument(subject + " cannot be " + text.value + ": it is " +
-                                  (is_low ? (field.is_minimum_excluded ? "larger than " : "at least ") + number_text(field.minimum)
-                                          : "at most " + number_text(field.maximum)));
-    return value;
+  // What only the element's own checks tell of a list, as points that have to ascend, is told now and not when it happens.
+  void try_out(const ActionStep& step, const Field& field) const {
+    Model trial = model();
+    ElementEntry& entry = trial.elements[static_cast<std::size_t>(step.target)];
+    field.set(entry.element.get(), step.value);
+    const std::string name = entry.element->name;
+    std::erase_if(trial.elements, is_action);
+    try {
+      (void)compile(trial);
+    } catch (const ModelError& error) {
+      const std::string& message = error.diagnostics().front().message;
+      if (message.find("'" + name + "'") != std::string::npos) throw std::invalid_argument("with that, " + message);
+    }
   }
 
   bool read_trigger(ActionTrigger& trigger) {

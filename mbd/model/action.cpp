@@ -80,7 +80,7 @@ std::optional<EventText> event_text(const std::string& when) {
 
 bool is_name_in_step(const std::string& value) {
   const auto c = static_cast<unsigned char>(value.empty() ? '0' : value.front());
-  return std::isdigit(c) == 0 && c != '.' && c != '-' && c != '+';
+  return std::isdigit(c) == 0 && c != '.' && c != '-' && c != '+' && c != '[';
 }
 
 } // namespace steplap
