@@ -1,18 +1,26 @@
 #include "elements/action.h"
 
-#include "elements/action_value.h"
+#include "mbd/base/number_text.h"
 #include "mbd/formula/formula.h"
 #include "mbd/io/units.h"
+#include "mbd/model/field_units.h"
 #include "mbd/system/actions.h"
 #include "mbd/system/own_states.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 namespace steplap {
 
 namespace {
+
+// Values that an action sets, beside names of signals.
+bool is_number_or_list(const Field& field) {
+  return field.type == FieldType::number || field.type == FieldType::vec2 || field.type == FieldType::numbers ||
+         field.type == FieldType::points;
+}
 
 bool is_action(const ElementEntry& entry) { return dynamic_cast<const Action*>(entry.element.get()) != nullptr; }
 
@@ -88,7 +96,7 @@ private:
     const Field* const field = entry.kind->fields.find(text.field);
     std::vector<std::string> known;
     for (const Field& each : entry.kind->fields.fields())
-      if (can_be_set(each) || each.type == FieldType::signal) known.push_back(each.name);
+      if (is_number_or_list(each) || each.type == FieldType::signal) known.push_back(each.name);
     if (!field)
       throw std::invalid_argument("'" + text.name + "' is a " + entry.kind->name + " and has no '" + text.field + "'" +
                                   did_you_mean(text.field, known));
@@ -101,9 +109,9 @@ private:
       step.value = text.value;
       return;
     }
-    if (!can_be_set(*field))
+    if (!is_number_or_list(*field))
       throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers, lists of them and signals can");
-    step.value = action_value(text, *field, entry);
+    step.value = value_of(text, *field, entry);
     if (field->type != FieldType::number) try_out(step, *field);
   }
 
@@ -120,6 +128,60 @@ private:
       const std::string& message = error.diagnostics().front().message;
       if (message.find("'" + name + "'") != std::string::npos) throw std::invalid_argument("with that, " + message);
     }
+  }
+
+  [[nodiscard]] static FieldValue value_of(const ActionStepText& text, const Field& field, const ElementEntry& entry) {
+    const std::string unit = unit_in(entry.kind->fields, field, entry.element.get());
+    if (field.type == FieldType::number) return number(text, field, unit);
+    if (field.type == FieldType::vec2) return point(text, field, unit, unit, text.value);
+    std::vector<double> numbers;
+    std::vector<Vec2> points;
+    for (const std::string& item : items(text, field, text.value))
+      if (field.type == FieldType::numbers) numbers.push_back(number(with_value(text, item), field, unit));
+      else points.push_back(point(text, field, unit, field.unit2.empty() ? unit : field.unit2, item));
+    return field.type == FieldType::numbers ? FieldValue(numbers) : FieldValue(points);
+  }
+
+  [[nodiscard]] static ActionStepText with_value(ActionStepText text, const std::string& value) {
+    text.value = value;
+    return text;
+  }
+
+  [[nodiscard]] static std::vector<std::string> items(const ActionStepText& text, const Field& field, const std::string& list) {
+    const auto found = items_of_list(list);
+    if (!found) fail_as_list(text, field);
+    return *found;
+  }
+
+  [[noreturn]] static void fail_as_list(const ActionStepText& text, const Field& field) {
+    throw std::invalid_argument("'" + text.name + "." + text.field + "' cannot be '" + text.value + "': write a list, as " +
+                                (field.type == FieldType::points ? "[[0, 0], [1, 2]]" : "[1, 2]"));
+  }
+
+  [[nodiscard]] static Vec2 point(const ActionStepText& text, const Field& field, const std::string& unit, const std::string& unit2,
+                                  const std::string& list) {
+    const std::vector<std::string> parts = items(text, field, list);
+    if (parts.size() != 2) fail_as_list(text, field);
+    return {number(with_value(text, parts[0]), field, unit), number(with_value(text, parts[1]), field, unit2)};
+  }
+
+  [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const std::string& unit) {
+    double plain = 0.0; // SI, as a number of a file is
+    const char *const begin = text.value.data(), *const end = begin + text.value.size();
+    if (const auto read = std::from_chars(begin, end, plain); read.ec == std::errc() && read.ptr == end) return checked(plain, text, field);
+    const Quantity quantity = parse_quantity(text.value, unit);
+    if (!quantity.problem.empty()) throw std::invalid_argument("'" + text.name + "." + text.field + "': " + quantity.problem);
+    return checked(quantity.value, text, field);
+  }
+
+  [[nodiscard]] static double checked(double value, const ActionStepText& text, const Field& field) {
+    const std::string subject = "'" + text.name + "." + text.field + "'";
+    const bool is_low = value < field.minimum || (field.is_minimum_excluded && value <= field.minimum);
+    if (is_low || value > field.maximum || !std::isfinite(value))
+      throw std::invalid_argument(subject + " cannot be " + text.value + ": it is " +
+                                  (is_low ? (field.is_minimum_excluded ? "larger than " : "at least ") + number_text(field.minimum)
+                                          : "at most " + number_text(field.maximum)));
+    return value;
   }
 
   bool read_trigger(ActionTrigger& trigger) {
