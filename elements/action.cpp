@@ -17,6 +17,12 @@ namespace steplap {
 
 namespace {
 
+// Values that an action sets, beside names of signals.
+bool is_number_or_list(const Field& field) {
+  return field.type == FieldType::number || field.type == FieldType::vec2 || field.type == FieldType::numbers ||
+         field.type == FieldType::points;
+}
+
 bool is_action(const ElementEntry& entry) { return dynamic_cast<const Action*>(entry.element.get()) != nullptr; }
 
 // Elements that can be released: all but what a model is described with.
@@ -91,7 +97,7 @@ private:
     const Field* const field = entry.kind->fields.find(text.field);
     std::vector<std::string> known;
     for (const Field& each : entry.kind->fields.fields())
-      if (each.type == FieldType::number || each.type == FieldType::signal) known.push_back(each.name);
+      if (is_number_or_list(each) || each.type == FieldType::signal) known.push_back(each.name);
     if (!field)
       throw std::invalid_argument("'" + text.name + "' is a " + entry.kind->name + " and has no '" + text.field + "'" +
                                   did_you_mean(text.field, known));
@@ -108,16 +114,67 @@ private:
       step.value = text.value;
       return;
     }
-    if (field->type != FieldType::number)
-      throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers and signals can");
-    step.value = number(text, *field, entry);
+    if (!is_number_or_list(*field))
+      throw std::invalid_argument("'" + text.field + "' of '" + text.name + "' cannot be set: only numbers, lists of them and signals can");
+    step.value = value_of(text, *field, entry);
+    if (field->type != FieldType::number) try_out(step, *field);
   }
 
-  [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const ElementEntry& entry) {
+  // What only the element's own checks tell of a list, as points that have to ascend, is told now and not when it happens.
+  void try_out(const ActionStep& step, const Field& field) const {
+    Model trial = model();
+    ElementEntry& entry = trial.elements[static_cast<std::size_t>(step.target)];
+    field.set(entry.element.get(), step.value);
+    const std::string name = entry.element->name;
+    std::erase_if(trial.elements, is_action);
+    try {
+      (void)compile(trial);
+    } catch (const ModelError& error) {
+      const std::string& message = error.diagnostics().front().message;
+      if (message.find("'" + name + "'") != std::string::npos) throw std::invalid_argument("with that, " + message);
+    }
+  }
+
+  [[nodiscard]] static FieldValue value_of(const ActionStepText& text, const Field& field, const ElementEntry& entry) {
+    const std::string unit = unit_in(entry.kind->fields, field, entry.element.get());
+    if (field.type == FieldType::number) return number(text, field, unit);
+    if (field.type == FieldType::vec2) return point(text, field, unit, unit, text.value);
+    std::vector<double> numbers;
+    std::vector<Vec2> points;
+    for (const std::string& item : items(text, field, text.value))
+      if (field.type == FieldType::numbers) numbers.push_back(number(with_value(text, item), field, unit));
+      else points.push_back(point(text, field, unit, field.unit2.empty() ? unit : field.unit2, item));
+    return field.type == FieldType::numbers ? FieldValue(numbers) : FieldValue(points);
+  }
+
+  [[nodiscard]] static ActionStepText with_value(ActionStepText text, const std::string& value) {
+    text.value = value;
+    return text;
+  }
+
+  [[nodiscard]] static std::vector<std::string> items(const ActionStepText& text, const Field& field, const std::string& list) {
+    const auto found = items_of_list(list);
+    if (!found) fail_as_list(text, field);
+    return *found;
+  }
+
+  [[noreturn]] static void fail_as_list(const ActionStepText& text, const Field& field) {
+    throw std::invalid_argument("'" + text.name + "." + text.field + "' cannot be '" + text.value + "': write a list, as " +
+                                (field.type == FieldType::points ? "[[0, 0], [1, 2]]" : "[1, 2]"));
+  }
+
+  [[nodiscard]] static Vec2 point(const ActionStepText& text, const Field& field, const std::string& unit, const std::string& unit2,
+                                  const std::string& list) {
+    const std::vector<std::string> parts = items(text, field, list);
+    if (parts.size() != 2) fail_as_list(text, field);
+    return {number(with_value(text, parts[0]), field, unit), number(with_value(text, parts[1]), field, unit2)};
+  }
+
+  [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const std::string& unit) {
     double plain = 0.0; // SI, as a number of a file is
     const char *const begin = text.value.data(), *const end = begin + text.value.size();
     if (const auto read = std::from_chars(begin, end, plain); read.ec == std::errc() && read.ptr == end) return checked(plain, text, field);
-    const Quantity quantity = parse_quantity(text.value, unit_in(entry.kind->fields, field, entry.element.get()));
+    const Quantity quantity = parse_quantity(text.value, unit);
     if (!quantity.problem.empty()) throw std::invalid_argument("'" + text.name + "." + text.field + "': " + quantity.problem);
     return checked(quantity.value, text, field);
   }

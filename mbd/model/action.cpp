@@ -24,6 +24,12 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+std::string unquoted(const std::string& text) {
+  const std::string inner = trimmed(text);
+  const bool is_quoted = inner.size() > 1 && (inner.front() == '\'' || inner.front() == '"') && inner.back() == inner.front();
+  return is_quoted ? trimmed(inner.substr(1, inner.size() - 2)) : inner;
+}
+
 [[noreturn]] void fail(const std::string& text) {
   throw std::invalid_argument(
       "'" + text +
@@ -48,9 +54,7 @@ ActionStepText action_step(const std::string& text) {
     if (equals == std::string::npos) fail(text);
     const std::string target = trimmed(rest.substr(0, equals));
     const std::size_t point = target.rfind('.');
-    step.value = trimmed(rest.substr(equals + 1));
-    if (step.value.size() > 1 && (step.value.front() == '\'' || step.value.front() == '"') && step.value.back() == step.value.front())
-      step.value = trimmed(step.value.substr(1, step.value.size() - 2));
+    step.value = unquoted(rest.substr(equals + 1));
     if (point == std::string::npos || point == 0 || point + 1 == target.size() || step.value.empty()) fail(text);
     step.name = target.substr(0, point);
     step.field = target.substr(point + 1);
@@ -78,9 +82,26 @@ std::optional<EventText> event_text(const std::string& when) {
   return std::nullopt;
 }
 
+std::optional<std::vector<std::string>> items_of_list(const std::string& value) {
+  const std::string whole = trimmed(value);
+  if (whole.size() < 2 || whole.front() != '[' || whole.back() != ']') return std::nullopt;
+  std::vector<std::string> items{""};
+  int depth = 0;
+  for (const char c : whole.substr(1, whole.size() - 2)) {
+    depth += c == '[' ? 1 : c == ']' ? -1 : 0;
+    if (depth < 0) return std::nullopt;
+    if (c == ',' && depth == 0) items.emplace_back();
+    else items.back() += c;
+  }
+  if (depth != 0) return std::nullopt;
+  for (std::string& item : items) item = unquoted(item);
+  if (items.back().empty()) items.pop_back(); // a comma behind the last one
+  return items;
+}
+
 bool is_name_in_step(const std::string& value) {
   const auto c = static_cast<unsigned char>(value.empty() ? '0' : value.front());
-  return std::isdigit(c) == 0 && c != '.' && c != '-' && c != '+';
+  return std::isdigit(c) == 0 && c != '.' && c != '-' && c != '+' && c != '[';
 }
 
 } // namespace steplap

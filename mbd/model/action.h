@@ -44,6 +44,9 @@ struct EventText {
 /// Reads one.
 [[nodiscard]] std::optional<EventText> event_text(const std::string& when);
 
+/// Of a value of set that is a list, "[a, [b, c]]", the items "a" and "[b, c]", without blanks and quotes around them; nullopt if it is none.
+[[nodiscard]] std::optional<std::vector<std::string>> items_of_list(const std::string& value);
+
 /// A value of set that names something, as a signal, and is no number.
 [[nodiscard]] bool is_name_in_step(const std::string& value);
 

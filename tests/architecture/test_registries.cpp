@@ -232,6 +232,7 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/dynamics/projection.cpp", "the unit of a message"},
       {"mbd/simulation/changeover.cpp", "the unit of a message"},
       {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},
+      {"mbd/system/slight_force.h", "the unit of a force"},
   };
   for (const auto& [path, text] : product_sources())
     if (path.starts_with("mbd/") && text.find("MeasureKind::") != std::string::npos)
