@@ -133,6 +133,11 @@ private:
     return entry && entry->kind->name.ends_with("rope");
   }
 
+  bool is_tyre(const std::string& element) const {
+    const ElementEntry* entry = entry_of(element);
+    return entry && dynamic_cast<const Tyre*>(entry->element.get());
+  }
+
   // Does the contact bear against gravity, so that opening it is a lift?
   bool is_upright(const std::string& element) const {
     const ElementEntry* entry = entry_of(element);
@@ -234,9 +239,13 @@ private:
     case EventKind::slips_another_way: return begin(What::slips, event, error);
     case EventKind::sticks:
     case EventKind::loses_normal_force: return end(What::slips, event, error);
-    case EventKind::force_reaches_zero: return end(What::slips, event, error); // of a tyre, whose contact and tread are one element
+    case EventKind::force_reaches_zero:
+      if (is_tyre(event.element)) end(What::slips, event, error); // its contact and its tread are one
+      return;
     case EventKind::opens:
-    case EventKind::enters_gap: end(What::slips, event, error); return toggle(true, event, error);
+      if (is_tyre(event.element)) end(What::slips, event, error);
+      return toggle(true, event, error);
+    case EventKind::enters_gap:
     case EventKind::reaches_lower_stop:
     case EventKind::reaches_upper_stop: return toggle(true, event, error);
     case EventKind::closes:

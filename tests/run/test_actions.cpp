@@ -112,3 +112,12 @@ TEST_CASE("an action that waits for an event which its element cannot have is re
                        doctest::Contains("no event of 'brake' is called 'opens'"), ModelError);
   CHECK(disc(action("gone", "brake sticks", "stop")) != nullptr);
 }
+
+TEST_CASE("limits by which a run is judged cannot be set within it") {
+  const auto file = std::filesystem::temp_directory_path() / "steplap_limit_set.toml";
+  for (const char* const field : {"least_margin", "most_slide"}) {
+    std::ofstream(file) << "extends = \"" STEPLAP_MODELS "/paper/no_interference.toml\"\n" +
+                               action("lax", "0.1 s", "set front joint." + std::string(field) + " = 1");
+    CHECK_THROWS_WITH_AS(static_cast<void>(load_model(file.string())), doctest::Contains("a run is judged by one limit"), ModelError);
+  }
+}
