@@ -3,7 +3,6 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/friction/box_problem.h"
 #include "mbd/system/element_failure.h"
-#include "mbd/system/one_sided_row.h"
 
 #include <cmath>
 #include <utility>
@@ -29,7 +28,7 @@ double rest_rate(const OneSidedRow& rope, const std::vector<Motion<double>>& mot
 }
 
 struct Struck {
-  std::vector<int> ropes;
+  std::vector<OneSidedUnit> ropes;
   std::vector<double> rate, rounding;
   std::vector<double> acceleration; ///< with all of them slack
 };
@@ -39,15 +38,14 @@ Struck ropes_at_length(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   Struck struck;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
-    if (!rope) continue;
-    const auto m = rope->measured(motion.data());
-    const bool is_reached = rope->length - m.value <= k_same_length * rope->length;
-    if (state.friction[f].phase != FrictionPhase::stick && !is_reached) continue;
-    struck.ropes.push_back(static_cast<int>(f));
+  for (const OneSidedUnit& unit : one_sided_rows(system)) {
+    const OneSidedRow& rope = *unit.row;
+    const auto m = rope.measured(motion.data());
+    const bool is_reached = rope.length - m.value <= k_same_length * rope.length;
+    if (state.friction[unit.friction].phase != FrictionPhase::stick && !is_reached) continue;
+    struck.ropes.push_back(unit);
     struck.rate.push_back(m.rate);
-    struck.rounding.push_back(k_rest_velocity + k_rounded_share * rope->speed(motion.data()));
+    struck.rounding.push_back(k_rest_velocity + k_rounded_share * rope.speed(motion.data()));
   }
   return struck;
 }
@@ -58,7 +56,7 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
   dynamics.pack(loose, y.data());
   dynamics.rates(loose.t, y.data(), dy.data());
   Dynamics::Candidates answer;
-  for (const int f : struck.ropes) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
+  for (const OneSidedUnit& rope : struck.ropes) answer.rows.push_back(&rope.row->row);
   dynamics.respond(answer, dy.data());
   struck.acceleration = answer.acceleration;
   const auto n = static_cast<Eigen::Index>(struck.ropes.size());
@@ -67,7 +65,7 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
   BoxSolution solution = solve_box_problem(a, u, VecX::Constant(n, -std::numeric_limits<double>::infinity()), VecX::Zero(n), rounding);
   if (solution.is_solved) return solution;
   throw ElementFailure("at t = " + rounded_text(loose.t, 12) + " s it cannot be decided which ropes take the blow",
-                       {system.element_names[system.frictions[struck.ropes.front()].element]});
+                       {system.element_names[struck.ropes.front().row->row.element]});
 }
 
 // What holds in the modes of `state` is met by its places and velocities.
@@ -86,20 +84,37 @@ bool is_any_driven(const System& system) {
   return false;
 }
 
+// What slips beyond a bound bears none of a blow.
+void free_friction(const System& system, State& state) {
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    if (!system.frictions[f].friction->never_slips() && state.friction[f].phase != FrictionPhase::apart)
+      state.friction[f].phase = FrictionPhase::free;
+}
+
+// Dissipation and work of a blow that leaves `after`: of the change of velocities where drives move, else what motion has lost.
+void book_blow(const System& system, bool is_driven, State& after, State& state) {
+  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
+  State jump = after;
+  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
+  const double lost = is_driven ? system.kinetic_energy(jump) : -gained;
+  state.dissipated += lost;
+  state.work += gained + lost;
+  state.q = std::move(after.q);
+  state.v = std::move(after.v);
+}
+
 } // namespace
 
 bool set_ropes(const System& system, State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   bool is_any_pulled = false;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
-    if (!rope) continue;
+  for (const auto& [rope, f] : one_sided_rows(system)) {
     FrictionState& friction = state.friction[f];
     state.memory[rope->blow] = state.memory[rope->blow + 1] = 0.0;
     const auto m = rope->measured(motion.data());
     if (m.value > rope->length * (1.0 + OneSidedRow::k_too_long)) {
-      const std::string& name = system.element_names[system.frictions[f].element];
+      const std::string& name = system.element_names[rope->row.element];
       throw ElementFailure("the ends of rope '" + name + "' are " + rounded_text(m.value - rope->length, 4) +
                                " m farther apart at the start than its length lets them be",
                            {name});
@@ -117,16 +132,12 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   Struck struck = ropes_at_length(system, state);
   if (struck.ropes.empty()) return;
   State after = state;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const FrictionElement& friction = *system.frictions[f].friction;
-    if (!friction.never_slips() && after.friction[f].phase != FrictionPhase::apart) after.friction[f].phase = FrictionPhase::free;
-  }
-  for (const int f : struck.ropes) after.friction[f].phase = FrictionPhase::slip;
+  free_friction(system, after);
+  for (const OneSidedUnit& rope : struck.ropes) after.friction[rope.friction].phase = FrictionPhase::slip;
   const BoxSolution solution = impulses_of(system, dynamics, after, struck);
   for (std::size_t i = 0; i < struck.ropes.size(); ++i) {
-    const int f = struck.ropes[i];
-    FrictionState& friction = after.friction[f];
-    const OneSidedRow& rope = *one_sided_row(*system.frictions[f].friction);
+    const OneSidedRow& rope = *struck.ropes[i].row;
+    FrictionState& friction = after.friction[struck.ropes[i].friction];
     const double left_with = solution.g[static_cast<Eigen::Index>(i)];
     const bool hardly_leaves = left_with * left_with <= 2.0 * k_shortest_flight * rope.length * std::abs(struck.acceleration[i]);
     friction.phase = solution.is_free[i] != 0 || hardly_leaves ? FrictionPhase::stick : FrictionPhase::slip;
@@ -137,44 +148,26 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
     state.memory[rope.blow + 1] += 0.5 * impulse * std::max(struck.rate[i], 0.0);
   }
   meet(dynamics, after);
-  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
-  State jump = after;
-  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
-  const double lost = is_any_driven(system) ? system.kinetic_energy(jump) : -gained;
-  state.dissipated += lost;
-  state.work += gained + lost;
-  state.q = std::move(after.q);
-  state.v = std::move(after.v);
-  for (const int f : struck.ropes) state.friction[f] = after.friction[f];
+  book_blow(system, is_any_driven(system), after, state);
+  for (const OneSidedUnit& rope : struck.ropes) state.friction[rope.friction] = after.friction[rope.friction];
 }
 
 void close_rows(const System& system, Dynamics& dynamics, State& state) {
   State after = state;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    FrictionState& friction = after.friction[f];
-    if (one_sided_row(*system.frictions[f].friction)) friction.phase = FrictionPhase::slip;
-    else if (!system.frictions[f].friction->never_slips() && friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
-  }
+  free_friction(system, after);
+  for (const OneSidedUnit& rope : one_sided_rows(system)) after.friction[rope.friction].phase = FrictionPhase::slip;
   meet(dynamics, after);
-  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
-  State jump = after;
-  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
-  const double lost = system.kinetic_energy(jump);
-  state.dissipated += lost;
-  state.work += gained + lost;
-  state.q = std::move(after.q);
-  state.v = std::move(after.v);
+  book_blow(system, true, after, state);
 }
 
-bool was_struck(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
-  const int blow = one_sided_row(*system.frictions[f].friction)->blow;
-  return before[blow + 1] != state.memory[blow + 1];
+bool was_struck(const OneSidedRow& rope, const std::vector<double>& before, const State& state) {
+  return before[rope.blow + 1] != state.memory[rope.blow + 1];
 }
 
-std::string blow_text(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
-  const int blow = one_sided_row(*system.frictions[f].friction)->blow;
-  if (!was_struck(system, f, before, state)) return {};
-  return "with " + rounded_text(state.memory[blow], 4) + " N s, " + rounded_text(state.memory[blow + 1] - before[blow + 1], 4) + " J lost";
+std::string blow_text(const OneSidedRow& rope, const std::vector<double>& before, const State& state) {
+  if (!was_struck(rope, before, state)) return {};
+  const double impulse = state.memory[rope.blow], lost = state.memory[rope.blow + 1] - before[rope.blow + 1];
+  return "with " + rounded_text(impulse, 4) + " N s, " + rounded_text(lost, 4) + " J lost";
 }
 
 } // namespace steplap

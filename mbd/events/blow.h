@@ -8,6 +8,7 @@
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <string>
 
@@ -26,7 +27,7 @@ void take_blow(const System& system, Dynamics& dynamics, State& state);
 void close_rows(const System& system, Dynamics& dynamics, State& state);
 
 /// Of the last blow that a rope took; `before`: the memory as it was then.
-[[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
-[[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
+[[nodiscard]] bool was_struck(const OneSidedRow& rope, const std::vector<double>& before, const State& state);
+[[nodiscard]] std::string blow_text(const OneSidedRow& rope, const std::vector<double>& before, const State& state);
 
 } // namespace steplap

@@ -78,25 +78,25 @@ void refuse_inner(const Changeover& change, const State& state) {
   }
 }
 
-void place_rope(const Changeover& change, std::size_t f, const std::vector<Motion<double>>& motion, State& state) {
-  const OneSidedRow& rope = *one_sided_row(*change.to.frictions[f].friction);
-  const std::string& name = change.to.element_names[static_cast<std::size_t>(change.to.frictions[f].element)];
+void place_rope(const Changeover& change, const OneSidedUnit& unit, const std::vector<Motion<double>>& motion, State& state) {
+  const OneSidedRow& rope = *unit.row;
+  const std::string& name = change.to.element_names[static_cast<std::size_t>(rope.row.element)];
   const double length = rope.measured(motion.data()).value;
   if (length > rope.length * (1.0 + OneSidedRow::k_too_long))
     throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s the ends of rope '" + name + "' are " +
                              rounded_text(length - rope.length, 4) +
                              " m farther apart than its length lets them be: let it begin to act where they are nearer, or make it longer",
                          {name});
-  state.friction[f].phase = length >= rope.length * (1.0 - OneSidedRow::k_at_length) ? FrictionPhase::stick : FrictionPhase::slip;
+  state.friction[unit.friction].phase =
+      length >= rope.length * (1.0 - OneSidedRow::k_at_length) ? FrictionPhase::stick : FrictionPhase::slip;
 }
 
 } // namespace
 
 bool Changeover::closes_rows() const {
   const auto is_new = [this](int element) { return begins[static_cast<std::size_t>(element)] != 0; };
-  return std::any_of(to.rows.begin(), to.rows.end(), [&](const RowSpec& row) { return is_new(row.element); }) ||
-         std::any_of(to.frictions.begin(), to.frictions.end(),
-                     [&](const FrictionUnit& unit) { return is_new(unit.element) && one_sided_row(*unit.friction); });
+  return std::ranges::any_of(to.rows, [&](const RowSpec& row) { return is_new(row.element); }) ||
+         std::ranges::any_of(one_sided_rows(to), [&](const OneSidedUnit& rope) { return is_new(rope.row->row.element); });
 }
 
 State carried(const Changeover& change, const State& state) {
@@ -135,9 +135,8 @@ void place_what_closes(const Changeover& change, State& state) {
     const double fits = k_fit * (row.kind == MeasureKind::angle ? 1.0 : change.to.scale.length);
     if (std::abs(off) > fits) fail_to_close(change.to, state, row, off);
   }
-  for (std::size_t f = 0; f < change.to.frictions.size(); ++f)
-    if (change.closes(change.to.frictions[f].element) && one_sided_row(*change.to.frictions[f].friction))
-      place_rope(change, f, motion, state);
+  for (const OneSidedUnit& rope : one_sided_rows(change.to))
+    if (change.closes(rope.row->row.element)) place_rope(change, rope, motion, state);
 }
 
 void book_stored_energy(const Changeover& change, const State& before, State& after) {

@@ -3,7 +3,6 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
-#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,7 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
   constexpr double k_stuck_beyond = 1e-6; // the mode problem knows forces to 1e-9 of the capacities, and events are found to rounding
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     const FrictionUnit& unit = system.frictions[f];
-    if (unit.friction->dimension() != 1 || unit.friction->never_slips() || one_sided_row(*unit.friction)) continue;
+    if (unit.friction->dimension() != 1 || unit.friction->never_slips()) continue;
     if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
     const double one = watch[unit.watch], other = watch[unit.watch + 1];
     if (std::min(one, other) >= -k_stuck_beyond * (std::abs(one) + std::abs(other))) continue;
