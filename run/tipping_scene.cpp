@@ -60,11 +60,11 @@ void TippingScene::find_loads() {
 
 // Inextensible ropes that are taut and carry nothing that hangs: they let no motion by which they would be longer.
 void TippingScene::find_stays() {
-  for (const FrictionUnit& unit : system_.frictions) {
-    const OneSidedRow* const rope = one_sided_row(*unit.friction);
-    if (!rope || rope->left(statics_.motion().data()) > OneSidedRow::k_too_long * rope->length) continue;
+  for (const auto& [rope, friction] : one_sided_rows(system_)) {
+    if (rope->left(statics_.motion().data()) > OneSidedRow::k_too_long * rope->length) continue;
     const auto& by = hanging_.by;
-    if (std::find(by.begin(), by.end(), system_.element_names[unit.element]) == by.end()) stays_.push_back(rope);
+    const std::string& name = system_.element_names[system_.frictions[friction].element];
+    if (std::find(by.begin(), by.end(), name) == by.end()) stays_.push_back(rope);
   }
 }
 

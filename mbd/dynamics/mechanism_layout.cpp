@@ -247,10 +247,9 @@ private:
 
 std::vector<char> clusters_on_long_rows(const System& system, const Layout& layout) {
   std::vector<char> is_long(layout.clusters.size(), 0);
-  for (const FrictionUnit& unit : system.frictions) {
-    const OneSidedRow* const rope = one_sided_row(*unit.friction);
-    if (!rope || !rope->is_long()) continue;
-    rope->for_parts([&](const RowSpec& part) {
+  for (const OneSidedUnit& rope : one_sided_rows(system)) {
+    if (!rope.row->is_long()) continue;
+    rope.row->for_parts([&](const RowSpec& part) {
       for (const int body : {part.a, part.b})
         if (const int k = layout.placements[body].cluster; k >= 0) is_long[k] = 1;
     });

@@ -140,20 +140,37 @@ void check_locks(const System& system, const State& state) {
   }
 }
 
+// What slips beyond a bound bears none of a blow.
+void free_friction(const System& system, State& state) {
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    if (!system.frictions[f].friction->never_slips() && state.friction[f].phase != FrictionPhase::apart)
+      state.friction[f].phase = FrictionPhase::free;
+}
+
+// Dissipation and work of a blow that leaves `after`: of the change of velocities where drives move, else what motion has lost.
+void book_blow(const System& system, bool is_driven, State& after, State& state) {
+  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
+  State jump = after;
+  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
+  const double lost = is_driven ? system.kinetic_energy(jump) : -gained;
+  state.dissipated += lost;
+  state.work += gained + lost;
+  state.q = std::move(after.q);
+  state.v = std::move(after.v);
+}
+
 } // namespace
 
 bool set_ropes(const System& system, State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   bool is_any_pulled = false;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
-    if (!rope) continue;
+  for (const auto& [rope, f] : one_sided_rows(system)) {
     FrictionState& friction = state.friction[f];
     state.memory[rope->blow] = state.memory[rope->blow + 1] = 0.0;
     const auto m = rope->measured(motion.data());
     if (m.value > rope->length * (1.0 + OneSidedRow::k_too_long)) {
-      const std::string& name = system.element_names[system.frictions[f].element];
+      const std::string& name = system.element_names[rope->row.element];
       throw ElementFailure("the ends of rope '" + name + "' are " + rounded_text(m.value - rope->length, 4) +
                                " m farther apart at the start than its length lets them be",
                            {name});
@@ -181,10 +198,7 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   Struck struck = struck_in(system, state);
   if (struck.elements.empty()) return;
   State after = state;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const FrictionElement& friction = *system.frictions[f].friction;
-    if (!friction.never_slips() && after.friction[f].phase != FrictionPhase::apart) after.friction[f].phase = FrictionPhase::free;
-  }
+  free_friction(system, after);
   for (const int f : struck.elements)
     if (one_sided_row(*system.frictions[f].friction)) after.friction[f].phase = FrictionPhase::slip;
   const BoxSolution solution = impulses_of(system, dynamics, after, struck);
@@ -208,34 +222,17 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   }
   meet(dynamics, after);
   check_locks(system, after);
-  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
-  State jump = after;
-  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
-  const double lost = is_any_driven(system) ? system.kinetic_energy(jump) : -gained;
-  state.dissipated += lost;
-  state.work += gained + lost;
-  state.q = std::move(after.q);
-  state.v = std::move(after.v);
+  book_blow(system, is_any_driven(system), after, state);
   for (const int f : struck.elements)
     if (one_sided_row(*system.frictions[f].friction)) state.friction[f] = after.friction[f];
 }
 
 void close_rows(const System& system, Dynamics& dynamics, State& state) {
   State after = state;
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    FrictionState& friction = after.friction[f];
-    if (one_sided_row(*system.frictions[f].friction)) friction.phase = FrictionPhase::slip;
-    else if (!system.frictions[f].friction->never_slips() && friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
-  }
+  free_friction(system, after);
+  for (const OneSidedUnit& rope : one_sided_rows(system)) after.friction[rope.friction].phase = FrictionPhase::slip;
   meet(dynamics, after);
-  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
-  State jump = after;
-  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
-  const double lost = system.kinetic_energy(jump);
-  state.dissipated += lost;
-  state.work += gained + lost;
-  state.q = std::move(after.q);
-  state.v = std::move(after.v);
+  book_blow(system, true, after, state);
 }
 
 bool was_struck(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {

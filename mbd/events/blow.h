@@ -11,6 +11,7 @@
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <string>
 

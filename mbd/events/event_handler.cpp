@@ -267,12 +267,13 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
 namespace {
 
 // What a rope has done: taut, slack, or taut and slack again at once.
-void note_rope(const System& system, std::size_t f, FrictionPhase phase_before, const std::vector<double>& memory_before,
+void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase phase_before, const std::vector<double>& memory_before,
                const State& state, std::vector<Event>& events) {
-  const std::string& name = system.element_names[system.frictions[f].element];
-  const bool was_taut = phase_before == FrictionPhase::stick, is_taut = state.friction[f].phase == FrictionPhase::stick;
-  const bool is_caught = !was_taut && (is_taut || was_struck(system, f, memory_before, state));
-  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, blow_text(system, f, memory_before, state)});
+  const OneSidedRow& rope = *unit.row;
+  const std::string& name = system.element_names[rope.row.element];
+  const bool was_taut = phase_before == FrictionPhase::stick, is_taut = state.friction[unit.friction].phase == FrictionPhase::stick;
+  const bool is_caught = !was_taut && (is_taut || was_struck(system, unit.friction, memory_before, state));
+  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, blow_text(system, unit.friction, memory_before, state)});
   if ((was_taut || is_caught) && !is_taut) events.push_back({state.t, name, EventKind::enters_gap});
 }
 
@@ -309,9 +310,9 @@ void EventHandler::note_friction(const std::vector<FrictionState>& before, const
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState& old = before[f];
     const FrictionState& now = state.friction[f];
-    if (one_sided_row(*system_.frictions[f].friction)) {
+    if (const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction)) {
       const std::size_t known = events.size();
-      note_rope(system_, f, before[f].phase, memory_before, state, events);
+      note_rope(system_, {rope, f}, old.phase, memory_before, state, events);
       for (int w = 0; w < k_friction_watches && events.size() > known; ++w) fresh_[system_.frictions[f].watch + w] = 1;
       continue;
     }
@@ -370,7 +371,7 @@ void EventHandler::fail_on_pulley(const State& state, int f) const {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   const auto& [one, next] = rope.points.at(rope.shortest_part(motion.data()).place);
-  throw rope_has_run_in(state.t, system_.element_names[system_.frictions[f].element], one, next);
+  throw rope_has_run_in(state.t, system_.element_names[rope.row.element], one, next);
 }
 
 // The friction of the slots that have fired leaves its phase or place; ropes at their length are struck behind it.
@@ -382,12 +383,13 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
   for (const int slot : fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
-    if (one_sided_row(*system_.frictions[f].friction) && slot == system_.frictions[f].watch + 2) {
+    const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
+    if (rope && slot == system_.frictions[f].watch + 2) {
       found.is_any_tight = true;
       fresh_[slot] = 1;
       continue;
     }
-    if (one_sided_row(*system_.frictions[f].friction) && slot == system_.frictions[f].watch + 1) fail_on_pulley(state, f);
+    if (rope && slot == system_.frictions[f].watch + 1) fail_on_pulley(state, f);
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
     if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
     if (group >= 0) {                                                   // fires in the slots of all its elements

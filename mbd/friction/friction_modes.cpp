@@ -163,9 +163,8 @@ private:
 
 // Ropes that would push although their row holds without them: others hold it, and one of them has none of the load.
 bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) {
-  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const FrictionUnit& unit = system.frictions[f];
-    if (state.friction[f].phase != FrictionPhase::stick || dynamics.watch()[unit.watch] >= 0.0 || !one_sided_row(*unit.friction)) continue;
+  for (const auto& [rope, f] : one_sided_rows(system)) {
+    if (state.friction[f].phase != FrictionPhase::stick || dynamics.watch()[system.frictions[f].watch] >= 0.0) continue;
     state.friction[f].phase = FrictionPhase::slip;
     state.friction[f].sign = 0;
     return true;
@@ -296,7 +295,7 @@ bool FrictionModes::is_at_rest(const State& state, int f) const {
 bool FrictionModes::rejoin(State& state) {
   bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-    if (state.friction[f].phase != FrictionPhase::slip || one_sided_row(*system_.frictions[f].friction) || !is_at_rest(state, f)) continue;
+    if (state.friction[f].phase != FrictionPhase::slip || system_.frictions[f].friction->never_slips() || !is_at_rest(state, f)) continue;
     State trial = state;
     end_slip(trial, f);
     trial.friction[f].phase = FrictionPhase::stick;
@@ -318,7 +317,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (friction.dimension() != 1 || state.friction[f].phase != FrictionPhase::slip || before[f].phase != FrictionPhase::slip ||
-        one_sided_row(friction))
+        friction.never_slips())
       continue;
     if (!is_placed) place_bodies(state.q, state.v, motion_);
     is_placed = true;

@@ -158,7 +158,7 @@ private:
 
   Equilibrium at_rest() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
-      if (state_.friction[f].phase != FrictionPhase::slip || one_sided_row(*system_.frictions[f].friction)) continue;
+      if (state_.friction[f].phase != FrictionPhase::slip || system_.frictions[f].friction->never_slips()) continue; // nor what is slack
       state_.friction[f].phase = FrictionPhase::stick;
       anchor_friction(system_, state_, f);
     }
@@ -264,10 +264,8 @@ private:
     }
     std::vector<Motion<double>> motion;
     place_bodies(state_.q, state_.v, motion);
-    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-      const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
-      if (!rope || state_.friction[f].phase == FrictionPhase::stick ||
-          rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length)
+    for (const auto& [rope, f] : one_sided_rows(system_)) {
+      if (state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length)
         continue;
       state_.friction[f].phase = FrictionPhase::stick;
       try {
@@ -276,7 +274,7 @@ private:
         free_contacts();
         put_on_rows();
       }
-      return count_rope(f);
+      return count_rope(static_cast<int>(f));
     }
     return false;
   }
@@ -290,11 +288,10 @@ private:
     std::vector<Motion<double>> motion;
     place_bodies(state_.q, state_.v, motion);
     int changed = -1;
-    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-      const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
-      if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= 0.0) continue;
+    for (const auto& [rope, f] : one_sided_rows(system_)) {
+      if (state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= 0.0) continue;
       state_.friction[f].phase = FrictionPhase::stick;
-      changed = f;
+      changed = static_cast<int>(f);
     }
     if (changed < 0) return false;
     const std::vector<double> ran_to = state_.q;

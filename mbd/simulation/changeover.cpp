@@ -78,16 +78,17 @@ void refuse_inner(const Changeover& change, const State& state) {
   }
 }
 
-void place_rope(const Changeover& change, std::size_t f, const std::vector<Motion<double>>& motion, State& state) {
-  const OneSidedRow& rope = *one_sided_row(*change.to.frictions[f].friction);
-  const std::string& name = change.to.element_names[static_cast<std::size_t>(change.to.frictions[f].element)];
+void place_rope(const Changeover& change, const OneSidedUnit& unit, const std::vector<Motion<double>>& motion, State& state) {
+  const OneSidedRow& rope = *unit.row;
+  const std::string& name = change.to.element_names[static_cast<std::size_t>(rope.row.element)];
   const double length = rope.measured(motion.data()).value;
   if (length > rope.length * (1.0 + OneSidedRow::k_too_long))
     throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s the ends of rope '" + name + "' are " +
                              rounded_text(length - rope.length, 4) +
                              " m farther apart than its length lets them be: let it begin to act where they are nearer, or make it longer",
                          {name});
-  state.friction[f].phase = length >= rope.length * (1.0 - OneSidedRow::k_at_length) ? FrictionPhase::stick : FrictionPhase::slip;
+  state.friction[unit.friction].phase =
+      length >= rope.length * (1.0 - OneSidedRow::k_at_length) ? FrictionPhase::stick : FrictionPhase::slip;
 }
 
 } // namespace
@@ -137,9 +138,9 @@ void place_what_closes(const Changeover& change, State& state) {
     const double fits = k_fit * (row.kind == MeasureKind::angle ? 1.0 : change.to.scale.length);
     if (std::abs(off) > fits) fail_to_close(change.to, state, row, off);
   }
-  for (std::size_t f = 0; f < change.to.frictions.size(); ++f)
-    if (change.begins[static_cast<std::size_t>(change.to.frictions[f].element)] != 0 && one_sided_row(*change.to.frictions[f].friction))
-      place_rope(change, f, motion, state); // one whose length is set, too
+  for (const OneSidedUnit& rope : one_sided_rows(change.to))
+    if (change.begins[static_cast<std::size_t>(rope.row->row.element)] != 0)
+      place_rope(change, rope, motion, state); // one whose length is set, too
 }
 
 void book_stored_energy(const Changeover& change, const State& before, State& after) {

@@ -15,7 +15,7 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
   constexpr double k_stuck_beyond = 1e-6; // the mode problem knows forces to 1e-9 of the capacities, and events are found to rounding
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     const FrictionUnit& unit = system.frictions[f];
-    if (unit.friction->dimension() != 1 || unit.friction->never_slips() || one_sided_row(*unit.friction)) continue;
+    if (unit.friction->dimension() != 1 || unit.friction->never_slips()) continue;
     if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
     const double one = watch[unit.watch], other = watch[unit.watch + 1];
     const std::string& name = system.element_names[unit.element];

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,9 +112,20 @@ private:
 [[nodiscard]] inline const OneSidedRow* one_sided_row(const FrictionElement& friction) {
   return friction.never_slips() ? dynamic_cast<const OneSidedRow*>(&friction) : nullptr;
 }
+/// One of a system's one-sided rows, and which of its friction elements it is.
+struct OneSidedUnit {
+  const OneSidedRow* row = nullptr;
+  std::size_t friction = 0;
+};
+/// All of them, in the order of the friction elements. `system` must outlive what is made of it.
+[[nodiscard]] inline auto one_sided_rows(const System& system) {
+  const auto of = [&system](std::size_t f) { return OneSidedUnit{one_sided_row(*system.frictions[f].friction), f}; };
+  return std::views::iota(std::size_t{0}, system.frictions.size()) | std::views::transform(of) |
+         std::views::filter([](const OneSidedUnit& unit) { return unit.row != nullptr; });
+}
+/// Null where there is none.
 [[nodiscard]] inline const OneSidedRow* first_one_sided_row(const System& system) {
-  for (const FrictionUnit& unit : system.frictions)
-    if (const OneSidedRow* rope = one_sided_row(*unit.friction)) return rope;
+  for (const OneSidedUnit& unit : one_sided_rows(system)) return unit.row;
   return nullptr;
 }
 
