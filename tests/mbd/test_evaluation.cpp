@@ -29,6 +29,7 @@ name = "bob"
 mass = 1.0
 inertia = 0.1
 position = [1.0, 0.2]
+angle = 0.4
 [[marker]]
 name = "bob's"
 body = "rod"
@@ -108,6 +109,8 @@ TEST_CASE("every body is where it moves to and accelerates as its neighbours let
       CHECK(std::abs(motion[i].y - turned.q[3 * i + 1]) < 1e-15);
       CHECK(std::abs(motion[i].vx - turned.v[3 * i]) < 1e-15);
       CHECK(std::abs(motion[i].omega - omega) < 1e-15);
+      CHECK(std::abs(motion[i].c - std::cos(turned.q[3 * i + 2])) < 1e-15);
+      CHECK(std::abs(motion[i].s - std::sin(turned.q[3 * i + 2])) < 1e-15);
       CHECK(e.dynamics.evaluation().motion[i].y == motion[i].y);
     }
     const double* const acceleration = e.dynamics.snapshot(e.dy.data()).acceleration;
@@ -254,5 +257,40 @@ TEST_CASE("a joint inside a cluster is looked at from one step's end near its li
     CHECK(dynamics.looks_at_merged(false)); // the step that ends here began near the limit
     CHECK(left_of(48.0) > 0.5);
     CHECK(!dynamics.looks_at_merged(false));
+  }
+}
+
+TEST_CASE("a body that is driven along one coordinate accelerates freely along the others") {
+  const char* const coordinates[3] = {"x", "y", "angle"};
+  for (int driven = 0; driven < 3; ++driven) {
+    CAPTURE(driven);
+    const std::string text = std::string(R"(gravity = [0.0, 0.0]
+[simulation]
+step = 1e-3
+[[signal]]
+name = "still"
+kind = "constant"
+value = 0.0
+[[body]]
+name = "block"
+mass = 2.0
+inertia = 0.5
+[[element]]
+kind = "load"
+name = "pull"
+at = "block"
+force = [3.0, -5.0]
+couple = 2.0
+[[element]]
+kind = "prescribed_motion"
+name = "drive"
+a = "block"
+signal = "still"
+coordinate = )") + "\"" + coordinates[driven] +
+                             "\"\n";
+    EvaluatedScene e(text);
+    REQUIRE(e.dynamics.layout().locks.size() == 1);
+    const double wanted[3] = {3.0 / 2.0, -5.0 / 2.0, 2.0 / 0.5};
+    for (int c = 0; c < 3; ++c) CHECK(e.dy[static_cast<std::size_t>(3 + c)] == (c == driven ? 0.0 : wanted[c]));
   }
 }

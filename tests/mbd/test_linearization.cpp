@@ -263,6 +263,81 @@ TEST_CASE("linearisation: pendulums that weight alone moves") {
   }
 }
 
+// Bodies in free flight whose sheets overlap in part, alone and with others welded to them: where they are tells how much of them rubs and
+// about which arms, and no spring is there beside which that would be small.
+TEST_CASE("linearisation: a joint that slides, and nothing else") {
+  using namespace step_lap_scene;
+  const std::string alone = header("end = 0.01", 0.01) + body("limb", 10.0, 0.1, {0.03, 0.02}, {0.5, 0.2}, 0.3) +
+                            body("yoke", 20.0, 0.3, {-0.02, 0.01}, {-0.1, 0.1}, -0.4) + joint("limb", "yoke") +
+                            interface(rectangle(-1.0, -1.0, 0.05, 0.04), rectangle(-0.1, -0.05, 0.12, 0.06), 1e6, 0.4);
+  const auto weld = [](const std::string& a, const std::string& b) {
+    return "[[element]]\nkind = \"weld\"\nname = \"" + a + " on " + b + "\"\na = \"" + a + "\"\nb = \"" + b + "\"\n";
+  };
+  const std::string riding = alone + body("weight", 6.0, 0.4, {0.4, 0.3}, {0.41, 0.32}, 0.3) + weld("weight", "limb") +
+                             body("ballast", 9.0, 0.5, {-0.5, 0.2}, {-0.02, 0.3}, -0.4) + weld("ballast", "yoke");
+  for (const std::string& text : {alone, riding}) {
+    const auto system = compile(scene(text));
+    REQUIRE(system->frictions.size() == 1);
+    State state = system->initial_state();
+    state.friction[0].phase = FrictionPhase::slip;
+    Dynamics dynamics(*system);
+    dynamics.set_time_limit(1.0);
+    dynamics.set_state(state);
+    REQUIRE(dynamics.layout().sliding.size() == 1);
+    CHECK(deviation(dynamics, state, k_step, k_step) < 1e-5); // the slip law's own differences
+  }
+}
+
+// Its friction hangs on how deep it is pressed: by 2 kN/m against the 6 kN/m of its middle curve.
+TEST_CASE("linearisation: a buffer that is pressed in, across the axes") {
+  const auto system = compile(scene(R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "wagon"
+mass = 3.0
+inertia = 0.4
+position = [0.3, 0.5]
+velocity = [-0.4, -0.5]
+angular_velocity = 0.2
+[[body]]
+name = "other"
+mass = 2.0
+inertia = 0.3
+position = [-0.4, -0.3]
+angle = 0.2
+[[element]]
+kind = "buffer"
+name = "buffer"
+a = { body = "wagon", at = [0.2, 0.2] }
+b = { body = "other", at = [0.1, 0.0] }
+axis = [0.6, 0.8]
+gap = -0.02
+loading = [[0.0, 0.0], [0.1, 800.0]]
+unloading = [[0.0, 0.0], [0.1, 400.0]]
+)"));
+  REQUIRE(system->frictions.size() == 1);
+  SimulationOptions options;
+  options.integrator = "dop853";
+  options.end = 1e-3;
+  Simulation simulation(*system, system->initial_state(), options);
+  REQUIRE(simulation.advance());
+  State state = simulation.current_state(); // pressed
+  for (const int sign : {-1, 1}) {
+    state.friction[0].phase = FrictionPhase::slip;
+    state.friction[0].sign = static_cast<std::int8_t>(sign);
+    Dynamics dynamics(*system);
+    dynamics.set_time_limit(1.0);
+    dynamics.set_state(state);
+    REQUIRE(dynamics.layout().sliding.size() == 1);
+    CHECK(deviation(dynamics, state, k_step, k_step) < 1e-6); // the slip law's own differences
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y);
+    dynamics.pack(state, y.data());
+    dynamics.rates(state.t, y.data(), dy.data());
+    CHECK(-sign * dynamics.snapshot(dy.data()).friction_force[0] > 30.0); // of 40 N at its depth of 20 mm
+  }
+}
+
 // Stiffness over mass is 1e5 1/s² and more here, and friction sits on springs of 1.6e9 N/m.
 TEST_CASE("linearisation: the paper's transformer sticking, sliding, with feet lifted and blocks pressed") {
   for (const char* name : {"paper/no_interference", "paper/weak_clamping"}) {

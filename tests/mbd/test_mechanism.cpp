@@ -398,3 +398,27 @@ TEST_CASE("mechanism: a row of friction that moves nothing stays out, one of a j
     CHECK(d.mechanism.is_left_out(r) == (r == 1));
   }
 }
+
+TEST_CASE("mechanism: friction stays out for joints, not joints for friction") {
+  RandomNumber random(6);
+  for (int draw = 0; draw < 40; ++draw) {
+    CAPTURE(draw);
+    Drawn d = drawn(random, 3 + draw % 4, 2, true);
+    const double factor = draw % 2 == 0 ? 1.0 : -0.7;
+    for (int side = 0; side < 2; ++side)
+      for (int c = 0; c < 3; ++c) {
+        d.rows[1].j[side][c] = factor * d.rows[0].j[side][c];
+        d.rows[1].wj[side][c] = factor * d.rows[0].wj[side][c];
+      }
+    pose(random, d);
+    d.mechanism.reduce_rows(d.rows.data());
+    const char friction = draw % 3 == 0 ? 0 : 1;
+    const std::vector<char> is_friction = {friction == 0, friction == 1}, was_out = {0, 0};
+    d.mechanism.decide_rank(is_friction.data(), was_out.data());
+    d.mechanism.factor_rows(d.rows.data(), 0.0);
+    for (int r = 0; r < 2; ++r) {
+      CHECK(d.mechanism.is_left_out(r) == (r == friction));
+      CHECK(d.mechanism.is_dependent(r) == (r == friction));
+    }
+  }
+}

@@ -343,3 +343,55 @@ TEST_CASE("constraint equations: rows that are nearly the same keep the digits t
     }
   CHECK(compared > 60);
 }
+
+// Of a row of a joint and one of friction along the same, whichever comes first and whatever its sign, friction stays out; what moves nothing is
+// dependent, but only friction counts as left out.
+TEST_CASE("constraint equations: friction stays out for joints, not joints for friction") {
+  std::mt19937 generator(23);
+  for (const int rows : {2, 5, 9, 14}) // three ways to solve
+    for (const bool comes_first : {false, true})
+      for (const double factor : {1.0, -1.0}) {
+        CAPTURE(rows);
+        CAPTURE(comes_first);
+        CAPTURE(factor);
+        Problem p = random_problem(rows, rows + 1, 0.0, generator);
+        for (int side = 0; side < 2; ++side) // all of one sign
+          for (int c = 0; c < 3; ++c) {
+            SchurRow& row = p.rows[0];
+            row.j[side][c] = factor * std::abs(row.j[side][c]);
+            row.wj[side][c] = factor * std::abs(row.wj[side][c]);
+            for (SchurRow& other : p.rows)
+              for (int at = 0; at < 2; ++at)
+                if (row.body[side] >= 0 && other.body[at] == row.body[side])
+                  other.w[at][c] = p.w(3 * row.body[side] + c, 3 * row.body[side] + c);
+          }
+        copy_row(p, 0, rows - 1, 1.0);
+        const int friction = comes_first ? 0 : rows - 1;
+        std::vector<char> is_friction(static_cast<std::size_t>(rows), 0);
+        is_friction[static_cast<std::size_t>(friction)] = 1;
+        SchurSolver solver;
+        solver.analyze(p.rows);
+        solver.decide_rank(is_friction, std::vector<char>(static_cast<std::size_t>(rows), 0));
+        solver.factor(p.rows);
+        for (int r = 0; r < rows; ++r) {
+          CHECK(solver.is_left_out(r) == (r == friction));
+          CHECK(solver.is_dependent(r) == (r == friction));
+        }
+      }
+  for (const int rows : {3, 9}) {
+    Problem p = random_problem(rows, rows + 1, 0.0, generator);
+    std::vector<char> is_friction(static_cast<std::size_t>(rows), 1);
+    is_friction.back() = 0;
+    for (const int r : {0, rows - 1})
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < 3; ++c) p.rows[r].j[side][c] = p.rows[r].wj[side][c] = 0.0;
+    SchurSolver solver;
+    solver.analyze(p.rows);
+    solver.decide_rank(is_friction, std::vector<char>(static_cast<std::size_t>(rows), 0));
+    solver.factor(p.rows);
+    for (int r = 0; r < rows; ++r) {
+      CHECK(solver.is_dependent(r) == (r == 0 || r == rows - 1));
+      CHECK(solver.is_left_out(r) == (r == 0));
+    }
+  }
+}
