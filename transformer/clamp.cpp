@@ -121,10 +121,7 @@ bool has_sound_clamps(const Core& core, const Model& model) {
   const std::vector<Field>& fields = clamp_kind().fields.fields();
   const std::vector<const Clamp*> clamps = clamps_of(core, model);
   return std::all_of(clamps.begin(), clamps.end(), [&](const Clamp* clamp) {
-    return std::all_of(fields.begin(), fields.end(), [&](const Field& field) {
-      const FieldValue value = field.get(clamp);
-      return is_absent(value) || range_problem(field, value).empty();
-    });
+    return std::all_of(fields.begin(), fields.end(), [&](const Field& field) { return is_in_range(field, clamp); });
   });
 }
 

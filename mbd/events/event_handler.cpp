@@ -420,14 +420,7 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   std::fill(has_switched_.begin(), has_switched_.end(), 0);
-  std::vector<int> slots = fallen(watch, dynamics_.watch());
-  if (blow == Blow::rows) // what joins bodies gives them their velocities behind the blow wherever they are evaluated
-    for (std::size_t slot = 0; slot < watch.size(); ++slot) {
-      const int u = unit_of_slot_[slot];
-      const bool is_beyond = watch[slot] < 0.0 && dynamics_.watch()[slot] < 0.0; // by more than rounding, of which units know
-      if (is_beyond && u >= 0 && system_.units[u].group->follows_jumps()) slots.push_back(static_cast<int>(slot));
-    }
-  bool is_contact_changed = switch_units(state, slots, events);
+  bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
   if (follow_jumps(state, nullptr, events)) is_contact_changed = true;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionPhase phase = state.friction[f].phase;

@@ -57,6 +57,12 @@ std::string reference_noun(FieldType type) {
   }
 }
 
+// Not given: empty text, also what an optional number without a value is read as.
+bool is_absent(const FieldValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text && text->empty();
+}
+
 std::string number_problem(const Field& field, double value) {
   std::string need;
   if (!std::isfinite(value)) need = "finite";
@@ -89,11 +95,6 @@ template <class T> std::string first_problem(const Field& field, const std::vect
 
 } // namespace
 
-bool is_absent(const FieldValue& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text && text->empty();
-}
-
 std::string range_problem(const Field& field, const FieldValue& value) {
   switch (field.type) {
   case FieldType::number: return number_problem(field, std::get<double>(value));
@@ -105,6 +106,11 @@ std::string range_problem(const Field& field, const FieldValue& value) {
   case FieldType::choice: return choice_problem(field, std::get<std::string>(value));
   default: return "";
   }
+}
+
+bool is_in_range(const Field& field, const void* object) {
+  const FieldValue value = field.get(object);
+  return is_absent(value) || range_problem(field, value).empty();
 }
 
 FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems) : problems_(problems) {

@@ -48,12 +48,11 @@ private:
   int suggestions_left_ = 20;                   // each looks at all names
 };
 
-/// Not given: empty text, also what an optional number without a value is read as.
-[[nodiscard]] bool is_absent(const FieldValue& value);
-
 /// "must be at least 0 kg, got -1" of a number, or of numbers in the value, that the field does not allow, or "must be
 /// one of ...": "" if all is well, and for values that are neither.
 [[nodiscard]] std::string range_problem(const Field& field, const FieldValue& value);
+/// Has the object nothing there, or what the field allows?
+[[nodiscard]] bool is_in_range(const Field& field, const void* object);
 
 /// What a reader adds to "needs" and what an unset required field is reported as.
 [[nodiscard]] std::string missing_field_message(const Field& field, const std::string& subject);

@@ -24,12 +24,6 @@ bool is_same(const FieldTable& fields, const void* a, const void* b) {
   return std::all_of(fields.fields().begin(), fields.fields().end(), [&](const Field& field) { return field.get(a) == field.get(b); });
 }
 
-// As FieldChecker has it; what is not given is no text of its field.
-bool is_in_range(const Field& field, const void* object) {
-  const FieldValue value = field.get(object);
-  return is_absent(value) || range_problem(field, value).empty();
-}
-
 bool is_in_range(const ElementEntry& entry) {
   const std::vector<Field>& fields = entry.kind->fields.fields();
   return std::all_of(fields.begin(), fields.end(), [&](const Field& field) { return is_in_range(field, entry.element.get()); });
