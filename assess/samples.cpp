@@ -5,8 +5,12 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <numeric>
 
 namespace steplap::assess {
@@ -66,6 +70,77 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
+// Samples as they come: those that are there without a gap are kept, each half second.
+class Progress {
+public:
+  Progress(const SamplingOptions& options, SampleStore& store, std::vector<VoyageSample>& samples)
+      : options_(options), store_(store), samples_(samples), is_made_(samples.size()), done_(store.load(samples)), kept_(done_) {
+    if (options_.progress) options_.progress(done_, options_.samples);
+  }
+
+  /// So many from the first on are there.
+  [[nodiscard]] long done() const { return done_; }
+
+  /// On any thread: makes sample n, unless it is time to stop. What goes wrong is told by end().
+  void make(long n, const std::function<void(VoyageSample&, const std::function<bool()>&)>& run) {
+    try {
+      if (should_stop()) return;
+      run(samples_[static_cast<std::size_t>(n)], [this] { return should_stop(); });
+      if (!should_stop()) add(n); // else it may be cut off
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      is_ended_ = true;
+    }
+  }
+
+  /// Keeps what is left to keep. Throws what went wrong, or NumericalFailure if there was a stop.
+  void end() {
+    keep();
+    if (failure_) std::rethrow_exception(failure_);
+    if (done_ == options_.samples) return;
+    throw NumericalFailure(why_ + " after " + std::to_string(done_) + " of " + std::to_string(options_.samples) + " samples." +
+                           (options_.store.empty() ? "" : " Ask again, and it goes on there."));
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  bool should_stop() {
+    if (is_ended_ || !options_.stop) return is_ended_;
+    const std::string why = options_.stop();
+    if (why.empty()) return false;
+    const std::scoped_lock lock(mutex_);
+    why_ = why;
+    is_ended_ = true;
+    return true;
+  }
+  void add(long n) {
+    const std::scoped_lock lock(mutex_);
+    is_made_[static_cast<std::size_t>(n)] = true;
+    const long before = done_;
+    while (done_ < options_.samples && is_made_[static_cast<std::size_t>(done_)]) ++done_;
+    if (done_ > before && options_.progress) options_.progress(done_, options_.samples);
+    if (Clock::now() - last_ > std::chrono::milliseconds(500)) keep();
+  }
+  void keep() {
+    if (done_ > kept_) store_.append(samples_, kept_, done_);
+    kept_ = done_;
+    last_ = Clock::now();
+  }
+
+  const SamplingOptions& options_;
+  SampleStore& store_;
+  std::vector<VoyageSample>& samples_;
+  std::mutex mutex_; ///< of all below, while threads make samples
+  std::vector<bool> is_made_;
+  long done_, kept_;
+  Clock::time_point last_ = Clock::now();
+  std::string why_; ///< it was stopped
+  std::exception_ptr failure_;
+  std::atomic<bool> is_ended_ = false;
+};
+
 } // namespace
 
 VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
@@ -83,25 +158,16 @@ std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
   std::vector<VoyageSample> samples(static_cast<std::size_t>(std::max(0L, options.samples)));
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);
-  long done = store.load(samples);
+  Progress progress(options, store, samples);
   std::vector<Runners> teams; // compiled by one thread: models are read and completed here
   for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, uncertain));
-  const long batch = 4L * threads;
-  const auto stop = [&] { return options.stop && !options.stop().empty(); };
-  while (done < options.samples) {
-    if (options.progress) options.progress(done, options.samples);
-    const long end = std::min(options.samples, done + batch);
+    // Without batches, at whose ends threads would wait for the longest voyage.
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
-    for (long n = done; n < end; ++n)
-      run(teams[static_cast<std::size_t>(omp_get_thread_num())], uncertain, samples[static_cast<std::size_t>(n)], stop);
-    if (options.stop)
-      if (const std::string why = options.stop(); !why.empty())
-        throw NumericalFailure(why + " after " + std::to_string(done) + " of " + std::to_string(options.samples) + " samples." +
-                               (options.store.empty() ? "" : " Ask again, and it goes on there."));
-    store.append(samples, done, end);
-    done = end;
-  }
-  if (options.progress) options.progress(done, options.samples);
+  for (long n = progress.done(); n < options.samples; ++n)
+    progress.make(n, [&](VoyageSample& sample, const std::function<bool()>& stop) {
+      run(teams[static_cast<std::size_t>(omp_get_thread_num())], uncertain, sample, stop);
+    });
+  progress.end();
   return samples;
 }
 

@@ -86,8 +86,8 @@ private:
 };
 
 Evaluator::Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, std::function<void(const Pace&)> progress)
-    : loaded_(loaded), store_(store), ranks_(ranks), workers_(std::make_unique<Workers>(loaded, threads)), progress_(std::move(progress)),
-      chunk_(loaded.models.empty() ? 10000 : 16 * static_cast<std::size_t>(ranks.count())), begin_(now()) {}
+    : loaded_(loaded), writer_(store), stored_(store.size()), ranks_(ranks), workers_(std::make_unique<Workers>(loaded, threads)),
+      progress_(std::move(progress)), chunk_(loaded.models.empty() ? 10000 : 16 * static_cast<std::size_t>(ranks.count())), begin_(now()) {}
 
 Evaluator::~Evaluator() = default;
 
@@ -95,21 +95,23 @@ double Evaluator::seconds() const { return now() - begin_; }
 
 void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<double>& points) {
   const std::size_t width = loaded_.study.variables.size();
-  store_.read(next_ + static_cast<long>(from), static_cast<long>(count), fetched_);
+  Store& store = writer_.store();
+  store.read(next_ + static_cast<long>(from), static_cast<long>(count), fetched_);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < width; ++j)
       if (!is_same(fetched_[i].values[j],
                    points[(from + i) * width + j])) { // a study that has changed goes another way from here
-        if (!may_go_another_way())
-          throw StoreError(store_.path(),
+        if (!may_go_another_way(store))
+          throw StoreError(store.path(),
                            "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
                                " has other values than the study asks for: let it make the store anew",
                            {StoreMode::restart});
-        store_.forget_from(fetched_[i].number);
+        store.forget_from(fetched_[i].number);
+        stored_ = store.size();
         return;
       }
     if (!workers_->is_derived(fetched_[i]))
-      throw StoreError(store_.path(),
+      throw StoreError(store.path(),
                        "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
                            " has numbers that do not follow from its values and responses: let the study make the store anew",
                        {StoreMode::restart});
@@ -119,7 +121,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
 }
 
 // What ends by the clock asks for more or less each time.
-bool Evaluator::may_go_another_way() { return store_.may_hold_others() || loaded_.study.settings->ends_by_clock(); }
+bool Evaluator::may_go_another_way(Store& store) const { return store.may_hold_others() || loaded_.study.settings->ends_by_clock(); }
 
 void Evaluator::run(std::size_t from, std::size_t count, const std::vector<double>& points) {
   const std::size_t width = loaded_.study.variables.size();
@@ -140,7 +142,9 @@ void Evaluator::run(std::size_t from, std::size_t count, const std::vector<doubl
   }
   if (const std::string record = loaded_.changed_record(); !record.empty())
     throw StoreError(record, "'" + record + "' has changed while the study ran: what was run since is not kept; run it again");
-  store_.append(&rows_[from], count);
+  const auto first = rows_.begin() + static_cast<long>(from), last = first + static_cast<long>(count);
+  writer_.append({first, last});
+  stored_ += static_cast<long>(count);
 }
 
 void Evaluator::check(const StoredSample& sample) const {
@@ -155,7 +159,7 @@ const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& 
   const std::size_t width = loaded_.study.variables.size(), count = width ? points.size() / width : 0;
   rows_.resize(count);
   for (std::size_t from = 0; from < count;) {
-    const long there = store_.size() - (next_ + static_cast<long>(from)) + 1;
+    const long there = stored_ - (next_ + static_cast<long>(from)) + 1;
     std::size_t part = std::min(count - from, chunk_);
     if (there > 0) {
       part = std::min(part, static_cast<std::size_t>(there));
@@ -181,7 +185,7 @@ const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& 
 }
 
 void Evaluator::note(const Finding& finding) {
-  store_.note(++notes_, finding);
+  writer_.note(++notes_, finding);
   char text[120];
   std::snprintf(text, sizeof text, "%s %.4g [%.4g, %.4g]", finding.quantity.c_str(), finding.value, finding.low, finding.high);
   pace_.estimate = finding.method + ": " + text;

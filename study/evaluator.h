@@ -6,7 +6,7 @@
 #pragma once
 
 #include "study/ranks.h"
-#include "study/store.h"
+#include "study/store_writer.h"
 
 #include <functional>
 #include <memory>
@@ -40,6 +40,8 @@ public:
   const std::vector<StoredSample>& evaluate(const std::vector<double>& points);
   /// Samples asked for so far.
   [[nodiscard]] long asked() const { return next_ - 1; }
+  /// The store, with all that was asked for so far in it.
+  [[nodiscard]] Store& store() { return writer_.store(); }
   /// Keeps an estimate as it grew, and shows it.
   void note(const Finding& finding);
   /// For the time left: so many samples are still to come, by a guess from how an estimate grew, or for sure; 0: not
@@ -55,12 +57,13 @@ public:
 
 private:
   void fetch(std::size_t from, std::size_t count, const std::vector<double>& points);
-  [[nodiscard]] bool may_go_another_way();
+  [[nodiscard]] bool may_go_another_way(Store& store) const;
   void run(std::size_t from, std::size_t count, const std::vector<double>& points);
   void check(const StoredSample& sample) const;
 
   const LoadedStudy& loaded_;
-  Store& store_;
+  StoreWriter writer_;
+  long stored_; ///< samples in the store, or on their way there
   const Ranks& ranks_;
   std::unique_ptr<Workers> workers_;
   std::function<void(const Pace&)> progress_;

@@ -380,7 +380,7 @@ private:
     for (const History& h : run_.study().histories)
       for (std::size_t i = 0; i < h.t.size(); ++i)
         points.push_back({h.name, h.t[i], h.measured[i], h.measured[i] + best_.residuals[place++] * FitProblem::noise_of(h)});
-    run_.store.set_histories(points);
+    run_.evaluator.store().set_histories(points);
   }
 
   StudyRun& run_;

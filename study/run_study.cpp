@@ -36,9 +36,9 @@ Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, co
     if (const std::string why = options.stop(); !why.empty())
       throw StudyStopped(why + " after " + std::to_string(pace.samples) + " samples; run again, the study goes on from there");
   });
-  StudyRun run{loaded, law, evaluator, store};
+  StudyRun run{loaded, law, evaluator};
   Answer answer = kind_of(loaded.study).run(run);
-  store.forget_from(evaluator.asked() + 1);
+  evaluator.store().forget_from(evaluator.asked() + 1);
   add_fits(law, answer);
   add_correlations(loaded.study, answer);
   return answer;

@@ -161,16 +161,16 @@ private:
     char text[40];
     std::snprintf(text, sizeof text, "%g %% quantile", 100.0 * p);
     Finding f{settings_of<SampleSettings>(run.study()).design, loaded_.number_names()[i], text};
-    const long n = run.store.count_of(i);
+    const long n = run.evaluator.store().count_of(i);
     f.samples = n;
     if (n < total_) f.status = std::to_string(total_ - n) + " of " + std::to_string(total_) + " runs gave no value and are left out";
     if (n == 0) return f;
     const auto place = [n](double share) { return std::clamp(static_cast<long>(std::floor(share * static_cast<double>(n))), 0L, n - 1); };
-    f.value = run.store.order_statistic(i, place(p));
+    f.value = run.evaluator.store().order_statistic(i, place(p));
     if (!is_random) return f;
     const double half = 1.96 * std::sqrt(p * (1.0 - p) / static_cast<double>(n));
-    if (p - half > 0.0) f.low = run.store.order_statistic(i, place(p - half));
-    if (p + half < 1.0) f.high = run.store.order_statistic(i, place(p + half));
+    if (p - half > 0.0) f.low = run.evaluator.store().order_statistic(i, place(p - half));
+    if (p + half < 1.0) f.high = run.evaluator.store().order_statistic(i, place(p + half));
     return f;
   }
 
@@ -236,7 +236,7 @@ Answer run_sample(StudyRun& run) {
     for (const StoredSample& sample : run.evaluator.evaluate(points)) summary.add(sample);
     done += count;
   }
-  run.store.forget_from(run.evaluator.asked() + 1); // of a study that asked for more before it was changed
+  run.evaluator.store().forget_from(run.evaluator.asked() + 1); // of a study that asked for more before it was changed
   Answer answer;
   summary.report(run, answer);
   return answer;

@@ -12,7 +12,6 @@ struct StudyRun {
   const LoadedStudy& loaded;
   const JointLaw& law;
   Evaluator& evaluator;
-  Store& store;
 
   [[nodiscard]] const Study& study() const { return loaded.study; }
 };

@@ -1,6 +1,7 @@
 // A voyage is one history: where an event leaves the machine, the next begins.
 #include "driven_scene.h"
 
+#include <atomic>
 #include <doctest/doctest.h>
 
 using namespace steplap;
@@ -120,7 +121,7 @@ TEST_CASE("samples that were made are kept, and an assessment that was interrupt
   const UncertainValues uncertain(voyage.models);
   SamplingOptions options;
   options.samples = 12;
-  options.threads = 1; // `asked` is counted by one, and a batch is four samples
+  options.threads = 1; // `asked` is counted by one
   const std::vector<VoyageSample> whole = sample_voyages(voyage.models, voyage.histories, uncertain, options);
   options.store = folder.file("samples.sqlite");
   long asked = 0;
@@ -140,6 +141,31 @@ TEST_CASE("samples that were made are kept, and an assessment that was interrupt
   first = -1;
   static_cast<void>(sample_voyages(voyage.models, voyage.histories, uncertain, options));
   CHECK(first == 0);
+}
+
+TEST_CASE("what goes wrong on one of several threads reaches who asked for the samples, and what was made before is kept") {
+  const Folder folder;
+  const Voyage voyage = uncertain_voyage();
+  const UncertainValues uncertain(voyage.models);
+  SamplingOptions options;
+  options.samples = 30;
+  options.threads = 3;
+  options.store = folder.file("samples.sqlite");
+  std::atomic<long> made = 0;
+  options.progress = [&](long done, long) { made = done; };
+  options.stop = [&]() -> std::string {
+    if (made >= 3) throw std::length_error("of the test");
+    return "";
+  };
+  CHECK_THROWS_AS(static_cast<void>(sample_voyages(voyage.models, voyage.histories, uncertain, options)), std::length_error);
+  options.stop = {};
+  long first = -1;
+  options.progress = [&](long done, long) { first = first < 0 ? done : first; };
+  const std::vector<VoyageSample> resumed = sample_voyages(voyage.models, voyage.histories, uncertain, options);
+  CHECK(first >= 3);
+  options.store.clear();
+  const std::vector<VoyageSample> whole = sample_voyages(voyage.models, voyage.histories, uncertain, options);
+  for (std::size_t i = 0; i < whole.size(); ++i) CHECK(resumed[i].slips == whole[i].slips);
 }
 
 TEST_CASE("a number of the same name in two models is one number; two laws for it are refused") {

@@ -49,7 +49,7 @@ study::Finding estimate_of(const std::string& text, const std::string& method, c
   const study::JointLaw law(loaded.study, loaded.nominal, problems);
   static const study::Ranks ranks;
   study::Evaluator evaluator(loaded, store, ranks, 1, {});
-  study::StudyRun run{loaded, law, evaluator, store};
+  study::StudyRun run{loaded, law, evaluator};
   for (const study::StudyKind& kind : study::study_kinds()) {
     if (kind.name != "reliability") continue;
     for (const study::Finding& f : kind.run(run).findings)

@@ -1,4 +1,5 @@
 // What happens to a store: threads, ranks, interruptions, changed studies, disks that cannot be written.
+#include "study/store_writer.h"
 #include "study/study_reader.h"
 #include "tests/study/study_bench.h"
 
@@ -112,6 +113,40 @@ TEST_CASE("a study over MPI's ranks comes to the same bytes" * doctest::skip(std
       wait_for(start({STEPLAP_MPIRUN, "--oversubscribe", "-n", "3", STEPLAP_PROGRAM, "study", file, "-o", together.at("study.sqlite")}));
   CHECK((code == 0 || code == 5));
   CHECK(together.samples() == alone.samples());
+}
+
+TEST_CASE("what cannot be written is told with the next request, and nothing is written after it") {
+  StudyBench bench;
+  (void)bench.run(reliability_text("samples = 400"));
+  const study::LoadedStudy loaded = study::read_study(bench.at("study.toml"));
+  const std::string path = bench.at("written.sqlite");
+  {
+    study::Store store(path, study::identity_of(loaded), study::StoreMode::run);
+    study::StoreWriter writer(store);
+    const auto rows = [&](long first, long count) {
+      std::vector<study::StoredSample> made(static_cast<std::size_t>(count));
+      for (study::StoredSample& row : made) {
+        row.number = first++;
+        row.values.assign(loaded.study.variables.size(), static_cast<double>(row.number));
+        row.outcome.numbers.assign(loaded.number_names().size(), 0.5);
+      }
+      return made;
+    };
+    // More at once than are left to wait, in many parts: all of them, in their order.
+    for (long first = 1; first < 60000; first += 500) writer.append(rows(first, 500));
+    CHECK(writer.store().size() == 60000);
+    writer.append(rows(1, 3)); // numbers that are there
+    CHECK_THROWS_AS((void)writer.store(), study::StoreError);
+    CHECK_THROWS_AS(writer.append(rows(60001, 3)), study::StoreError);
+    CHECK_THROWS_AS(writer.note(1, {}), study::StoreError);
+  }
+  study::Store kept(path);
+  REQUIRE(kept.size() == 60000);
+  std::vector<study::StoredSample> read;
+  kept.read(1, 60000, read);
+  long wrong = 0;
+  for (long i = 0; i < 60000; ++i) wrong += read[static_cast<std::size_t>(i)].values[0] != static_cast<double>(i + 1);
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("a store goes on with its own study only") {
