@@ -1,7 +1,6 @@
 #include "elements/action.h"
 
 #include "elements/joints.h"
-#include "elements/step_lap_joint.h"
 #include "mbd/base/number_text.h"
 #include "mbd/formula/formula.h"
 #include "mbd/io/units.h"
@@ -28,11 +27,6 @@ bool is_action(const ElementEntry& entry) { return dynamic_cast<const Action*>(e
 
 // Elements that can be released: all but what a model is described with.
 bool can_act(const ElementEntry& entry) { return !is_action(entry) && dynamic_cast<const OwnState*>(entry.element.get()) == nullptr; }
-
-// By which a run is judged, and which nothing moves by.
-bool is_limit(const Element& element, const std::string& field) {
-  return dynamic_cast<const StepLapJoint*>(&element) && (field == "least_margin" || field == "most_slide" || field == "allowed_line_load");
-}
 
 /// Reads one action in the model that it belongs to.
 class ActionReader {
@@ -111,7 +105,7 @@ private:
       throw std::invalid_argument("'" + text.field + "' of '" + text.name +
                                   "' cannot be set: it says where a run begins, and a joint goes on from there. A prescribed_motion or a "
                                   "motor moves it");
-    if (is_limit(*entry.element, text.field))
+    if (field->is_limit)
       throw std::invalid_argument("'" + text.field + "' of '" + text.name +
                                   "' cannot be set: a run is judged by one limit from its start to its end");
     step.field = text.field;

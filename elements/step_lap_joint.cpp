@@ -462,6 +462,7 @@ void add_edge_fields(FieldTable& f) {
   f.add("allowed_line_load", &T::allowed_line_load)
       .in("N/m")
       .positive()
+      .limit()
       .doc("of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
   f.add("steel_thickness", &T::steel_thickness)
       .in("m")
@@ -497,10 +498,12 @@ const ElementKind& step_lap_joint_kind() {
              "transverse_pressure");
     f.add("least_margin", &T::least_margin)
         .at_least(1.0)
+        .limit()
         .doc("smallest margin (capacity over what is in use) that a run must leave: inspect below it");
     f.add("most_slide", &T::most_slide)
         .positive()
         .at_most(1.0)
+        .limit()
         .doc("largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
     k.holds<T>();
     k.compile = compile_joint;

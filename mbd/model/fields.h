@@ -52,6 +52,7 @@ struct Field {
   std::string unit2;                  ///< second unit of a list of points
   std::string doc;                    ///< one line
   bool is_required = false;           ///< a file has to give it
+  bool is_limit = false;              ///< a run is judged by it, and nothing moves by it
   double minimum = -std::numeric_limits<double>::infinity(); ///< of each number, in `unit`
   double maximum = std::numeric_limits<double>::infinity();  ///< of each number, in `unit`
   bool is_minimum_excluded = false;                          ///< the value has to be larger than `minimum`
@@ -77,6 +78,8 @@ public:
   FieldBuilder& doc(std::string text) { return assign(field_->doc, std::move(text)); }
   /// A file has to give it.
   FieldBuilder& required() { return assign(field_->is_required, true); }
+  /// A run is judged by it, from its start to its end, and nothing moves by it.
+  FieldBuilder& limit() { return assign(field_->is_limit, true); }
   /// Larger than 0.
   FieldBuilder& positive() { return at_least(0.0).excluding_minimum(); }
   /// 0 or larger.
