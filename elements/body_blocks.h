@@ -5,6 +5,7 @@
 #pragma once
 
 #include "mbd/math/dual.h"
+#include "mbd/system/law_group.h"
 #include "mbd/system/roles.h"
 #include "mbd/system/state_jacobian.h"
 
@@ -12,24 +13,6 @@
 #include <vector>
 
 namespace steplap {
-
-/// The motion of the j-th of N bodies with its derivatives.
-template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double>& m, int j) {
-  using D = Dual<6 * N>;
-  const int pose = 3 * j, velocity = 3 * N + 3 * j;
-  Motion<D> s;
-  s.x = D::variable(m.x, pose);
-  s.y = D::variable(m.y, pose + 1);
-  s.theta = D::variable(m.theta, pose + 2);
-  s.c = D(m.c);
-  s.c.d[pose + 2] = -m.s;
-  s.s = D(m.s);
-  s.s.d[pose + 2] = m.c;
-  s.vx = D::variable(m.vx, velocity);
-  s.vy = D::variable(m.vy, velocity + 1);
-  s.omega = D::variable(m.omega, velocity + 2);
-  return s;
-}
 
 /// Appends what the forces on the bodies change by with the motion of each.
 template <int N>

@@ -1,6 +1,7 @@
 #include "mbd/friction/friction_modes.h"
 
 #include "mbd/base/shown_text.h"
+#include "mbd/friction/anchor.h"
 #include "mbd/friction/box_problem.h"
 #include "mbd/friction/rest_rate.h"
 #include "mbd/system/element_failure.h"
@@ -190,12 +191,8 @@ double FrictionModes::rest_error(int f) const {
 }
 
 void FrictionModes::set_anchor(State& state, int f) const {
-  const FrictionElement& friction = *system_.frictions[f].friction;
-  if (one_sided_row(friction)) return; // held at its length, wherever it is
-  const RowSpec* rows = friction.rows(state.friction[f]);
   place_bodies(state.q, state.v, motion_);
-  for (int r = 0; r < friction.dimension(); ++r)
-    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion_.data()).value;
+  anchor_friction(system_, state, f, motion_.data());
 }
 
 // Within one slip the direction does not change.

@@ -2,7 +2,6 @@
 
 #include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
-#include "mbd/system/one_sided_row.h"
 #include "mbd/system/row_gradient.h"
 
 #include <algorithm>
@@ -47,17 +46,10 @@ MatX dense(const std::vector<Statics::Entry>& entries, Eigen::Index rows, Eigen:
 
 double static_target(const RowSpec& row, const State& state) { return row_target(row, state.memory.data(), state.t).value; }
 
-void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
-  const FrictionElement& friction = *system.frictions[f].friction;
-  if (one_sided_row(friction)) return; // held at its length
-  const RowSpec* const rows = friction.rows(state.friction[f]);
+void anchor_friction(const System& system, State& state, int f) {
   std::vector<Motion<double>> placed;
-  if (!motion) {
-    place_bodies(state.q, state.v, placed);
-    motion = placed.data();
-  }
-  for (int r = 0; r < friction.dimension(); ++r)
-    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion).value;
+  place_bodies(state.q, state.v, placed);
+  anchor_friction(system, state, f, placed.data());
 }
 
 Statics::Statics(const System& system)

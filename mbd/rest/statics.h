@@ -7,6 +7,7 @@
 //   Q + Jᵀλ = 0,   K = ∂(Q + Jᵀλ)/∂q at constant λ
 #pragma once
 
+#include "mbd/friction/anchor.h"
 #include "mbd/system/evaluation_arrays.h"
 
 #include <Eigen/SparseCore>
@@ -73,7 +74,7 @@ private:
 
 /// Value of the target of `row` at rest at the time of `state`.
 [[nodiscard]] double static_target(const RowSpec& row, const State& state);
-/// Anchors the rows of friction element f at the pose of `state`; `motion`: of its bodies there, if it is known.
-void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion = nullptr);
+/// Anchors the rows of friction element f at the pose of `state`.
+void anchor_friction(const System& system, State& state, int f);
 
 } // namespace steplap

@@ -21,22 +21,26 @@
 
 namespace steplap {
 
-/// Pose at derivative indices first…first+2, velocity at 6+first….
-inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) {
-  using D = Dual<12>;
+/// The motion of the j-th of N bodies with its derivatives: by its pose at 3 j, by its velocity at 3 N + 3 j.
+template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double>& m, int j) {
+  using D = Dual<6 * N>;
+  const int pose = 3 * j, velocity = 3 * N + 3 * j;
   Motion<D> s;
-  s.x = D::variable(m.x, first);
-  s.y = D::variable(m.y, first + 1);
-  s.theta = D::variable(m.theta, first + 2);
+  s.x = D::variable(m.x, pose);
+  s.y = D::variable(m.y, pose + 1);
+  s.theta = D::variable(m.theta, pose + 2);
   s.c = D(m.c);
-  s.c.d[first + 2] = -m.s;
+  s.c.d[pose + 2] = -m.s;
   s.s = D(m.s);
-  s.s.d[first + 2] = m.c;
-  s.vx = D::variable(m.vx, 6 + first);
-  s.vy = D::variable(m.vy, 6 + first + 1);
-  s.omega = D::variable(m.omega, 6 + first + 2);
+  s.s.d[pose + 2] = m.c;
+  s.vx = D::variable(m.vx, velocity);
+  s.vy = D::variable(m.vy, velocity + 1);
+  s.omega = D::variable(m.omega, velocity + 2);
   return s;
 }
+
+/// Of two bodies: pose at derivative indices first…first+2, velocity at 6+first….
+inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) { return seeded_of<2>(m, first / 3); }
 
 /// Appends the derivatives of force(value, rate), which acts along the measure; returns the force.
 template <class Measure, class Force>

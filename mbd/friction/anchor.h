@@ -1,0 +1,18 @@
+// Where an element that sticks is held: its rows have the values there as their targets from then on.
+#pragma once
+
+#include "mbd/system/one_sided_row.h"
+#include "mbd/system/system.h"
+
+namespace steplap {
+
+/// Anchors the rows of friction element f at the pose of `motion`, one a slot.
+inline void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
+  const FrictionElement& friction = *system.frictions[f].friction;
+  if (one_sided_row(friction)) return; // held at its length, wherever it is
+  const RowSpec* const rows = friction.rows(state.friction[f]);
+  for (int r = 0; r < friction.dimension(); ++r)
+    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion).value;
+}
+
+} // namespace steplap
