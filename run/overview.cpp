@@ -97,9 +97,12 @@ private:
         if (entry.what == "comes apart" && entry.who.front() == joint->joint)
           return "Joint " + quoted(joint->joint) + " comes apart at " + time(entry.from) + ".";
       for (const StoryEntry& entry : overview_.story)
-        if (entry.what == "slips" && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount)
-          return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + " and slides " +
-                 shown_quantity(entry.amount->value, "m", {.error = entry.amount->error}, digits_) + ".";
+        if (entry.what == "slips" && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount) {
+          const std::string slid =
+              shown_quantity(entry.amount->value, "m", {.error = entry.amount->error, .scale = k_least_length_scale}, digits_);
+          if (slid.starts_with("0 ")) continue; // it turns where it is
+          return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + " and slides " + slid + ".";
+        }
       return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + ".";
     }
     const std::string at = c.t ? " at " + time(*c.t) : "";

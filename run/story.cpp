@@ -447,7 +447,7 @@ public:
 private:
   static constexpr double k_over = 60.0 / 180.0 * std::numbers::pi; // rad: it does not come back
   ShownDigits digits_;
-  double end_ = 0.0, scale_m_ = 0.0, scale_n_ = 0.0;
+  double end_ = 0.0, scale_m_ = k_least_length_scale, scale_n_ = 0.0;
 };
 
 constexpr std::size_t k_few = 8;      // entries that are read one by one

@@ -41,6 +41,13 @@ TEST_CASE("a joint that slips is the reason, the first one, and the story tells 
   CHECK(entry_of(overview, "rear foot", "lifts") != nullptr);
 }
 
+TEST_CASE("a joint that turns about its middle slips, and slides no way that is rounding") {
+  const Overview overview = overview_of(run_of("benchmarks/hard/patch_rotation"));
+  const StoryEntry* const slip = entry_of(overview, "joint", "slips");
+  REQUIRE(slip != nullptr);
+  CHECK(slip->text == "Joint slips from 0.0517 s to the end.");
+}
+
 TEST_CASE("a wheel leaves its track as a foot its floor: it lifts") {
   const Overview overview = overview_of(judged_run(load_model(std::string(STEPLAP_TEST_DATA) + "/defects/wheelie.toml", {})));
   CHECK(entry_of(overview, "front tyre", "lifts") != nullptr);
