@@ -22,10 +22,10 @@ struct StoryAmount {
   std::optional<double> error = {}; ///< in `unit`, if it was estimated
 };
 
-/// One thing that happened, once or several times.
 /// m: by which lengths are measured that may be rounding, as places are known to 1e-12 m.
 constexpr double k_least_length_scale = 1e-3;
 
+/// One thing that happened, once or several times.
 struct StoryEntry {
   double from = 0.0;                 ///< s, when it began for the first time
   std::optional<double> to;          ///< s, when it was over for the last time; none: an instant, or it lasts to the end of the run
