@@ -1,6 +1,7 @@
 // How far the numbers of a run are known: from finer runs (mbd/trust/global_error.h), where these are worth their cost.
 #pragma once
 
+#include "mbd/trust/balance.h"
 #include "mbd/trust/global_error.h"
 #include "run/run.h"
 
@@ -20,6 +21,7 @@ struct Estimate {
   std::string reason;                               ///< why there is none
   std::optional<double> cost;                       ///< s of computing that it would take, where it was not begun for that
   std::optional<GlobalErrorEstimate> errors;        ///< if known
+  std::optional<Balance> balance = {};              ///< if the machine stays where it is only as nothing disturbs it, and errors are known
 };
 
 /// Cheap is counted in work, not in time: criteria are judged by the errors, and a verdict may not hang on how fast or how busy

@@ -12,6 +12,7 @@
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/freedom.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/balance.h"
 #include "run/action_findings.h"
 #include "run/edges.h"
 #include "run/far_joints.h"
@@ -350,6 +351,18 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
   append(findings, contacts_too_deep(loaded, result.ranges));
   append(findings, actions_that_wait(loaded, result));
   return findings;
+}
+
+Finding balance_finding(const LoadedModel& loaded, const Balance& balance) {
+  const char* const along[] = {"along x", "along y", "in its angle"};
+  Finding finding;
+  finding.code = "balances";
+  finding.text = "'" + balance.body + "' stays where it is " + along[balance.coordinate] +
+                 " only because nothing disturbs it: a nudge at the start has grown " + rounded_text(k_grown_nudge) + " times by " +
+                 rounded_text(balance.t, 3) + " s. Nothing real is so exact: give it what it has, a slant, an offset, a load from the side";
+  for (const Body& body : loaded.model.bodies)
+    if (body.name == balance.body) finding.where = body.where;
+  return finding;
 }
 
 std::vector<Finding> findings_of(const LoadedModel& loaded) {

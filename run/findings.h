@@ -9,6 +9,7 @@
 
 namespace steplap {
 
+struct Balance;
 struct RunResult;
 
 /// All that `steplap check` finds, in its order. Runs nothing but the start.
@@ -17,6 +18,8 @@ struct RunResult;
 [[nodiscard]] std::vector<Finding> findings_before(const LoadedModel& loaded);
 /// What a run came to: feet beyond the parts they stood on, contacts through each other, channels without a value, actions that wait.
 [[nodiscard]] std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result);
+/// A machine that stays where it is only because nothing disturbs it (mbd/trust/balance.h).
+[[nodiscard]] Finding balance_finding(const LoadedModel& loaded, const Balance& balance);
 /// Those about where the run begins: contacts and stops that contradict the poses, inertias that contradict outlines.
 [[nodiscard]] std::vector<Finding> start_findings(const LoadedModel& loaded);
 /// Those about values unlike any: cores, loads that do nothing, sizes apart (plausible_scene.h).

@@ -58,6 +58,11 @@ void weigh(Report& report) {
   if (report.estimate.status == EstimateStatus::failed) leave_open(report.judgement, "the finer run failed");
 }
 
+void add_finding(Report& report, const Finding& finding, const RunOptions& options) {
+  if (options.note) options.note(finding);
+  report.findings.push_back(finding);
+}
+
 // Only a verdict that holds has anything to lose.
 void ask_second_opinion(Report& report, const RunOptions& options) {
   const bool is_stopped = options.stop && !options.stop().empty();
@@ -75,10 +80,7 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   const LoadedModel& loaded = *report.run.loaded;
   const RunResult& result = report.run.result;
   report.findings = std::move(before);
-  for (Finding& finding : findings_after(loaded, result)) {
-    if (options.note) options.note(finding);
-    report.findings.push_back(std::move(finding));
-  }
+  for (const Finding& finding : findings_after(loaded, result)) add_finding(report, finding, options);
   for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
   const RunStatistics& s = result.statistics;
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
@@ -91,6 +93,10 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   if (!options.has_extremes) // events alone do not tell whether a joint held that cannot
     add_cap(report.judgement, "extremes were not looked for, by which a run is judged and trusted");
   report.estimate = estimate_errors(report.run, options);
+  if (report.estimate.balance) {
+    add_finding(report, balance_finding(loaded, *report.estimate.balance), options);
+    add_cap(report.judgement, text_with_place(report.findings.back()));
+  }
   weigh(report);
   ask_second_opinion(report, options);
   return report;
