@@ -50,6 +50,7 @@ void LayoutStore::give_up_beyond(std::size_t count) {
   while (layouts_.size() > count) {
     const Place last = std::prev(layouts_.end());
     by_key_.erase(std::find(by_key_.begin(), by_key_.end(), last));
+    program_count_ -= last->programs.size();
     layouts_.pop_back();
   }
 }
@@ -58,6 +59,7 @@ void LayoutStore::clear() {
   by_key_.clear();
   layouts_.clear();
   merged_.clear();
+  program_count_ = 0;
 }
 
 void LayoutStore::keep_at_most(std::size_t count) {
@@ -65,14 +67,9 @@ void LayoutStore::keep_at_most(std::size_t count) {
   give_up_beyond(count);
 }
 
-std::size_t LayoutStore::program_count() const {
-  std::size_t count = 0;
-  for (const Layout& layout : layouts_) count += layout.programs.size();
-  return count;
-}
-
 void LayoutStore::clear_programs() {
   for (Layout& layout : layouts_) layout.programs.clear();
+  program_count_ = 0;
 }
 
 } // namespace steplap

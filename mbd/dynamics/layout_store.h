@@ -30,7 +30,9 @@ public:
   void keep_at_most(std::size_t count);
   [[nodiscard]] std::size_t size() const { return layouts_.size(); }
   /// Of all layouts kept.
-  [[nodiscard]] std::size_t program_count() const;
+  [[nodiscard]] std::size_t program_count() const { return program_count_; }
+  /// One of them has got one more: a run asks for their number at every event.
+  void count_program() { ++program_count_; }
   void clear_programs();
 
 private:
@@ -44,7 +46,7 @@ private:
   std::vector<Place> by_key_;      ///< in the order of their keys: a run looks for one at every event
   std::list<MergedBodies> merged_; ///< as many as joints that let go since clear(), at most
   LayoutKey key_;
-  std::size_t most_;
+  std::size_t most_, program_count_ = 0;
 };
 
 } // namespace steplap

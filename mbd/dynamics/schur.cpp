@@ -1,7 +1,9 @@
 #include "mbd/dynamics/schur.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/types.h"
+#include "mbd/dynamics/dense_elimination.h"
 #include "mbd/dynamics/dependent_rows.h"
+#include "mbd/dynamics/hub_solver.h"
 #include "mbd/dynamics/refinement.h"
 #include "mbd/system/motion.h"
 
@@ -157,7 +159,7 @@ void SchurSolver::list_products(const Columns& columns) {
 
 // Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
 // Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
-void SchurSolver::find_pattern(const Columns& columns) {
+void SchurSolver::find_pattern_of_factors(const Columns& columns) {
   std::vector<int> parent(n_, -1), mark(n_, -1), length(n_, 0);
   pattern_begin_.assign(1, 0);
   pattern_.clear();
@@ -185,27 +187,39 @@ void SchurSolver::find_pattern(const Columns& columns) {
     for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) column_row_[next[pattern_[p]]++] = k;
 }
 
-void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts) {
+SchurSolver::SchurSolver() = default;
+SchurSolver::~SchurSolver() = default;
+SchurSolver::SchurSolver(SchurSolver&&) noexcept = default;
+SchurSolver& SchurSolver::operator=(SchurSolver&&) noexcept = default;
+
+void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts, Hubs hubs) {
   n_ = count;
   parts_ = parts;
   length_ = std::max(1.0, n_ / k_usual_rows);
   body_count_ = count_bodies(rows, n_, parts);
-  const std::vector<SchurCoupling> coupled = couplings(rows, n_, parts, body_count_);
-  const std::vector<int> of = rows_of(rows.size(), parts);
   right_.assign(n_, 0.0);
   correction_.assign(n_, 0.0);
   response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
   position_.resize(n_);
   inverse_d_.assign(n_, 0.0);
+  is_by_hubs_ = is_pattern_known_ = false;
+  hubs_ = hubs == Hubs::apart && parts.empty() ? HubSolver::of(rows, count) : nullptr;
+  if (!hubs_) find_pattern(rows);
+}
+
+void SchurSolver::find_pattern(const std::vector<SchurRow>& rows) {
+  is_pattern_known_ = true;
+  const std::vector<SchurCoupling> coupled = couplings(rows, n_, parts_, body_count_);
+  const std::vector<int> of = rows_of(rows.size(), parts_);
   if (n_ <= k_max_dense) {
     list_dense_products(rows, coupled, of);
     return;
   }
   order_ = fill_reducing_order(n_, coupled, of);
   for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
-  const Columns columns = columns_of(coupled, of, !parts.empty());
+  const Columns columns = columns_of(coupled, of, !parts_.empty());
   list_products(columns);
-  find_pattern(columns);
+  find_pattern_of_factors(columns);
   column_fill_.assign(n_, 0);
   l_.assign(column_begin_.back(), 0.0);
   work_.assign(n_, 0.0);
@@ -261,42 +275,6 @@ void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
     keep_rank(rows, shift);
 }
 
-namespace {
-
-// L D Lᵀ of the matrix m, row by row: below the diagonal first L D, then L. `invert(i, d, diagonal)` gives 1/d, or 0 where
-// row i is left out. N: the number of rows if it is small enough to be unrolled, else 0.
-template <int N, class S, class Raise, class Invert>
-STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& raise, const Invert& invert) {
-  const int n = N > 0 ? N : count;
-  for (int i = 0; i < n; ++i) {
-    S* const mi = m + i * n;
-    const S diagonal = raise(mi[i]);
-    S d = diagonal;
-    for (int j = 0; j < i; ++j) {
-      S sum = mi[j];
-      for (int k = 0; k < j; ++k) sum -= mi[k] * m[j * n + k];
-      mi[j] = sum;
-    }
-    for (int j = 0; j < i; ++j) {
-      const S l = mi[j] * inverse_d[j];
-      d -= l * mi[j];
-      mi[j] = l;
-    }
-    inverse_d[i] = invert(i, d, diagonal);
-  }
-}
-
-template <int N, class S> STEPLAP_INLINE void substitute(const S* m, const S* inverse_d, int count, S* x) {
-  const int n = N > 0 ? N : count;
-  for (int i = 1; i < n; ++i)
-    for (int j = 0; j < i; ++j) x[i] -= m[i * n + j] * x[j];
-  for (int i = 0; i < n; ++i) x[i] *= inverse_d[i];
-  for (int i = n - 1; i > 0; --i)
-    for (int j = 0; j < i; ++j) x[j] -= m[i * n + j] * x[i];
-}
-
-} // namespace
-
 // One row alone is never near to others.
 template <> void SchurSolver::factor_dense<1>(const std::vector<SchurRow>& rows) {
   const auto* const first = reinterpret_cast<const double*>(rows.data());
@@ -316,6 +294,15 @@ template <> void SchurSolver::factor_dense<1>(const std::vector<SchurRow>& rows)
 
 void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) {
   shift_ = shift;
+  is_by_hubs_ = hubs_ && shift == 0.0 && out_.empty() && hubs_->factor(rows);
+  if (is_by_hubs_) {
+    dependent_count_ = 0;
+    smallest_pivot_ = hubs_->smallest_pivot() / length_;
+    std::fill(inverse_d_.begin(), inverse_d_.end(), 1.0); // no row depends on others
+    return;
+  }
+  if (!is_pattern_known_) [[unlikely]]
+    find_pattern(rows);
   switch (n_) {
   case 0: break;
   case 1: factor_dense<1>(rows); break;
@@ -515,6 +502,7 @@ void SchurSolver::eliminate(double* x) const {
   default: break;
   }
   if (n_ <= k_max_dense) return solve_dense<0>(x);
+  if (is_by_hubs_) return hubs_->solve(x);
   eliminate_sparse(x);
 }
 

@@ -21,6 +21,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace steplap {
@@ -46,14 +47,24 @@ struct SchurPart {
 };
 
 struct SchurCoupling; ///< of two rows (schur.cpp)
+class HubSolver;
 
 class SchurSolver {
 public:
+  SchurSolver();
+  ~SchurSolver();
+  SchurSolver(SchurSolver&&) noexcept;
+  SchurSolver& operator=(SchurSolver&&) noexcept;
+
+  /// `apart`: bodies in which many rows meet are solved for beside the others, where that is as exact (hub_solver.h). It takes the
+  /// rows' inverse masses.
+  enum class Hubs : unsigned char { as_others, apart };
   /// Pattern from the bodies of the first `count` rows, which are all that it solves, and of the parts of some of them that
   /// stand behind. Body −1 couples nothing.
-  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {});
+  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {}, Hubs hubs = Hubs::as_others);
   void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
-  /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
+  /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing, but the first time that
+  /// hubs cannot be apart.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
   /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out
   /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot.
@@ -96,7 +107,8 @@ private:
   void list_dense_products(const std::vector<SchurRow>& rows, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of);
   [[nodiscard]] Columns columns_of(const std::vector<SchurCoupling>& coupled, const std::vector<int>& of, bool has_parts) const;
   void list_products(const Columns& columns);
-  void find_pattern(const Columns& columns);
+  void find_pattern(const std::vector<SchurRow>& rows);
+  void find_pattern_of_factors(const Columns& columns);
   void factor_sparse(const std::vector<SchurRow>& rows);
   void eliminate_sparse(double* x) const;
   void trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
@@ -154,6 +166,9 @@ private:
   std::vector<double> l_, inverse_d_, work_;
   mutable std::vector<double> permuted_;
   mutable std::vector<double> right_, correction_, response_; ///< of refine
+  std::unique_ptr<HubSolver> hubs_;                           ///< null: none is apart
+  bool is_by_hubs_ = false;                                   ///< the last factors are theirs
+  bool is_pattern_known_ = false;                             ///< of what is solved without them
 };
 
 } // namespace steplap

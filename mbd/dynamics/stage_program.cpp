@@ -160,7 +160,7 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   look_for_code();
 }
 
-void StagePrograms::enter(Layout& layout, const State& state, const LayoutStore& kept) {
+void StagePrograms::enter(Layout& layout, const State& state, LayoutStore& kept) {
   const auto known =
       std::find_if(layout.programs.begin(), layout.programs.end(), [&state](const auto& program) { return program->is_of(state); });
   if (known != layout.programs.end()) {
@@ -172,6 +172,7 @@ void StagePrograms::enter(Layout& layout, const State& state, const LayoutStore&
   now_ = nullptr;
   if (choice_ == StageCode::never || kept.program_count() >= k_most_programs) return;
   now_ = layout.programs.emplace_back(std::make_unique<StageProgram>(layout, state, choice_)).get();
+  kept.count_program();
 }
 
 } // namespace steplap

@@ -118,7 +118,7 @@ public:
   }
   void leave() { now_ = nullptr; }
   /// `kept`: all layouts.
-  void enter(Layout& layout, const State& state, const LayoutStore& kept);
+  void enter(Layout& layout, const State& state, LayoutStore& kept);
   /// Of the modes entered; null: none.
   [[nodiscard]] StageProgram* now() const { return now_; }
 

@@ -228,3 +228,48 @@ TEST_CASE("a linkage among hundreds moves as it does alone") {
     CHECK(std::abs(expected.v[5]) > 1e-3); // it has begun to turn
   }
 }
+
+namespace {
+
+// A deck on rails that is pulled, and blocks on it that friction takes along, those of even numbers only so fast. Soles are at the
+// height of the centres of gravity: nothing tips.
+std::string pulled_deck(int blocks, double force, double slippery) {
+  std::ostringstream text;
+  text.precision(17);
+  text << k_header << "[[body]]\nname = \"deck\"\nmass = 500.0\ninertia = 2e4\n"
+       << "[[element]]\nkind = \"prismatic\"\nname = \"rails\"\na = \"deck\"\n"
+       << "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"deck\"\nforce = [" << force << ", 0.0]\n";
+  for (int i = 0; i < blocks; ++i) {
+    const double mass = 1.0 + 0.1 * i;
+    text << "[[body]]\nname = \"block" << i << "\"\nmass = " << mass << "\ninertia = 0.3\nposition = [" << i << ", 0.0]\n"
+         << "[[element]]\nkind = \"unilateral_contact\"\nname = \"sole" << i << "\"\na = \"block" << i
+         << "\"\nb = { body = \"deck\", point = [" << i << ", 0.0] }\nstiffness = 1e6\npreload = " << 9.81 * mass
+         << "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"friction" << i << "\"\ncontacts = [\"sole" << i
+         << "\"]\nstatic_friction = " << (i % 2 == 0 ? slippery : 0.5) << "\n";
+  }
+  return text.str();
+}
+
+} // namespace
+
+// The masses of what holds move as one; what slides takes μ N from the pull and has no more than μ g. Many rows meet in the deck,
+// which has rows to the ground beside them.
+TEST_CASE("blocks that friction holds on a deck move with it, each taken along by its own share of the pull") {
+  constexpr int k_blocks = 150;
+  constexpr double k_g = 9.81, k_t = 0.5;
+  for (const double slippery : {0.5, 0.1}) {
+    CAPTURE(slippery);
+    double held = 500.0, slid = 0.0;
+    for (int i = 0; i < k_blocks; ++i) (i % 2 == 0 && slippery < 0.2 ? slid : held) += 1.0 + 0.1 * i;
+    const double acceleration = 0.3 * k_g, force = acceleration * held + slippery * k_g * slid;
+    const Run r = run(scene(pulled_deck(k_blocks, force, slippery)), {"dop853", 1e-9, k_t});
+    // Soles are springs without damping: what errors of steps leave of their motion is a millionth of what they bear.
+    CHECK(std::abs(r.last("deck.vx") - acceleration * k_t) < 1e-5 * acceleration * k_t);
+    for (int i = 0; i < k_blocks; ++i) {
+      const std::string n = std::to_string(i);
+      const double mass = 1.0 + 0.1 * i, own = i % 2 == 0 && slippery < 0.2 ? slippery * k_g : acceleration;
+      CHECK(std::abs(r.last("block" + n + ".vx") - own * k_t) < 1e-5 * own * k_t);
+      CHECK(std::abs(r.last("friction" + n + ".friction") - mass * own) < 1e-5 * mass * own);
+    }
+  }
+}

@@ -1,0 +1,41 @@
+// Small dense symmetric systems, of numbers or of what is written down.
+#pragma once
+
+#include "mbd/system/motion.h"
+
+namespace steplap {
+
+/// L D Lᵀ of the matrix m, row by row: below the diagonal first L D, then L. `invert(i, d, diagonal)` gives 1/d, or 0 where
+/// row i is left out. N: the number of rows if it is small enough to be unrolled, else 0.
+template <int N, class S, class Raise, class Invert>
+STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& raise, const Invert& invert) {
+  const int n = N > 0 ? N : count;
+  for (int i = 0; i < n; ++i) {
+    S* const mi = m + i * n;
+    const S diagonal = raise(mi[i]);
+    S d = diagonal;
+    for (int j = 0; j < i; ++j) {
+      S sum = mi[j];
+      for (int k = 0; k < j; ++k) sum -= mi[k] * m[j * n + k];
+      mi[j] = sum;
+    }
+    for (int j = 0; j < i; ++j) {
+      const S l = mi[j] * inverse_d[j];
+      d -= l * mi[j];
+      mi[j] = l;
+    }
+    inverse_d[i] = invert(i, d, diagonal);
+  }
+}
+
+/// x = (L D Lᵀ)⁻¹ x
+template <int N, class S> STEPLAP_INLINE void substitute(const S* m, const S* inverse_d, int count, S* x) {
+  const int n = N > 0 ? N : count;
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < i; ++j) x[i] -= m[i * n + j] * x[j];
+  for (int i = 0; i < n; ++i) x[i] *= inverse_d[i];
+  for (int i = n - 1; i > 0; --i)
+    for (int j = 0; j < i; ++j) x[j] -= m[i * n + j] * x[i];
+}
+
+} // namespace steplap
