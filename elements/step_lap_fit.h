@@ -5,6 +5,7 @@
 #include "mbd/system/slip_scratch.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace steplap {
 
@@ -45,6 +46,13 @@ struct StepLapFriction::Fit {
   bool has_table = false;
 };
 
+/// All that a flow hangs on.
+struct StepLapFriction::FlowQuestion {
+  Vec3 slid, force, direction, rate;
+  PressureState pressure;
+  [[nodiscard]] bool operator==(const FlowQuestion&) const = default;
+};
+
 struct StepLapFriction::Scratch final : SlipScratch {
   OverlapWorkspace workspace;
   Region region;
@@ -60,6 +68,8 @@ struct StepLapFriction::Scratch final : SlipScratch {
   OverlapLoss lost;                                        ///< at this pose
   Pose lost_at;
   bool is_lost_known = false;
+  std::optional<FlowQuestion> flow_asked; ///< the last one
+  Flow flow_answer;
 
   void follow(double tolerance) override;
 };

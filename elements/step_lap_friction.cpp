@@ -26,9 +26,6 @@ constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
 // within F/(K |ν|), which goes to zero with the overlap: to follow it to the end would take for ever.
 constexpr double k_last_grip = 1e-2;
 constexpr double k_surely_overlap = 0.25; // of the depth in the reference pose: above it a bound of the depth does
-constexpr double k_trial = 1.01;          // u beyond which a yielding joint is at a stage of a step, not at its end
-constexpr double k_tilt_step = 1e-3;      // m/s²: of pressures that are linear in it
-constexpr double k_slid_step = 1e-6;      // m at a corner 1 m from the centre, of differences of the overlap
 
 // What an iteration may leave, in shares of the capacity. u is then good to 1e-14, its square: what is decided by u is
 // not touched. The direction in which a slip begins is good to 1e-7, and forgotten as soon as it has begun. A wrench of
@@ -227,55 +224,13 @@ double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3&
   return 1.0 + k_bound_slack - required(f.tabulated(), w, e.t).u;
 }
 
+bool StepLapFriction::has_let_go(const Fit& f) const { return f.patch.force() < 0.5 * k_last_grip * reference_->patch.force(); }
+
 double StepLapFriction::yield_usage(const Evaluation& e, const Pose& slid, const Vec3& wrench) const {
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (f.patch.force() < 0.5 * k_last_grip * reference_->patch.force()) return 1.0;
+  if (has_let_go(f)) return 1.0;
   return required(f.patch, wrench / now.factor, e.t).u;
-}
-
-// ∂h/∂p along n, and what h changes by as the pressures do: central differences, whose share in the balance is that of
-// the strain at the bound to the overlap's width.
-StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
-  Flow flow;
-  const PressureState now = pressure_at(e.t);
-  const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (f.patch.force() < 0.5 * k_last_grip * reference_->patch.force()) { // beyond the event: the strain stays
-    flow.rate = rate;
-    flow.speed = 1.0;
-    return flow;
-  }
-  if (!force.allFinite()) return flow;
-  const RequiredPressure need = required(f.patch, force / now.factor, e.t);
-  const Vec3 n = need.direction, pull = stiffness_ * n;
-  auto& own = static_cast<Scratch&>(*e.scratch[index_]);
-  Fit& moved = own.fits[1]; // free: an elastic joint has one law
-  const double step = k_slid_step * std::min(1.0, gyration_);
-  const auto power = [&](double way, double tilt) {
-    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace, own.region,
-          moved.patch);
-    return moved.patch.empty() ? 0.0 : evaluate_gradient(moved.patch, n).h;
-  };
-  moved.is_valid = false;
-  const double change = now.factor * (power(step, now.tilt) - power(-step, now.tilt)) / (2.0 * step);
-  double tightening =
-      now.factor_rate == 0.0 ? 0.0 : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
-  if (now.tilt_rate != 0.0)
-    tightening +=
-        now.factor * now.tilt_rate * (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
-  flow.direction = n;
-  flow.resistance = n.dot(pull) + need.u * change;
-  if (!(flow.resistance > 0.0) && need.u > k_trial) { // of a step that goes too far: it will be made again
-    flow.rate = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-    return flow;
-  }
-  if (!(flow.resistance > 0.0))
-    throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
-                           " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
-                           "tangential stiffness, or leave it rigid");
-  flow.speed = (pull.dot(rate) - need.u * tightening) / flow.resistance;
-  flow.rate = flow.speed * n;
-  return flow;
 }
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {

@@ -27,7 +27,8 @@
 // normal n of the limit surface and as fast as keeps W on it (associated flow, rate-independent):
 //   ṗ = γ n,  γ (n·K n + u ∂h/∂p·n) = n·K ṡ,  h = h(n; p),
 // the overlap being the one at p: what the sheets are sheared by is no slip. It *yields* (slips) while γ ≥ 0, holds while
-// u ≤ 1. The force is that of step_lap_elastic.h. Derived in docs/explanation/theory.md, "Elastic step-lap joints".
+// u ≤ 1. At a corner of the limit surface, where the wrench hardly tells n, n is a state beside p and follows from the same
+// condition (flow_along). The force is that of step_lap_elastic.h. Derived in docs/explanation/theory.md, "Elastic step-lap joints".
 #pragma once
 
 #include "elements/patch/required_pressure.h"
@@ -42,6 +43,7 @@ namespace steplap {
 struct PressureState {
   double factor = 1.0, tilt = 0.0;
   double factor_rate = 0.0, tilt_rate = 0.0;
+  [[nodiscard]] bool operator==(const PressureState&) const = default;
 };
 
 /// Which coefficients count.
@@ -93,14 +95,36 @@ public:
   [[nodiscard]] FrictionPhase phase(const Snapshot& s) const;
 
   // --- of an elastic joint ------------------------------------------------------------------------------
-  /// How it yields: the rate ṗ, and γ, the speed of slip at the joint's centre. `force`: K (s − p).
+  /// How it yields: the rate ṗ, and γ, the speed of slip at the joint's centre.
   struct Flow {
     Vec3 rate = Vec3::Zero();
     double speed = 0.0;
     Vec3 direction = Vec3::Zero(); ///< n
     double resistance = 1.0;       ///< n·K n + u ∂h/∂p·n
+    double roundness = 1.0;        ///< of the limit surface there
+    // Along a direction y that is given:
+    Vec3 turning = Vec3::Zero();  ///< ẏ
+    Mat3 turn = Mat3::Zero();     ///< from wrenches that are left over to ẏ
+    Vec3 by_speed = Vec3::Zero(); ///< such a wrench, of a unit of speed
+    double relaxation = 0.0;      ///< rate at which |y| goes back to 1
   };
-  [[nodiscard]] Flow flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
+  /// In the direction that the force K (s − p) tells; `rate`: ṡ.
+  [[nodiscard]] Flow flow_under(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
+  /// Along y (scaled, |y| about 1), of which that force is the bound's.
+  [[nodiscard]] Flow flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction, const Vec3& rate) const;
+  /// What ṗ (first three rows) and ẏ of that change by.
+  struct FlowSlopes {
+    using Block = Eigen::Matrix<double, 6, 3>;
+    Block by_slid = Block::Zero(), by_direction = Block::Zero(), by_rate = Block::Zero();
+  };
+  [[nodiscard]] FlowSlopes flow_slopes(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
+                                       const Vec3& rate) const;
+  /// The unit direction y in which a force on the bound makes it yield; zero where it is as good as parted.
+  [[nodiscard]] Vec3 direction_of(const Evaluation& e, const Pose& slid, const Vec3& force) const;
+  /// By how much, of what it can bear, the wrench turns at least as y does: the radius of the limit surface there, small at a corner.
+  [[nodiscard]] double roundness(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
+  /// The force on the bound that makes it yield along y.
+  [[nodiscard]] Vec3 bound_along(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
   /// 1 − u or, far from the bound, less that is certain.
   [[nodiscard]] double spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
   /// u of a joint that yields; 1 where it is as good as parted.
@@ -113,6 +137,8 @@ public:
   [[nodiscard]] std::uint32_t parted_at(const Pose& pose, bool& is_any_left) const;
   [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
   [[nodiscard]] double gyration() const { return gyration_; }
+  /// A twist as velocity of the joint's centre, and ω as a velocity at the gyration radius.
+  [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
 
   // --- FrictionElement --------------------------------------------------------------------------------
   [[nodiscard]] int dimension() const override { return 3; }
@@ -152,10 +178,16 @@ private:
   void add_pressed(const SheetPair& sheets, const Region& region, GripLaw law, double tilt, Patch& patch) const;
   [[noreturn]] void refuse_pressure() const;
   [[nodiscard]] Vec3 gradient_at(const Pose& pose, double tilt, const Vec3& nu, Scratch& own) const;
+  [[nodiscard]] bool has_let_go(const Fit& f) const;
+  struct FlowQuestion;
+  [[nodiscard]] Flow find_flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
+                                     const Vec3& rate) const;
+  [[noreturn]] void refuse_snap(double t) const;
+  [[nodiscard]] Vec3 unscaled(const Vec3& y) const;
+  [[nodiscard]] Dissipation friction_along(const Patch& patch, const Vec3& y, bool with_curvature) const;
   [[nodiscard]] bool knows_usage(const Snapshot& s, const Vec3& wrench) const;
   [[nodiscard]] RequiredPressure usage_of_slip(const Snapshot& s, const Pose& pose) const;
   [[nodiscard]] double depth_of(std::size_t i, const Pose& pose, OverlapWorkspace& workspace) const;
-  [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double onset_speed(const Evaluation& e) const;
   [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
@@ -177,9 +209,9 @@ private:
   double part_mobility_[2] = {0.0, 0.0};
   const Signal* pressure_signal_ = nullptr;
   const Signal* acceleration_ = nullptr;
-  double kept_ = 1.0;          ///< share of the pressures that relaxation leaves
-  int inner_ = -1, unit_ = -1; ///< of an elastic joint
-  Mat3 stiffness_ = Mat3::Zero();
+  double kept_ = 1.0;                                               ///< share of the pressures that relaxation leaves
+  int inner_ = -1, unit_ = -1;                                      ///< of an elastic joint
+  Mat3 stiffness_ = Mat3::Zero(), scaled_stiffness_ = Mat3::Zero(); ///< the second by scaled twists
   double slip_usage_ = 1.0;       ///< u of what slides: the ratio of its coefficients; not-a-number where interfaces differ in it
   std::vector<DepthBound> depth_; ///< by interface, from the reference pose
 };

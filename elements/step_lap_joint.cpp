@@ -219,7 +219,7 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   entry.inner = builder.add_inner(group, reference.x);
   builder.add_inner(group, reference.y);
   builder.add_inner(group, reference.theta);
-  builder.add_inner(group, 0.0);
+  for (int i = 0; i < 4; ++i) builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
   builder.add_unit(group, ElasticGripGroup::k_watches);
   friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);

@@ -1,7 +1,5 @@
 #include "mbd/integrators/stage_system.h"
 
-#include <Eigen/LU> // of three rows, and of as many as there are own states
-
 #include <algorithm>
 
 namespace steplap {
@@ -60,8 +58,13 @@ void StageSystem::set_states() {
 void StageSystem::factor_states() {
   const auto k = static_cast<Eigen::Index>(states_.size());
   if (k == 0) return;
-  state_answer_ = (MatX::Identity(k, k) / g_ - state_by_state_).inverse();
-  state_damping_ = state_force_ * state_answer_ * (g_ * state_pose_ + state_velocity_);
+  state_matrix_.setIdentity(k, k);
+  state_matrix_ = state_matrix_ / g_ - state_by_state_;
+  state_factors_.compute(state_matrix_);
+  state_answer_ = state_factors_.inverse();
+  state_way_ = g_ * state_pose_ + state_velocity_;
+  state_reply_.noalias() = state_force_ * state_answer_;
+  state_damping_.noalias() = state_reply_ * state_way_;
 }
 
 void StageSystem::add_state_forces(const double* r) {
@@ -70,8 +73,9 @@ void StageSystem::add_state_forces(const double* r) {
   for (std::size_t k = 0; k < states_.size(); ++k) state_right_[static_cast<Eigen::Index>(k)] = r[2 * n_ + states_[k]];
   for (std::size_t c = 0; c < state_columns_.size(); ++c)
     state_right_ += g_ * r[state_columns_[c]] * state_pose_.col(static_cast<Eigen::Index>(c));
-  const VecX force = state_force_ * (state_answer_ * state_right_);
-  for (std::size_t i = 0; i < state_rows_.size(); ++i) moved_[state_rows_[i]] += force[static_cast<Eigen::Index>(i)] / g_;
+  state_solution_.noalias() = state_answer_ * state_right_;
+  state_moved_.noalias() = state_force_ * state_solution_;
+  for (std::size_t i = 0; i < state_rows_.size(); ++i) moved_[state_rows_[i]] += state_moved_[static_cast<Eigen::Index>(i)] / g_;
 }
 
 void StageSystem::solve_states(const double* r, double* u) {
@@ -81,8 +85,8 @@ void StageSystem::solve_states(const double* r, double* u) {
     const auto at = static_cast<Eigen::Index>(c);
     state_right_ += u[state_columns_[c]] * state_pose_.col(at) + u[n_ + state_columns_[c]] * state_velocity_.col(at);
   }
-  const VecX z = state_answer_ * state_right_;
-  for (std::size_t k = 0; k < states_.size(); ++k) u[2 * n_ + states_[k]] = z[static_cast<Eigen::Index>(k)];
+  state_solution_.noalias() = state_answer_ * state_right_;
+  for (std::size_t k = 0; k < states_.size(); ++k) u[2 * n_ + states_[k]] = state_solution_[static_cast<Eigen::Index>(k)];
 }
 
 void StageSystem::factor_inner() {

@@ -23,6 +23,8 @@
 #include "mbd/dynamics/linearization.h"
 #include "mbd/integrators/sparse_lu.h"
 
+#include <Eigen/LU> // of three rows, and of as many as there are own states
+
 namespace steplap {
 
 class StageSystem {
@@ -68,7 +70,10 @@ private:
   std::vector<int> state_rows_;                        ///< coordinates that they act at
   MatX state_pose_, state_velocity_, state_force_;     ///< P, V, F_z
   MatX state_by_state_, state_answer_, state_damping_; ///< Z, A, F_z A (g P + V)
-  VecX state_right_;
+  VecX state_right_, state_solution_, state_moved_;
+  // What is worked with, so that nothing is allocated once it is as large as needed.
+  MatX state_matrix_, state_way_, state_reply_;
+  Eigen::PartialPivLU<MatX> state_factors_;
 };
 
 } // namespace steplap

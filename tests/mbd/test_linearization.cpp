@@ -389,17 +389,49 @@ std::string riding_joint() {
          interface(rectangle(-1, -1, 1, 1), rectangle(-0.1, -0.05, 0.1, 0.05), 1e5, 0.2);
 }
 
-// Of what an inner state does and what changes it, the largest deviation from central differences, each against the largest entry of its
-// kind. Strains are some 1e-4 m: steps of 1e-8 m leave 1e-8 of truncation and rounding of places, 1e-16 m over 1e-8 m.
+/// ∂(forces)/∂z, ∂ż/∂q, ∂ż/∂v and ∂ż/∂z of all inner states z.
+struct InnerSlopes {
+  MatX force, by_pose, by_velocity, by_inner;
+  InnerSlopes(int coordinates, int inner)
+      : force(MatX::Zero(coordinates, inner)), by_pose(MatX::Zero(inner, coordinates)), by_velocity(MatX::Zero(inner, coordinates)),
+        by_inner(MatX::Zero(inner, inner)) {}
+};
+
+// Those of blocks, and those that stand by themselves.
+InnerSlopes gathered(const Linearization& linear, int coordinates) {
+  InnerSlopes all(coordinates, linear.inner_count());
+  for (const Linearization::InnerBlock& block : linear.inner()) {
+    for (int i = 0; i < block.count; ++i) {
+      const int z = block.first + i;
+      for (int k = 0; k < 6; ++k) {
+        const int at = 3 * block.cluster[k / 3] + k % 3;
+        all.force(at, z) += block.force(k, i);
+        all.by_pose(z, at) += block.by_pose(i, k);
+        all.by_velocity(z, at) += block.by_velocity(i, k);
+      }
+      for (int c = 0; c < block.count; ++c) all.by_inner(z, block.first + c) += block.by_inner(i, c);
+    }
+  }
+  const Linearization::StateParts& states = linear.states();
+  for (const auto& e : states.by_pose) all.by_pose(e.row(), e.col()) += e.value();
+  for (const auto& e : states.by_velocity) all.by_velocity(e.row(), e.col()) += e.value();
+  for (const auto& e : states.by_state) all.by_inner(e.row(), e.col()) += e.value();
+  for (const auto& e : states.forces) all.force(e.row(), e.col()) += e.value();
+  return all;
+}
+
+// Of what inner states do and what changes them, the largest deviation from central differences, each against the largest entry of its
+// kind. Strains are some 1e-4 m, a direction of slip is a vector of 1e-3: steps of 1e-8 leave 1e-8 of truncation and rounding of
+// places, 1e-16 m over 1e-8 m.
 double inner_deviation(Dynamics& dynamics, const State& state) {
   dynamics.set_state(state);
   std::vector<double> y(dynamics.dimension()), ahead(y), behind(y);
   dynamics.pack(state, y.data());
   Linearization linear;
   linear.evaluate(dynamics, state.t, y.data());
-  REQUIRE(linear.inner().size() == 1);
-  const Linearization::InnerBlock& block = linear.inner().front();
-  const int n = dynamics.coordinate_count(), first = 2 * n + block.first;
+  const int n = dynamics.coordinate_count(), inner = dynamics.inner_count();
+  const InnerSlopes found = gathered(linear, n);
+  InnerSlopes expected(n, inner);
   const auto slope = [&](int column, double h) {
     std::vector<double> moved = y;
     moved[column] += h;
@@ -408,27 +440,20 @@ double inner_deviation(Dynamics& dynamics, const State& state) {
     dynamics.rates(state.t, moved.data(), behind.data());
     return VecX((VecX::Map(ahead.data(), dynamics.dimension()) - VecX::Map(behind.data(), dynamics.dimension())) / (2.0 * h));
   };
-  Eigen::Matrix<double, 6, 3> force;
-  Eigen::Matrix<double, 3, 6> by_pose, by_velocity;
-  Mat3 by_inner;
-  for (int k = 0; k < 6; ++k) {
-    const int at = 3 * block.cluster[k / 3] + k % 3;
-    by_pose.col(k) = slope(at, 1e-8).segment<3>(first);
-    by_velocity.col(k) = slope(n + at, 1e-6).segment<3>(first);
+  for (int k = 0; k < n; ++k) {
+    expected.by_pose.col(k) = slope(k, 1e-8).segment(2 * n, inner);
+    expected.by_velocity.col(k) = slope(n + k, 1e-6).segment(2 * n, inner);
   }
-  for (int c = 0; c < 3; ++c) {
-    const VecX by_strain = slope(first + c, 1e-8);
-    by_inner.col(c) = by_strain.segment<3>(first);
-    for (int k = 0; k < 6; ++k) {
-      const int at = 3 * block.cluster[k / 3] + k % 3;
-      force(k, c) = by_strain[n + at] / linear.inverse_mass()[at];
-    }
+  for (int c = 0; c < inner; ++c) {
+    const VecX by_state = slope(2 * n + c, 1e-8);
+    expected.by_inner.col(c) = by_state.segment(2 * n, inner);
+    for (int k = 0; k < n; ++k) expected.force(k, c) = by_state[n + k] / linear.inverse_mass()[k];
   }
-  const auto off = [](const auto& exact, const auto& difference) {
+  const auto off = [](const MatX& exact, const MatX& difference) {
     return (exact - difference).cwiseAbs().maxCoeff() / std::max(1.0, difference.cwiseAbs().maxCoeff());
   };
-  return std::max(
-      {off(block.force, force), off(block.by_pose, by_pose), off(block.by_velocity, by_velocity), off(block.by_inner, by_inner)});
+  return std::max({off(found.force, expected.force), off(found.by_pose, expected.by_pose), off(found.by_velocity, expected.by_velocity),
+                   off(found.by_inner, expected.by_inner)});
 }
 
 } // namespace
@@ -454,4 +479,35 @@ TEST_CASE("linearisation: inner states of a joint between bodies that ride on ot
   }
   CHECK(looks >= 3);
   CHECK(yields >= 1); // it has slid
+}
+
+TEST_CASE("linearisation: inner states of a joint that slides at a corner of its limit surface") {
+  // Two overlaps 12 mm wide and 2.2 m apart: the direction of slip is a state, which relaxes at 1e7 1/s.
+  using namespace step_lap_scene;
+  const std::string text =
+      header("end = 0.0175\nintegrator = \"rodas5p\"\ntolerance = 1e-8", 0.01) + body("limb", 1000.0, 700.0, {0.5, 0.0}) +
+      joint("limb", "ground", "tangential_stiffness = 1e7") +
+      interface(rectangle(0.0, 1.0, 0.3, 1.2), rectangle(0.288, 1.0, 0.6, 1.2), 1e5, 0.25, "count = 400", "top") +
+      interface(rectangle(0.0, -1.2, 0.3, -1.0), rectangle(0.292, -1.2, 0.6, -1.0), 1e5, 0.25, "count = 600", "bottom") +
+      "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"limb\"\nforce = [60e3, 0.0]\n";
+  const auto system = compile(scene(text));
+  SimulationOptions options;
+  options.integrator = "rodas5p";
+  options.settings.tolerance = 1e-8;
+  options.end = 0.0175;
+  Simulation simulation(*system, system->initial_state(), options);
+  Dynamics dynamics(*system);
+  dynamics.set_time_limit(1.0);
+  int looks = 0;
+  for (double next = 0.0145; simulation.advance();) {
+    const State state = simulation.current_state();
+    if (state.t < next) continue;
+    next = state.t + 0.0005;
+    CAPTURE(state.t);
+    // Most are within 1e-4; where edges that lay along each other cross within 1e-7 m, differences as long as that see two slopes of the
+    // overlap. Differences of what the wrench tells, 1e-5 of the strain long, are wrong by 1: the corner is 5e-6.
+    CHECK(inner_deviation(dynamics, state) < 1e-2);
+    ++looks;
+  }
+  CHECK(looks >= 4);
 }
