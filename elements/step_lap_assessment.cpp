@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace steplap {
 
@@ -83,25 +82,27 @@ void read_modes(const RunResult& result, JointAssessment& a) {
   if (mode->high.value > slip) a.has_come_apart = true;
 }
 
-// Bodies that the element's fields name, by themselves or by markers on them.
-std::set<std::string> bodies_of(const ElementEntry& entry, const Model& model) {
-  std::set<std::string> bodies;
+// Do the element's fields name these two bodies, by themselves or by markers on them, and no others?
+bool acts_between(const ElementEntry& entry, const Model& model, const std::string& a, const std::string& b) {
+  bool has_a = false, has_b = false;
   for (const Field& field : entry.kind->fields.fields()) {
     if (field.type != FieldType::body && field.type != FieldType::marker) continue;
     const FieldValue value = field.get(entry.element.get());
     const auto* name = std::get_if<std::string>(&value);
     if (!name || name->empty()) continue;
     const auto marker = std::find_if(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == *name; });
-    bodies.insert(field.type == FieldType::marker && marker != model.markers.end() ? marker->body : *name);
+    const std::string& body = field.type == FieldType::marker && marker != model.markers.end() ? marker->body : *name;
+    if (body != a && body != b) return false;
+    has_a = has_a || body == a;
+    has_b = has_b || body == b;
   }
-  return bodies;
+  return has_a && has_b;
 }
 
 std::vector<SharedLoad> shared_with(const StepLapJoint& joint, const Model& model, const RunResult& result) {
   std::vector<SharedLoad> shared;
-  const std::set<std::string> both = {joint.limb, joint.active_part};
   for (const ElementEntry& entry : model.elements) {
-    if (entry.element->name == joint.name || bodies_of(entry, model) != both) continue;
+    if (entry.element->name == joint.name || !acts_between(entry, model, joint.limb, joint.active_part)) continue;
     const ChannelRange* force = find_range(result, entry.element->name + ".force");
     shared.push_back({entry.element->name, force ? std::max(std::abs(force->low.value), std::abs(force->high.value)) : k_unknown});
   }

@@ -216,19 +216,23 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   finish_rates(y, dy);
 }
 
+// Of rows that move with time, few scenes have any.
+[[gnu::noinline]] static void take_row_inputs(const Layout& layout, const double* memory, double t, double* into) {
+  for (const int r : layout.driven_rows) {
+    const SignalJet target = row_target(*layout.active[r].spec, memory, t);
+    *into++ = target.acceleration;
+    *into++ = target.rate;
+  }
+}
+
 void Dynamics::take_time_inputs(double t, double* into) {
   kinematics_.aim_locks(t);
-  for (std::size_t i = 0; i < layout_->locks.size(); ++i) {
-    const SignalJet& target = kinematics_.lock_target(i);
+  for (const SignalJet& target : kinematics_.lock_targets()) {
     *into++ = target.value;
     *into++ = target.rate;
     *into++ = target.acceleration;
   }
-  for (const int r : layout_->driven_rows) {
-    const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
-    *into++ = target.acceleration;
-    *into++ = target.rate;
-  }
+  if (!layout_->driven_rows.empty()) take_row_inputs(*layout_, state_->memory.data(), t, into);
 }
 
 // Rates, power and watch values, and if `all`, what look_by_code() and defer_byproducts() take. Returns false if there is no code
@@ -248,7 +252,10 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
 }
 
 void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
-  if (run_code(t, y, dy, false)) return;
+  if (!run_code(t, y, dy, false)) evaluate_stage_without_code(t, y, dy);
+}
+
+void Dynamics::evaluate_stage_without_code(double t, const double* y, double* dy) {
   rates(t, y, dy);
   // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
@@ -257,7 +264,8 @@ void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
 
 void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, bool always) {
   if (!looks_at_merged(always)) {
-    evaluate_stage(t, y, dy);
+    if (run_code(t, y, dy, false)) return; // no loads are shared where code holds
+    evaluate_stage_without_code(t, y, dy);
     watch_merged_if_near(dy, always);
   } else if (may_look_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();

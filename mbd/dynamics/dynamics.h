@@ -171,7 +171,7 @@ public:
   }
   /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
   /// every wrench is its element's own.
-  [[nodiscard]] const LoadSharing* sharing() const;
+  [[nodiscard]] const LoadSharing* sharing() const { return layout_->sharing ? sharing_now() : nullptr; }
   /// Per rate of a coordinate what velocity errors must be small against for the slip laws' sake, infinite
   /// where none asks for it; false if that is everywhere.
   [[nodiscard]] bool slip_scales(double* scale);
@@ -220,6 +220,7 @@ private:
   void finish_watches();
   void rates_as_given(double t, const double* y, double* dy);
   void evaluate_stage(double t, const double* y, double* dy);
+  void evaluate_stage_without_code(double t, const double* y, double* dy);
   void evaluate_stage_and_joints(double t, const double* y, double* dy, bool always);
   void evaluate_end(double t, const double* y, double* dy);
   Residual constraint_values(double t, const double* y);
@@ -235,6 +236,7 @@ private:
   void decide_rank();
   void record_rank(State& state) const;
   void find_sharing();
+  [[nodiscard]] const LoadSharing* sharing_now() const;
   [[nodiscard]] bool is_shared(int friction) const;
   [[nodiscard]] bool has_groups() const;
   void take_solved_friction();

@@ -20,9 +20,11 @@ void Kinematics::aim_locks(double t) {
   if (t == lock_time_) return;
   lock_time_ = t;
   const double* const memory = state_->memory.data();
-  for (std::size_t i = 0; i < layout_->locks.size(); ++i) {
-    lock_target_[i] = row_target(system_.rows[layout_->locks[i].row], memory, t);
-    lock_target_[i].value += layout_->locks[i].offset;
+  SignalJet* target = lock_target_.data();
+  for (const Lock& lock : layout_->locks) {
+    *target = row_target(system_.rows[lock.row], memory, t);
+    target->value += lock.offset;
+    ++target;
   }
 }
 

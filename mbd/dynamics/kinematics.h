@@ -9,6 +9,7 @@
 #include "mbd/dynamics/equations.h"
 
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace steplap {
@@ -34,6 +35,7 @@ public:
   /// Targets of the driven coordinates at t: several evaluations of a step are at the same time.
   void aim_locks(double t);
   [[nodiscard]] const SignalJet& lock_target(std::size_t lock) const { return lock_target_[lock]; }
+  [[nodiscard]] std::span<const SignalJet> lock_targets() const { return {lock_target_.data(), layout_->locks.size()}; }
 
   /// Bodies, links (of a, seen from b), clusters of several bodies; the same memory for the life of this object.
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }

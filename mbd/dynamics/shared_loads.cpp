@@ -18,10 +18,10 @@ void Dynamics::find_sharing() {
   if (layout.sharing->has_friction()) layout.is_merged_watched = true;
 }
 
-const LoadSharing* Dynamics::sharing() const {
+const LoadSharing* Dynamics::sharing_now() const {
   const Layout& layout = *layout_;
   // Code holds where no rows depend on each other.
-  return layout.sharing && !pending_.is_pending() && layout.is_singular() ? layout.sharing.get() : nullptr;
+  return !pending_.is_pending() && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
 bool Dynamics::is_shared(int friction) const {

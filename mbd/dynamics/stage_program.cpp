@@ -11,7 +11,7 @@ namespace steplap {
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()), coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)),
       inner_count_(state.inner.size()), time_count_(time_input_count(layout)), choice_(choice), is_hopeless_(!MachineCode::is_available()) {
-  inputs_.resize(2 * coordinate_count_ + inner_count_ + time_count_);
+  time_inputs_.resize(time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
   family_ = tape_family(key());
   stages_ = family_->made();
@@ -51,14 +51,26 @@ void StageProgram::look_for_code() {
   const double *const inputs = traced_.inputs.data(), *const constants = traced_.tape.constants.data();
   // What elements that are called remember may have changed since.
   const bool is_as_ever = traced_.calls.empty() || replay(tape_code_->tape(), inputs, constants, traced_.outputs.data());
-  const bool is_same = is_as_ever && made.run(inputs, constants, outputs_.data()) && !has_call_failed() &&
-                       std::memcmp(outputs_.data(), traced_.outputs.data(), outputs_.size() * sizeof(double)) == 0;
-  if (is_same) {
+  if (is_as_ever && makes_what_was_traced(made)) {
     code_ = &made;
   } else {
     tape_code_.reset();
     is_hopeless_ = true;
   }
+}
+
+// To the bit.
+bool StageProgram::makes_what_was_traced(const MachineCode& made) const {
+  const Tape& tape = traced_.tape;
+  std::size_t size[CodeArrays::k_more + 1] = {};
+  for (const OutputPlace& p : tape.places) size[p.array] = std::max(size[p.array], static_cast<std::size_t>(p.place) + 1);
+  std::vector<double> found(size[0] + size[1] + size[2] + size[3]);
+  double* const begin[] = {found.data(), found.data() + size[0], found.data() + size[0] + size[1], found.data() + found.size() - size[3]};
+  const CodeArrays arrays{tape.constants.data(), traced_.inputs.data() + tape.first_inputs, {begin[1], begin[2], begin[3]}};
+  if (!made.run(traced_.inputs.data(), arrays, begin[0], true) || has_call_failed()) return false;
+  for (std::size_t k = 0; k < tape.places.size(); ++k)
+    if (std::memcmp(begin[tape.places[k].array] + tape.places[k].place, &traced_.outputs[k], sizeof(double)) != 0) return false;
+  return true;
 }
 
 void StageProgram::note_failure() {
@@ -74,20 +86,16 @@ void StageProgram::give_up() {
 }
 
 bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all) {
-  const std::size_t n = coordinate_count_ + inner_count_, signals = traced_.signals.size();
-  std::copy_n(y, coordinate_count_ + n, inputs_.data());
-  for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
-  if (!code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data(), all)) {
+  double* of_signal = time_inputs_.data() + time_count_;
+  for (const TimeInput& signal : traced_.signals) *of_signal++ = signal.at(t);
+  arrays_.outputs[0] = watch;
+  arrays_.outputs[1] = watch_rate;
+  if (!code_->run(y, arrays_, dy, all)) {
     note_failure();
     return false;
   }
   if (has_call_failed()) return false; // the evaluation without code throws what the element threw
   failures_ = 0;
-  const double* out = outputs_.data();
-  std::copy_n(out, n + 2, dy);
-  out += n + 2;
-  for (const int slot : traced_.watches) watch[slot] = *out++;
-  for (const int slot : traced_.watch_rates) watch_rate[slot] = *out++;
   return true;
 }
 
@@ -100,8 +108,8 @@ void StageProgram::count_stage() {
 }
 
 void StageProgram::put_wrenches(double* friction_force) const {
-  std::size_t at = traced_.usual_outputs();
-  for (const int slot : traced_.wrenches) friction_force[slot] = outputs_[at++];
+  const double* at = rest_.data();
+  for (const int slot : traced_.wrenches) friction_force[slot] = *at++;
 }
 
 bool StageProgram::has_call_failed() const {
@@ -111,8 +119,8 @@ bool StageProgram::has_call_failed() const {
 }
 
 // In the order in which the solvers compare.
-double StageProgram::smallest_pivot_in(const double* outputs) const {
-  const double* at = outputs + traced_.usual_outputs() + traced_.wrenches.size();
+double StageProgram::smallest_pivot_in(const double* rest) const {
+  const double* at = rest + traced_.wrenches.size();
   double smallest = 1.0;
   for (const int count : traced_.pivots) {
     double of_solver = 1.0;
@@ -132,7 +140,7 @@ bool StageProgram::has_found(const StageFound& found) const {
   };
   return std::all_of(found.dy, found.dy + coordinate_count_ + inner_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
          are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
-         smallest_pivot_in(traced_.outputs.data()) == found.smallest_pivot;
+         smallest_pivot_in(traced_.outputs.data() + traced_.usual_outputs()) == found.smallest_pivot;
 }
 
 void StageProgram::record(const System& system, const State& state, const Evaluation& live, double t, const double* y,
@@ -152,8 +160,9 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   if (known && !is_traced) return;
   is_hopeless_ = !is_traced || !has_found(found); // to the bit
   if (is_hopeless_) return;
-  inputs_.resize(2 * coordinate_count_ + inner_count_ + time_count_ + traced_.signals.size());
-  outputs_.resize(traced_.outputs.size());
+  time_inputs_.resize(time_count_ + traced_.signals.size());
+  rest_.resize(traced_.outputs.size() - traced_.usual_outputs());
+  arrays_ = {traced_.tape.constants.data(), time_inputs_.data(), {nullptr, nullptr, rest_.data()}};
   tape_code_ = known ? known : shared_code(traced_.tape);
   if (!known) family_->keep(tape_code_);
   if (choice_ == StageCode::at_once) tape_code_->make();

@@ -45,16 +45,16 @@ public:
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, rates of inner states, power and switching values at coordinates, rates and inner states y. False: evaluate
-  /// without code; nothing was changed.
+  /// without code; what was found before may be lost.
   /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
   /// Can merged joints be looked at by what a stage has found? Then: what they bear at the last run(), into their slots.
   [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
   void put_wrenches(double* friction_force) const;
   /// To the bit that of Layout::smallest_pivot, at the last run().
-  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(outputs_.data()); }
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(rest_.data()); }
   /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
-  [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_ + inner_count_; }
+  [[nodiscard]] double* time_inputs() { return time_inputs_.data(); }
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
@@ -71,7 +71,8 @@ public:
 private:
   void note_failure();
   [[nodiscard]] bool has_call_failed() const;
-  [[nodiscard]] double smallest_pivot_in(const double* outputs) const;
+  [[nodiscard]] bool makes_what_was_traced(const MachineCode& made) const;
+  [[nodiscard]] double smallest_pivot_in(const double* rest) const;
   void give_up();
   [[nodiscard]] std::uint64_t key() const;
   [[nodiscard]] bool has_found(const StageFound& found) const;
@@ -98,7 +99,9 @@ private:
   std::shared_ptr<TapeCode> candidate_; ///< a tape that has code, which this one should be; null: none, or it was not
   std::shared_ptr<TapeCode> tape_code_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
-  std::vector<double> inputs_, outputs_;
+  std::vector<double> time_inputs_; ///< the layout's, then those of signals
+  std::vector<double> rest_;        ///< what run() has found for who looks at merged joints
+  CodeArrays arrays_;
   std::size_t coordinate_count_ = 0, inner_count_ = 0, time_count_ = 0;
   long stages_ = 0;              ///< made without code, in this run and those before it
   int failures_ = 0, tapes_ = 0; ///< failures: since it last held

@@ -111,6 +111,7 @@ private:
     e_.inner = inner_.data();
     e_.inner_rate = inner_rate_.data();
     for (const double x : time_inputs) time_.push_back(Traced::input(x));
+    first_inputs_ = static_cast<std::int32_t>(2 * n + inner_rate_.size());
   }
   [[nodiscard]] auto target_of_lock() const {
     return [this](std::size_t lock) {
@@ -213,26 +214,38 @@ private:
     }
   }
 
-  void put_out(TracedRates& traced) {
+  // With room for what most layouts have: each vector would grow five times.
+  void clear(TracedRates& traced) {
     traced.outputs.clear();
-    for (const auto* rates : {&a_, &inner_rate_})
-      for (const Traced& rate : *rates) put_out(rate, traced);
-    put_out(e_.dissipation, traced);
-    put_out(e_.work, traced);
+    traced.tape.places.clear();
     traced.watches.clear();
+    traced.watch_rates.clear();
+    traced.inputs.clear();
+    const std::size_t rates = a_.size() + inner_rate_.size() + 2, most = rates + 2 * watch_.size() + 3 * layout_.merged.size();
+    traced.outputs.reserve(most);
+    traced.tape.places.reserve(most);
+    traced.watches.reserve(watch_.size());
+    traced.inputs.reserve(q_.size() + v_.size() + inner_.size() + time_.size() + e_.time_inputs.size());
+  }
+
+  void put_out(TracedRates& traced) {
+    clear(traced);
+    for (const auto* rates : {&a_, &inner_rate_})
+      for (const Traced& rate : *rates) put_next(rate, 0, traced);
+    put_next(e_.dissipation, 0, traced);
+    put_next(e_.work, 0, traced);
     for (std::size_t i = 0; i < watch_.size(); ++i) {
       if (watch_[i].is_constant()) continue; // as the evaluation before has left it
       traced.watches.push_back(static_cast<int>(i));
-      put_out(watch_[i], traced);
+      put_out(watch_[i], {TracedRates::k_watches, static_cast<std::int32_t>(i)}, traced);
     }
-    traced.watch_rates.clear();
     for (std::size_t i = 0; i < watch_rate_.size(); ++i) {
       if (watch_rate_[i].is_constant()) continue;
       traced.watch_rates.push_back(static_cast<int>(i));
-      put_out(watch_rate_[i], traced);
+      put_out(watch_rate_[i], {TracedRates::k_watch_rates, static_cast<std::int32_t>(i)}, traced);
     }
+    traced.tape.first_inputs = first_inputs_;
     traced.signals = e_.time_inputs;
-    traced.inputs.clear();
     for (const auto* given : {&q_, &v_, &inner_, &time_})
       for (const Traced& x : *given) traced.inputs.push_back(value_of(x));
     for (const TimeInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
@@ -250,7 +263,7 @@ private:
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
       for (int r = 0; r < 3; ++r) {
         traced.wrenches.push_back(system_.frictions[edge.friction].row + r);
-        put_out(along[r], traced);
+        put_next(along[r], TracedRates::k_rest, traced);
       }
     });
   }
@@ -267,16 +280,20 @@ private:
     for (const std::vector<TracedPivot>& of_solver : pivots_) {
       traced.pivots.push_back(static_cast<int>(of_solver.size()));
       for (const TracedPivot& p : of_solver) {
-        put_out(p.pivot, traced);
-        put_out(p.diagonal, traced);
+        put_next(p.pivot, TracedRates::k_rest, traced);
+        put_next(p.diagonal, TracedRates::k_rest, traced);
       }
     }
   }
 
-  static void put_out(const Traced& x, TracedRates& traced) {
+  static void put_out(const Traced& x, OutputPlace place, TracedRates& traced) {
     Traced::output(x);
     traced.outputs.push_back(value_of(x));
+    traced.tape.places.push_back(place);
   }
+
+  // Behind those put there before.
+  void put_next(const Traced& x, std::int32_t array, TracedRates& traced) { put_out(x, {array, put_[array == 0 ? 0 : 1]++}, traced); }
 
   const System& system_;
   const Layout& layout_;
@@ -285,6 +302,8 @@ private:
   std::vector<std::unique_ptr<ElementCall>>* calls_ = nullptr; ///< those made now
   std::vector<TracedMechanism> mechanisms_;
   std::vector<std::vector<TracedPivot>> pivots_; ///< of each solver
+  std::int32_t put_[2] = {0, 0};                 ///< so many, into the first array and the rest
+  std::int32_t first_inputs_ = 0;                ///< coordinates, rates and inner states
   TracedEvaluation e_;
 };
 
@@ -302,7 +321,8 @@ bool trace_rates(const System& system, const Layout& layout, const State& state,
     (void)Traced::finish(nullptr);
     return false;
   }
-  return Traced::finish(&traced.tape);
+  const bool is_known = Traced::finish(&traced.tape);
+  return is_known && (!known || (traced.tape.first_inputs == known->first_inputs && traced.tape.places == known->places));
 }
 
 } // namespace steplap

@@ -11,6 +11,7 @@
 #include "mbd/dynamics/layout.h"
 #include "mbd/tape/tape.h"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,8 +21,11 @@ namespace steplap {
 struct TracedRates {
   /// Inputs: coordinates and rates, inner states, then the numbers of the layout that follow from time, then those of signals;
   /// outputs: accelerations, rates of inner states, dissipation, work, watch values, rates of watch values; then what a look at
-  /// merged joints and the end of a step ask for: wrenches, and of each pivot that and its diagonal.
+  /// merged joints and the end of a step ask for: wrenches, and of each pivot that and its diagonal. Code takes coordinates, rates
+  /// and inner states from where they are, and puts rates, watch values (k_watches) and rates of these (k_watch_rates) where they
+  /// belong.
   Tape tape;
+  static constexpr std::int32_t k_watches = 1, k_watch_rates = 2, k_rest = 3; ///< arrays of outputs (Tape::places)
   std::vector<TimeInput> signals;
   std::vector<int> watches;     ///< the slots of watch values
   std::vector<int> watch_rates; ///< those whose rate is no constant

@@ -37,37 +37,20 @@ template <class Curve> bool tells_bend(const Curve& c) {
   return c.last > 2 || (c.last == 2 && !std::isnan(c.start_slope) && !std::isnan(c.end_slope));
 }
 
-// Ranges by the values at four places. Of those that are no numbers, what was known stays.
-void widen(int slots, const std::array<const double*, 4>& values, double* low, double* high) {
-  for_numbers(
-      slots, [&values, low, high ]<class S>(int i) __attribute__((always_inline)) {
-        S least, most, value;
-        read_numbers(low + i, least);
-        read_numbers(high + i, most);
-        for (const double* const at : values) {
-          read_numbers(at + i, value);
-          least = value < least ? value : least;
-          most = value > most ? value : most;
-        }
-        std::memcpy(low + i, &least, sizeof least);
-        std::memcpy(high + i, &most, sizeof most);
-      });
-}
-
 } // namespace
 
 void WatchNodes::add(double theta, const double* watch, bool has_merged) {
   if (count_ == k_most || !(theta > 0.0 && theta < 1.0)) return;
   int place = count_;
-  while (place > 0 && theta_[order_[place - 1]] > theta) --place;
+  for (; place > 0 && theta_[order_[place - 1]] > theta; --place) order_[place] = order_[place - 1];
   if (place > 0 && theta_[order_[place - 1]] == theta) {
+    for (int i = place; i < count_; ++i) order_[i] = order_[i + 1];
     // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
     double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
     for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
     has_merged_[order_[place - 1]] = has_merged_[order_[place - 1]] && has_merged;
     return;
   }
-  for (int i = count_; i > place; --i) order_[i] = order_[i - 1];
   order_[place] = count_;
   theta_[count_] = theta;
   has_merged_[count_] = has_merged;
@@ -76,12 +59,22 @@ void WatchNodes::add(double theta, const double* watch, bool has_merged) {
 }
 
 void WatchNodes::close(const double* watch0, const double* watch1) {
-  for (int i = 0; i < slots_; ++i) {
-    low_[i] = watch0[i] < watch1[i] ? watch0[i] : watch1[i];
-    high_[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
-  }
-  const auto at = [this](int place) { return values_.data() + static_cast<std::ptrdiff_t>(std::min(place, count_ - 1)) * stride_; };
-  for (int k = 0; k < count_; k += 4) widen(stride_, {at(k), at(k + 1), at(k + 2), at(k + 3)}, low_.data(), high_.data());
+  for_numbers(
+      slots_, [ watch0, watch1, values = values_.data(), count = count_, stride = stride_, low = low_.data(),
+                high = high_.data() ]<class S>(int i) __attribute__((always_inline)) {
+        S first, last, value;
+        read_numbers(watch0 + i, first);
+        read_numbers(watch1 + i, last);
+        S least = first < last ? first : last, most = first < last ? last : first;
+        const double* at = values + i;
+        for (int k = 0; k < count; ++k, at += stride) { // of values that are no numbers, what was known stays
+          read_numbers(at, value);
+          least = value < least ? value : least;
+          most = value > most ? value : most;
+        }
+        std::memcpy(low + i, &least, sizeof least);
+        std::memcpy(high + i, &most, sizeof most);
+      });
   if (count_ > 1) return;
   // One place inside, as of rk4, does not see where parts of a sum of harmonics cancel: it may be lower than there.
   for (int i = 0; i < slots_; ++i) low_[i] -= k_unseen_by_one * (high_[i] - low_[i]);

@@ -241,6 +241,7 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
   check(pieces_);
   for (Piece& piece : pieces_) {
     piece.is_level = piece.c[1] == 0.0 && piece.c[2] == 0.0 && piece.c[3] == 0.0;
+    piece.is_usual = piece.is_level && piece.modulated.empty() && piece.harmonics.size() < k_block;
     for (Harmonic& h : piece.harmonics) {
       const portable::SinCos phase = portable::sin_cos(h.phase);
       h.cos_phase = phase.cos;
@@ -292,10 +293,11 @@ void Signal::accumulate_integrals() {
 }
 
 const Signal::Piece* Signal::piece_at(double t) const {
-  constexpr std::size_t k_few = 8; // from the last one on, as runs spend most of their time there
-  if (pieces_.size() <= k_few) {
-    for (std::size_t k = pieces_.size(); k-- > 0;)
-      if (!(t < pieces_[k].start)) return &pieces_[k];
+  constexpr std::ptrdiff_t k_few = 8; // from the last one on, as runs spend most of their time there
+  const Piece *const begin = pieces_.data(), *piece = begin + pieces_.size();
+  if (piece <= begin + k_few) {
+    while (piece != begin)
+      if (!(t < (--piece)->start)) return piece;
     return nullptr;
   }
   const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t, [](double time, const Piece& p) { return time < p.start; });
@@ -311,7 +313,7 @@ namespace {
 
 // What drive() gives of an acceleration, for pieces as most drives are made of: no rates that nobody asks for. The same
 // bytes as by way of evaluate().
-SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
+[[gnu::noinline]] SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
   double value = piece.c[0], integral = tau * piece.c[0], double_integral = tau * tau * (piece.c[0] / 2);
   for (const Signal::Harmonic& h : piece.harmonics) {
     const double x = h.frequency * tau;
@@ -326,29 +328,38 @@ SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
   return {double_integral + (piece.double_integral + piece.integral * tau), integral + piece.integral, value};
 }
 
-} // namespace
-
-SignalJet Signal::drive(double t, DriveLevel level) const {
-  const Piece* piece = piece_at(t);
-  const bool is_usual = piece && piece->is_level && piece->modulated.empty() && piece->harmonics.size() < k_block;
-  if (is_usual && level == DriveLevel::acceleration) return driven_by_acceleration(*piece, t - piece->start);
+// The same of any piece, and where there is none; `value_at_zero`: of the signal.
+[[gnu::noinline]] SignalJet driven_by(const Signal::Piece* piece, const std::vector<Signal::Piece>& pieces, double value_at_zero, double t,
+                                      DriveLevel level) {
   PieceJet jet;
   if (piece) {
     const double tau = t - piece->start;
     jet = evaluate(*piece, tau, level != DriveLevel::position);
     jet.double_integral += piece->double_integral + piece->integral * tau;
     jet.integral += piece->integral;
-  } else if (!pieces_.empty() && pieces_.front().start < 0.0) {
-    const Piece& p = pieces_.front();
+  } else if (!pieces.empty() && pieces.front().start < 0.0) {
+    const Signal::Piece& p = pieces.front();
     jet.integral = p.integral;
     jet.double_integral = p.double_integral + p.integral * (t - p.start);
   }
   switch (level) {
-  case DriveLevel::position: return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
+  case DriveLevel::position: return {jet.value - value_at_zero, jet.rate, jet.second_rate};
   case DriveLevel::velocity: return {jet.integral, jet.value, jet.rate};
   case DriveLevel::acceleration: break;
   }
   return {jet.double_integral, jet.integral, jet.value};
+}
+
+} // namespace
+
+// Between its pulses a drive goes on evenly, for most of a run: that calls nothing.
+SignalJet Signal::drive(double t, DriveLevel level) const {
+  const Piece* const piece = piece_at(t);
+  if (level != DriveLevel::acceleration || !piece || !piece->is_usual) return driven_by(piece, pieces_, value_at_zero_, t, level);
+  const double tau = t - piece->start;
+  if (!piece->harmonics.empty()) return driven_by_acceleration(*piece, tau);
+  const double value = piece->c[0];
+  return {tau * tau * (value / 2) + (piece->double_integral + piece->integral * tau), tau * value + piece->integral, value};
 }
 
 double Signal::mean(double from, double to) const {

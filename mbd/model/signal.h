@@ -58,6 +58,7 @@ public:
     std::vector<Harmonic> harmonics;    ///< any number
     std::vector<Modulated> modulated;   ///< any number
     bool is_level = true;               ///< c1 = c2 = c3 = 0 (filled by Signal)
+    bool is_usual = true;               ///< so, with few harmonics and nothing modulated: as most drives are (filled by Signal)
     double integral = 0.0;              ///< ∫ from 0 to start (filled by Signal)
     double double_integral = 0.0;       ///< ∬ from 0 to start (filled by Signal)
   };

@@ -63,7 +63,18 @@ bool is_absent(const FieldValue& value) {
   return text && text->empty();
 }
 
+// Of numbers, points or rings: asked before anybody writes what is wrong.
+bool is_allowed(const Field& field, double value) {
+  const bool is_above = field.is_minimum_excluded ? value > field.minimum : value >= field.minimum;
+  return std::isfinite(value) && is_above && value <= field.maximum;
+}
+bool is_allowed(const Field& field, const Vec2& p) { return is_allowed(field, p.x()) && is_allowed(field, p.y()); }
+template <class T> bool is_allowed(const Field& field, const std::vector<T>& list) {
+  return std::all_of(list.begin(), list.end(), [&field](const T& item) { return is_allowed(field, item); });
+}
+
 std::string number_problem(const Field& field, double value) {
+  if (is_allowed(field, value)) return {};
   std::string need;
   if (!std::isfinite(value)) need = "finite";
   else if (field.is_minimum_excluded && !(value > field.minimum)) need = "greater than " + with_unit(field.minimum, field.unit);
@@ -88,6 +99,7 @@ std::string first_problem(const Field& field, const Vec2& p) {
   return of_x.empty() ? number_problem(field, p.y()) : of_x;
 }
 template <class T> std::string first_problem(const Field& field, const std::vector<T>& list) {
+  if (is_allowed(field, list)) return {};
   for (const T& item : list)
     if (std::string problem = first_problem(field, item); !problem.empty()) return problem;
   return "";

@@ -15,11 +15,11 @@ namespace steplap {
 class TapeCode {
 public:
   /// `tape`: its constants are not looked at.
-  explicit TapeCode(const Tape& tape) : tape_{tape.steps, {}, tape.input_count, tape.outputs, tape.usual_outputs} {}
+  explicit TapeCode(const Tape& tape) : tape_(tape) { tape_.constants = {}; }
   [[nodiscard]] bool is_of(const Tape& tape) const {
     static_assert(std::has_unique_object_representations_v<TapeStep>);
     return tape_.steps.size() == tape.steps.size() && tape_.outputs == tape.outputs && tape_.input_count == tape.input_count &&
-           tape_.usual_outputs == tape.usual_outputs &&
+           tape_.usual_outputs == tape.usual_outputs && tape_.first_inputs == tape.first_inputs && tape_.places == tape.places &&
            std::memcmp(tape_.steps.data(), tape.steps.data(), tape_.steps.size() * sizeof(TapeStep)) == 0;
   }
   /// Without constants.

@@ -7,6 +7,8 @@
 #include <asmjit/x86.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,10 +23,12 @@ using Kind = PlannedInstruction::Kind;
 constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
 constexpr int k_page = 4096;
 constexpr int k_mask_copies = 4;
-constexpr int k_masks_size =
-    2 * 8 * k_mask_copies; ///< bytes before the first instruction: −0 and the bits besides its sign; a line of the cache
+constexpr int k_line = 64; ///< bytes of the cache
+/// Bytes before the first instruction: −0 and the bits besides its sign, a line; and a line of literals.
+constexpr int k_masks_size = 2 * k_line;
+static_assert(2 * 8 * k_mask_copies == k_line && sizeof k_literals <= k_line);
 // What the frame begins with where functions are called: the arguments, and whether all is wanted.
-constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_wish = 24;
+constexpr int k_saved_inputs = 0, k_saved_arrays = 8, k_saved_outputs = 16, k_saved_wish = 24;
 constexpr int k_saved_size = 64;
 
 InstructionSet find_best_instructions() {
@@ -100,6 +104,10 @@ private:
     a_.embedUInt64(0x8000000000000000u, k_mask_copies);
     a_.bind(value_bits_);
     a_.embedUInt64(0x7fffffffffffffffu, k_mask_copies);
+    literals_ = a_.newLabel();
+    a_.bind(literals_);
+    for (const double literal : k_literals) a_.embedDouble(literal);
+    a_.embedUInt64(0, k_line / 8 - std::size(k_literals));
   }
 
   bool has_frame() const { return plan_.slots > 0 || plan_.has_calls; }
@@ -118,9 +126,29 @@ private:
     }
     if (plan_.has_calls) {
       a_.mov(x86::ptr(x86::rsp, k_saved_inputs), x86::rdi);
-      a_.mov(x86::ptr(x86::rsp, k_saved_constants), x86::rsi);
+      a_.mov(x86::ptr(x86::rsp, k_saved_arrays), x86::rsi);
       a_.mov(x86::ptr(x86::rsp, k_saved_outputs), x86::rdx);
       a_.mov(x86::ptr(x86::rsp, k_saved_wish), x86::ecx);
+    }
+    take_arrays();
+  }
+
+  // That of constants last: their register has the address of all.
+  void take_arrays() {
+    const auto take = [this](x86::Gp to, std::size_t from) { a_.mov(to, x86::ptr(x86::rsi, static_cast<std::int32_t>(from))); };
+    if (plan_.has_later_inputs) take(x86::r8, offsetof(CodeArrays, later_inputs));
+    for (int k = 1; k <= CodeArrays::k_more; ++k)
+      if (plan_.arrays >> static_cast<unsigned>(k) & 1u)
+        take(base_of_output(k), offsetof(CodeArrays, outputs) + 8 * static_cast<std::size_t>(k - 1));
+    take(x86::rsi, offsetof(CodeArrays, constants));
+  }
+
+  static x86::Gp base_of_output(int array) {
+    switch (array) {
+    case 0: return x86::rdx;
+    case 1: return x86::r9;
+    case 2: return x86::r10;
+    default: return x86::r11;
     }
   }
 
@@ -148,8 +176,10 @@ private:
     const std::int32_t offset = 8 * place.index;
     switch (place.kind) {
     case OperandPlace::Kind::input: return x86::ptr(x86::rdi, offset);
+    case OperandPlace::Kind::later_input: return x86::ptr(x86::r8, offset);
     case OperandPlace::Kind::constant: return x86::ptr(x86::rsi, offset);
-    case OperandPlace::Kind::output: return x86::ptr(x86::rdx, offset);
+    case OperandPlace::Kind::literal: return x86::ptr(literals_, offset);
+    case OperandPlace::Kind::output: return x86::ptr(base_of_output(place.array), offset);
     case OperandPlace::Kind::slot: return x86::ptr(x86::rsp, slots_begin() + offset);
     case OperandPlace::Kind::call_slot: return x86::ptr(x86::rsp, call_slots_begin() + offset);
     case OperandPlace::Kind::sign_bits: return x86::ptr(sign_bits_);
@@ -214,7 +244,7 @@ private:
 
   void call(const PlannedInstruction& i) {
     a_.lea(x86::rdi, memory(i.second));
-    a_.lea(x86::rsi, memory({OperandPlace::Kind::call_slot, i.result_slot}));
+    a_.lea(x86::rsi, memory({OperandPlace::Kind::call_slot, 0, i.result_slot}));
     a_.mov(x86::rax, memory(i.second));
     a_.call(x86::rax);
     take_arguments();
@@ -222,8 +252,8 @@ private:
 
   void find_sine(const PlannedInstruction& i) {
     a_.lea(x86::rdi, memory(i.second));
-    a_.lea(x86::rsi, memory({OperandPlace::Kind::slot, i.sine_slot}));
-    a_.lea(x86::rdx, memory({OperandPlace::Kind::slot, i.cosine_slot}));
+    a_.lea(x86::rsi, memory({OperandPlace::Kind::slot, 0, i.sine_slot}));
+    a_.lea(x86::rdx, memory({OperandPlace::Kind::slot, 0, i.cosine_slot}));
     a_.mov(x86::rax, reinterpret_cast<std::uint64_t>(sin_cos_of_one));
     a_.call(x86::rax);
     take_arguments();
@@ -232,16 +262,17 @@ private:
   // Behind a call: those of the code itself.
   void take_arguments() {
     a_.mov(x86::rdi, x86::ptr(x86::rsp, k_saved_inputs));
-    a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_constants));
+    a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_arrays));
     a_.mov(x86::rdx, x86::ptr(x86::rsp, k_saved_outputs));
     a_.mov(x86::ecx, x86::ptr(x86::rsp, k_saved_wish));
+    take_arrays();
   }
 
   x86::Assembler& a_;
   const RegisterPlan& plan_;
   const bool has_avx_;
   const InstructionNames names_;
-  asmjit::Label sign_bits_, value_bits_, failed_, done_;
+  asmjit::Label sign_bits_, value_bits_, literals_, failed_, done_;
 };
 
 // Pages are written first and executed then, never both at a time. Where the system lets no page be executed that could once be

@@ -17,6 +17,15 @@ namespace steplap {
 /// What the code may use: that and what stands before it.
 enum class InstructionSet : std::uint8_t { sse2, avx2, avx512 };
 
+/// What code reads and writes beside the inputs that come first and the outputs of the first array.
+struct CodeArrays {
+  static constexpr int k_more = 3;
+
+  const double* constants = nullptr;
+  const double* later_inputs = nullptr; ///< those behind Tape::first_inputs
+  double* outputs[k_more] = {};         ///< arrays 1 and on of Tape::places
+};
+
 class MachineCode {
 public:
   /// Whether this program can make machine code for the processor that it runs on.
@@ -40,8 +49,12 @@ public:
 
   /// Whether the conditions hold; where one fails, outputs are untouched. Arrays are as long as the tape says, and `outputs` is
   /// apart from the others. Not `all`: the tape's usual outputs may be all that is found. Thread-safe. Precondition: not empty.
+  bool run(const double* inputs, const CodeArrays& arrays, double* outputs, bool all) const {
+    return run_(inputs, &arrays, outputs, all ? 1 : 0) != 0;
+  }
+  /// The same of a tape whose inputs and outputs lie in one array each.
   bool run(const double* inputs, const double* constants, double* outputs, bool all = true) const {
-    return run_(inputs, constants, outputs, all ? 1 : 0) != 0;
+    return run(inputs, CodeArrays{constants}, outputs, all);
   }
 
   /// Bytes of instructions, and how many there are.
@@ -49,7 +62,7 @@ public:
   [[nodiscard]] std::size_t instruction_count() const { return instruction_count_; }
 
 private:
-  using Run = int (*)(const double* inputs, const double* constants, double* outputs, int all);
+  using Run = int (*)(const double* inputs, const CodeArrays* arrays, double* outputs, int all);
 
   Run run_ = nullptr;
   void* memory_ = nullptr;      ///< where the system's pages begin

@@ -91,12 +91,29 @@ private:
       next_output_[k] = std::exchange(values_[at(tape_.outputs[k])].output, static_cast<std::int32_t>(k));
   }
 
+  OperandPlace place_of_given(const TapeStep& s) {
+    if (s.operation == constant && is_literal(s.a))
+      return place(OperandPlace::Kind::literal, static_cast<std::int32_t>(literal_index(s.a)));
+    if (s.operation == constant) return place(OperandPlace::Kind::constant, s.a);
+    if (tape_.first_inputs == 0 || s.a < tape_.first_inputs) return place(OperandPlace::Kind::input, s.a);
+    plan_.has_later_inputs = true;
+    return place(OperandPlace::Kind::later_input, s.a - tape_.first_inputs);
+  }
+
+  OperandPlace place_of_output(std::int32_t k) {
+    const OutputPlace to = tape_.places.empty() ? OutputPlace{0, k} : tape_.places[at(k)];
+    plan_.arrays |= 1u << static_cast<unsigned>(to.array);
+    return {OperandPlace::Kind::output, static_cast<std::int8_t>(to.array), to.place};
+  }
+
+  static OperandPlace place(OperandPlace::Kind kind, std::int32_t index) { return {kind, 0, index}; }
+
   // Inputs and constants lie in memory; a sine and a cosine of the same are found together.
   void look_at_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
       if (s.operation == TapeOperation::call) look_at_call(i);
-      if (is_given(s.operation)) values_[i].home = {s.operation == input ? OperandPlace::Kind::input : OperandPlace::Kind::constant, s.a};
+      if (is_given(s.operation)) values_[i].home = place_of_given(s);
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
       std::int32_t& other = call_of_[at(s.a)]; // one without a partner
@@ -197,7 +214,7 @@ private:
   void evict(int r) {
     Value& v = values_[at(owner_[r])];
     if (v.home.kind == OperandPlace::Kind::nowhere) {
-      v.home = {OperandPlace::Kind::slot, free_slot()};
+      v.home = place(OperandPlace::Kind::slot, free_slot());
       store(r, v.home);
     }
     v.reg = -1;
@@ -283,7 +300,7 @@ private:
     const Value& v = values_[at(step)];
     if (v.reg >= 0) {
       busy_ |= 1u << v.reg;
-      return {OperandPlace::Kind::in_register, v.reg};
+      return place(OperandPlace::Kind::in_register, v.reg);
     }
     return v.home;
   }
@@ -313,7 +330,7 @@ private:
       r = free_register();
       PlannedInstruction& i = plan(Kind::move);
       i.destination = static_cast<std::int8_t>(r);
-      i.second = {OperandPlace::Kind::in_register, first};
+      i.second = place(OperandPlace::Kind::in_register, first);
     }
     let_operands_go(s);
     return r;
@@ -339,7 +356,7 @@ private:
 
   void unary(std::size_t p, const TapeStep& s) {
     const int first = in_register(s.a);
-    OperandPlace second{OperandPlace::Kind::nowhere};
+    OperandPlace second;
     if (s.operation == negate) second.kind = OperandPlace::Kind::sign_bits;
     if (s.operation == absolute) second.kind = OperandPlace::Kind::value_bits;
     const int r = destination(s, first);
@@ -367,7 +384,7 @@ private:
     plan_.has_calls = true;
     for (std::size_t k = 0; k < call.arguments.size(); ++k) {
       Value& v = values_[at(call.arguments[k])];
-      const OperandPlace to{OperandPlace::Kind::call_slot, static_cast<std::int32_t>(k)};
+      const OperandPlace to = place(OperandPlace::Kind::call_slot, static_cast<std::int32_t>(k));
       if (v.reg >= 0) {
         store(v.reg, to);
       } else {
@@ -381,14 +398,14 @@ private:
     }
     let_registers_go();
     PlannedInstruction& i = plan(Kind::call);
-    i.second = {OperandPlace::Kind::call_slot, 0};
+    i.second = place(OperandPlace::Kind::call_slot, 0);
     i.result_slot = argument_slots_ + call.first_result;
   }
 
   void take_result(std::size_t p, const TapeStep& s) {
     Value& v = values_[at(order_[p])];
     v.next = next_[p].result;
-    v.home = {OperandPlace::Kind::call_slot, argument_slots_ + calls_.at(s.a).first_result + s.b};
+    v.home = place(OperandPlace::Kind::call_slot, argument_slots_ + calls_.at(s.a).first_result + s.b);
     store_known(order_[p]);
   }
 
@@ -410,8 +427,8 @@ private:
     let_slots_go(s);
     const bool is_sine = s.operation == sine;
     v.next = next_[p].result;
-    v.home = {OperandPlace::Kind::slot, slots[is_sine ? 0 : 1]};
-    const OperandPlace other{OperandPlace::Kind::slot, slots[is_sine ? 1 : 0]};
+    v.home = place(OperandPlace::Kind::slot, slots[is_sine ? 0 : 1]);
+    const OperandPlace other = place(OperandPlace::Kind::slot, slots[is_sine ? 1 : 0]);
     if (v.partner != k_none && !is_idle(at(values_[at(v.partner)].position))) values_[at(v.partner)].home = other;
     else free_slots_.push_back(other.index);
     store_known(order_[p]);
@@ -431,7 +448,7 @@ private:
   }
 
   void store_output(Value& v, int r, std::int32_t k) {
-    const OperandPlace to{OperandPlace::Kind::output, k};
+    const OperandPlace to = place_of_output(k);
     store(r, to);
     if (v.home.kind == OperandPlace::Kind::nowhere) v.home = to;
   }
@@ -447,7 +464,7 @@ private:
   void copy_output(Value& v, std::int32_t k) {
     const int r = free_register();
     load(r, v.home);
-    store(r, {OperandPlace::Kind::output, k});
+    store(r, place_of_output(k));
   }
 
   void store_outputs(std::size_t p) {

@@ -19,14 +19,17 @@ struct OperandPlace {
     nowhere,
     in_register,
     input,
+    later_input, ///< behind Tape::first_inputs
     constant,
-    output,
+    literal,    ///< by literal_index()
+    output,     ///< in `array`
     slot,       ///< of the frame
     call_slot,  ///< the same, of the part that arguments and results of calls have to themselves
     sign_bits,  ///< the bit pattern of −0
     value_bits, ///< all bits but the sign
   };
   Kind kind = Kind::nowhere;
+  std::int8_t array = 0; ///< of an output
   std::int32_t index = 0;
 };
 
@@ -59,6 +62,8 @@ struct RegisterRules {
 struct RegisterPlan {
   std::vector<PlannedInstruction> instructions;
   int slots = 0, call_slots = 0;
+  bool has_later_inputs = false;
+  std::uint32_t arrays = 0; ///< of outputs, by bits
   int conditions = 0;
   bool has_calls = false;
 };

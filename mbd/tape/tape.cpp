@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -40,7 +41,7 @@ public:
   void step(std::size_t i) const {
     const TapeStep& s = tape_.steps[i];
     if (s.operation == input) return need(s.a >= 0 && s.a < tape_.input_count, i);
-    if (s.operation == constant) return need(s.a >= 0 && (!has_constants_ || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
+    if (s.operation == constant) return need(is_constant(s.a), i);
     if (s.operation == argument) return need(is_value_before(s.a, i) && (s.b == -1 || is_before(argument, s.b, i)), i);
     if (s.operation == call) return need(is_before(argument, s.a, i) && s.b > 0, i);
     if (s.operation == result) return need(is_before(call, s.a, i) && s.b >= 0 && s.b < tape_.steps[static_cast<std::size_t>(s.a)].b, i);
@@ -53,6 +54,10 @@ public:
   }
 
 private:
+  bool is_constant(std::int32_t a) const {
+    if (is_literal(a)) return literal_index(a) < std::size(k_literals);
+    return !has_constants_ || static_cast<std::size_t>(a) < tape_.constants.size();
+  }
   bool is_value_before(std::int32_t step, std::size_t i) const {
     return step >= 0 && static_cast<std::size_t>(step) < i && has_value(tape_.steps[static_cast<std::size_t>(step)].operation);
   }
@@ -117,11 +122,26 @@ private:
 
   std::int32_t plain(Signed x) {
     if (!x.is_negative) return x.step;
+    if (is(x, k_one)) return make(constant, k_minus_one);
+    if (is(x, k_zero)) return make(constant, k_minus_zero);
     return make(negate, x.step);
   }
 
-  // Both terms negative: −a − b is not −(a + b), whose zero has the other sign.
+  // Is it that literal, its sign left aside?
+  bool is(Signed x, std::int32_t literal) const { return made_[static_cast<std::size_t>(x.step)] == TapeStep{constant, literal, 0}; }
+
+  Signed given(const TapeStep& s) {
+    const bool is_negative = s.operation == constant && (s.a == k_minus_one || s.a == k_minus_zero);
+    return {make(s.operation, is_negative ? s.a + 1 : s.a), is_negative};
+  }
+
+  static Signed turned(Signed x, bool is_turned) { return {x.step, x.is_negative != is_turned}; }
+
+  // Nothing changes what −0 is added to, not even its sign if it is zero. Both terms negative: −a − b is not −(a + b), whose zero has
+  // the other sign.
   Signed sum(Signed a, Signed b) {
+    if (b.is_negative && is(b, k_zero)) return a;
+    if (a.is_negative && is(a, k_zero)) return b;
     if (b.is_negative) return {make(subtract, plain(a), b.step)};
     if (a.is_negative) return {make(subtract, b.step, a.step)};
     return {make(add, a.step, b.step)};
@@ -129,7 +149,7 @@ private:
 
   Signed value_of(const TapeStep& s) {
     const TapeOperation o = s.operation;
-    if (is_given(o)) return {make(o, s.a)};
+    if (is_given(o)) return given(s);
     if (o == argument) return {make(o, plain(at(s.a)), s.b < 0 ? s.b : at(s.b).step)};
     if (o == call || o == result) return {make(o, at(s.a).step, s.b)};
     const Signed a = at(s.a), b = takes_two(o) ? at(s.b) : a;
@@ -137,7 +157,11 @@ private:
     case add: return sum(a, b);
     case subtract: return sum(a, {b.step, !b.is_negative});
     case multiply:
-    case divide: return {make(o, a.step, b.step), a.is_negative != b.is_negative};
+      if (is(a, k_one)) return turned(b, a.is_negative);
+      [[fallthrough]];
+    case divide:
+      if (is(b, k_one)) return turned(a, b.is_negative);
+      return {make(o, a.step, b.step), a.is_negative != b.is_negative};
     case negate: return {a.step, !a.is_negative};
     case absolute: return made_[static_cast<std::size_t>(a.step)].operation == absolute ? Signed{a.step} : Signed{make(o, a.step)};
     case if_less:
@@ -161,7 +185,7 @@ private:
       number[static_cast<std::size_t>(s.a)] = 1;
       if (has_second_step(s)) number[static_cast<std::size_t>(s.b)] = 1;
     }
-    Tape result{{}, tape_.constants, tape_.input_count, std::move(outputs), tape_.usual_outputs};
+    Tape result{{}, tape_.constants, tape_.input_count, std::move(outputs), tape_.usual_outputs, tape_.first_inputs, tape_.places};
     result.steps.reserve(made_.size());
     for (std::size_t i = 0; i < made_.size(); ++i) {
       if (number[i] == 0) continue;
@@ -184,7 +208,7 @@ private:
 // Of a step that has a value and is no call's.
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
-  if (s.operation == constant) return constants[s.a];
+  if (s.operation == constant) return is_literal(s.a) ? k_literals[literal_index(s.a)] : constants[s.a];
   return result_of(s.operation, values[static_cast<std::size_t>(s.a)],
                    takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0);
 }

@@ -7,6 +7,7 @@
 // Derivatives, 2nd ed., SIAM 2008, ch. 4.)
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace steplap {
 
 enum class TapeOperation : std::uint32_t {
   input,       ///< a: which input
-  constant,    ///< a: which constant
+  constant,    ///< a: which constant, or which literal (k_one and those below it)
   add,         ///< a + b; a, b here and below: the steps whose values are taken
   subtract,    ///< a − b
   multiply,    ///< a b
@@ -51,6 +52,14 @@ using TapeFunction = void (*)(const double* arguments, double* results);
   return is_commutative(o) || o == subtract || o == divide || o == minimum || o == maximum || is_condition(o);
 }
 
+/// What a constant step has instead of a place among the constants, where its value is one that arithmetic can do without: x · 1 is x,
+/// whatever x is. It is the same in all samples: one that has another value there has another tape.
+inline constexpr std::int32_t k_one = -1, k_minus_one = -2, k_zero = -3, k_minus_zero = -4;
+/// Those values, the one of k_one first.
+inline constexpr double k_literals[] = {1.0, -1.0, 0.0, -0.0};
+[[nodiscard]] constexpr bool is_literal(std::int32_t constant) { return constant < 0; }
+[[nodiscard]] constexpr std::size_t literal_index(std::int32_t literal) { return static_cast<std::size_t>(-1 - literal); }
+
 struct TapeStep {
   TapeOperation operation = TapeOperation::constant;
   std::int32_t a = 0, b = 0;
@@ -63,19 +72,28 @@ struct TapeStep {
   return takes_two(s.operation) || (s.operation == TapeOperation::argument && s.b >= 0);
 }
 
+/// Where an output is put: one of the arrays that code writes to (CodeArrays), and its place there.
+struct OutputPlace {
+  std::int32_t array = 0, place = 0;
+
+  friend bool operator==(const OutputPlace&, const OutputPlace&) = default;
+};
+
 struct Tape {
   std::vector<TapeStep> steps;
   std::vector<double> constants; ///< those of the sample that was traced; another has others in the same places
   int input_count = 0;
-  std::vector<std::int32_t> outputs; ///< the steps whose values are wanted
-  std::size_t usual_outputs = 0;     ///< so many, the first ones, may be wanted alone (MachineCode::run); 0: all or none
+  std::vector<std::int32_t> outputs;    ///< the steps whose values are wanted
+  std::size_t usual_outputs = 0;        ///< so many, the first ones, may be wanted alone (MachineCode::run); 0: all or none
+  std::int32_t first_inputs = 0;        ///< so many, the first ones, lie apart from the others for code; 0: all lie in one array
+  std::vector<OutputPlace> places = {}; ///< of each output, for code; empty: all in the first array, in their order
 };
 
 /// The steps whose values a call takes, in their order.
 [[nodiscard]] std::vector<std::int32_t> arguments_of(const Tape& tape, const TapeStep& call);
 
 /// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that
-/// costs nothing (x + (−y) is x − y): the same bits, but for the sign of a NaN, and constants in the same places. Values of
+/// costs nothing (x + (−y) is x − y), and without what a literal does nothing to (x · 1, x − 0): the same bits, but for the sign of a NaN, and constants in the same places. Values of
 /// constants are not looked at, and may be left out. Linear in the number of steps. A step that takes what is no value before it, or no input or
 /// constant of the tape, is a fault of the program: std::logic_error.
 [[nodiscard]] Tape simplified(const Tape& tape);

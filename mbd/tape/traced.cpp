@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
+#include <type_traits>
 
 namespace steplap {
 
@@ -23,10 +25,9 @@ void TapeWriter::grow() {
   steps.resize(size);
   constants.resize(size);
   step = steps.data() + written;
-  last_step = steps.data() + size;
+  last_with_room = steps.data() + size - k_room;
   first_constant = constants.data();
   constant = first_constant + kept;
-  last_constant = first_constant + size;
 }
 
 void Traced::start(const Tape* known) {
@@ -35,11 +36,8 @@ void Traced::start(const Tape* known) {
   to.step = to.steps.data();
   to.constant = to.first_constant;
   to.known = known;
-  to.known_step = known ? known->steps.data() : nullptr;
-  to.last_known = known ? known->steps.data() + known->steps.size() : nullptr;
   to.outputs.clear();
   to.count = to.input_count = 0;
-  to.difference = 0;
   to.usual_outputs = 0;
   TapeWriter::now = &to;
 }
@@ -52,20 +50,34 @@ bool Traced::finish(Tape* tape) {
   tape->outputs = from.outputs;
   tape->usual_outputs = from.usual_outputs;
   tape->input_count = from.input_count;
-  tape->steps.assign(from.steps.data(), static_cast<const TapeStep*>(from.step)); // none, of a tape that is known
-  const Tape* const known = from.known;
-  return !known ||
-         (from.difference == 0 && from.known_step == from.last_known && tape->steps.empty() && tape->input_count == known->input_count &&
-          tape->outputs == known->outputs && tape->usual_outputs == known->usual_outputs);
+  tape->steps.clear();
+  const auto size = static_cast<std::size_t>(from.count);
+  if (!from.known) {
+    tape->steps.assign(from.steps.data(), from.steps.data() + size);
+    return true;
+  }
+  static_assert(std::has_unique_object_representations_v<TapeStep>);
+  const Tape& known = *from.known;
+  return size == known.steps.size() && tape->input_count == known.input_count && tape->usual_outputs == known.usual_outputs &&
+         tape->outputs == known.outputs && std::memcmp(from.steps.data(), known.steps.data(), size * sizeof(TapeStep)) == 0;
+}
+
+Traced Traced::made_after_growing(TapeOperation operation, const Traced& a, const Traced& b, double value) {
+  TapeWriter::now->grow();
+  return made(operation, a, b, value);
 }
 
 Traced Traced::input(double value) {
   Traced x(value);
+  TapeWriter::now->make_room();
   x.step_ = TapeWriter::now->put(TapeOperation::input, TapeWriter::now->input_count++, 0);
   return x;
 }
 
-void Traced::output(const Traced& x) { TapeWriter::now->outputs.push_back(x.step()); }
+void Traced::output(const Traced& x) {
+  TapeWriter::now->make_room();
+  TapeWriter::now->outputs.push_back(x.step());
+}
 
 void Traced::call(TapeFunction function, std::span<const Traced> arguments, std::span<Traced> results) {
   static thread_local std::vector<double> given, found;
@@ -77,19 +89,24 @@ void Traced::call(TapeFunction function, std::span<const Traced> arguments, std:
   for (std::size_t i = 0; i < results.size(); ++i) results[i] = Traced(found[i]);
   if (std::all_of(arguments.begin(), arguments.end(), [](const Traced& x) { return x.is_constant(); })) return;
   const auto put_argument = [](const Traced& x, std::int32_t before) {
+    TapeWriter::now->make_room();
     const std::int32_t step = x.step();
     return TapeWriter::now->put(TapeOperation::argument, step, before);
   };
   std::int32_t last = put_argument(address, -1);
   for (const Traced& x : arguments) last = put_argument(x, last);
+  TapeWriter::now->make_room();
   const std::int32_t made = TapeWriter::now->put(TapeOperation::call, last, static_cast<std::int32_t>(results.size()));
-  for (std::size_t i = 0; i < results.size(); ++i)
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    TapeWriter::now->make_room();
     results[i].step_ = TapeWriter::now->put(TapeOperation::result, made, static_cast<std::int32_t>(i));
+  }
 }
 
 bool Traced::decided(const Traced& a, const Traced& b) {
   const bool is_less = a.value_ < b.value_;
   if (a.is_constant() && b.is_constant()) return is_less;
+  TapeWriter::now->make_room();
   const std::int32_t first = a.step();
   TapeWriter::now->put(is_less ? TapeOperation::if_less : TapeOperation::if_not_less, first, b.step());
   return is_less;

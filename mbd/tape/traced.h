@@ -13,21 +13,23 @@
 #include "mbd/tape/tape.h"
 
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace steplap {
 
 /// What is asked of the values at hand does not hold: no tape of them.
 struct NotTraceable {};
 
-/// Where a thread writes at present. Steps and constants are kept in memory that has grown to what tapes take. Of a tape that is
-/// known, steps are compared and constants alone are kept.
+/// Where a thread writes at present. Steps and constants are kept in memory that has grown to what tapes take.
 struct TapeWriter {
-  TapeStep *step = nullptr, *last_step = nullptr;
-  const TapeStep *known_step = nullptr, *last_known = nullptr; ///< null: none is known
-  double *constant = nullptr, *first_constant = nullptr, *last_constant = nullptr;
-  std::int32_t count = 0;       ///< of steps
-  std::uint32_t difference = 0; ///< 0: none from the known tape
+  /// Steps that an operation may take: itself, and a constant for each operand.
+  static constexpr std::ptrdiff_t k_room = 3;
+
+  TapeStep *step = nullptr, *last_with_room = nullptr;
+  double *constant = nullptr, *first_constant = nullptr; ///< room for as many as for steps
+  std::int32_t count = 0;                                ///< of steps
   std::vector<TapeStep> steps;
   std::vector<double> constants;
   std::vector<std::int32_t> outputs;
@@ -35,26 +37,26 @@ struct TapeWriter {
   std::size_t usual_outputs = 0;
   std::int32_t input_count = 0;
 
+  /// For k_room steps.
+  [[nodiscard]] bool has_room() const { return step <= last_with_room; }
+  void make_room() {
+    if (!has_room()) [[unlikely]]
+      grow();
+  }
+  /// Precondition of these: there is room.
   std::int32_t put(TapeOperation operation, std::int32_t a, std::int32_t b) {
-    if (known_step != last_known) {
-      const TapeStep& k = *known_step++;
-      difference |= (static_cast<std::uint32_t>(k.operation) ^ static_cast<std::uint32_t>(operation)) |
-                    static_cast<std::uint32_t>(k.a ^ a) | static_cast<std::uint32_t>(k.b ^ b);
-      return count++;
-    }
-    if (step == last_step) [[unlikely]]
-      grow(); // a known tape is at its end: what follows is written, and differs
     *step++ = {operation, a, b};
     return count++;
   }
   std::int32_t put_constant(double value) {
-    if (constant == last_constant) [[unlikely]]
-      grow();
+    if (value == 0.0) return put(TapeOperation::constant, std::signbit(value) ? k_minus_zero : k_zero, 0);
+    if (std::abs(value) == 1.0) return put(TapeOperation::constant, value < 0.0 ? k_minus_one : k_one, 0);
     *constant = value;
     return put(TapeOperation::constant, static_cast<std::int32_t>(constant++ - first_constant), 0);
   }
   void grow();
-  static inline constinit thread_local TapeWriter* now = nullptr;
+  /// By an offset that is known once the program is loaded: in a library, too, it is found without a call.
+  [[gnu::tls_model("initial-exec")]] static inline constinit thread_local TapeWriter* now = nullptr;
 };
 
 class Traced {
@@ -63,8 +65,7 @@ public:
   Traced(double constant) : value_(constant) {} // NOLINT: a number of the file is a Traced
 
   /// What this thread does from start() on is written down, until finish() has put it into `tape` or gives it up (null). With a
-  /// tape that is `known` its steps are not written once more: into `tape` go constants alone, and finish() tells whether all else is
-  /// as in the known one.
+  /// tape that is `known`, constants alone go into `tape`, and finish() tells whether all else is as in the known one.
   static void start(const Tape* known = nullptr);
   static bool finish(Tape* tape);
   /// The next input; its value now.
@@ -115,14 +116,21 @@ public:
   }
 
 private:
+  // Nothing is called here, but where there is no room, as the last thing: so no register has to be kept.
   static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value) {
     Traced x(value);
     if (a.is_constant() && b.is_constant()) return x;
-    const std::int32_t first = a.step();
-    x.step_ = TapeWriter::now->put(operation, first, &a == &b ? first : b.step());
+    TapeWriter& to = *TapeWriter::now;
+    if (!to.has_room()) [[unlikely]]
+      return made_after_growing(operation, a, b, value);
+    const std::int32_t first = a.is_constant() ? to.put_constant(a.value_) : a.step_;
+    const std::int32_t second = &a == &b ? first : b.is_constant() ? to.put_constant(b.value_) : b.step_;
+    x.step_ = to.put(operation, first, second);
     return x;
   }
+  static Traced made_after_growing(TapeOperation operation, const Traced& a, const Traced& b, double value);
   static bool decided(const Traced& a, const Traced& b);
+  // Precondition, of a constant: there is room.
   [[nodiscard]] std::int32_t step() const { return step_ >= 0 ? step_ : TapeWriter::now->put_constant(value_); }
 
   double value_ = 0.0;

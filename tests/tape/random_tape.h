@@ -80,7 +80,8 @@ inline Tape random_tape(std::mt19937& random, const TapeShape& shape) {
       continue;
     }
     if ((o == input && shape.inputs == 0) || (o == constant && shape.constants == 0)) continue;
-    if (is_given(o)) push(o, static_cast<std::int32_t>(among(static_cast<std::size_t>(o == input ? shape.inputs : shape.constants))));
+    if (o == constant && among(3) == 0) push(constant, k_one - static_cast<std::int32_t>(among(std::size(k_literals))));
+    else if (is_given(o)) push(o, static_cast<std::int32_t>(among(static_cast<std::size_t>(o == input ? shape.inputs : shape.constants))));
     else {
       const std::int32_t a = operand();
       push(o, a, takes_two(o) ? operand() : 0);

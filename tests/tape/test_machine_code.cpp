@@ -174,6 +174,48 @@ TEST_CASE("the usual outputs alone, where no more is wanted") {
   CHECK(left_out > 100); // something was saved
 }
 
+TEST_CASE("inputs and outputs in arrays of their own") {
+  std::mt19937 random(17);
+  for (int i = 0; i < 150; ++i) {
+    TapeShape shape;
+    shape.steps = 20 + 4 * i;
+    shape.outputs = 30;
+    shape.calls = i % 3 == 0 ? 0.03 : 0.0; // behind a call the arrays are looked up anew
+    shape.functions = i % 5 == 0 ? 0.03 : 0.0;
+    shape.conditions = i % 2 == 0 ? 0.0 : 0.5 / shape.steps;
+    Tape tape = random_tape(random, shape);
+    tape.usual_outputs = i % 4 == 0 ? 12 : 0;
+    const Samples samples = random_samples(random, tape, 4, i % 2 == 0);
+    tape.first_inputs = 1 + i % (tape.input_count - 1);
+    // Each array has more room than outputs, which lie in it in an order of their own.
+    constexpr std::size_t k_room = 40;
+    std::vector<std::int32_t> order(k_room);
+    for (std::size_t p = 0; p < k_room; ++p) order[p] = static_cast<std::int32_t>(p);
+    std::shuffle(order.begin(), order.end(), random);
+    for (std::size_t k = 0; k < tape.outputs.size(); ++k)
+      tape.places.push_back({static_cast<std::int32_t>(random() % (CodeArrays::k_more + 1)), order[k]});
+    CAPTURE(i);
+    for (const InstructionSet set : all_sets()) {
+      const MachineCode code(simplified(tape), set);
+      REQUIRE(code);
+      for (std::size_t n = 0; n < samples.holds.size(); ++n) {
+        std::vector<std::vector<double>> found(CodeArrays::k_more + 1, std::vector<double>(k_room, k_untouched));
+        const std::vector<double>& in = samples.inputs[n];
+        const std::vector<double> first(in.begin(), in.begin() + tape.first_inputs), later(in.begin() + tape.first_inputs, in.end());
+        const CodeArrays arrays{samples.constants[n].data(), later.data(), {found[1].data(), found[2].data(), found[3].data()}};
+        REQUIRE(code.run(first.data(), arrays, found[0].data(), true) == samples.holds[n]);
+        std::size_t written = 0;
+        for (const std::vector<double>& array : found)
+          written += k_room - static_cast<std::size_t>(std::count(array.begin(), array.end(), k_untouched));
+        CHECK(written == (samples.holds[n] ? tape.outputs.size() : 0));
+        for (std::size_t k = 0; k < tape.outputs.size(); ++k)
+          CHECK(are_same_bits(found[static_cast<std::size_t>(tape.places[k].array)][static_cast<std::size_t>(tape.places[k].place)],
+                              samples.outputs[n][k]));
+      }
+    }
+  }
+}
+
 TEST_CASE("many more live values than registers") {
   // sums of products of all pairs: x₀ x₁ + x₁ x₂ + …, then taken apart from the other end
   const int n = 200;

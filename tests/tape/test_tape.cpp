@@ -125,6 +125,46 @@ TEST_CASE("a negative that is an output, a divisor, under a root") {
   }
 }
 
+// IEEE 754: x · 1, x / 1, x − 0 and x + −0 are x, whatever x is, its sign as a zero included; x + 0 is not (−0 + 0 = 0), nor is 0 − x −x.
+TEST_CASE("what a literal does nothing to is left as it is, to the sign of a zero") {
+  const auto steps_left = [](TapeOperation o, std::int32_t literal, bool is_first) {
+    const std::int32_t a = is_first ? 1 : 0, b = is_first ? 0 : 1;
+    const Tape tape{{{input, 0}, {constant, literal}, {o, a, b}}, {}, 1, {2}}, less = simplified(tape);
+    for (const double x : {1.5, -2.25, 0.0, -0.0, k_nan, std::numeric_limits<double>::infinity(), 5e-324}) {
+      double as_it_is = 0.0, simple = 0.0;
+      REQUIRE(replay(tape, &x, nullptr, &as_it_is));
+      REQUIRE(replay(less, &x, nullptr, &simple));
+      CHECK(are_same_bits(as_it_is, simple));
+    }
+    return less.steps.size();
+  };
+  for (const bool is_first : {false, true}) {
+    CHECK(steps_left(multiply, k_one, is_first) == 1);
+    CHECK(steps_left(multiply, k_minus_one, is_first) == 2); // the input, negated
+    CHECK(steps_left(multiply, k_zero, is_first) == 3);
+    CHECK(steps_left(add, k_minus_zero, is_first) == 1);
+    CHECK(steps_left(add, k_zero, is_first) == 3);
+  }
+  CHECK(steps_left(divide, k_one, false) == 1);
+  CHECK(steps_left(divide, k_one, true) == 3);
+  CHECK(steps_left(subtract, k_zero, false) == 1);
+  CHECK(steps_left(subtract, k_zero, true) == 3);
+  CHECK(steps_left(subtract, k_minus_zero, false) == 3); // x + 0
+}
+
+TEST_CASE("ones and zeros that are written down are literals, all other constants the sample's") {
+  Traced::start();
+  const Traced x = Traced::input(0.5);
+  Traced::output(x * 1.0 + 0.0 + x * -1.0 + 3.0 * x + (x - -0.0));
+  Tape tape;
+  REQUIRE(Traced::finish(&tape));
+  CHECK(tape.constants == std::vector<double>{3.0});
+  CHECK(std::count(tape.steps.begin(), tape.steps.end(), TapeStep{constant, k_minus_zero, 0}) == 1);
+  double output = 0.0;
+  REQUIRE(replay(tape, std::vector<double>{0.25}.data(), tape.constants.data(), &output));
+  CHECK(output == 1.0); // 0.25 (1 − 1 + 3 + 1), exactly
+}
+
 TEST_CASE("random tapes have the same bits when simplified, and nothing more goes when simplified again") {
   std::mt19937 random(2026);
   int fewer = 0, held = 0;
@@ -215,7 +255,7 @@ TEST_CASE("a tape that takes what there is not is refused") {
   const Tape wrong[] = {{{{input, 1}}, {}, 1, {}},
                         {{{input, -1}}, {}, 1, {}},
                         {{{constant, 1}}, {0.5}, 1, {}},
-                        {{{constant, -1}}, {}, 1, {}},
+                        {{{constant, k_minus_zero - 1}}, {}, 1, {}},
                         {{{input, 0}, {add, 0, 1}}, {}, 1, {}},
                         {{{input, 0}, {negate, 2}, {negate, 0}}, {}, 1, {}},
                         {{{input, 0}, {if_less, 0, 0}, {add, 0, 1}}, {}, 1, {}},

@@ -75,6 +75,8 @@ int profile(const char* path, double time) {
   std::printf("%zu steps, %zu simplified; writing %.0f, simplifying %.0f, making code %.0f ns\n", traced.tape.steps.size(),
               tape.steps.size(), writing, simplifying, making);
   std::printf("evaluation %.1f ns\n", nanoseconds(5000, [&] { dynamics.rates(state.t, y.data(), dy.data()); }));
+  tape.first_inputs = 0; // all in one array, and so are outputs
+  tape.places.clear();
   const MachineCode code(tape);
   std::vector<double> out(tape.outputs.size());
   const double one = nanoseconds(5000, [&] { (void)code.run(inputs.data(), tape.constants.data(), out.data()); });
