@@ -85,6 +85,11 @@ Vec3 told_direction(const ElasticGripGroup::Entry& entry, const Evaluation& e, c
   return entry.friction->direction_of(e, slid_at(p), entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p));
 }
 
+/// How one begins to slide: at a corner of the limit surface by its direction, elsewhere as its wrench tells.
+UnitMode sliding_mode(const ElasticGripGroup::Entry& entry, const Evaluation& e, const double* p) {
+  return entry.friction->roundness(e, slid_at(p), told_direction(entry, e, p)) < k_sharp ? k_elastic_follows : k_elastic_yields;
+}
+
 /// Of one that yields as its wrench tells, or is at rest beyond its bound: p moves along the strain until it is there.
 double return_to_surface(const ElasticGripGroup::Entry& entry, const Evaluation& e, double* p) {
   const Pose now = entry.friction->pose_of(e.motion);
@@ -103,6 +108,7 @@ double return_to_surface(const ElasticGripGroup::Entry& entry, const Evaluation&
 /// Of one that slides: where the direction of its slip has its wrench. At a corner of the limit surface the wrench hardly tells the
 /// direction, but the direction always tells the wrench.
 double follow_direction(const ElasticGripGroup::Entry& entry, const Evaluation& e, double* p) {
+  if (direction(p).isZero(0.0) || entry.friction->grip_beyond_last(e, slid_at(p)) <= 0.0) return 0.0; // beyond where it comes apart
   const Vec3 along = direction(p).normalized();
   Vec3::Map(p + k_direction) = k_direction_length * along;
   const Pose now = entry.friction->pose_of(e.motion);
@@ -300,19 +306,17 @@ void ElasticGripGroup::enter_links(LinkTable& links) {
 UnitMode ElasticGripGroup::initial_mode(int element, const Evaluation& e) const {
   const Entry& entry = entries[element];
   const double* const p = e.inner + entry.inner;
+  if (p[k_lost] != 0.0) return k_elastic_apart; // it came apart before an action set it
   const Vec3 force = entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p);
-  return entry.friction->spare(e, slid_at(p), force) < 0.0 ? k_elastic_yields : k_elastic_holds;
+  return entry.friction->spare(e, slid_at(p), force) < 0.0 ? sliding_mode(entry, e, p) : k_elastic_holds;
 }
 
 UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const {
   const Entry& entry = entries[element];
   const double* const p = e.inner + entry.inner;
   const UnitMode parts = mode & ~UnitMode{3};
-  if (slot == 0 && elastic_state(mode) != k_elastic_holds) return parts | k_elastic_holds;
-  if (slot == 0) {
-    const bool is_sharp = entry.friction->roundness(e, slid_at(p), told_direction(entry, e, p)) < k_sharp;
-    return parts | (is_sharp ? k_elastic_follows : k_elastic_yields);
-  }
+  if (slot == 0) return parts | (elastic_state(mode) == k_elastic_holds ? sliding_mode(entry, e, p) : k_elastic_holds);
+  if (slot == 2 && !is_yielding(mode) && !is_following(mode)) return mode; // what fired at the same instant has ended the slip
   if (slot == 2) return parts | (is_following(mode) ? k_elastic_yields : k_elastic_follows);
   bool is_any_left = false;
   const UnitMode parted = entry.friction->parted_at(slid_at(p), is_any_left);

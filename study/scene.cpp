@@ -52,6 +52,19 @@ Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   return best;
 }
 
+// Is the outermost one met beside a singular position of joints, where reactions go with one over the distance? How near a run comes is
+// chance, and one run alone does not tell how far it is off.
+bool is_singular(const Response& r, const std::vector<ChannelRange>& ranges) {
+  const Extreme extreme = extreme_of(r, ranges);
+  return std::any_of(ranges.begin(), ranges.end(), [&](const ChannelRange& range) {
+    return matches_pattern(range.channel->name, r.channel) &&
+           ((range.is_low_singular && std::abs(range.low.value) == std::abs(extreme.value)) ||
+            (range.is_high_singular && std::abs(range.high.value) == std::abs(extreme.value)));
+  });
+}
+
+bool is_extreme(const Response& r) { return r.what.find("est") != std::string::npos; }
+
 const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   for (const ChannelRange& range : ranges)
     if (matches_pattern(range.channel->name, r.channel)) return &range;
@@ -231,7 +244,7 @@ private:
   void ask(const Response& r) {
     is_judged = is_judged || r.what == "verdict";
     if (needs_samples(r)) sampled.push_back(r.channel);
-    const bool is_extreme = r.what.find("est") != std::string::npos, is_largest = r.what.ends_with("largest");
+    const bool is_largest = r.what.ends_with("largest");
     const bool is_low = r.what.ends_with("lowest"), is_high = r.what.ends_with("highest");
     const auto asked = channels_of(r, *model.system);
     AskedEnds ends;
@@ -241,7 +254,7 @@ private:
     if (asked.size() > 1 && is_high) ends.high_races.push_back(races++);
     for (const Channel* c : asked) {
       channels.push_back(c->name);
-      if (is_extreme) extremes[c->name].add(ends);
+      if (is_extreme(r)) extremes[c->name].add(ends);
     }
   }
 };
@@ -281,7 +294,11 @@ void Scene::look(const Runner& runner, const Judgement& judgement, const RunResu
   if (s.energy_scale > 0.0) outcome.error = std::max(outcome.error, s.energy_residual / s.energy_scale);
   for (std::size_t i = 0; i < loaded_.study.responses.size(); ++i) {
     const Response& r = loaded_.study.responses[i];
-    if (r.expression.empty() && r.model == runner.model.name) outcome.numbers[i] = value_of(r, result, judgement);
+    if (!r.expression.empty() || r.model != runner.model.name) continue;
+    outcome.numbers[i] = value_of(r, result, judgement);
+    if (is_extreme(r) && is_singular(r, result.ranges))
+      worsen(outcome, SampleStatus::untrusted,
+             "'" + r.name + "' was met beside a singular position of the joints, where reactions may be of any size");
   }
   if (!loaded_.study.histories.empty()) compare(runner, result, outcome);
 }

@@ -54,6 +54,18 @@ ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
 }
 
 // A field that is given for the first time may make channels that a run has no columns for.
+// The element that an element is a part of, as an interface of its joint; -1: none.
+int whole_of(const Model& model, std::size_t element) {
+  const ElementEntry& part = model.elements[element];
+  for (const Field& field : part.kind->fields.fields()) {
+    if (field.type != FieldType::element) continue;
+    const auto name = std::get<std::string>(field.get(part.element.get()));
+    for (std::size_t i = 0; i < model.elements.size(); ++i)
+      if (model.elements[i].element->name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
 void refuse_other_channels(const System& first, const System& system) {
   const std::size_t own = system.channels.size();
   std::size_t i = 0;
@@ -180,7 +192,9 @@ Changeover ActionFollower::changeover(const Arrangement& before, const Arrangeme
   for (const auto& [target, step] : after.set) {
     const auto known = before.set.find(target);
     const auto element = static_cast<std::size_t>(target.first);
-    if ((known == before.set.end() || known->second != step) && to.acts[element] != 0) change.begins[element] = 1;
+    if ((known != before.set.end() && known->second == step) || to.acts[element] == 0) continue;
+    change.begins[element] = 1;
+    if (const int whole = whole_of(*group_.model, element); whole >= 0) change.begins[static_cast<std::size_t>(whole)] = 1;
   }
   return change;
 }

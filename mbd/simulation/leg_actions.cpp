@@ -29,7 +29,10 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
     const Unit& unit = system_.units[u];
     if (change.begins[static_cast<std::size_t>(unit.element)] == 0) continue;
     const EventKind was = sliding_of(*unit.group, state_.mode[u]);
+    const UnitMode before_it = state_.mode[u];
     state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+    // What it loses with that is booked with all that is stored otherwise.
+    if (state_.mode[u] != before_it) (void)unit.group->enter_mode(unit.index, state_.mode[u], dynamics_.evaluation(), state_.inner.data());
     if (const EventKind is = sliding_of(*unit.group, state_.mode[u]); is != was)
       record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});
   }
