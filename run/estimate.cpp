@@ -34,8 +34,13 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   try {
     const State initial = options.start ? *options.start : initial_state_of(loaded);
     GlobalErrorEstimate errors = estimate_global_error(*loaded.system, initial, as_run, run.result, is_main_event, most_evaluations);
-    std::optional<Balance> balance = balance_of(*loaded.system, initial, as_run, run.result, most_evaluations);
-    return {EstimateStatus::known, "", {}, std::move(errors), std::move(balance)};
+    Estimate estimate{EstimateStatus::known, "", {}, std::move(errors)};
+    try {
+      estimate.balance = balance_of(*loaded.system, initial, as_run, run.result, most_evaluations);
+    } catch (const NumericalFailure& failure) { // the errors are known all the same
+      estimate.balance_unknown = failure.what();
+    }
+    return estimate;
   } catch (const EstimateTooDear& stopped) {
     return none(EstimateStatus::too_dear, std::string(stopped.what()) + "; ask for it explicitly");
   } catch (const NumericalFailure& failure) {

@@ -22,6 +22,7 @@ struct Estimate {
   std::optional<double> cost;                       ///< s of computing that it would take, where it was not begun for that
   std::optional<GlobalErrorEstimate> errors;        ///< if known
   std::optional<Balance> balance = {};              ///< if the machine stays where it is only as nothing disturbs it, and errors are known
+  std::string balance_unknown = {};                 ///< why it was not found out whether it does; empty: it was
 };
 
 /// Cheap is counted in work, not in time: criteria are judged by the errors, and a verdict may not hang on how fast or how busy

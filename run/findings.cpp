@@ -365,6 +365,11 @@ Finding balance_finding(const LoadedModel& loaded, const Balance& balance) {
   return finding;
 }
 
+Finding balance_unknown_finding(const std::string& why) {
+  return {
+      "balance_unknown", FindingLevel::note, "whether what stays where it is would do so if it were nudged was not found out: " + why, {}};
+}
+
 std::vector<Finding> findings_of(const LoadedModel& loaded) {
   const Model& model = loaded.model;
   Findings findings;

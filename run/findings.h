@@ -20,6 +20,8 @@ struct RunResult;
 [[nodiscard]] std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result);
 /// A machine that stays where it is only because nothing disturbs it (mbd/trust/balance.h).
 [[nodiscard]] Finding balance_finding(const LoadedModel& loaded, const Balance& balance);
+/// That it was not found out whether it does, and why.
+[[nodiscard]] Finding balance_unknown_finding(const std::string& why);
 /// Those about where the run begins: contacts and stops that contradict the poses, inertias that contradict outlines.
 [[nodiscard]] std::vector<Finding> start_findings(const LoadedModel& loaded);
 /// Those about values unlike any: cores, loads that do nothing, sizes apart (plausible_scene.h).

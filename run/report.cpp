@@ -97,6 +97,7 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
     add_finding(report, balance_finding(loaded, *report.estimate.balance), options);
     add_cap(report.judgement, text_with_place(report.findings.back()));
   }
+  if (const std::string& why = report.estimate.balance_unknown; !why.empty()) add_finding(report, balance_unknown_finding(why), options);
   weigh(report);
   ask_second_opinion(report, options);
   return report;

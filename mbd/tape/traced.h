@@ -55,8 +55,7 @@ struct TapeWriter {
     return put(TapeOperation::constant, static_cast<std::int32_t>(constant++ - first_constant), 0);
   }
   void grow();
-  /// By an offset that is known once the program is loaded: in a library, too, it is found without a call.
-  [[gnu::tls_model("initial-exec")]] static inline constinit thread_local TapeWriter* now = nullptr;
+  static inline constinit thread_local TapeWriter* now = nullptr;
 };
 
 class Traced {

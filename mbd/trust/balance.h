@@ -2,9 +2,9 @@
 //
 // A rod that stands on its end, or a column pressed beyond what it can bear straight, stays so to the last bit in a scene that is
 // exactly symmetric: with every method and at every tolerance, so that finer runs agree and energies balance. Nothing real is
-// that exact. So where a coordinate that could move keeps the same bits from the start of a run to its end, the run is made again
-// from poses that are a hair off in all such coordinates. What is stable, or merely free, stays as near as it began; what balances
-// leaves exponentially.
+// that exact. So where a coordinate that could move keeps its place to rounding from the start of a run to its end, the run is made
+// again from poses that are a hair off in all such coordinates. What is stable stays as near as it began, what is let go drifts or
+// falls; what balances leaves exponentially: it grows a hundred times as fast again as it did before.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
