@@ -1,6 +1,7 @@
 #include "mbd/trust/balance.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/trust/global_error.h"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ std::vector<double> ways_of(const std::vector<StillCoordinate>& still, const Sta
   std::vector<double> ways(still.size(), 0.0);
   for (std::size_t i = 0, first = 0; i < still.size(); ++i) {
     if (still[i].coordinate / 3 != still[first].coordinate / 3) first = i;
-    ways[first] = std::hypot(ways[first], (state.q[still[i].coordinate] - still[i].place) * still[i].arm);
+    ways[first] = portable::hypot(ways[first], (state.q[still[i].coordinate] - still[i].place) * still[i].arm);
   }
   return ways;
 }
