@@ -23,6 +23,14 @@ constexpr double k_turn_step = 1e-4; // of the direction, for differences of the
 // some part of that, and no difference must look beyond; at least and at most, m.
 constexpr double k_overlap_step = 1e-4, k_least_overlap_step = 1e-9, k_most_overlap_step = 1e-7;
 
+/// Beyond the event at which the joint comes apart: the strain stays.
+StepLapFriction::Flow flow_of_gone(const Vec3& rate) {
+  StepLapFriction::Flow flow;
+  flow.rate = rate;
+  flow.speed = 1.0;
+  return flow;
+}
+
 Pose moved_by(const Pose& pose, double way, const Vec3& n) { return {pose.x + way * n[0], pose.y + way * n[1], pose.theta + way * n[2]}; }
 
 /// Of the two across a twist: that twist is in the null space, and these two follow from their sum and their product.
@@ -47,11 +55,7 @@ StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pos
   Flow flow;
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (has_let_go(f)) { // beyond the event: the strain stays
-    flow.rate = rate;
-    flow.speed = 1.0;
-    return flow;
-  }
+  if (has_let_go(f)) return flow_of_gone(rate);
   if (!force.allFinite()) return flow;
   const RequiredPressure need = required(f.patch, force / now.factor, e.t);
   const Vec3 n = need.direction, pull = stiffness_ * n;
@@ -136,11 +140,7 @@ StepLapFriction::Flow StepLapFriction::find_flow_along(const Evaluation& e, cons
   Flow flow;
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (has_let_go(f)) { // beyond the event: the strain stays
-    flow.rate = rate;
-    flow.speed = 1.0;
-    return flow;
-  }
+  if (has_let_go(f)) return flow_of_gone(rate);
   const Vec3 y = direction.normalized(), n = unscaled(y), moving = scaled(rate);
   flow.direction = n;
   const Dissipation d = friction_along(f.patch, y, true);

@@ -4,7 +4,7 @@
 // exactly symmetric: with every method and at every tolerance, so that finer runs agree and energies balance. Nothing real is
 // that exact. So where a coordinate that could move keeps its place to rounding from the start of a run to its end, the run is made
 // again from poses that are a hair off in all such coordinates. What is stable stays as near as it began, what is let go drifts or
-// falls; what balances leaves exponentially: it grows a hundred times as fast again as it did before.
+// falls; what balances leaves exponentially, which takes as long from a hundred to ten thousand times the nudge as it took to a hundred.
 #pragma once
 
 #include "mbd/simulation/simulation.h"

@@ -111,6 +111,14 @@ TEST_CASE("what hangs far away, drifts or slides off does not balance") {
   CHECK_FALSE(is_found(run_of(let_go(0.3))));
 }
 
+// Its nudged run takes more than what is granted to a run whose errors are estimated unasked.
+TEST_CASE("where it is not found out whether a machine balances errors stay known, and a note says so") {
+  const Report report = judged_run(load_model(std::string(STEPLAP_MODELS) + "/benchmarks/hard/mass_ratio_spring.toml", {}));
+  CHECK(report.estimate.status == EstimateStatus::known);
+  CHECK_FALSE(report.estimate.balance_unknown.empty());
+  CHECK(std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.code == "balance_unknown"; }));
+}
+
 TEST_CASE("a column bears its load straight up to where it buckles") {
   for (const double l : {0.5, 1.0, 1.7}) {
     CAPTURE(l);
