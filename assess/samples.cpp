@@ -71,9 +71,9 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // Samples as they come: those that are there without a gap are kept, each half second.
-class Progress {
+class VoyageCourse {
 public:
-  Progress(const SamplingOptions& options, SampleStore& store, std::vector<VoyageSample>& samples)
+  VoyageCourse(const SamplingOptions& options, SampleStore& store, std::vector<VoyageSample>& samples)
       : options_(options), store_(store), samples_(samples), is_made_(samples.size()), done_(store.load(samples)), kept_(done_) {
     if (options_.progress) options_.progress(done_, options_.samples);
   }
@@ -158,16 +158,16 @@ std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
   std::vector<VoyageSample> samples(static_cast<std::size_t>(std::max(0L, options.samples)));
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);
-  Progress progress(options, store, samples);
+  VoyageCourse course(options, store, samples);
   std::vector<Runners> teams; // compiled by one thread: models are read and completed here
   for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, uncertain));
     // Without batches, at whose ends threads would wait for the longest voyage.
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
-  for (long n = progress.done(); n < options.samples; ++n)
-    progress.make(n, [&](VoyageSample& sample, const std::function<bool()>& stop) {
+  for (long n = course.done(); n < options.samples; ++n)
+    course.make(n, [&](VoyageSample& sample, const std::function<bool()>& stop) {
       run(teams[static_cast<std::size_t>(omp_get_thread_num())], uncertain, sample, stop);
     });
-  progress.end();
+  course.end();
   return samples;
 }
 

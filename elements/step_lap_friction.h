@@ -66,7 +66,7 @@ public:
   /// patch_at() for what holds.
   void set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part);
 
-  /// K about the limb's centre of gravity in the active part's axes; `inner`: first of three inner states, p; `unit`: of
+  /// K about the limb's centre of gravity in the active part's axes; `inner`: first of seven inner states: p, the direction of slip, whether it is apart; `unit`: of
   /// the force element that gives its wrench.
   void make_elastic(const Mat3& stiffness, int inner, int unit);
   /// Of springs spread evenly over all interfaces at a pose (each as often as it is counted), `total` N/m in translation.

@@ -19,7 +19,7 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   set_states();
 }
 
-// The lists come in the same order for every state of a layout, so the places of what they hold stay.
+// Found anew each time: what the lists hold comes and goes with modes.
 void StageSystem::set_states() {
   const Linearization::StateParts& parts = linearization_->states();
   const auto place_in = [](std::vector<int>& list, int number) {

@@ -32,7 +32,7 @@ struct StateJacobian {
   }
 };
 
-/// A role of force groups that read own states. Entries come in the same order for all states of a run.
+/// A role of force groups that read own states. Entries come in the same order while the modes of its elements stay.
 class StateReader {
 public:
   virtual ~StateReader() = default;
