@@ -1,8 +1,8 @@
 #include "assess/assumed_pulse.h"
 
 #include "mbd/base/diagnostics.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 #include "record/fields.h"
 #include "run/quantity_text.h"
 

@@ -1,11 +1,11 @@
 #include "assess/driven_model.h"
 
 #include "elements/prescribed_motion.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/input_files.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
 #include "record/fields.h"

@@ -1,10 +1,10 @@
 #include "assess/static_proof.h"
 
-#include "mbd/acceptance/criteria.h"
-#include "mbd/acceptance/element_judgement.h"
 #include "mbd/base/name_pattern.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/trust/criteria.h"
+#include "mbd/trust/element_judgement.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
 

@@ -14,7 +14,7 @@
 
 #include "assess/static_preset.h"
 #include "assess/static_ray.h"
-#include "mbd/acceptance/judgement.h"
+#include "mbd/trust/judgement.h"
 #include "run/tipping.h"
 
 #include <functional>

@@ -3,14 +3,14 @@
 #include "assess/passage.h"
 #include "elements/step_lap_assessment.h"
 #include "elements/step_lap_joint.h"
-#include "mbd/acceptance/judge.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/io/presentation.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/completion.h"
 #include "mbd/rest/start.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judge.h"
 
 #include <algorithm>
 #include <cmath>

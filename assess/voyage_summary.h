@@ -1,7 +1,7 @@
 // What a voyage came to, as criteria look at it: the same of the voyage in detail and of every sample of it.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
+#include "mbd/trust/judgement.h"
 
 #include <cstddef>
 #include <limits>

@@ -1,8 +1,8 @@
 #include "elements/band.h"
 
 #include "elements/sliding_band.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/method.h"
 #include "mbd/system/system.h"
 

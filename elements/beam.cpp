@@ -2,8 +2,8 @@
 
 #include "elements/beam_part.h"
 #include "elements/section.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/model_building.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // at 3 N + 3 j. The same body may stand in several places; then all its shares add up.
 #pragma once
 
-#include "mbd/math/dual.h"
+#include "mbd/base/dual.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/roles.h"
 #include "mbd/system/state_jacobian.h"

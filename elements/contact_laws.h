@@ -5,7 +5,7 @@
 // whatever rounding and the joints' residuals leave of the gap there is no time in which it is released.
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/law_group.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "elements/convex_outline.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>

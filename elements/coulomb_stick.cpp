@@ -4,7 +4,7 @@
 #include "elements/round_contacts.h"
 #include "elements/round_measures.h"
 #include "elements/unilateral_contact.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>

@@ -20,7 +20,7 @@
 // Comput. 21 (2004) 265; potentials of distance, A. Munjiza, K. R. F. Andrews, Int. J. Numer. Meth. Eng. 49 (2000) 1377.
 #pragma once
 
-#include "mbd/math/dual.h"
+#include "mbd/base/dual.h"
 #include "mbd/system/motion.h"
 
 #include <array>

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "elements/spring_laws.h"
-#include "mbd/math/dual.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/dual.h"
+#include "mbd/base/portable_math.h"
 
 #include <cmath>
 #include <vector>

@@ -1,8 +1,8 @@
 #include "elements/rope.h"
 
 #include "elements/contact_laws.h"
+#include "mbd/base/dual.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/dual.h"
 #include "mbd/model/method.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/rope_end.h"

@@ -1,8 +1,8 @@
 #include "elements/shape.h"
 
 #include "elements/patch/polygon.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

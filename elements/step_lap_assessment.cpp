@@ -2,8 +2,8 @@
 
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
-#include "mbd/acceptance/element_judgement.h"
-#include "mbd/acceptance/weighed_errors.h"
+#include "mbd/trust/element_judgement.h"
+#include "mbd/trust/weighed_errors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,10 @@
 // the extremes of the run (mbd/simulation/extremes.h), whatever was written.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/global_error.h"
+#include "mbd/trust/judgement.h"
 
 #include <cstdint>
 #include <optional>

@@ -5,7 +5,7 @@
 // bears means reject; one whose edges were crushed, too.
 #pragma once
 
-#include "mbd/acceptance/element_judgement.h"
+#include "mbd/trust/element_judgement.h"
 
 namespace steplap {
 

@@ -5,7 +5,7 @@
 #include "elements/step_lap_fit.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "elements/step_lap_interface.h"
 
 #include "elements/step_lap_joint.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "elements/step_lap_loss.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // How a step-lap joint slides: its law from the onset of a slip to its end, and what methods learn of it.
 #include "elements/step_lap_fit.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "elements/tie.h"
 
 #include "elements/contact_laws.h"
-#include "mbd/acceptance/element_judgement.h"
 #include "mbd/system/system.h"
+#include "mbd/trust/element_judgement.h"
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 #include "elements/contact_laws.h"
 #include "elements/ended_contact.h"
 #include "elements/restitution.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/system.h"
 
 namespace steplap {

@@ -2,8 +2,8 @@
 
 #include "elements/contact_laws.h"
 #include "elements/wound_measure.h"
+#include "mbd/base/dual.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/dual.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/system.h"
 

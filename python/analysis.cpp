@@ -1,5 +1,5 @@
 // What is asked of a model without a run: modes of vibration and step-lap joints.
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "python/bindings.h"
 #include "run/joint_view.h"
 #include "run/run.h"

@@ -2,7 +2,7 @@
 // from one processor to the next.
 #include "record/filter.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <cmath>
 #include <iterator>

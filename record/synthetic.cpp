@@ -2,7 +2,7 @@
 
 #include "record/time_text.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <array>
 #include <cmath>

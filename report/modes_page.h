@@ -1,7 +1,7 @@
 // The small vibrations of a model as a page: its drawing at rest, moving in the mode that is chosen.
 #pragma once
 
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "run/loaded_model.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 #include "run/core_drawing.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "run/core_sheet.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"

@@ -1,9 +1,9 @@
 #include "run/findings.h"
 
 #include "elements/shape.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/events/event_handler.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/action.h"
 #include "mbd/model/body_builder.h"
 #include "mbd/model/formula_fields.h"

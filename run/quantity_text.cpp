@@ -1,6 +1,6 @@
 #include "run/quantity_text.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <cmath>
 #include <cstdio>

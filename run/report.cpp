@@ -1,7 +1,7 @@
 #include "run/report.h"
 
-#include "mbd/acceptance/judge.h"
-#include "mbd/acceptance/weighed_errors.h"
+#include "mbd/trust/judge.h"
+#include "mbd/trust/weighed_errors.h"
 #include "run/findings.h"
 #include "run/result_files.h"
 #include "run/with_settings.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "elements/step_lap_assessment.h"
-#include "mbd/acceptance/judgement.h"
+#include "mbd/trust/judgement.h"
 #include "run/estimate.h"
 #include "run/finding.h"
 #include "run/run.h"

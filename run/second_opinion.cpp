@@ -1,11 +1,11 @@
 #include "run/second_opinion.h"
 
-#include "mbd/acceptance/judge.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
 #include "mbd/trust/audit.h"
 #include "mbd/trust/cross_check.h"
 #include "mbd/trust/global_error.h"
+#include "mbd/trust/judge.h"
 #include "run/prominence.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "run/start_balance.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 #include "mbd/system/gap_source.h"
 #include "mbd/system/row_gradient.h"
 

@@ -4,8 +4,8 @@
 #include "elements/round_contacts.h"
 #include "elements/tyre.h"
 #include "elements/unilateral_contact.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/action.h"
 #include "run/places.h"
 

@@ -1,7 +1,7 @@
 #include "run/tipping.h"
 
-#include "mbd/algebra/decompositions.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/decompositions.h"
+#include "mbd/base/portable_math.h"
 #include "run/tipping_scene.h"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "run/tipping_mechanism.h"
 #include "run/tipping_scene.h"
 

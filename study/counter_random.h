@@ -1,7 +1,7 @@
-// What studies draw: numbers by counter (mbd/math/counter_random.h) of one seed and one purpose.
+// What studies draw: numbers by counter (mbd/base/counter_random.h) of one seed and one purpose.
 #pragma once
 
-#include "mbd/math/counter_random.h"
+#include "mbd/base/counter_random.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #include "study/least_squares.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 #include "study/scene.h"
 
-#include "mbd/acceptance/judge.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/rest/start.h"
 #include "mbd/system/instance.h"
+#include "mbd/trust/judge.h"
 #include "run/report.h"
 #include "study/history.h"
 

@@ -1,8 +1,8 @@
 // One sample: the values of the variables put into the models, run, and looked at.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judgement.h"
 #include "study/expression.h"
 #include "study/study_reader.h"
 

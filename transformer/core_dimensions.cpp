@@ -1,7 +1,7 @@
 #include "transformer/core_dimensions.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "transformer/core_geometry.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "elements/patch/exact_polygon.h"
 #include "elements/step_lap_interface.h"
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "transformer/lap_overlap.h"
 
 #include <algorithm>

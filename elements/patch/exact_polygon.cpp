@@ -1,6 +1,6 @@
 #include "elements/patch/exact_polygon.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

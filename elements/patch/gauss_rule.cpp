@@ -1,6 +1,6 @@
 #include "elements/patch/gauss_rule.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <numbers>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "elements/patch/required_pressure.h"
 
 #include "elements/patch/gauge.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <cmath>
 #include <limits>

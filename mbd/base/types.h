@@ -3,7 +3,7 @@
 // Frame: x forward (direction of travel), y up, angles counter-clockwise. SI units and radians.
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <Eigen/Core>
 

@@ -1,8 +1,8 @@
 #include "mbd/dynamics/layout.h"
 
+#include "mbd/base/portable_math.h"
 #include "mbd/dynamics/mechanism_layout.h"
 #include "mbd/dynamics/stage_program.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

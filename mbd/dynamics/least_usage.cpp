@@ -1,6 +1,6 @@
 #include "mbd/dynamics/least_usage.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "mbd/dynamics/linearization.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
+#include "mbd/base/dual.h"
 #include "mbd/dynamics/kinematics.h"
 #include "mbd/dynamics/row_pull.h"
-#include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "mbd/dynamics/load_sharing.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/row_gradient.h"

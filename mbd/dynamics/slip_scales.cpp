@@ -1,7 +1,7 @@
 // What slip laws that turn with the direction of slip ask of a method: how fine velocities have to be known, and how
 // short steps have to be.
+#include "mbd/base/portable_math.h"
 #include "mbd/dynamics/dynamics.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "mbd/events/blow.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/friction/box_problem.h"
-#include "mbd/friction/rest_rate.h"
+#include "mbd/events/box_problem.h"
+#include "mbd/events/rest_rate.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_way_lock.h"
 

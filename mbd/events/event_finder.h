@@ -14,9 +14,9 @@
 // up to rounding and is not believed negative until it has been positive.
 #pragma once
 
+#include "mbd/base/part_polynomial.h"
+#include "mbd/base/root_estimate.h"
 #include "mbd/integrators/integrator.h"
-#include "mbd/math/part_polynomial.h"
-#include "mbd/math/root_estimate.h"
 
 #include <array>
 #include <limits>

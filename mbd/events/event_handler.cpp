@@ -1,7 +1,7 @@
 #include "mbd/events/event_handler.h"
 
 #include "mbd/events/blow.h"
-#include "mbd/friction/rest_rate.h"
+#include "mbd/events/rest_rate.h"
 #include "mbd/system/approximate_place.h"
 #include "mbd/system/evaluation_arrays.h"
 #include "mbd/system/one_way_lock.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "mbd/base/event_kind.h"
-#include "mbd/friction/friction_modes.h"
+#include "mbd/events/friction_modes.h"
 
 #include <string>
 #include <vector>

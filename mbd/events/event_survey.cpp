@@ -1,7 +1,7 @@
 // EventFinder: what watch values do inside a step that its ends and stages do not make certain.
 //
 // Part by part from the step's start, values at seven Chebyshev–Lobatto places of dense output are interpolated
-// (mbd/math/part_polynomial.h). A part is passed if every value is above zero between those places by more than the
+// (mbd/base/part_polynomial.h). A part is passed if every value is above zero between those places by more than the
 // polynomial may be off, and if one more look, where the value that is nearest to zero is least, finds no value further from
 // its polynomial than that. Else the part is divided: where the polynomial is least, so that the bottom of a dip becomes an
 // end of both halves, or where it was off. A value that is negative at a place makes the bracket of an event, if it

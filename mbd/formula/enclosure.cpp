@@ -1,6 +1,6 @@
 #include "mbd/formula/enclosure.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <numbers>
 

@@ -6,15 +6,15 @@
 //   min(a, b)  b − a         1: a          0: b
 //   max(a, b)  a − b         1: a          0: b
 //   a < b      b − a         1: true       0: false      (a ≤ b as well; they differ where a run begins with a = b)
-// With the bits given, evaluate() makes the same operations whatever the numbers are: doubles, Dual (mbd/math/dual.h), Traced (mbd/tape).
+// With the bits given, evaluate() makes the same operations whatever the numbers are: doubles, Dual (mbd/base/dual.h), Traced (mbd/tape).
 // What stands behind `?` and `:` is evaluated where it is chosen, and only there. A step that passes a switch goes a little beyond the
 // end of a piece before that is known, and sqrt(max(x, 0)) is asked for the root of what is negative there. So roots and powers with
 // fractions of what is negative are 0 here, and asin and acos of more than 1 as of 1. Powers with whole exponents are products;
 // sqrt(0) has the derivative 0, so that hypot(0, 0) has one.
 #pragma once
 
+#include "mbd/base/dual.h"
 #include "mbd/formula/formula_tree.h"
-#include "mbd/math/dual.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "mbd/formula/interval.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <cmath>
 #include <numbers>

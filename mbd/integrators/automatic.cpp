@@ -11,8 +11,8 @@
 // more than what they cost; after each trial in vain the explicit one has twice as many steps before the next. Where the
 // implicit method gives way after many steps to see whether the explicit one does better by now, it is known what that has
 // to come to.
+#include "mbd/base/portable_math.h"
 #include "mbd/integrators/methods.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #include "mbd/integrators/explicit_pair.h"
 
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/integrators/scene_rate.h"
-#include "mbd/math/portable_math.h"
 
 #include <limits>
 

@@ -4,8 +4,8 @@
 // error(...) (adaptive methods) and its dense output, supplied by the derived class.
 #pragma once
 
+#include "mbd/base/portable_math.h"
 #include "mbd/integrators/integrator.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

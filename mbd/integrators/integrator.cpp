@@ -1,7 +1,7 @@
 #include "mbd/integrators/integrator.h"
 
+#include "mbd/base/portable_math.h"
 #include "mbd/integrators/scene_rate.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/system/element_failure.h"
 
 #include <algorithm>

@@ -13,6 +13,7 @@
 //
 // A singular position of the joints ahead is crossed as the explicit methods do (singular_crossing.h): the linearisation
 // is worth nothing there. Where forces are too stiff for that the usual steps go on.
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
@@ -20,7 +21,6 @@
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
-#include "mbd/math/portable_math.h"
 
 #include <limits>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "mbd/integrators/singular_crossing.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

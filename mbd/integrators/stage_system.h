@@ -19,7 +19,7 @@
 // Once a system of its size has been solved nothing is allocated.
 #pragma once
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 #include "mbd/dynamics/linearization.h"
 #include "mbd/integrators/sparse_lu.h"
 

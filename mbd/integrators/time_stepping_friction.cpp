@@ -1,7 +1,7 @@
 // Friction in a time step: its rows, what wrenches along them do, and which of them the elements
 // bear.
+#include "mbd/base/portable_math.h"
 #include "mbd/integrators/time_stepping.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/system/row_gradient.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,10 +1,10 @@
 #include "mbd/io/part_frame.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/formula/formula.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/units.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

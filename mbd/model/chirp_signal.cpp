@@ -9,7 +9,7 @@
 #include "mbd/model/load_signals.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 #include "mbd/model/spectral_waves.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <array>
 #include <cmath>

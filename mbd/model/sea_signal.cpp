@@ -10,7 +10,7 @@
 #include "mbd/model/signal_algebra.h"
 #include "mbd/model/spectral_waves.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <cmath>
 #include <numbers>

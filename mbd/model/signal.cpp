@@ -1,6 +1,6 @@
 #include "mbd/model/signal.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/tape/sine_lanes.h"
 
 #include <algorithm>

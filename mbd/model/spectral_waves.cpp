@@ -1,7 +1,7 @@
 #include "mbd/model/spectral_waves.h"
 
-#include "mbd/math/counter_random.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/counter_random.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // integral of the density over the band, its frequency is drawn within the band as the density is distributed there, its phase is
 // uniform. So no two waves have a common period, and the expected spectrum is the density itself, at every frequency.
 // Source: M. Shinozuka, G. Deodatis, Simulation of stochastic processes by spectral representation, Appl. Mech. Rev. 44 (1991)
-// 191. Numbers are drawn by counter and found by functions of mbd/math: a seed gives the same bits everywhere.
+// 191. Numbers are drawn by counter and found by functions of mbd/base: a seed gives the same bits everywhere.
 #pragma once
 
 #include "mbd/model/signal.h"

@@ -1,7 +1,7 @@
 #include "mbd/rest/admissible_rest.h"
 
-#include "mbd/algebra/decompositions.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/decompositions.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

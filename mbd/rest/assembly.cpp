@@ -1,8 +1,8 @@
 #include "mbd/rest/assembly.h"
 
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/dynamics/dynamics.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

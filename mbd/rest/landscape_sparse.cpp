@@ -1,4 +1,4 @@
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 #include "mbd/rest/bordered_system.h"
 #include "mbd/rest/landscape.h"
 #include "mbd/rest/sparse_rows.h"

@@ -1,6 +1,6 @@
 #include "mbd/rest/statics.h"
 
-#include "mbd/math/dual.h"
+#include "mbd/base/dual.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/row_gradient.h"
 

@@ -7,7 +7,7 @@
 //   Q + Jᵀλ = 0,   K = ∂(Q + Jᵀλ)/∂q at constant λ
 #pragma once
 
-#include "mbd/friction/anchor.h"
+#include "mbd/events/anchor.h"
 #include "mbd/system/evaluation_arrays.h"
 
 #include <Eigen/SparseCore>

@@ -1,6 +1,6 @@
 #include "mbd/rest/tangent.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 // gap by at most |d| + |φ_a| reach_a + |φ_b| reach_b.
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/measure.h"
 
 #include <algorithm>

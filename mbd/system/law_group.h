@@ -12,7 +12,7 @@
 // (mbd/tape/traced.h).
 #pragma once
 
-#include "mbd/math/dual.h"
+#include "mbd/base/dual.h"
 #include "mbd/system/gap_source.h"
 #include "mbd/system/roles.h"
 #include "mbd/system/rounding.h"

@@ -9,7 +9,7 @@
 //   bias = second time derivative at zero accelerations (q̇ᵀ f_qq q̇; γ of physics.md §1 is −bias).
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/motion.h"
 
 namespace steplap {

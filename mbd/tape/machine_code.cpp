@@ -1,6 +1,6 @@
 #include "mbd/tape/machine_code.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/tape/register_plan.h"
 #include "mbd/tape/sine_lanes.h"
 

@@ -1,7 +1,7 @@
 // What stands for machine_code.cpp where the program is built without machine code.
 #include "mbd/tape/machine_code.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/tape/sine_lanes.h"
 
 namespace steplap {

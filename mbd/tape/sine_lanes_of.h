@@ -3,8 +3,8 @@
 // was compiled for instructions which the processor lacks.
 #pragma once
 
-#include "mbd/math/portable_math.h"
-#include "mbd/math/sine_series.h"
+#include "mbd/base/portable_math.h"
+#include "mbd/base/sine_series.h"
 
 #include <cstdint>
 

@@ -9,7 +9,7 @@
 // A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, §4 (evaluation traces).
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/tape/tape.h"
 
 #include <cmath>

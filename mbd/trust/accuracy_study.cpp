@@ -1,8 +1,8 @@
 #include "mbd/trust/accuracy_study.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/trust/global_error.h"
 
 #include <algorithm>

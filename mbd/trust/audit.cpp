@@ -1,6 +1,6 @@
 #include "mbd/trust/audit.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/actions.h"
 #include "mbd/system/slight_force.h"
 

@@ -1,7 +1,7 @@
 #include "mbd/trust/balance.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/trust/global_error.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Ties beside a joint: slack, preload, strength, what is stored when one breaks, and who bears what.
-#include "mbd/acceptance/judge.h"
+#include "mbd/trust/judge.h"
 #include "tests/elements/step_lap_scene.h"
 
 #include <doctest/doctest.h>

@@ -1,9 +1,9 @@
 // Model files: read, compiled, joints closed, run for a short while and judged.
-#include "mbd/acceptance/judge.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judge.h"
 #include "tests/fuzz/fuzz.h"
 #include "transformer/catalog.h"
 

@@ -7,13 +7,13 @@
 // extremes, errors by finer runs, summary.json; --said FILE, to which the counts so far are written now and then.
 // An answer is a run, an error of the model or a numerical failure; everything else is a finding: signals, other exceptions, memory
 // beyond 4 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
-#include "mbd/acceptance/judge.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/equilibrium.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judge.h"
 #include "run/findings.h"
 #include "run/report.h"
 #include "tests/fuzz/mutation.h"

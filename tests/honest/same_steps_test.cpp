@@ -181,8 +181,7 @@ TEST_CASE("no estimate is too small where records, harmonics and outputs cut the
         std::find_if(system->channels.begin(), system->channels.end(), [](const Channel& channel) { return channel.name == "b.x"; }) -
         system->channels.begin());
     const RunStatistics& s = run.statistics;
-    const bool is_distrusted =
-        s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale; // the verdict says so (mbd/acceptance/trust.h)
+    const bool is_distrusted = s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale; // the verdict says so (mbd/trust/trust.h)
     const double estimated = estimate.channels[c].curve;
     INFO("seed " << seed << ", " << options.integrator << ", step " << options.settings.step << ", tolerance " << options.settings.tolerance
                  << ": error " << error << " of " << largest << ", estimated " << estimated << ", steps " << run.statistics.steps << " and "

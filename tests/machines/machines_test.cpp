@@ -1,5 +1,5 @@
 // The machines of models/machines against closed forms and independent references.
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "tests/machines/machine.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // The tank with its hanging lid: statics and vibrations from the energies of four coordinates, written down by hand.
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "tests/machines/machine.h"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 #include "tests/mbd/part_tree.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "tests/random/random_number.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Convex quadratic problems with bounds (mbd/friction/box_problem.h): against the conditions that make a minimum.
-#include "mbd/friction/box_problem.h"
+// Convex quadratic problems with bounds (mbd/events/box_problem.h): against the conditions that make a minimum.
+#include "mbd/events/box_problem.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Each decomposition by what it is made for: the product of its parts, or the residual of its solution. Entries are of order one
 // and matrices small: 1e-12 is some thousand roundings.
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 // What is said for certain of a function between the places where it is known (PartPolynomial, WatchNodes), on thousands of
 // sums of harmonics whose least value is known: none that is below zero may pass.
+#include "mbd/base/part_polynomial.h"
 #include "mbd/integrators/tableau_dop853.h"
 #include "mbd/integrators/tableau_tsit5.h"
 #include "mbd/integrators/watch_nodes.h"
-#include "mbd/math/part_polynomial.h"
 #include "tests/random/random_number.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // The mode problem against brute force: stacks of blocks, every combination of stick and slip in both
 // directions tried, the one that is consistent is what the kernel must find.
-#include "mbd/friction/friction_modes.h"
+#include "mbd/events/friction_modes.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

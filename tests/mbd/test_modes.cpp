@@ -1,6 +1,6 @@
 // Small vibrations: closed forms, and a run that starts along a mode's shape.
 #include "mbd/rest/equilibrium.h"
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "tests/physics/paper_runs.h"
 #include "tests/physics/scene.h"
 

@@ -1,5 +1,5 @@
 // Sines, angles, powers: to the error that portable_math.h states, against 113-bit arithmetic.
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <doctest/doctest.h>
 #include <quadmath.h>

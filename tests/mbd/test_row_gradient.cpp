@@ -1,8 +1,8 @@
 // Gradients and second rates of rows: of every measure at random poses, by numbers that carry derivatives; and the short ways of
 // frequent rows against the way of all.
+#include "mbd/base/dual.h"
 #include "mbd/dynamics/kinematics.h"
 #include "mbd/dynamics/row_pull.h"
-#include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
 #include "tests/random/random_number.h"
 

@@ -1,6 +1,6 @@
-// In place of mbd/friction/box_problem.cpp: no problem is ever solved, as if its set of bounds repeated itself. This executable then
+// In place of mbd/events/box_problem.cpp: no problem is ever solved, as if its set of bounds repeated itself. This executable then
 // decides all friction by the sweeps that are kept for that, and all cases of test_friction_modes.cpp must come out the same.
-#include "mbd/friction/box_problem.h"
+#include "mbd/events/box_problem.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

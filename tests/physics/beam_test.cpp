@@ -2,8 +2,8 @@
 #include "elements/section.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
+#include "mbd/rest/modes.h"
 #include "mbd/system/instance.h"
-#include "mbd/vibration/modes.h"
 #include "tests/physics/rest_scene.h"
 
 #include <doctest/doctest.h>

@@ -3,7 +3,7 @@
 // Tolerances: runs at 1e-11 over some hundred steps leave 1e-9 of values near 1; what a blow does is exact to rounding for
 // the velocities that the run brings to it.
 #include "mbd/rest/equilibrium.h"
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

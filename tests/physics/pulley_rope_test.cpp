@@ -5,7 +5,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/rest/equilibrium.h"
 #include "mbd/rest/freedom.h"
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

@@ -1,10 +1,10 @@
 // Every model of models/ by methods that share little, over its first fifth of a second: whole runs, which take minutes,
 // are those of `steplap check --cross`.
-#include "mbd/acceptance/judge.h"
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/equilibrium.h"
 #include "mbd/trust/cross_check.h"
+#include "mbd/trust/judge.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>

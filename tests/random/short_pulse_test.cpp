@@ -1,8 +1,8 @@
 // Pulses that are short against the run, the steps of a method, or both: what a body has taken from them is their integral, in
 // closed form for every kind of signal. STEPLAP_PULSES: how many scenes instead of the usual number.
-#include "mbd/acceptance/judge.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
+#include "mbd/trust/judge.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 #include "tests/random/random_number.h"

@@ -1,6 +1,6 @@
-#include "mbd/acceptance/element_judgement.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
+#include "mbd/trust/element_judgement.h"
 #include "run/catalogue.h"
 #include "run/findings.h"
 #include "run/report.h"

@@ -1,10 +1,10 @@
 #include "tests/scales/alike.h"
 
-#include "mbd/acceptance/judge.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/equilibrium.h"
+#include "mbd/trust/judge.h"
 #include "transformer/catalog.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Machine code against replay, to the bit, for every set of instructions that the processor has, and sines side by side.
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/tape/machine_code.h"
 #include "mbd/tape/sine_lanes.h"
 #include "random_tape.h"

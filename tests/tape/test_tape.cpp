@@ -1,5 +1,5 @@
 // Tapes: replay against the same operations written out, and simplified tapes against those that they were made of.
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/tape/traced.h"
 #include "random_tape.h"
 #include "same_bits.h"

@@ -1,10 +1,10 @@
 // Cores that hold and cores that do not: random sound ones hold, and none of them does any more once one corner, one packet or one clamp
 // is bad, whatever the rest of the joint makes good in a sum.
 #include "elements/step_lap_assessment.h"
-#include "mbd/acceptance/judge.h"
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judge.h"
 #include "tests/random/random_number.h"
 #include "tests/sanitized.h"
 #include "transformer/catalog.h"

@@ -1,9 +1,9 @@
 // Verdicts and extremes do not hang on what is written, nor how often: every model of models/, and exact extremes of
 // motions that are known.
-#include "mbd/acceptance/judge.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judge.h"
 #include "tests/sanitized.h"
 #include "tests/transformer/swing.h"
 #include "transformer/catalog.h"

@@ -1,7 +1,7 @@
 // A joint that holds although it cannot: of a mode problem that is deaf to the limit the run stops, of an event finder that
 // is blind to it the judgement says so.
-#include "mbd/acceptance/judge.h"
-#include "mbd/acceptance/weighed_errors.h"
+#include "mbd/trust/judge.h"
+#include "mbd/trust/weighed_errors.h"
 #include "tests/elements/step_lap_scene.h"
 
 #include <doctest/doctest.h>

@@ -1,9 +1,9 @@
 // The verdict on a run: criteria of the model, and the step-lap joints' own.
-#include "mbd/acceptance/judge.h"
-#include "mbd/acceptance/weighed_errors.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judge.h"
+#include "mbd/trust/weighed_errors.h"
 #include "tests/transformer/swing.h"
 #include "transformer/catalog.h"
 

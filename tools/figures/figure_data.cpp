@@ -4,7 +4,7 @@
 // μ = 0.25, p = 0.10 MPa. Wrenches about the limb's centre of gravity.
 #include "elements/patch/overlap.h"
 #include "elements/patch/required_pressure.h"
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "transformer/book.h"
 #include "transformer/corner.h"
 

@@ -1,9 +1,9 @@
 #include "tools/steplap/accuracy_report.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/csv.h"
-#include "mbd/math/portable_math.h"
 #include "run/quantity_text.h"
 #include "tools/steplap/text_table.h"
 

@@ -1,8 +1,8 @@
 #include "tools/steplap/cross.h"
 
-#include "mbd/acceptance/judge.h"
 #include "mbd/base/number_text.h"
 #include "mbd/trust/cross_check.h"
+#include "mbd/trust/judge.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
 #include "tools/steplap/log.h"

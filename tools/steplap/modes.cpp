@@ -1,7 +1,7 @@
 #include "tools/steplap/modes.h"
 
 #include "mbd/io/csv.h"
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 #include "report/modes_page.h"
 #include "run/run.h"
 #include "tools/steplap/log.h"

@@ -1,8 +1,8 @@
 #include "tools/steplap/run_screen.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/model/validate.h"
 #include "mbd/trust/global_error.h"
 #include "run/measured_text.h"

@@ -1,8 +1,8 @@
-#include "mbd/acceptance/weighed_errors.h"
+#include "mbd/trust/weighed_errors.h"
 
-#include "mbd/acceptance/element_judgement.h"
-#include "mbd/acceptance/judge.h"
+#include "mbd/trust/element_judgement.h"
 #include "mbd/trust/event_match.h"
+#include "mbd/trust/judge.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
-#include "mbd/math/double_double.h"
-#include "mbd/math/sine_series.h"
+#include "mbd/base/double_double.h"
+#include "mbd/base/sine_series.h"
 
 #include <bit>
 #include <cmath>

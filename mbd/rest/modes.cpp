@@ -1,9 +1,9 @@
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
+#include "mbd/rest/free_vibration.h"
+#include "mbd/rest/sparse_modes.h"
 #include "mbd/rest/tangent.h"
-#include "mbd/vibration/free_vibration.h"
-#include "mbd/vibration/sparse_modes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "mbd/acceptance/criteria.h"
+#include "mbd/trust/criteria.h"
 
-#include "mbd/acceptance/element_judgement.h"
 #include "mbd/base/name_pattern.h"
+#include "mbd/trust/element_judgement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "mbd/friction/box_problem.h"
+#include "mbd/events/box_problem.h"
 
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

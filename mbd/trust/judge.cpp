@@ -1,8 +1,8 @@
-#include "mbd/acceptance/judge.h"
+#include "mbd/trust/judge.h"
 
-#include "mbd/acceptance/criteria.h"
-#include "mbd/acceptance/element_judgement.h"
-#include "mbd/acceptance/trust.h"
+#include "mbd/trust/criteria.h"
+#include "mbd/trust/element_judgement.h"
+#include "mbd/trust/trust.h"
 
 #include <algorithm>
 #include <cstdio>

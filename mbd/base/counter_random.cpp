@@ -1,4 +1,4 @@
-#include "mbd/math/counter_random.h"
+#include "mbd/base/counter_random.h"
 
 #include <Random123/philox.h>
 

@@ -9,7 +9,7 @@
 // Contacts that are closed and joints that stick stay so: amplitudes are as small as that asks for.
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/system/system.h"
 
 #include <complex>

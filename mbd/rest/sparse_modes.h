@@ -14,7 +14,7 @@
 // is counted on both sides. Where σ = 0 is itself a motion that nothing holds, σ is real and well below the first mode.
 #pragma once
 
-#include "mbd/vibration/modes.h"
+#include "mbd/rest/modes.h"
 
 #include <Eigen/Core>
 

@@ -1,9 +1,9 @@
-#include "mbd/acceptance/trust.h"
+#include "mbd/trust/trust.h"
 
-#include "mbd/acceptance/element_judgement.h"
 #include "mbd/model/method.h"
 #include "mbd/model/validate.h"
 #include "mbd/simulation/energy_account.h"
+#include "mbd/trust/element_judgement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // Pair<S> and MeasureValue<S>.
 #pragma once
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <Eigen/Core>
 

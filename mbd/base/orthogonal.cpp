@@ -1,5 +1,5 @@
 // Decompositions by orthogonal matrices: they share Eigen's Householder sequences, and so a file.
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>

@@ -1,4 +1,4 @@
-#include "mbd/acceptance/judgement.h"
+#include "mbd/trust/judgement.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "mbd/math/root_estimate.h"
+#include "mbd/base/root_estimate.h"
 
 #include <cmath>
 #include <utility>

@@ -1,6 +1,6 @@
-#include "mbd/math/part_polynomial.h"
+#include "mbd/base/part_polynomial.h"
 
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <Eigen/Eigenvalues>
 

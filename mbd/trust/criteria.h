@@ -3,9 +3,9 @@
 // Channels are judged by their extremes over the whole run (mbd/simulation/extremes.h), whatever is written of them.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judgement.h"
 
 namespace steplap {
 

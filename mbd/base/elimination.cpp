@@ -1,5 +1,5 @@
 // Decompositions into triangles.
-#include "mbd/algebra/decompositions.h"
+#include "mbd/base/decompositions.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -1,9 +1,9 @@
 // What a kind of element asks of every run, by itself: ElementKind::judge.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judgement.h"
 
 namespace steplap {
 

@@ -1,9 +1,9 @@
-#include "mbd/friction/friction_modes.h"
+#include "mbd/events/friction_modes.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/friction/anchor.h"
-#include "mbd/friction/box_problem.h"
-#include "mbd/friction/rest_rate.h"
+#include "mbd/events/anchor.h"
+#include "mbd/events/box_problem.h"
+#include "mbd/events/rest_rate.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 

@@ -7,9 +7,9 @@
 // even where the error reaches back to the limit: that is said beside it.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
 #include "mbd/model/model.h"
 #include "mbd/trust/global_error.h"
+#include "mbd/trust/judgement.h"
 
 namespace steplap {
 

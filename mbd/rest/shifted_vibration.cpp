@@ -1,4 +1,4 @@
-#include "mbd/vibration/shifted_vibration.h"
+#include "mbd/rest/shifted_vibration.h"
 
 #include "mbd/rest/tangent.h"
 

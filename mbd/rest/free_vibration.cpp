@@ -1,7 +1,7 @@
-#include "mbd/vibration/free_vibration.h"
+#include "mbd/rest/free_vibration.h"
 
-#include "mbd/algebra/decompositions.h"
-#include "mbd/vibration/modes.h"
+#include "mbd/base/decompositions.h"
+#include "mbd/rest/modes.h"
 
 #include <algorithm>
 #include <cmath>

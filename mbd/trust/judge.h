@@ -1,9 +1,9 @@
 // The verdict on a run.
 #pragma once
 
-#include "mbd/acceptance/judgement.h"
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/trust/judgement.h"
 
 namespace steplap {
 

@@ -1,6 +1,6 @@
-#include "mbd/math/portable_math.h"
+#include "mbd/base/portable_math.h"
 
-#include "mbd/math/double_double.h"
+#include "mbd/base/double_double.h"
 
 #include <array>
 #include <bit>
