@@ -165,10 +165,10 @@ Undocumented undocumented_in(const std::string& text) {
 std::vector<fs::path> public_headers() {
   const fs::path root = STEPLAP_SOURCE;
   std::vector<fs::path> headers;
-  for (const char* room : {"run", "mbd/acceptance", "mbd/model", "mbd/simulation"})
+  for (const char* room : {"run", "mbd/model", "mbd/simulation"})
     for (const auto& entry : fs::directory_iterator(root / room))
       if (entry.path().extension() == ".h") headers.push_back(entry.path());
-  for (const char* header : {"mbd/io/reader.h", "mbd/rest/equilibrium.h", "mbd/vibration/modes.h", "mbd/rest/start.h",
+  for (const char* header : {"mbd/io/reader.h", "mbd/rest/equilibrium.h", "mbd/rest/modes.h", "mbd/rest/start.h",
                              "mbd/trust/global_error.h", "mbd/system/system.h", "mbd/system/instance.h"})
     headers.push_back(root / header);
   return headers;

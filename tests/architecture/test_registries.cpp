@@ -63,7 +63,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
       {"mbd/simulation/run_record.h", "what a program that names none has"},
       {"mbd/trust/accuracy_study.h", "the two that make references"},
       {"mbd/trust/cross_check.cpp", "the plan of a cross check, method by method"},
-      {"mbd/acceptance/trust.cpp", "what to try instead"},
+      {"mbd/trust/trust.cpp", "what to try instead"},
       {"run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
   };
   REQUIRE(methods().size() >= 6);

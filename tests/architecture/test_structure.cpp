@@ -99,10 +99,10 @@ TEST_CASE("docs/design/structure.md names files and functions that there are") {
 
 TEST_CASE("a wrong name is noticed") {
   int paths = 0, functions = 0;
-  CHECK(problem_of("`mbd/acceptance/judge.cpp`: `judge()`", paths, functions).empty());
-  CHECK(problem_of("`mbd/acceptance/judge.cpp`: `judges()`", paths, functions) == "judges() occurs in no file of the line; ");
-  CHECK(problem_of("`mbd/acceptance/judge.cpp`: `udge()`", paths, functions) == "udge() occurs in no file of the line; ");
-  CHECK(problem_of("`mbd/acceptance/jury.cpp`", paths, functions) == "mbd/acceptance/jury.cpp does not exist; ");
+  CHECK(problem_of("`mbd/trust/judge.cpp`: `judge()`", paths, functions).empty());
+  CHECK(problem_of("`mbd/trust/judge.cpp`: `judges()`", paths, functions) == "judges() occurs in no file of the line; ");
+  CHECK(problem_of("`mbd/trust/judge.cpp`: `udge()`", paths, functions) == "udge() occurs in no file of the line; ");
+  CHECK(problem_of("`mbd/trust/jury.cpp`", paths, functions) == "mbd/trust/jury.cpp does not exist; ");
 }
 
 // A room may grow by a quarter before its row has to be written anew: the numbers are there to tell large rooms from small ones.

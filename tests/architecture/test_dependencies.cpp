@@ -1,5 +1,6 @@
-// The rooms of the source tree: each includes what stands before it, never what stands behind; no header leads back to
-// itself; headers that cost seconds of compiling are each included by one file of the product.
+// Dependencies of the source tree. A module is a folder, or a file pair that needs a place of its own in the order. Each module
+// includes only modules that precede it in k_modules. No header includes itself through others. Headers that take seconds to compile
+// are included by one file of the product.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,22 +16,19 @@ namespace fs = std::filesystem;
 namespace {
 
 // In the order of the data: a model is read, compiled, moved, asked.
-const std::vector<std::string> k_rooms = {
-    "mbd/math",     "mbd/base",        "mbd/formula",    "mbd/algebra",    "mbd/tape",    "mbd/model",     "mbd/system", "mbd/dynamics",
-    "mbd/friction", "mbd/integrators", "mbd/events",     "mbd/simulation", "mbd/rest",    "mbd/vibration", "mbd/trust",  "mbd/acceptance",
-    "mbd/io",       "record",          "elements/patch", "elements",       "transformer", "run",           "report",     "explore/page",
-    "explore",      "python",          "study",          "assess",         "tools"};
+const std::vector<std::string> k_modules = {
+    "mbd/base",        "mbd/tape",       "mbd/formula",    "mbd/model",   "mbd/system", "mbd/dynamics",
+    "mbd/integrators", "mbd/events",     "mbd/simulation", "mbd/rest",    "mbd/trust",  "mbd/io",
+    "record",          "elements/patch", "elements",       "transformer", "run",        "report",
+    "explore/page",    "explore",        "python",         "study",       "assess",     "tools"};
 
 // Headers of libraries, of which one file of the product knows.
 const std::vector<std::string> k_heavy = {
     "toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "boost/beast", "unsupported/Eigen/FFT"};
 
-// Rooms with doors: the headers that other rooms may include, and why. The others are the room's own affair.
-struct Door {
-  std::string header, why;
-  std::string of = {}; ///< the only room that it leads to; empty: any
-};
-const std::map<std::string, std::vector<Door>> k_doors = {
+// Folders of which others include only some headers: their public ones, each with what it is for.
+using PublicHeaders = std::map<std::string, std::string>;
+const std::map<std::string, PublicHeaders> k_public_headers = {
     {"mbd/rest",
      {{"assembly.h", "puts bodies where joints hold"},
       {"start.h", "where a run begins"},
@@ -39,17 +37,18 @@ const std::map<std::string, std::vector<Door>> k_doors = {
       {"freedom.h", "motions that nothing holds"},
       {"statics.h", "forces, rows and stiffness of a pose at rest"},
       {"tangent.h", "the motions that rows leave"},
-      {"bordered_system.h", "stiffness with rows, sparse", "mbd/vibration"},
-      {"sparse_rows.h", "gradients of rows, sparse", "mbd/vibration"},
-      {"spread.h", "starts of an iteration", "mbd/vibration"}}},
-    {"mbd/vibration", {{"modes.h", "frequencies and shapes"}}},
+      {"modes.h", "frequencies and shapes of small vibrations"}}},
     {"mbd/trust",
-     {{"balance.h", "what stays in place only because nothing disturbs it"},
-      {"global_error.h", "estimated errors of a run"},
-      {"accuracy_study.h", "convergence"},
-      {"cross_check.h", "method against method"},
+     {{"accuracy_study.h", "convergence"},
       {"audit.h", "a run against the laws of its friction"},
-      {"event_match.h", "events of two runs in pairs"}}},
+      {"balance.h", "what stays in place only because nothing disturbs it"},
+      {"criteria.h", "one limit against the extreme of its channel"},
+      {"cross_check.h", "method against method"},
+      {"element_judgement.h", "limits that a kind of element has of its own"},
+      {"global_error.h", "estimated errors of a run"},
+      {"judge.h", "all criteria of a run"},
+      {"judgement.h", "the verdict and its reasons"},
+      {"weighed_errors.h", "verdicts within the error of their values"}}},
 };
 
 struct Source {
@@ -83,12 +82,12 @@ std::vector<Source> all_sources() {
 const std::vector<std::string> k_not_installed = {
     "record/", "tools/", "study/", "report/", "explore/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
 
-// The longest room that the path lies in; −1: none.
-int room_of(const std::string& path) {
+// Index of the innermost module that holds the path; −1 if there is none.
+int module_of(const std::string& path) {
   int best = -1;
-  for (std::size_t i = 0; i < k_rooms.size(); ++i) {
-    const bool is_inside = path.starts_with(k_rooms[i] + "/");
-    if (is_inside && (best < 0 || k_rooms[i].size() > k_rooms[static_cast<std::size_t>(best)].size())) best = static_cast<int>(i);
+  for (std::size_t i = 0; i < k_modules.size(); ++i) {
+    const bool is_inside = path.starts_with(k_modules[i] + "/");
+    if (is_inside && (best < 0 || k_modules[i].size() > k_modules[static_cast<std::size_t>(best)].size())) best = static_cast<int>(i);
   }
   return best;
 }
@@ -112,44 +111,41 @@ std::string circle_from(const std::string& path, const std::map<std::string, std
 
 } // namespace
 
-TEST_CASE("every source stands in a room and includes only what stands before it") {
-  int arrows = 0;
+TEST_CASE("every source belongs to a module and includes only modules before it") {
+  int dependencies = 0;
   for (const Source& source : all_sources()) {
-    const int room = room_of(source.path);
-    CHECK_MESSAGE(room >= 0, source.path << " stands in no room");
+    const int module = module_of(source.path);
+    CHECK_MESSAGE(module >= 0, source.path << " belongs to no module");
     for (const std::string& name : source.own) {
       if (name.find('/') == std::string::npos) continue; // its neighbour
-      const int other = room_of(name);
-      CHECK_MESSAGE(other >= 0, source.path << " includes " << name << ", which is in no room");
-      CHECK_MESSAGE(other <= room, source.path << " includes " << name << ", which stands behind it");
-      arrows += other < room;
+      const int other = module_of(name);
+      CHECK_MESSAGE(other >= 0, source.path << " includes " << name << ", which belongs to no module");
+      CHECK_MESSAGE(other <= module, source.path << " includes " << name << ", which comes after it in the order of modules");
+      dependencies += other < module;
     }
   }
-  CHECK(arrows > 200); // it has looked at the tree
+  CHECK(dependencies > 200); // it has looked at the tree
 }
 
-TEST_CASE("rest, vibration and trust are entered by their doors alone") {
+TEST_CASE("other folders include only the public headers of rest and trust") {
   std::set<std::string> used;
   for (const Source& source : all_sources()) {
-    const int room = room_of(source.path);
-    if (room < 0) continue;
+    const int module = module_of(source.path);
+    if (module < 0) continue;
     for (const std::string& name : source.own) {
-      const int other = room_of(name);
-      if (other < 0 || other == room) continue;
-      const auto doors = k_doors.find(k_rooms[static_cast<std::size_t>(other)]);
-      if (doors == k_doors.end()) continue;
-      const auto door =
-          std::find_if(doors->second.begin(), doors->second.end(), [&](const Door& d) { return doors->first + "/" + d.header == name; });
-      CHECK_MESSAGE(door != doors->second.end(), source.path << " includes " << name << ", which is no door of its room");
-      if (door == doors->second.end()) continue;
+      const int other = module_of(name);
+      if (other < 0 || other == module) continue;
+      const std::string& folder = k_modules[static_cast<std::size_t>(other)];
+      const auto headers = k_public_headers.find(folder);
+      if (headers == k_public_headers.end()) continue;
+      CHECK_MESSAGE(headers->second.contains(name.substr(folder.size() + 1)),
+                    source.path << " includes " << name << ", which is not a public header of " << folder);
       used.insert(name);
-      const bool may_enter = door->of.empty() || door->of == k_rooms[static_cast<std::size_t>(room)];
-      CHECK_MESSAGE(may_enter, source.path << " includes " << name << ", a door to " << door->of << " alone");
     }
   }
-  for (const auto& [room, doors] : k_doors)
-    for (const Door& door : doors)
-      CHECK_MESSAGE(used.count(room + "/" + door.header) == 1, room << "/" << door.header << " is a door that nobody uses");
+  for (const auto& [folder, headers] : k_public_headers)
+    for (const auto& [header, purpose] : headers)
+      CHECK_MESSAGE(used.contains(folder + "/" + header), "no other folder includes " << folder << "/" << header);
 }
 
 TEST_CASE("no header leads back to itself") {
