@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assess/driven_model.h"
-#include "elements/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_assessment.h"
 #include "run/overview.h"
 
 #include <memory>

@@ -1,6 +1,6 @@
 #include "assess/static_machine.h"
 
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/start.h"

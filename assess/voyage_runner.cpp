@@ -1,8 +1,8 @@
 #include "assess/voyage_runner.h"
 
 #include "assess/passage.h"
-#include "elements/step_lap_assessment.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/portable_math.h"

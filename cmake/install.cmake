@@ -6,7 +6,7 @@ include(GNUInstallDirs)
 # One name for all rooms up to run/. Whoever links it gets no options of ours, no warnings, and of other makers'
 # headers Eigen's alone, whose vectors our own types are made of. With BUILD_SHARED_LIBS it is one shared library that shows
 # steplap's names and no other's (steplap.map); else the rooms' archives.
-set(rooms base tape mbd io patch_exact patch elements transformer record run)
+set(rooms base tape mbd io patch_exact patch elements machinery step_lap catalog transformer record run)
 list(TRANSFORM rooms PREPEND steplap_ OUTPUT_VARIABLE archives)
 add_library(steplap_library INTERFACE)
 add_library(steplap::steplap ALIAS steplap_library)

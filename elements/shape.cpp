@@ -1,6 +1,6 @@
 #include "elements/shape.h"
 
-#include "elements/patch/polygon.h"
+#include "elements/step_lap/patch/polygon.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 

@@ -1,7 +1,7 @@
 #include "run/drawing.h"
 
-#include "elements/step_lap_interface.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "run/core_drawing.h"
 #include "run/core_windows.h"
 #include "run/ordered_json.h"

@@ -3,9 +3,9 @@
 // gravity, in m.
 #pragma once
 
-#include "elements/patch/required_pressure.h"
-#include "elements/step_lap_friction.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/patch/required_pressure.h"
+#include "elements/step_lap/step_lap_friction.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "run/loaded_model.h"
 
 namespace steplap {

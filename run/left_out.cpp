@@ -1,6 +1,6 @@
 #include "run/left_out.h"
 
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "transformer/core.h"
 
 #include <algorithm>

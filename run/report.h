@@ -1,7 +1,7 @@
 // What a run came to: the same for the screen, for summary.json, for pages, for studies and for programs that link the library.
 #pragma once
 
-#include "elements/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_assessment.h"
 #include "mbd/trust/judgement.h"
 #include "run/estimate.h"
 #include "run/finding.h"

@@ -1,4 +1,4 @@
-#include "elements/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_assessment.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/io/digest.h"
 #include "run/left_out.h"

@@ -1,8 +1,8 @@
 #include "run/start_contacts.h"
 
+#include "elements/machinery/tyre.h"
 #include "elements/polygon_contact.h"
 #include "elements/round_contacts.h"
-#include "elements/tyre.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/statics.h"

@@ -1,8 +1,8 @@
 #include "run/story.h"
 
+#include "elements/machinery/tyre.h"
 #include "elements/polygon_contact.h"
 #include "elements/round_contacts.h"
-#include "elements/tyre.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"

@@ -1,6 +1,6 @@
 #include "run/symbols.h"
 
-#include "elements/lift_curve.h"
+#include "elements/machinery/lift_curve.h"
 #include "elements/spring_laws.h"
 
 #include <algorithm>

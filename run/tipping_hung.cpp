@@ -1,8 +1,8 @@
 #include "run/tipping_hung.h"
 
 #include "elements/joints.h"
+#include "elements/machinery/rope.h"
 #include "elements/polygon_contact.h"
-#include "elements/rope.h"
 #include "elements/round_contacts.h"
 #include "elements/spring_damper.h"
 #include "elements/unilateral_contact.h"

@@ -2,7 +2,7 @@
 """Reference values of the friction limit surface, to 50 digits.
 
 Writes a table of polygons (with holes), tractions and twists with the exact dissipation h and its
-gradient (f_x, f_y, m), for tests/elements/patch_reference_test.cpp:
+gradient (f_x, f_y, m), for tests/elements/step_lap/patch_reference_test.cpp:
 
     python3 tools/make_patch_reference.py > tests/data/patch_reference.csv
 

@@ -1,7 +1,7 @@
 #include "transformer/core_builder.h"
 
-#include "elements/step_lap_interface.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/base/number_text.h"
 #include "transformer/core_dimensions.h"
 #include "transformer/core_geometry.h"

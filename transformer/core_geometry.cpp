@@ -1,7 +1,7 @@
 #include "transformer/core_geometry.h"
 
-#include "elements/patch/exact_polygon.h"
-#include "elements/step_lap_interface.h"
+#include "elements/step_lap/patch/exact_polygon.h"
+#include "elements/step_lap/step_lap_interface.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/portable_math.h"
 #include "transformer/lap_overlap.h"

@@ -4,7 +4,7 @@
 // whose fields are complete and sound (core_builder.h sees to that).
 #pragma once
 
-#include "elements/patch/polygon.h"
+#include "elements/step_lap/patch/polygon.h"
 #include "transformer/core.h"
 #include "transformer/corner.h"
 #include "transformer/stack.h"

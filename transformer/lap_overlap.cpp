@@ -1,6 +1,6 @@
 #include "transformer/lap_overlap.h"
 
-#include "elements/patch/overlap.h"
+#include "elements/step_lap/patch/overlap.h"
 #include "mbd/base/fingerprint.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "transformer/plausible.h"
 
-#include "elements/step_lap_interface.h"
+#include "elements/step_lap/step_lap_interface.h"
 #include "mbd/base/number_text.h"
 #include "transformer/clamp.h"
 #include "transformer/core.h"

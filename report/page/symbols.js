@@ -195,7 +195,7 @@ steplap.Symbols = (() => {
       for (const pulley of shape.at.slice(1, -1)) this.dot(element, pulley, 'pulley', 0.6);
     }
 
-    // Where a rope leaves two wheels; radii are positive where counter-clockwise winds it up (elements/wound_rope.h).
+    // Where a rope leaves two wheels; radii are positive where counter-clockwise winds it up (elements/machinery/wound_rope.h).
     tangent([a, b], [ra, rb]) {
       const d = scaled(flipped(minus(b, a)), 1 / this.scene.scale), square = dot(d, d), c = ra + rb, length = Math.sqrt(Math.max(0, square - c * c));
       if (!(square > 0)) return [a, b];

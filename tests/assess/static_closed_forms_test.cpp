@@ -1,8 +1,8 @@
 // Static proofs against closed forms, and what they must not claim.
 #include "tests/assess/static_scene.h"
 
-#include "elements/patch/required_pressure.h"
-#include "elements/step_lap_friction.h"
+#include "elements/step_lap/patch/required_pressure.h"
+#include "elements/step_lap/step_lap_friction.h"
 
 #include <doctest/doctest.h>
 

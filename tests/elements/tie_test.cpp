@@ -1,6 +1,6 @@
 // Ties beside a joint: slack, preload, strength, what is stored when one breaks, and who bears what.
 #include "mbd/trust/judge.h"
-#include "tests/elements/step_lap_scene.h"
+#include "tests/elements/step_lap/step_lap_scene.h"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/io/reader.h"
 #include "mbd/tape/machine_code.h"
-#include "tests/elements/step_lap_scene.h"
+#include "tests/elements/step_lap/step_lap_scene.h"
 #include "tests/physics/scene.h"
 #include "transformer/catalog.h"
 

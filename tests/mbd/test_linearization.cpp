@@ -1,6 +1,6 @@
 // The linearised equations of motion against central differences of Dynamics::rates.
 #include "mbd/dynamics/linearization.h"
-#include "tests/elements/step_lap_scene.h"
+#include "tests/elements/step_lap/step_lap_scene.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // Elastic beams from rigid segments: closed forms of deflections, frequencies and buckling, with the order of what n segments leave.
-#include "elements/section.h"
+#include "elements/machinery/section.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/rest/modes.h"

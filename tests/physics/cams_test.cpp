@@ -1,5 +1,5 @@
 // Cams: when the follower leaves, where it comes back, what it gives the cam, and curves through points.
-#include "elements/lift_curve.h"
+#include "elements/machinery/lift_curve.h"
 #include "tests/physics/rest_scene.h"
 
 #include <doctest/doctest.h>

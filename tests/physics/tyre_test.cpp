@@ -1,5 +1,5 @@
 // Tyres: slip, standstill, locked wheels and landings by closed forms; the nearest place of a road by brute force; rolling resistance.
-#include "elements/road.h"
+#include "elements/machinery/road.h"
 #include "tests/physics/rest_scene.h"
 
 #include <doctest/doctest.h>

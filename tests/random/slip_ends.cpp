@@ -1,10 +1,10 @@
 #include "tests/random/slip_ends.h"
 
-#include "elements/patch/required_pressure.h"
+#include "elements/step_lap/patch/required_pressure.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/method.h"
 #include "mbd/simulation/simulation.h"
-#include "tests/elements/step_lap_scene.h"
+#include "tests/elements/step_lap/step_lap_scene.h"
 #include "tests/random/random_number.h"
 #include "transformer/catalog.h"
 

@@ -5,7 +5,7 @@
 // follow() integrates by steps in proportion to the speed that is left: no event and no law of ends has a part in it.
 #pragma once
 
-#include "elements/patch/limit_surface.h"
+#include "elements/step_lap/patch/limit_surface.h"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // Slips that end: each end is found, by every method at every tolerance, and what a joint bore on the way is told right.
-#include "tests/elements/step_lap_scene.h"
+#include "tests/elements/step_lap/step_lap_scene.h"
 #include "tests/random/slip_ends.h"
 #include "tests/sanitized.h"
 

@@ -1,5 +1,5 @@
 // What clamps a core: the pressure that the forces of bolts make at corners and packets, in equilibrium with them; what is left of a preload.
-#include "elements/step_lap_interface.h"
+#include "elements/step_lap/step_lap_interface.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"

@@ -1,8 +1,8 @@
 // What a [[core]] says of the joints it adds: compliance, edges, pressures in time and across the stack; what it says of
 // joints that are declared elsewhere; yokes that several tables share; what bears beside a joint.
-#include "elements/step_lap_assessment.h"
-#include "elements/step_lap_interface.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/method.h"
 #include "mbd/simulation/simulation.h"

@@ -1,9 +1,9 @@
 // A core's stack laid sheet by sheet: every sheet a polygon, every pair of neighbours intersected, by plain clipping
 // of convex rings and counting in and out, with nothing of transformer/. What [[core]] makes of the same core, at the
 // pose in which it stands and slid a little, has the same area and the same centre to rounding.
-#include "elements/patch/overlap.h"
-#include "elements/step_lap_friction.h"
-#include "elements/step_lap_interface.h"
+#include "elements/step_lap/patch/overlap.h"
+#include "elements/step_lap/step_lap_friction.h"
+#include "elements/step_lap/step_lap_interface.h"
 #include "mbd/io/reader.h"
 #include "mbd/system/system.h"
 #include "transformer/catalog.h"

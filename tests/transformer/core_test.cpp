@@ -1,10 +1,10 @@
 // A core's joints from its dimensions: the paper's polygons and capacity, the book of a step-lap stack,
 // what is refused.
-#include "elements/patch/overlap.h"
-#include "elements/patch/polygon.h"
-#include "elements/step_lap_friction.h"
-#include "elements/step_lap_interface.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/patch/overlap.h"
+#include "elements/step_lap/patch/polygon.h"
+#include "elements/step_lap/step_lap_friction.h"
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/io/reader.h"
 #include "mbd/system/system.h"
 #include "transformer/book.h"

@@ -1,6 +1,6 @@
 // Cores that hold and cores that do not: random sound ones hold, and none of them does any more once one corner, one packet or one clamp
 // is bad, whatever the rest of the joint makes good in a sum.
-#include "elements/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_assessment.h"
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/simulation/simulation.h"

@@ -1,6 +1,6 @@
 // What a run is said to have done to each step-lap joint, against its events and its channels.
-#include "elements/step_lap_assessment.h"
-#include "elements/step_lap_joint.h"
+#include "elements/step_lap/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"

@@ -2,7 +2,7 @@
 // is blind to it the judgement says so.
 #include "mbd/trust/judge.h"
 #include "mbd/trust/weighed_errors.h"
-#include "tests/elements/step_lap_scene.h"
+#include "tests/elements/step_lap/step_lap_scene.h"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // How long the friction of a step-lap joint takes: closed form against adaptive quadrature of the
 // same accuracy, required pressure cold and warm, the certified bound, overlap fast and exact, sheets
 // that are not convex against convex ones.
-#include "elements/patch/overlap.h"
-#include "elements/patch/required_pressure.h"
+#include "elements/step_lap/patch/overlap.h"
+#include "elements/step_lap/patch/required_pressure.h"
 
 #include <benchmark/benchmark.h>
 

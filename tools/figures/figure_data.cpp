@@ -2,8 +2,8 @@
 //
 // The joint is that of the paper's front limb: two corners mitred at 45°, 1165 interfaces of 10 mm each,
 // μ = 0.25, p = 0.10 MPa. Wrenches about the limb's centre of gravity.
-#include "elements/patch/overlap.h"
-#include "elements/patch/required_pressure.h"
+#include "elements/step_lap/patch/overlap.h"
+#include "elements/step_lap/patch/required_pressure.h"
 #include "mbd/base/portable_math.h"
 #include "transformer/book.h"
 #include "transformer/corner.h"

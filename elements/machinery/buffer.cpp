@@ -1,0 +1,221 @@
+#include "elements/machinery/buffer.h"
+
+#include "elements/bounded_friction.h"
+#include "elements/spring_laws.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/system/system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace steplap {
+
+namespace {
+
+using CurveGroup = LawGroup<AxisMeasure, TabulatedSpring>;
+
+// Friction with the bound half of the distance between the curves. The bound's corners are those of the spring's table, whose
+// segments are modes of its unit: within a set of modes both are straight.
+class BufferFriction final : public FrictionElement {
+public:
+  RowSpec row;
+  PiecewiseLinear bound; ///< N, of what the row has grown since the buffer was free, as the spring's table
+  double free = 0.0;     ///< value of the row where it touches, m
+  int unit = 0;          ///< of the spring
+
+  [[nodiscard]] int dimension() const override { return 1; }
+  [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
+  void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
+  [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
+    return TabulatedSpring::spring_segment(e.mode[unit]) < bound.segments() - 1; // the last one is that of the open buffer
+  }
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
+    wrench[0] = -state.sign * bound_at<double>(e);
+  }
+  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
+    return std::max(0.0, bound_at<double>(e)) * std::abs(rate[0]);
+  }
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
+    watch_bounds<double>(e, wrench, watch);
+  }
+  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
+                                    Traced* watch) const override {
+    if (rate) {
+      wrench[0] = -state.sign * bound_at<Traced>(e);
+      watch[0] = state.sign * rate[0];
+      watch[1] = 1.0;
+    } else {
+      watch_bounds<Traced>(e, wrench, watch);
+    }
+    watch[2] = 1.0;
+    return true;
+  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+                                          bool) const override {
+    return block_within(std::max(0.0, bound_at<double>(e)), a[0], b[0]);
+  }
+
+private:
+  // Past the ends of the segment it goes on straight, as the spring does: a step that will be cut there finds no corner.
+  template <class S> [[nodiscard]] S bound_at(const Evaluated<S>& e) const {
+    const S value = evaluate_row<false>(row, e.motion[row.a], e.motion[row.b]).value;
+    return bound.value(value - S(free), TabulatedSpring::spring_segment(e.mode[unit]));
+  }
+  template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
+    steplap::watch_bounds<S>(bound_at(e), wrench[0], watch);
+  }
+};
+
+// Straight between its points, and on beyond the last.
+double value_at(const std::vector<Vec2>& curve, double depth) {
+  const auto next = std::find_if(curve.begin() + 1, curve.end() - 1, [depth](const Vec2& p) { return depth <= p.x(); });
+  const Vec2 &low = *std::prev(next), &high = *next;
+  return low.y() + (high.y() - low.y()) / (high.x() - low.x()) * (depth - low.x());
+}
+
+struct Curves {
+  const std::vector<Vec2>&loading, &unloading;
+
+  [[nodiscard]] double pressed_in(double depth) const { return value_at(loading, depth); }
+  /// Beyond its last point it keeps its distance from the loading curve, so that they do not cross there.
+  [[nodiscard]] double let_go(double depth) const {
+    const Vec2& last = unloading.back();
+    return depth > last.x() ? pressed_in(depth) - (pressed_in(last.x()) - last.y()) : value_at(unloading, depth);
+  }
+  /// The depths at which one of them has a corner, from one beyond the deepest to that of touching.
+  [[nodiscard]] std::vector<double> corners() const {
+    std::vector<double> depths;
+    for (const std::vector<Vec2>* curve : {&loading, &unloading})
+      for (const Vec2& p : *curve) depths.push_back(p.x());
+    std::sort(depths.begin(), depths.end(), std::greater<>());
+    depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+    depths.insert(depths.begin(), 2.0 * depths.front());
+    return depths;
+  }
+};
+
+// As a table of the elongation −d: its last segment is that of the open buffer, without force.
+template <class Force> PiecewiseLinear table(const std::vector<double>& depths, const Force& force) {
+  std::vector<Vec2> points;
+  for (const double depth : depths) points.emplace_back(-depth, depth > 0.0 ? force(depth) : 0.0);
+  points.emplace_back(1.0, 0.0);
+  return PiecewiseLinear(std::move(points));
+}
+
+bool is_curve(const std::vector<Vec2>& curve, const char* name, SystemBuilder& builder) {
+  const auto fail = [&](const std::string& what) {
+    builder.error("'" + std::string(name) + "' " + what);
+    return false;
+  };
+  if (curve.size() < 2) return fail("needs at least two points, [depth, force]");
+  if (curve.size() > PiecewiseLinear::k_most_points / 4) return fail("may have at most 16384 points");
+  if (curve.front() != Vec2::Zero())
+    return fail("has to begin at [0, 0]: of a buffer with a preload the second point lies close to the first, and high");
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (!(curve[i].x() > curve[i - 1].x())) return fail("has to increase in depth from point to point");
+    if (!(curve[i].y() >= 0.0)) return fail("has a negative force: a buffer pushes");
+  }
+  return true;
+}
+
+bool check(const Buffer& e, const std::vector<Vec2>& unloading, SystemBuilder& builder) {
+  if (e.axis.norm() == 0.0) {
+    builder.error("'axis' has no direction");
+    return false;
+  }
+  if (!is_curve(e.loading, "loading", builder) || !is_curve(unloading, "unloading", builder)) return false;
+  const Curves curves{e.loading, unloading};
+  for (const double depth : curves.corners()) // between them both are straight
+    if (!(curves.let_go(depth) <= curves.pressed_in(depth))) {
+      builder.error("'unloading' lies above 'loading' at a depth of " + rounded_text(depth) +
+                    " m, where it would give back more than it took");
+      return false;
+    }
+  return true;
+}
+
+void compile_buffer(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const Buffer&>(element);
+  const std::vector<Vec2>& unloading = e.unloading.empty() ? e.loading : e.unloading;
+  if (!check(e, unloading, builder)) return;
+  const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
+  if (a.body == b.body) return builder.error("presses a body against itself: name markers on two different bodies");
+  const AxisMeasure measure{a.point, b.point, builder.direction(b, e.axis)};
+  const double now = measure.at<false, double>(builder.reference(a.body), builder.reference(b.body)).value;
+  const double free = now - e.gap, n = static_cast<double>(e.count);
+  const Curves curves{e.loading, unloading};
+  const std::vector<double> depths = curves.corners();
+  // A spring's force is minus its table's value.
+  const PiecewiseLinear middle = table(depths, [&](double d) { return -0.5 * n * (curves.pressed_in(d) + curves.let_go(d)); });
+  const PiecewiseLinear without({{-1.0, 0.0}, {1.0, 0.0}});
+
+  CurveGroup& group = builder.group<CurveGroup>();
+  group.entries.push_back({a.body, b.body, measure, TabulatedSpring{middle, without, free, 1.0}});
+  builder.add_unit(group, TabulatedSpring::k_watches);
+  const int i = static_cast<int>(group.entries.size()) - 1, unit = group.entries.back().unit;
+
+  auto friction = std::make_unique<BufferFriction>();
+  RowSpec& row = friction->row;
+  row.a = a.body;
+  row.b = b.body;
+  row.point_a = a.point;
+  row.point_b = b.point;
+  row.direction = measure.axis;
+  row.quantity = "slide";
+  row.element = builder.element_index();
+  row.memory = builder.add_memory();
+  friction->bound = table(depths, [&](double d) { return 0.5 * n * (curves.pressed_in(d) - curves.let_go(d)); });
+  friction->free = free;
+  friction->unit = unit;
+
+  const int f = builder.next_friction(), slot = builder.next_friction_row();
+  builder.add_channel("depth", "m", {"by which it is pressed in", "negative: the gap that is left"},
+                      [&group, i](const Snapshot& s) { return group.entries[i].law.free - group.measured(i, *s.evaluation).value; });
+  builder.add_channel("rate", "m/s", {"of the depth", "positive: it is pressed in"},
+                      [&group, i](const Snapshot& s) { return -group.measured(i, *s.evaluation).rate; });
+  builder.add_channel("force", "N", {"of spring and friction, zero while open", "positive: it presses"},
+                      [&group, i, slot](const Snapshot& s) { return group.force_of(i, *s.evaluation) + s.friction_force[slot]; });
+  builder.add_channel("mode", "", {"what it does", "", "0 open, 1 sticks, 2 moves"},
+                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_friction(std::move(friction));
+}
+
+} // namespace
+
+const ElementKind& buffer_kind() {
+  static const ElementKind kind = [] {
+    using T = Buffer;
+    ElementKind k;
+    k.name = "buffer";
+    k.doc = "Buffer or draw gear of a railway vehicle: pressed in it follows one curve, let go a lower one, and between them it "
+            "sticks. A draw gear is a buffer whose axis points the other way.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker that is pushed off");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker in whose axes its axis is given");
+    f.add("axis", &T::axis).doc("the way in which a is pushed, in marker b's axes");
+    f.add("loading", &T::loading)
+        .in("m", "N")
+        .required()
+        .doc("[depth, force] while it is pressed in, from [0, 0] on, straight between them and on beyond the last");
+    f.add("unloading", &T::unloading)
+        .in("m", "N")
+        .doc("the same while it comes out again, beyond the last point parallel to loading; default: as pressed in");
+    f.add("gap", &T::gap).in("m").doc("what is left in the reference pose; negative: pressed in by so much");
+    f.add("count", &T::count).at_least(1).doc("equal buffers side by side");
+    k.example = R"([[element]]
+name = 'buffer'
+kind = 'buffer'
+a = 'a'
+b = 'b'
+loading = [[0.0, 0.0], [0.1, 5e5]]
+)";
+    k.holds<T>();
+    k.compile = compile_buffer;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

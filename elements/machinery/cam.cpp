@@ -1,0 +1,247 @@
+#include "elements/machinery/cam.h"
+
+#include "elements/body_blocks.h"
+#include "elements/contact_laws.h"
+#include "elements/machinery/lift_curve.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/system/motion_formula.h"
+#include "mbd/system/system.h"
+
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+struct CamEntry {
+  int a = k_ground, b = k_ground, cam = k_ground;
+  AxisMeasure measure; ///< of a in b
+  LiftCurve curve;
+  double zero = 0.0; ///< φ where θ_cam = θ_b
+  KelvinVoigtContact law = {};
+  bool holds = false;
+  int unit = 0, watch = 0;
+
+  [[nodiscard]] std::array<int, 3> bodies() const { return {a, b, cam}; }
+};
+
+/// Gap and its rate, and what a unit force does.
+template <class S> struct CamGap {
+  MeasureValue<S> m;             ///< of the follower alone
+  S value{0}, rate{0}, slope{0}; ///< slope: h'
+};
+
+double with_slope(double, double value, double) { return value; }
+template <int N> Dual<N> with_slope(const Dual<N>& angle, double value, double slope) { return {value, slope * angle.d}; }
+
+template <class S> CamGap<S> gap_of(const CamEntry& entry, const Motion<S>& a, const Motion<S>& b, const Motion<S>& cam) {
+  CamGap<S> gap;
+  gap.m = entry.measure.at<false, S>(a, b);
+  const S angle = cam.theta - b.theta + S(entry.zero);
+  const Lift lift = entry.curve.at(value_of(angle));
+  gap.slope = with_slope(angle, lift.slope, lift.curvature);
+  gap.value = gap.m.value - with_slope(angle, lift.value, lift.slope);
+  gap.rate = gap.m.rate - gap.slope * (cam.omega - b.omega);
+  return gap;
+}
+
+template <class S> std::array<BodyForceOf<S>, 3> forces_of(const CamGap<S>& gap, const S& f) {
+  std::array<BodyForceOf<S>, 3> on;
+  add_at(on[0], gap.m.lever_a, f * gap.m.direction);
+  add_at(on[1], gap.m.lever_b, -f * gap.m.direction);
+  on[1].m += f * gap.slope;
+  on[2].m -= f * gap.slope;
+  return on;
+}
+
+class CamGroup final : public ForceGroup {
+public:
+  using Entry = CamEntry;
+  std::vector<Entry> entries;
+
+  [[nodiscard]] static CamGap<double> gap_now(const Entry& entry, const Motion<double>* motion) {
+    return gap_of(entry, motion[entry.a], motion[entry.b], motion[entry.cam]);
+  }
+  [[nodiscard]] static double force(const Entry& entry, const CamGap<double>& gap, const Evaluation& e) {
+    return entry.law.force(gap.value, gap.rate, mode_of(entry, e));
+  }
+
+  void add_forces(Evaluation& e) const override {
+    for (const Entry& entry : entries) {
+      const CamGap<double> gap = gap_now(entry, e.motion);
+      const UnitMode mode = mode_of(entry, e);
+      const double f = entry.law.force(gap.value, gap.rate, mode);
+      if (!entry.holds) entry.law.watch(gap.value, gap.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      e.dissipation += (entry.law.elastic_force(gap.value, mode) - f) * gap.rate;
+      if (f == 0.0) continue;
+      const std::array<int, 3> bodies = entry.bodies();
+      const std::array<BodyForce, 3> on = forces_of(gap, f);
+      for (std::size_t i = 0; i < 3; ++i) {
+        BodyForce& sum = e.force[bodies[i]];
+        sum.fx += on[i].fx;
+        sum.fy += on[i].fy;
+        sum.m += on[i].m;
+      }
+    }
+  }
+  [[nodiscard]] double potential(const Motion<double>* motion) const override {
+    double sum = 0.0;
+    for (const Entry& entry : entries) {
+      const double value = gap_now(entry, motion).value;
+      sum += entry.holds ? 0.5 * entry.law.k * (value - entry.law.offset) * (value - entry.law.offset) : entry.law.energy(value);
+    }
+    return sum;
+  }
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
+    for (const Entry& entry : entries) {
+      const CamGap<Dual<18>> gap =
+          gap_of(entry, seeded_of<3>(e.motion[entry.a], 0), seeded_of<3>(e.motion[entry.b], 1), seeded_of<3>(e.motion[entry.cam], 2));
+      const Dual<18> f = entry.law.force(gap.value, gap.rate, mode_of(entry, e));
+      add_body_blocks<3>(entry.bodies(), forces_of(gap, f), out);
+    }
+  }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for (const Entry& entry : entries)
+      for (const int body : entry.bodies()) is_used[body] = 1;
+  }
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
+    const Entry& entry = entry_at(element);
+    if (entry.holds) return k_contact_pressed;
+    const CamGap<double> gap = gap_now(entry, e.motion);
+    return entry.law.mode_at(gap.value, gap.rate);
+  }
+  [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const Entry& entry = entry_at(element);
+    const CamGap<double> gap = gap_now(entry, e.motion);
+    return entry.law.next_mode(mode, slot, gap.value, gap.rate, rounding_of(entry, gap, e));
+  }
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const Entry& entry = entry_at(element);
+    const CamGap<double> gap = gap_now(entry, e.motion);
+    return entry.law.is_surely_positive(mode, slot, gap.value, rounding_of(entry, gap, e));
+  }
+  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override { return KelvinVoigtContact::transition(from, to); }
+
+private:
+  [[nodiscard]] const Entry& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
+  static UnitMode mode_of(const Entry& entry, const Evaluation& e) { return entry.holds ? k_contact_pressed : e.mode[entry.unit]; }
+  // The lift is as exact as its angle is, of many turns.
+  static double rounding_of(const Entry& entry, const CamGap<double>& gap, const Evaluation& e) {
+    const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b], &cam = e.motion[entry.cam];
+    return value_rounding(gap.m, a, b) +
+           k_rounded_sum * (std::abs(gap.slope) * (std::abs(cam.theta) + std::abs(b.theta)) + std::abs(gap.value - gap.m.value));
+  }
+};
+
+// Nothing where something is wrong with it.
+std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
+  const auto fail = [&](const std::string& message) -> std::optional<LiftCurve> {
+    builder.error(message);
+    return std::nullopt;
+  };
+  if (e.lift.empty() == e.formula.empty()) return fail("give either 'lift', as points, or its 'formula'");
+  if (!e.formula.empty()) {
+    const MotionFormula formula(builder, {e.formula, "formula", "m", "rad", "-"});
+    if (!formula.is_valid()) return std::nullopt;
+    for (const MotionOperand& operand : formula.operands())
+      if (operand.kind != MotionOperand::Kind::own_value) return fail("'formula' may hold the angle `value` and parameters alone");
+    if (formula.program().uses_time()) return fail("'formula' may hold the angle `value` and parameters alone, not the time");
+    if (formula.program().switch_count() > 0)
+      return fail("'formula' has a kink or a jump (abs, min, max or a comparison), which a cam has not: give 'lift', as points");
+    if (formula.operands().empty()) return fail("'formula' does not hold the angle `value`: such a cam lifts nothing");
+    LiftCurve curve(formula.program());
+    if (!std::isfinite(curve.at(e.start_angle).value) || !std::isfinite(curve.at(e.start_angle).slope))
+      return fail("'formula' has no finite value and slope at the start");
+    return curve;
+  }
+  if (e.lift.size() < 3) return fail("'lift' needs at least three points, [angle, lift]");
+  if (e.lift.size() > 65536) return fail("'lift' may have at most 65536 points");
+  for (std::size_t i = 1; i < e.lift.size(); ++i)
+    if (!(e.lift[i].x() > e.lift[i - 1].x())) return fail("'lift' has to increase in angle from point to point");
+  if (LiftCurve::is_whole_turn(e.lift) && e.lift.back().y() != e.lift.front().y())
+    return fail("'lift' spans a whole turn, but ends at " + rounded_text(e.lift.back().y()) + " m where it begins with " +
+                rounded_text(e.lift.front().y()) + " m");
+  if (e.lift.back().x() - e.lift.front().x() > 6.2831853072) return fail("'lift' spans more than a whole turn");
+  return LiftCurve(e.lift);
+}
+
+void compile_cam(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const Cam&>(element);
+  const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), cam = builder.marker(e.cam);
+  if (a.body == b.body) return builder.error("lifts a body against itself: name markers on two different bodies");
+  if (cam.body == a.body || cam.body == b.body)
+    return builder.error("'cam' has to be a body of its own: neither that of the follower nor that of the frame");
+  if (e.axis.norm() == 0.0) return builder.error("'axis' has no direction");
+  std::optional<LiftCurve> curve = curve_of(e, builder);
+  if (!curve) return;
+  CamGroup& group = builder.group<CamGroup>();
+  CamEntry entry{a.body, b.body, cam.body, {a.point, b.point, builder.direction(b, e.axis)}, std::move(*curve)};
+  entry.zero = e.start_angle - (builder.reference(cam.body).theta - builder.reference(b.body).theta);
+  entry.holds = e.holds;
+  const double now = CamGroup::gap_now(entry, &builder.reference(0)).value;
+  entry.law = {e.stiffness, e.damping, now - e.gap};
+  group.entries.push_back(std::move(entry));
+  if (!e.holds) builder.add_unit(group, KelvinVoigtContact::k_watches);
+  const int i = static_cast<int>(group.entries.size()) - 1;
+  const auto at = [&group, i](const Snapshot& s) { return CamGroup::gap_now(group.entries[static_cast<std::size_t>(i)], s.motion); };
+  builder.add_channel("gap", "m", {"between follower and cam", "negative: pressed in"},
+                      [at, &group, i](const Snapshot& s) { return at(s).value - group.entries[static_cast<std::size_t>(i)].law.offset; });
+  builder.add_channel("force", "N", {"on the follower", "positive: it is lifted"}, [at, &group, i](const Snapshot& s) {
+    return CamGroup::force(group.entries[static_cast<std::size_t>(i)], at(s), *s.evaluation);
+  });
+  builder.add_channel("couple", "N m", {"on the cam", "positive counter-clockwise"}, [at, &group, i](const Snapshot& s) {
+    return -at(s).slope * CamGroup::force(group.entries[static_cast<std::size_t>(i)], at(s), *s.evaluation);
+  });
+  builder.add_channel("lift", "m", {"of the curve at the cam's angle, from that in the reference pose", "positive: along the axis"},
+                      [at, start = group.entries[static_cast<std::size_t>(i)].curve.at(e.start_angle).value](const Snapshot& s) {
+                        return at(s).m.value - at(s).value - start;
+                      });
+}
+
+} // namespace
+
+const ElementKind& cam_kind() {
+  static const ElementKind kind = [] {
+    using T = Cam;
+    ElementKind k;
+    k.name = "cam";
+    k.doc =
+        "A cam lifts marker a along an axis of marker b by a curve of its angle against b. The follower is pressed and never held, so that "
+        "it "
+        "leaves a cam that turns too fast, unless a groove holds it. The cam's bearing and the follower's guide are joints of their own.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is lifted");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker of the frame, in whose axes its axis is given");
+    f.add("cam", &T::cam).as(FieldType::marker).required().doc("body that turns, or a marker on it");
+    f.add("axis", &T::axis).doc("direction in which it is lifted, in marker b's axes");
+    f.add("lift", &T::lift)
+        .in("rad", "m")
+        .doc("[angle, lift] over at most one turn: a smooth curve through them, periodic over a whole turn");
+    f.add("formula", &T::formula).doc("instead: lift in m over the angle `value`: \"'4 mm' * (1 - cos(value))\"");
+    f.add("start_angle", &T::start_angle).in("rad").doc("of the cam in the reference pose, as the curve counts");
+    f.add("gap", &T::gap).in("m").doc("between follower and cam in the reference pose; negative: pressed in");
+    f.add("holds", &T::holds).doc("true: a groove holds the follower both ways");
+    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of the contact");
+    f.add("damping", &T::damping).in("N s/m").not_negative().doc("while it is pressed; never pulls");
+    k.example = R"toml([[body]]
+name = 'shaft'
+mass = 1.0
+inertia = 1.0
+[[element]]
+name = 'cam'
+kind = 'cam'
+a = 'a'
+b = 'b'
+cam = 'shaft'
+formula = "'4 mm' * (1 - cos(value))"
+stiffness = 1e4
+)toml";
+    k.stage = 1;
+    k.holds<T>();
+    k.compile = compile_cam;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

@@ -1,0 +1,87 @@
+#include "elements/machinery/lift_curve.h"
+
+#include <Eigen/SparseLU>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_turn = 2.0 * std::numbers::pi;
+constexpr double k_turn_digits = 1e-9; // rad: digits of a file
+
+// h'' at the points from the continuity of h' at each; of a periodic curve the last point is the first again.
+std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
+  const auto n = static_cast<Eigen::Index>(p.size()), count = is_periodic ? n - 1 : n;
+  std::vector<Eigen::Triplet<double>> entries;
+  VecX right = VecX::Zero(count);
+  const auto width = [&](Eigen::Index i) { return p[static_cast<std::size_t>(i + 1)].x() - p[static_cast<std::size_t>(i)].x(); };
+  const auto slope = [&](Eigen::Index i) {
+    return (p[static_cast<std::size_t>(i + 1)].y() - p[static_cast<std::size_t>(i)].y()) / width(i);
+  };
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (!is_periodic && (i == 0 || i == count - 1)) {
+      entries.emplace_back(i, i, 1.0);
+      continue;
+    }
+    const Eigen::Index left = i == 0 ? n - 2 : i - 1, after = is_periodic ? (i + 1) % count : i + 1,
+                       before = is_periodic ? left % count : left;
+    entries.emplace_back(i, before, width(left));
+    entries.emplace_back(i, i, 2.0 * (width(left) + width(i)));
+    entries.emplace_back(i, after, width(i));
+    right[i] = 6.0 * (slope(i) - slope(left));
+  }
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(matrix);
+  const VecX solved = solver.solve(right);
+  std::vector<double> found(solved.begin(), solved.end());
+  if (is_periodic) found.push_back(found.front());
+  return found;
+}
+
+} // namespace
+
+bool LiftCurve::is_whole_turn(const std::vector<Vec2>& points) {
+  return std::abs(points.back().x() - points.front().x() - k_turn) <= k_turn_digits;
+}
+
+LiftCurve::LiftCurve(std::vector<Vec2> points)
+    : points_(std::move(points)), curvature_(curvatures(points_, is_whole_turn(points_))), is_periodic_(is_whole_turn(points_)) {}
+
+LiftCurve::LiftCurve(FormulaProgram formula) : formula_(std::move(formula)) {}
+
+Lift LiftCurve::at(double angle) const { return formula_ ? of_formula(angle) : of_points(angle); }
+
+Lift LiftCurve::of_points(double angle) const {
+  if (is_periodic_) angle -= k_turn * std::floor((angle - points_.front().x()) / k_turn);
+  const auto after = std::upper_bound(points_.begin() + 1, points_.end() - 1, angle, [](double x, const Vec2& p) { return x < p.x(); });
+  const auto i = static_cast<std::size_t>(after - points_.begin()) - 1;
+  const double width = points_[i + 1].x() - points_[i].x(), first = curvature_[i], last = curvature_[i + 1], cubic = (last - first) / width;
+  const double slope = (points_[i + 1].y() - points_[i].y()) / width - width * (2.0 * first + last) / 6.0;
+  const double d = angle - points_[i].x();
+  if (!is_periodic_ && d < 0.0) return {points_[i].y() + slope * d, slope, 0.0};
+  if (!is_periodic_ && d > width) {
+    const double end = slope + width * (first + 0.5 * cubic * width);
+    return {points_[i + 1].y() + end * (d - width), end, 0.0};
+  }
+  return {points_[i].y() + d * (slope + d * (0.5 * first + d * cubic / 6.0)), slope + d * (first + 0.5 * d * cubic), first + d * cubic};
+}
+
+Lift LiftCurve::of_formula(double angle) const {
+  using D = Dual<1>;
+  thread_local std::vector<D> room;
+  room.resize(std::max(room.size(), static_cast<std::size_t>(formula_->size())));
+  const auto with_slope = [&](double x) {
+    const D operand = D::variable(x, 0);
+    return formula_->evaluate(&operand, D(0.0), 0, room.data(), static_cast<D*>(nullptr));
+  };
+  constexpr double k_step = 1e-5; // rad: half of the digits of a slope are left
+  const D now = with_slope(angle);
+  return {now.v, now.d[0], (with_slope(angle + k_step).d[0] - with_slope(angle - k_step).d[0]) / (2.0 * k_step)};
+}
+
+} // namespace steplap

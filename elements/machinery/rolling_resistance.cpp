@@ -1,0 +1,109 @@
+#include "elements/machinery/rolling_resistance.h"
+
+#include "elements/coulomb_friction.h"
+#include "elements/machinery/tyre.h"
+#include "elements/machinery/tyre_contact.h"
+#include "elements/round_contacts.h"
+
+#include <optional>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+// Pressed by a contact whose mode may say more than that it presses.
+class RollingFriction final : public CoulombFriction {
+public:
+  bool is_tyre = false;
+
+  [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState& state) const override {
+    return is_tyre ? tyre_presses(e.mode[contacts.front().unit]) : CoulombFriction::is_loaded(e, state);
+  }
+};
+
+// Markers a and b of what rolls.
+std::optional<std::pair<std::string, std::string>> ends_of(const Element& contact) {
+  if (const auto* tyre = dynamic_cast<const Tyre*>(&contact)) return std::pair{tyre->a, tyre->b};
+  if (const auto* round = dynamic_cast<const RoundContact*>(&contact)) return std::pair{round->a, round->b};
+  return std::nullopt;
+}
+
+void add_channels(const RollingFriction& friction, SystemBuilder& builder) {
+  const int f = builder.next_friction(), slot = builder.next_friction_row();
+  const auto* self = &friction;
+  builder.add_channel("friction", "N m", {"couple on a", "positive counter-clockwise"},
+                      [slot](const Snapshot& s) { return s.friction_force[slot]; });
+  builder.add_channel("capacity", "N m", {"largest couple that holds", "never negative"},
+                      [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
+  builder.add_channel("slip_rate", "rad/s", {"with which a turns over b", "positive counter-clockwise"},
+                      [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
+  builder.add_channel("mode", "", {"what it does", "", "0 in the air, 1 holds, 2 rolls"},
+                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+}
+
+void compile_rolling_resistance(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const RollingResistance&>(element);
+  if (e.contacts.size() != 1) return builder.error("name one contact in 'contacts': each that rolls has a resistance of its own");
+  const std::string& name = e.contacts.front();
+  const ElementEntry* const entry = builder.element(name);
+  const auto ends = entry ? ends_of(*entry->element) : std::nullopt;
+  if (!ends) return builder.error("'" + name + "' does not roll: name a tyre, a circle_contact or a segment_contact");
+  const ContactIndex* const contact = builder.contact(name);
+  if (!contact) return; // the contact's own error is reported
+  RowSpec row;
+  row.kind = MeasureKind::angle;
+  row.a = builder.marker(ends->first).body;
+  row.b = builder.marker(ends->second).body;
+  row.quantity = "angle";
+  row.element = builder.element_index();
+  row.memory = builder.add_memory();
+  auto friction = std::make_unique<RollingFriction>();
+  friction->is_tyre = dynamic_cast<const Tyre*>(entry->element.get()) != nullptr;
+  friction->contacts = {*contact};
+  friction->feet = {row, row};
+  friction->mu_static = friction->mu_kinetic = e.arm;
+  add_channels(*friction, builder);
+  builder.add_friction(std::move(friction));
+}
+
+} // namespace
+
+const ElementKind& rolling_resistance_kind() {
+  static const ElementKind kind = [] {
+    using T = RollingResistance;
+    ElementKind k;
+    k.name = "rolling_resistance";
+    k.stage = 1;
+    k.doc = "Couple against the turning of something round that presses: at most 'arm' times the normal force, and at rest whatever it "
+            "takes within that.";
+    FieldTable& f = k.fields;
+    f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("what rolls: one tyre, circle_contact or segment_contact");
+    f.add("arm", &T::arm)
+        .in("m")
+        .positive()
+        .required()
+        .doc("couple over normal force; a coefficient of rolling resistance times the radius");
+    k.example = R"([[element]]
+name = 'roller'
+kind = 'segment_contact'
+a = 'a'
+b = 'b'
+radius = 0.3
+from = [-1.0, 0.0]
+to = [1.0, 0.0]
+stiffness = 1e6
+[[element]]
+name = 'resistance'
+kind = 'rolling_resistance'
+contacts = ['roller']
+arm = 0.001
+)";
+    k.holds<T>();
+    k.compile = compile_rolling_resistance;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

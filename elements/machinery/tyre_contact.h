@@ -1,0 +1,114 @@
+// The forces of tyres (tyre.h): normal force and tread together, as force elements with modes and an inner state.
+//
+// The inner state is p, with u = s − p and s the way of the centre along the road (RoadWay; of a flat one the coordinate along it) + r (θ_A − θ_B):
+// a function of the pose whose gradient is the direction in which the tread acts, so that at rest the tread is a spring between places.
+// Its rate is that of s less that of u.
+#pragma once
+
+#include "elements/contact_laws.h"
+#include "elements/machinery/road.h"
+#include "mbd/system/sliding_units.h"
+
+#include <memory>
+
+namespace steplap {
+
+/// What a wheel does on its road at one instant.
+template <class S> struct WheelMotion {
+  MeasureValue<S> gap;   ///< distance of the centre from the road, along its normal
+  MeasureValue<S> tread; ///< s; its direction is that of the road
+  S slip_rate{0.0};      ///< v_s, m/s
+  S rolling{0.0};        ///< r ω, m/s
+};
+
+struct WheelMeasure {
+  Vec2 centre, origin, level; ///< in the frames of a, b, b
+  double radius = 0.0;        ///< m
+  std::shared_ptr<const Road> road;
+
+  template <class S, class B> [[nodiscard]] WheelMotion<S> at(const Motion<S>& a, const B& b) const {
+    using std::sqrt;
+    const Pair<S> ra = to_ground(a, centre), e = to_ground(b, level), up = perp(e);
+    const Pair<S> reach = offset(a, b) + ra, from_origin = reach - Pair<S>(to_ground(b, origin));
+    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // seen from b
+    const S x = dot(e, from_origin), y = dot(up, from_origin);
+    const RoadPoint<S> foot = road->nearest(x, y);
+    const S inverse = S(1.0) / sqrt(S(1.0) + foot.slope * foot.slope);
+    const Pair<S> along = inverse * (e + foot.slope * up), normal = perp(along);
+    WheelMotion<S> w;
+    w.gap.value = dot(normal, from_origin - foot.x * e - foot.height * up);
+    w.gap.rate = dot(normal, velocity);
+    w.gap.direction = normal;
+    w.gap.lever_a = w.tread.lever_a = ra;
+    w.gap.lever_b = w.tread.lever_b = reach;
+    w.rolling = S(radius) * relative_spin(a, b);
+    const RoadWay<S> way = road->way(x, y, radius, value_of(foot.x));
+    w.tread.value = way.value + S(radius) * relative_angle(a, b);
+    w.tread.rate = way.by_x * dot(e, velocity) + way.by_y * dot(up, velocity) + w.rolling;
+    w.tread.direction = along;
+    w.tread.couple = S(radius);
+    w.slip_rate = dot(along, velocity) + w.rolling;
+    return w;
+  }
+};
+
+struct TreadLaw {
+  double friction = 0.0;   ///< μ
+  double stiffness = 0.0;  ///< C/σ, N/m
+  double damping = 0.0;    ///< b, N s/m
+  double relaxation = 1.0; ///< σ, m
+
+  /// V up to which bristles with b dissipate, 4 C/b, m/s. Beyond it they have 4 C/V.
+  [[nodiscard]] double slow() const { return 4.0 * stiffness * relaxation / damping; }
+};
+
+/// Bristles at one instant: N, N, m, m/s.
+template <class S> struct TreadState {
+  S most{0.0};  ///< μ N
+  S trial{0.0}; ///< what it takes to adhere
+  S force{0.0}; ///< T
+  S bent{0.0};  ///< u
+  S rate{0.0};  ///< u̇
+};
+
+class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
+public:
+  struct Entry {
+    int a = k_ground, b = k_ground;
+    WheelMeasure measure;
+    KelvinVoigtContact press; ///< of the distance of the centre
+    TreadLaw tread;
+    int inner = 0; ///< p
+    int link = 0, unit = 0, watch = 0, contact = 0;
+  };
+  static constexpr int k_watches = 6; ///< two of the contact, two of the tread, of the sense in which the wheel turns, of how fast
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override;
+  [[nodiscard]] double potential(const Motion<double>* motion) const override;
+  [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override;
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
+  void add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const override;
+  void start_inner(const Motion<double>* motion, double* inner) const override;
+  void mark_bodies(std::vector<char>& is_used) const override;
+  void enter_links(LinkTable& links) override;
+  void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override;
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
+  [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override;
+  [[nodiscard]] WatchKind watch_kind(int slot) const override;
+  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] EventKind sliding_in(UnitMode mode) const override;
+
+  /// For channels.
+  [[nodiscard]] WheelMotion<double> measured(int element, const Evaluation& e) const;
+  [[nodiscard]] double normal_force(int element, const Evaluation& e) const;
+  [[nodiscard]] TreadState<double> tread_state(int element, const Evaluation& e) const;
+};
+
+/// Does the tyre press in this mode?
+[[nodiscard]] inline bool tyre_presses(UnitMode mode) { return (mode & 3U) == k_contact_pressed; }
+/// Does its tread slide, if it presses?
+[[nodiscard]] inline bool tread_slides(UnitMode mode) { return (mode >> 2U & 3U) != 0; }
+
+} // namespace steplap

@@ -1,0 +1,220 @@
+#include "elements/step_lap/step_lap_assessment.h"
+
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
+#include "mbd/trust/element_judgement.h"
+#include "mbd/trust/weighed_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+
+double final_of(const RunResult& result, const std::string& name) {
+  const ChannelRange* range = find_range(result, name);
+  return range ? range->final : k_unknown;
+}
+
+void read_extremes(const RunResult& result, JointAssessment& a) {
+  const auto extreme = [&](const char* channel, Extreme ChannelRange::*which) {
+    const ChannelRange* range = find_range(result, a.joint + channel);
+    return range ? range->*which : Extreme{};
+  };
+  const Extreme pressure = extreme(".p_req", &ChannelRange::high), margin = extreme(".margin", &ChannelRange::low);
+  a.largest_required_pressure = pressure.value;
+  a.time_of_largest = pressure.t;
+  a.smallest_margin = margin.value;
+  a.time_of_smallest = margin.t;
+  a.least_pressure = extreme(".least_pressure", &ChannelRange::low);
+  a.corner_margin = extreme(".corner_margin", &ChannelRange::low);
+  a.part_margin = extreme(".part_margin", &ChannelRange::low);
+  a.largest_demand = extreme(".demand", &ChannelRange::high).value;
+  a.slid_share = extreme(".slid_share", &ChannelRange::high);
+  a.overlap_left = extreme(".overlap_left", &ChannelRange::low);
+  a.edge_share = extreme(".edge_share", &ChannelRange::high);
+  a.edge_load = extreme(".edge_load", &ChannelRange::high);
+  a.edge_pressure = extreme(".edge_pressure", &ChannelRange::high);
+  a.clearance_left = extreme(".clearance_left", &ChannelRange::low);
+  a.slid_x = final_of(result, a.joint + ".dx");
+  a.slid_y = final_of(result, a.joint + ".dy");
+  a.slid_angle = final_of(result, a.joint + ".theta_acc");
+  a.area_lost = final_of(result, a.joint + ".area_lost");
+  const ChannelRange* usage = find_range(result, a.joint + ".u");
+  if (a.is_monitored && usage) a.first_slip = usage->first_above_one;
+}
+
+void read_events(const std::vector<Event>& events, JointAssessment& result) {
+  for (const Event& event : events) {
+    if (event.element != result.joint) continue;
+    if (is_slip(event.kind)) {
+      result.has_slipped = true;
+      if (!result.first_slip) result.first_slip = event.t;
+    }
+    if (event.kind == EventKind::comes_apart) result.has_come_apart = true;
+  }
+}
+
+// Beyond this share of the limb's weight a change of the force on it is a load, and not what the machine settles by.
+constexpr double k_least_load = 1e-3;
+
+// Has anything been asked of the joint but to bear what it bears at rest?
+void read_load(const RunResult& result, const Model& model, const StepLapJoint& joint, JointAssessment& a) {
+  const Body* const limb = model.find_body(joint.limb);
+  a.weight = limb ? limb->mass * model.header.gravity.norm() : 0.0;
+  for (const char* const part : {".fx", ".fy"}) {
+    const ChannelRange* const range = find_range(result, a.joint + part);
+    if (range && range->high.value - range->low.value > k_least_load * a.weight) a.is_loaded = true;
+  }
+}
+
+// Where time stepping goes over a storm, a joint that it lets go has no event.
+void read_modes(const RunResult& result, JointAssessment& a) {
+  const ChannelRange* mode = find_range(result, a.joint + ".mode");
+  const double slip = static_cast<double>(FrictionPhase::slip);
+  if (!mode || !(mode->high.value >= slip)) return;
+  a.has_slipped = true;
+  if (!a.first_slip) a.first_slip = mode->high.t;
+  if (mode->high.value > slip) a.has_come_apart = true;
+}
+
+// Do the element's fields name these two bodies, by themselves or by markers on them, and no others?
+bool acts_between(const ElementEntry& entry, const Model& model, const std::string& a, const std::string& b) {
+  bool has_a = false, has_b = false;
+  for (const Field& field : entry.kind->fields.fields()) {
+    if (field.type != FieldType::body && field.type != FieldType::marker) continue;
+    const FieldValue value = field.get(entry.element.get());
+    const auto* name = std::get_if<std::string>(&value);
+    if (!name || name->empty()) continue;
+    const auto marker = std::find_if(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == *name; });
+    const std::string& body = field.type == FieldType::marker && marker != model.markers.end() ? marker->body : *name;
+    if (body != a && body != b) return false;
+    has_a = has_a || body == a;
+    has_b = has_b || body == b;
+  }
+  return has_a && has_b;
+}
+
+std::vector<SharedLoad> shared_with(const StepLapJoint& joint, const Model& model, const RunResult& result) {
+  std::vector<SharedLoad> shared;
+  for (const ElementEntry& entry : model.elements) {
+    if (entry.element->name == joint.name || !acts_between(entry, model, joint.limb, joint.active_part)) continue;
+    const ChannelRange* force = find_range(result, entry.element->name + ".force");
+    shared.push_back({entry.element->name, force ? std::max(std::abs(force->low.value), std::abs(force->high.value)) : k_unknown});
+  }
+  return shared;
+}
+
+JointVerdict verdict_of(const JointAssessment& a, bool has_interfaces) {
+  if (!has_interfaces) return JointVerdict::not_assessed;
+  if (a.has_come_apart) return JointVerdict::came_apart;
+  if (a.has_parted()) return JointVerdict::corner_parted;
+  if (a.is_unpressed()) return JointVerdict::unpressed;
+  if (a.has_slid_too_far()) return JointVerdict::slid_too_far;
+  if (a.has_crushed_edges()) return JointVerdict::crushed_edges;
+  if (a.has_left_range()) return JointVerdict::closed_clearance;
+  if (a.has_slipped) return JointVerdict::slipped;
+  if (!a.is_known()) return JointVerdict::not_known;
+  if (a.is_monitored && a.smallest_margin < 1.0) return JointVerdict::would_slip;
+  if (a.has_weak_part()) return JointVerdict::weak_part;
+  return a.smallest_margin < a.least_margin ? JointVerdict::little_reserve : JointVerdict::holds;
+}
+
+} // namespace
+
+const char* words_of(JointVerdict verdict) {
+  switch (verdict) {
+  case JointVerdict::not_assessed: return "not assessed";
+  case JointVerdict::came_apart: return "came apart";
+  case JointVerdict::corner_parted: return "a corner parted";
+  case JointVerdict::unpressed: return "not pressed everywhere";
+  case JointVerdict::slid_too_far: return "slid too far";
+  case JointVerdict::crushed_edges: return "crushed its edges";
+  case JointVerdict::closed_clearance: return "closed its clearance";
+  case JointVerdict::slipped: return "slipped";
+  case JointVerdict::not_known: return "not known";
+  case JointVerdict::would_slip: return "would slip";
+  case JointVerdict::weak_part: return "a corner or packet too weak";
+  case JointVerdict::little_reserve: return "little reserve";
+  case JointVerdict::holds: break;
+  }
+  return "holds";
+}
+
+bool JointAssessment::has_left_range() const { return !has_edges && clearance_left.value < -k_touching; }
+
+JointAssessment assess_joint(const StepLapJoint& joint, const Model& model, const RunResult& result) {
+  JointAssessment a;
+  a.joint = joint.name;
+  a.is_monitored = joint.mode == "monitor";
+  a.least_margin = joint.least_margin;
+  a.has_edges = joint.edge_stiffness.has_value();
+  a.most_slide = joint.most_slide;
+  a.allowed_line_load = joint.allowed_line_load;
+  a.shared_with = shared_with(joint, model, result);
+  a.is_elastic = is_elastic(joint);
+  read_extremes(result, a);
+  read_events(result.events, a);
+  read_modes(result, a);
+  read_load(result, model, joint, a);
+  const bool has_interfaces = std::any_of(model.elements.begin(), model.elements.end(), [&](const ElementEntry& other) {
+    const auto* face = dynamic_cast<const StepLapInterface*>(other.element.get());
+    return face && face->joint == joint.name;
+  });
+  a.verdict = verdict_of(a, has_interfaces);
+  return a;
+}
+
+std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& result) {
+  std::vector<JointAssessment> assessments;
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get()))
+      assessments.push_back(assess_joint(*joint, model, result));
+  return assessments;
+}
+
+Verdict outcome_of(JointVerdict verdict) {
+  switch (verdict) {
+  case JointVerdict::holds: return Verdict::hold;
+  case JointVerdict::not_assessed:
+  case JointVerdict::not_known: return Verdict::open;
+  case JointVerdict::came_apart:
+  case JointVerdict::corner_parted:
+  case JointVerdict::unpressed:
+  case JointVerdict::crushed_edges:
+  case JointVerdict::slid_too_far: return Verdict::reject;
+  default: return Verdict::inspect;
+  }
+}
+
+JointErrors joint_errors(const JointAssessment& joint, const System& system, const RunResult& run, const GlobalErrorEstimate& estimate) {
+  const auto of = [&](const char* channel, double ChannelError::*which) {
+    const ChannelError* error = find_error(joint.joint + channel, system, estimate);
+    return error ? error->*which : k_unknown_error;
+  };
+  JointErrors e;
+  e.largest_required_pressure = of(".p_req", &ChannelError::high);
+  e.time_of_largest = of(".p_req", &ChannelError::t_high);
+  e.smallest_margin = of(".margin", &ChannelError::low);
+  e.slid_x = of(".dx", &ChannelError::final);
+  e.slid_y = of(".dy", &ChannelError::final);
+  e.slid_angle = of(".theta_acc", &ChannelError::final);
+  e.area_lost = of(".area_lost", &ChannelError::final);
+  e.slid_share = of(".slid_share", &ChannelError::high);
+  e.overlap_left = of(".overlap_left", &ChannelError::low);
+  e.clearance_left = of(".clearance_left", &ChannelError::low);
+  e.edge_load = of(".edge_load", &ChannelError::high);
+  e.edge_share = of(".edge_share", &ChannelError::high);
+  if (!joint.first_slip) return e;
+  const std::optional<double> at_event = event_error(joint.joint, *joint.first_slip, run, estimate);
+  if (at_event) e.first_slip = *at_event;
+  else if (joint.is_monitored) e.first_slip = of(".u", &ChannelError::first_above_one);
+  else if (*joint.first_slip > 0.0) e.first_slip = of(".mode", &ChannelError::t_high);
+  return e;
+}
+
+} // namespace steplap
