@@ -2,8 +2,8 @@
 
 #include "assess/hangs_on.h"
 #include "mbd/base/shown_text.h"
-#include "record/fields.h"
 #include "run/failure.h"
+#include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // that is uncertain, then the criteria. The whole of what `steplap assess` does, without a console.
 #pragma once
 
-#include "assess/criteria.h"
 #include "assess/passage.h"
 #include "assess/samples.h"
+#include "transformer/decision/criteria.h"
 
 #include <functional>
 #include <memory>

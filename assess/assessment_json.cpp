@@ -1,9 +1,9 @@
 // assessment.json: all that the printed page and scripts read. SI unless a unit stands beside; null where nothing is known.
 #include "assess/assessment.h"
-#include "record/time_text.h"
 #include "run/left_out.h"
 #include "run/ordered_json.h"
 #include "run/version.h"
+#include "transformer/recorder/time_text.h"
 
 #include "mbd/io/digest.h"
 

@@ -3,8 +3,8 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "record/fields.h"
 #include "run/quantity_text.h"
+#include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <cmath>

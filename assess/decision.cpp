@@ -2,8 +2,8 @@
 #include "assess/assessment.h"
 
 #include "mbd/base/shown_text.h"
-#include "record/fields.h"
 #include "run/quantity_text.h"
+#include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <cmath>

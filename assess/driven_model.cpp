@@ -8,8 +8,8 @@
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
-#include "record/fields.h"
 #include "run/catalogue.h"
+#include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include "assess/record_events.h"
 #include "mbd/model/model.h"
-#include "transformer/recorder.h"
+#include "transformer/recorder/recorder.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // The greatest of what stays below the threshold of events: that it did nothing to the machine is shown by a run, not taken for granted.
 #pragma once
 
-#include "record/events.h"
+#include "transformer/recorder/events.h"
 
 #include <array>
 #include <cstddef>

@@ -7,8 +7,8 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/digest.h"
 #include "mbd/io/read_input.h"
-#include "record/fields.h"
-#include "record/time_text.h"
+#include "transformer/recorder/fields.h"
+#include "transformer/recorder/time_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "assess/fall_watch.h"
-#include "record/events.h"
-#include "record/read_options.h"
-#include "record/reader.h"
+#include "transformer/recorder/events.h"
+#include "transformer/recorder/read_options.h"
+#include "transformer/recorder/reader.h"
 
 #include <array>
 #include <cstdint>

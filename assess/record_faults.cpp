@@ -1,7 +1,7 @@
 #include "assess/record_faults.h"
 
 #include "mbd/base/shown_text.h"
-#include "record/fields.h"
+#include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/model/model_path.h"
 #include "study/counter_random.h"
-#include "transformer/uncertain.h"
+#include "transformer/core/uncertain.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@ include(GNUInstallDirs)
 # One name for all rooms up to run/. Whoever links it gets no options of ours, no warnings, and of other makers'
 # headers Eigen's alone, whose vectors our own types are made of. With BUILD_SHARED_LIBS it is one shared library that shows
 # steplap's names and no other's (steplap.map); else the rooms' archives.
-set(rooms base tape mbd io patch_exact patch elements machinery step_lap catalog transformer record run)
+set(rooms base tape mbd io patch_exact patch elements machinery step_lap catalog recorder transformer run)
 list(TRANSFORM rooms PREPEND steplap_ OUTPUT_VARIABLE archives)
 add_library(steplap_library INTERFACE)
 add_library(steplap::steplap ALIAS steplap_library)
@@ -47,6 +47,7 @@ install(TARGETS ${libraries} EXPORT steplap COMPONENT development
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
 install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development
   FILES_MATCHING PATTERN "*.h"
+  PATTERN recorder EXCLUDE PATTERN decision EXCLUDE # for the program alone
   PATTERN ordered_json.h EXCLUDE PATTERN summary.h EXCLUDE) # include another maker's
 configure_file(cmake/version.h.in version.h @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development)

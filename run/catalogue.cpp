@@ -1,7 +1,7 @@
 #include "run/catalogue.h"
 
-#include "record/recorder_signal.h"
 #include "transformer/catalog.h"
+#include "transformer/recorder/recorder_signal.h"
 
 namespace steplap {
 

@@ -3,8 +3,8 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/portable_math.h"
 #include "run/core_sheet.h"
-#include "transformer/core_builder.h"
-#include "transformer/core_geometry.h"
+#include "transformer/core/core_builder.h"
+#include "transformer/core/core_geometry.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // A core as a core drawing shows it: elevation, section of the stack, the lines of a corner, the book across them.
 #pragma once
 
-#include "transformer/core.h"
+#include "transformer/core/core.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #include "run/core_windows.h"
 
-#include "transformer/core_builder.h"
-#include "transformer/core_geometry.h"
+#include "transformer/core/core_builder.h"
+#include "transformer/core/core_geometry.h"
 
 #include <algorithm>
 

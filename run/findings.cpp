@@ -21,7 +21,7 @@
 #include "run/seams.h"
 #include "run/start_contacts.h"
 #include "run/stepped_feet.h"
-#include "transformer/plausible.h"
+#include "transformer/core/plausible.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "run/left_out.h"
 
 #include "elements/step_lap/step_lap_joint.h"
-#include "transformer/core.h"
+#include "transformer/core/core.h"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 #include "transformer/catalog.h"
 
 #include "elements/catalog.h"
-#include "transformer/clamp.h"
-#include "transformer/core.h"
-#include "transformer/recorder.h"
-#include "transformer/uncertain.h"
+#include "transformer/core/clamp.h"
+#include "transformer/core/core.h"
+#include "transformer/core/uncertain.h"
+#include "transformer/recorder/recorder.h"
 
 namespace steplap {
 

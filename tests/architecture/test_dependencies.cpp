@@ -16,11 +16,35 @@ namespace fs = std::filesystem;
 namespace {
 
 // In the order of the data: a model is read, compiled, moved, asked.
-const std::vector<std::string> k_modules = {
-    "mbd/base",        "mbd/tape",       "mbd/formula",    "mbd/model",   "mbd/system", "mbd/dynamics",
-    "mbd/integrators", "mbd/events",     "mbd/simulation", "mbd/rest",    "mbd/trust",  "mbd/io",
-    "record",          "elements/step_lap/patch", "elements", "elements/machinery", "elements/step_lap", "elements/catalog",       "transformer", "run",        "report",
-    "explore/page",    "explore",        "python",         "study",       "assess",     "tools"};
+const std::vector<std::string> k_modules = {"mbd/base",
+                                            "mbd/tape",
+                                            "mbd/formula",
+                                            "mbd/model",
+                                            "mbd/system",
+                                            "mbd/dynamics",
+                                            "mbd/integrators",
+                                            "mbd/events",
+                                            "mbd/simulation",
+                                            "mbd/rest",
+                                            "mbd/trust",
+                                            "mbd/io",
+                                            "elements/step_lap/patch",
+                                            "elements",
+                                            "elements/machinery",
+                                            "elements/step_lap",
+                                            "elements/catalog",
+                                            "transformer/recorder",
+                                            "transformer/core",
+                                            "transformer/decision",
+                                            "transformer/catalog",
+                                            "run",
+                                            "report",
+                                            "explore/page",
+                                            "explore",
+                                            "python",
+                                            "study",
+                                            "assess",
+                                            "tools"};
 
 // Headers of libraries, of which one file of the product knows.
 const std::vector<std::string> k_heavy = {
@@ -72,7 +96,7 @@ Source source_of(const fs::path& root, const fs::path& file) {
 std::vector<Source> all_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::vector<Source> sources;
-  for (const char* top : {"mbd", "record", "elements", "transformer", "run", "report", "explore", "python", "study", "assess", "tools"})
+  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "explore", "python", "study", "assess", "tools"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") sources.push_back(source_of(root, entry.path()));
   return sources;
@@ -80,7 +104,8 @@ std::vector<Source> all_sources() {
 
 // What cmake/install.cmake leaves out.
 const std::vector<std::string> k_not_installed = {
-    "record/", "tools/", "study/", "report/", "explore/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
+    "transformer/recorder/", "transformer/decision/", "tools/", "study/", "report/", "explore/", "python/", "assess/",
+    "run/ordered_json.h",    "run/summary.h"};
 
 // Index of the innermost module that holds the path; −1 if there is none.
 int module_of(const std::string& path) {

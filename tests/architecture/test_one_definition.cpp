@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> k_rooms = {"mbd",     "record", "elements", "transformer", "run",  "report",
-                                          "explore", "python", "study",    "assess",      "tools"};
+const std::vector<std::string> k_rooms = {"mbd",     "elements", "transformer", "run",    "report",
+                                          "explore", "python",   "study",       "assess", "tools"};
 
 using Definitions = std::map<std::string, std::set<std::string>>; // files by the type's full name
 

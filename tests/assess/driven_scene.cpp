@@ -1,9 +1,9 @@
 #include "driven_scene.h"
 
 #include "mbd/io/reader.h"
-#include "record/fields.h"
 #include "run/catalogue.h"
 #include "run/run.h"
+#include "transformer/recorder/fields.h"
 
 #include <unistd.h>
 

@@ -2,7 +2,7 @@
 #include "driven_scene.h"
 
 #include "assess/assumed_pulse.h"
-#include "record/fields.h"
+#include "transformer/recorder/fields.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // From records and models to a decision.
 #include "driven_scene.h"
 
-#include "record/fields.h"
+#include "transformer/recorder/fields.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // What a record does not show, or a user leaves out, never becomes "energise".
 #include "driven_scene.h"
 
-#include "record/fields.h"
+#include "transformer/recorder/fields.h"
 
 #include <doctest/doctest.h>
 

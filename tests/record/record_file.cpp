@@ -1,7 +1,7 @@
 #include "record_file.h"
 
-#include "record/fields.h"
-#include "record/time_text.h"
+#include "transformer/recorder/fields.h"
+#include "transformer/recorder/time_text.h"
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 // reader has to ask for because the file does not say it.
 #pragma once
 
-#include "record/reader.h"
-#include "record/record_error.h"
+#include "transformer/recorder/reader.h"
+#include "transformer/recorder/record_error.h"
 
 #include <array>
 #include <cstdint>

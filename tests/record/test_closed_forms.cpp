@@ -1,8 +1,8 @@
 // Spectra, filter and events against what is known in closed form.
-#include "record/conditioner.h"
-#include "record/events.h"
-#include "record/filter.h"
-#include "record/shock_spectrum.h"
+#include "transformer/recorder/conditioner.h"
+#include "transformer/recorder/events.h"
+#include "transformer/recorder/filter.h"
+#include "transformer/recorder/shock_spectrum.h"
 
 #include <doctest/doctest.h>
 

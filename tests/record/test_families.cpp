@@ -1,7 +1,7 @@
 // The files that `steplap record --make` writes: read to the very numbers that stand in them, with the questions that each family raises.
-#include "record/fields.h"
-#include "record/synthetic.h"
 #include "record_file.h"
+#include "transformer/recorder/fields.h"
+#include "transformer/recorder/synthetic.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // The signal kind `recorder`: a recorder's file as the load of a model, against what the record holds, and what it refuses.
-#include "record/fields.h"
-#include "record/recorder_signal.h"
-#include "record/synthetic.h"
+#include "transformer/recorder/fields.h"
+#include "transformer/recorder/recorder_signal.h"
+#include "transformer/recorder/synthetic.h"
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "transformer/catalog.h"
-#include "transformer/clamp.h"
+#include "transformer/core/clamp.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

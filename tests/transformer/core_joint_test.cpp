@@ -9,8 +9,8 @@
 #include "mbd/system/system.h"
 #include "mbd/trust/judge.h"
 #include "transformer/catalog.h"
-#include "transformer/core_builder.h"
-#include "transformer/plausible.h"
+#include "transformer/core/core_builder.h"
+#include "transformer/core/plausible.h"
 
 #include <doctest/doctest.h>
 

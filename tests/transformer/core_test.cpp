@@ -7,8 +7,8 @@
 #include "elements/step_lap/step_lap_joint.h"
 #include "mbd/io/reader.h"
 #include "mbd/system/system.h"
-#include "transformer/book.h"
 #include "transformer/catalog.h"
+#include "transformer/core/book.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 #include "mbd/io/reader.h"
 #include "tests/random/random_number.h"
 #include "transformer/catalog.h"
-#include "transformer/core_builder.h"
+#include "transformer/core/core_builder.h"
 
 #include <doctest/doctest.h>
 

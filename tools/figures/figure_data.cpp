@@ -5,8 +5,8 @@
 #include "elements/step_lap/patch/overlap.h"
 #include "elements/step_lap/patch/required_pressure.h"
 #include "mbd/base/portable_math.h"
-#include "transformer/book.h"
-#include "transformer/corner.h"
+#include "transformer/core/book.h"
+#include "transformer/core/corner.h"
 
 #include <cmath>
 #include <fstream>

@@ -7,10 +7,10 @@
 #include "run/run.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
-#include "transformer/clamp.h"
-#include "transformer/core_builder.h"
-#include "transformer/core_geometry.h"
-#include "transformer/plausible.h"
+#include "transformer/core/clamp.h"
+#include "transformer/core/core_builder.h"
+#include "transformer/core/core_geometry.h"
+#include "transformer/core/plausible.h"
 
 #include <algorithm>
 #include <cmath>

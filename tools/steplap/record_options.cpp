@@ -1,7 +1,7 @@
 #include "tools/steplap/record_options.h"
 
 #include "mbd/base/shown_text.h"
-#include "record/fields.h"
+#include "transformer/recorder/fields.h"
 
 namespace steplap {
 

@@ -1,9 +1,9 @@
 // Options by which a recorder's file is read and searched for shocks: those of every command that reads one.
 #pragma once
 
-#include "record/events.h"
-#include "record/option_words.h"
 #include "tools/steplap/command.h"
+#include "transformer/recorder/events.h"
+#include "transformer/recorder/option_words.h"
 
 #include <array>
 

@@ -5,10 +5,10 @@
 #include "mbd/base/event_kind.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
-#include "record/fields.h"
 #include "run/quantity_text.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,0 +1,514 @@
+#include "transformer/core/core_builder.h"
+
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
+#include "mbd/base/number_text.h"
+#include "transformer/core/core_dimensions.h"
+#include "transformer/core/core_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Given steel lighter or heavier than this share of what its sheets weigh cannot be meant: tie plates, bindings and the
+// like add some per cent. Between it and the shares that are plausible (plausible.cpp) a check warns.
+constexpr double k_least_steel = 0.8, k_most_steel = 1.6;
+
+// The middle of the limb in its body's frame: its origin. The paper's strips lie about the centre of gravity.
+Vec2 middle_in_frame(const Core& core, const Body& limb) { return core.has_strips() ? limb.cg : Vec2(Vec2::Zero()); }
+
+// One [[core]] on its way into a model; says all that is wrong with it at once.
+class CoreBuilder {
+public:
+  CoreBuilder(const Core& core, Model& model) : core_(core), model_(model), limbs_(core.all_limbs()) {}
+
+  void build() {
+    check_names();
+    const std::vector<Diagnostic> found = check_dimensions(core_);
+    problems_.insert(problems_.end(), found.begin(), found.end());
+    if (core_.pressure == 0.0)
+      error("needs 'pressure' above 0, that clamps its sheets (in Pa), or a [[clamp]] with what presses them", "pressure");
+    stop_if_wrong();
+    const CoreGeometry geometry(core_);
+    try {
+      for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, geometry);
+      for (std::size_t i = 0; i < limbs_.size(); ++i) give_steel(i, geometry);
+    } catch (const PolygonError& wrong) {
+      error(wrong.what(), "bolt_holes");
+    }
+    check_yokes();
+    stop_if_wrong();
+    draw_limbs(geometry);
+    draw_active_part(geometry);
+  }
+
+private:
+  // At the field that the message is about, if the table gives it.
+  void error(const std::string& message, const std::string& field = "") {
+    problems_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
+  }
+  void stop_if_wrong() {
+    if (!problems_.empty()) throw ModelError(std::move(problems_));
+  }
+  [[nodiscard]] double widest() const {
+    double width = core_.limb_width.value_or(0.0);
+    for (const Vec2& packet : core_.packets) width = std::max(width, packet.x());
+    return width;
+  }
+  [[nodiscard]] const char* list_of(std::size_t limb) const { return core_.is_middle(limb) ? "middle_limbs" : "limbs"; }
+  [[nodiscard]] const Element* find_element(const std::string& name) const;
+  [[nodiscard]] const Body& limb(std::size_t i) const { return *model_.find_body(limbs_[i]); }
+  [[nodiscard]] const Body& active_part() const { return *model_.find_body(core_.active_part); }
+
+  void check_names();
+  void check_limb(std::size_t i, const Body& active_part);
+  void check_distance(std::size_t i, std::size_t j, const Body& active_part);
+  void check_joint(const std::string& name, const std::string& limb);
+  void check_settings(const StepLapJoint& joint);
+  [[nodiscard]] bool is_given(const std::string& field) const { return core_.places.count(field) > 0; }
+
+  void add_joint(std::size_t i, const CoreGeometry& geometry);
+  void give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const;
+  void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
+  void check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry);
+  void find_parts(std::size_t i, const CoreGeometry& geometry);
+  void press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
+  void refuse_repetition(const StepLapInterface& face);
+  void give_steel(std::size_t i, const CoreGeometry& geometry);
+  void check_yokes();
+  void check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit);
+
+  [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i, const CoreGeometry& geometry) const;
+  void draw_limbs(const CoreGeometry& geometry);
+  void draw_active_part(const CoreGeometry& geometry);
+
+  const Core& core_;
+  Model& model_;
+  std::vector<std::string> limbs_;  ///< outer ones, then middle ones
+  std::vector<double> part_shares_; ///< of the limb at hand; empty: packets are not told apart
+  std::vector<Diagnostic> problems_;
+};
+
+// --- what it refers to ------------------------------------------------------------------------------
+
+const Element* CoreBuilder::find_element(const std::string& name) const {
+  for (const ElementEntry& entry : model_.elements)
+    if (entry.element->name == name) return entry.element.get();
+  return nullptr;
+}
+
+void CoreBuilder::check_names() {
+  const Body* active_part = model_.find_body(core_.active_part);
+  if (!active_part) return error("'active_part' must be a body that moves, not 'ground'", "active_part");
+  if (limbs_.empty()) error("'limbs' or 'middle_limbs' must name at least one body");
+  for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    check_limb(i, *active_part);
+    for (std::size_t j = 0; j < i; ++j)
+      if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice", list_of(i));
+      else check_distance(i, j, *active_part);
+  }
+  if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
+    return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) + " limbs, got " +
+                     std::to_string(core_.joints.size()),
+                 "joints");
+  for (std::size_t i = 0; i < limbs_.size(); ++i) check_joint(core_.joint_name(i), limbs_[i]);
+}
+
+void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
+  const std::string& name = limbs_[i];
+  const Body* limb = model_.find_body(name);
+  if (!limb) {
+    std::vector<std::string> known;
+    for (const Body& body : model_.bodies) known.push_back(body.name);
+    return error("limb '" + name + "' is no body" + did_you_mean(name, known), list_of(i));
+  }
+  if (limb == &active_part) return error("limb '" + name + "' is the active part itself", list_of(i));
+  if (!core_.is_middle(i) && std::abs(middle_of_limb(core_, *limb, active_part).x()) < 0.5 * widest())
+    error("limb '" + name +
+              "' stands in the middle of the active part: only outer limbs, at least half a "
+              "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
+              "'middle_limbs'",
+          "limbs");
+}
+
+// Limbs of one core cannot stand in each other.
+void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& active_part) {
+  const Body *a = model_.find_body(limbs_[i]), *b = model_.find_body(limbs_[j]);
+  if (!a || !b || a == b || a == &active_part || b == &active_part) return;
+  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() - middle_of_limb(core_, *b, active_part).x());
+  if (apart < widest())
+    error("limbs '" + a->name + "' and '" + b->name + "' stand " + number_text(apart) +
+              " m apart ('position' of the bodies), less than a limb is wide, " + number_text(widest()) + " m ('" +
+              (core_.packets.empty() ? "limb_width" : "packets") + "')",
+          core_.packets.empty() ? "limb_width" : "packets");
+}
+
+void CoreBuilder::check_joint(const std::string& name, const std::string& limb) {
+  if (name.empty()) return error("'joints': a joint needs a name", "joints");
+  const Element* element = find_element(name);
+  if (!element) return;
+  const auto* joint = dynamic_cast<const StepLapJoint*>(element);
+  if (!joint) return error("joint '" + name + "': the element of this name is no step_lap_joint", "joints");
+  if (joint->limb != limb || joint->active_part != core_.active_part)
+    error("step_lap_joint '" + name + "' holds '" + joint->limb + "' to '" + joint->active_part + "', not '" + limb + "' to '" +
+              core_.active_part + "'",
+          "joints");
+  check_settings(*joint);
+}
+
+// What is given here for the joints must be what a joint declared elsewhere has.
+void CoreBuilder::check_settings(const StepLapJoint& joint) {
+  const auto check = [&](const char* field, bool is_same) {
+    if (is_given(field) && !is_same)
+      error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
+                "' exists already with another: set it there, and leave it out here",
+            field);
+  };
+  check("mode", core_.mode == joint.mode);
+  check("on_apart", core_.on_apart == joint.on_apart);
+  check("least_margin", core_.least_margin == joint.least_margin);
+  check("most_slide", core_.most_slide == joint.most_slide);
+  // What the joint says itself of these counts for it alone; what it leaves out would be passed over in silence.
+  const auto check_said = [&](const char* field, bool is_said) {
+    if (is_given(field) && !is_said)
+      error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
+                "' exists already and does not say its own: give it there, too",
+            field);
+  };
+  check_said("tangential_stiffness", is_elastic(joint));
+  check_said("contact_stiffness", is_elastic(joint));
+  check_said("edge_stiffness", joint.edge_stiffness.has_value());
+  check_said("allowed_line_load", joint.allowed_line_load.has_value());
+  check_said("pressure_signal", !joint.pressure_signal.empty());
+  check_said("pressure_loss", joint.pressure_loss != 0.0 || core_.pressure_loss == 0.0);
+  check_said("transverse_acceleration", !joint.transverse_acceleration.empty());
+}
+
+// --- into the model -----------------------------------------------------------------------------------
+
+void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
+  if (!find_element(core_.joint_name(i))) {
+    const auto joint = std::make_shared<StepLapJoint>();
+    joint->name = core_.joint_name(i);
+    joint->where = core_.where;
+    joint->limb = limbs_[i];
+    joint->active_part = core_.active_part;
+    joint->mode = core_.mode;
+    joint->on_apart = core_.on_apart;
+    joint->least_margin = core_.least_margin.value_or(joint->least_margin);
+    joint->most_slide = core_.most_slide.value_or(joint->most_slide);
+    give_settings(*joint, geometry);
+    model_.elements.push_back({&step_lap_joint_kind(), joint});
+  }
+  const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
+  find_parts(i, geometry);
+  for (const CoreCorner& corner : geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach)) {
+    for (const Lap& lap : corner.laps) add_interface(i, corner, lap, geometry);
+    check_packets(i, corner, geometry);
+  }
+}
+
+// Holes and edges of sheets may leave nothing of what the lines of a book promise.
+void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry) {
+  const Stack& stack = geometry.stack();
+  if (core_.is_counted() || !problems_.empty()) return; // once is enough
+  for (std::size_t p = 0; p < stack.packets.size(); ++p) {
+    if (!stack.is_by_place && likeness(stack, p) != p) continue;
+    const auto holds = [&](const Lap& lap) { return !lap.is_between && geometry.packet_of(lap) == p && lap.area > 0.0; };
+    if (std::none_of(corner.laps.begin(), corner.laps.end(), holds))
+      return error("no two sheets of packet " + std::to_string(p + 1) + " overlap at " + corner.place + " of '" + limbs_[i] +
+                       "': nothing would hold them there",
+                   core_.packets.empty() ? "stack_depth" : "packets");
+  }
+}
+
+// Which packets the interfaces of a joint hold: where there is more than one, each has to be held by itself. Of a limb that several
+// tables share, the shares in all of its steel are not known here.
+void CoreBuilder::find_parts(std::size_t i, const CoreGeometry& geometry) {
+  part_shares_.clear();
+  if (count_cores_of(model_, limbs_[i]) > 1) return;
+  part_shares_ = geometry.packet_shares(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()));
+  if (std::count_if(part_shares_.begin(), part_shares_.end(), [](double share) { return share > 0.0; }) < 2) part_shares_.clear();
+}
+
+void CoreBuilder::give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const {
+  joint.tangential_stiffness = core_.tangential_stiffness;
+  joint.contact_stiffness = core_.contact_stiffness;
+  joint.shear_modulus = core_.shear_modulus;
+  if (core_.shear_modulus) joint.sheet_thickness = core_.sheet_thickness;
+  joint.edge_stiffness = core_.edge_stiffness;
+  joint.allowed_line_load = core_.allowed_line_load;
+  if (core_.edge_stiffness && !core_.is_counted())
+    joint.steel_thickness = static_cast<double>(sheets_in(geometry.stack())) * geometry.stack().sheet_thickness;
+  joint.pressure_signal = core_.pressure_signal;
+  joint.pressure_loss = core_.pressure_loss;
+  joint.transverse_acceleration = core_.transverse_acceleration;
+}
+
+void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry) {
+  const LapPressure pressure = geometry.pressure(corner, lap, core_.joint_share(i, corner.is_top));
+  face.pressure = pressure.middle;
+  face.pressure_gradient = rotated(pressure.gradient, active_part().angle);
+  face.transverse_pressure = pressure.transverse;
+  face.transverse_spread = pressure.transverse_spread;
+  if (pressure.least >= 0.0) return;
+  face.pressure = core_.pressure; // what is wrong with it is said here
+  face.pressure_gradient = Vec2::Zero();
+  if (!problems_.empty()) return; // once is enough
+  const std::string field = !corner.is_top && core_.bottom_pressure_gradient ? "bottom_pressure_gradient" : "pressure_gradient";
+  const std::string level = !corner.is_top && core_.bottom_pressure ? "bottom_pressure" : "pressure";
+  error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] + "' sheets would be pressed by " +
+            number_text(std::round(pressure.least)) + " Pa",
+        field);
+}
+
+void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry) {
+  const double turn = active_part().angle;
+  const Vec2 middle = limb(i).position + rotated(middle_in_frame(core_, limb(i)), limb(i).angle);
+  const auto placed = [&](const Ring& ring) {
+    std::vector<Vec2> points;
+    for (const Vec2& p : ring) points.emplace_back(middle + rotated(p, turn));
+    return points;
+  };
+  const auto e = std::make_shared<StepLapInterface>();
+  e->name = core_.name + ": " + core_.joint_name(i) + ", " + corner.place;
+  if (!lap.name.empty()) e->name += (lap.name.front() == 'p' ? ", " : " ") + lap.name;
+  e->where = core_.where;
+  e->joint = core_.joint_name(i);
+  e->limb = placed(lap.limb.outer);
+  e->yoke = placed(lap.yoke.outer);
+  for (const Ring& hole : lap.limb.holes) e->limb_cutouts.push_back(placed(hole));
+  for (const Ring& hole : lap.yoke.holes) e->yoke_cutouts.push_back(placed(hole));
+  if (!core_.has_strips()) e->across = rotated(corner.frame.across, turn);
+  e->count = lap.count;
+  e->clearance = core_.clearance;
+  press(*e, i, corner, lap, geometry);
+  e->static_friction = corner.is_top ? core_.static_friction : core_.bottom_static_friction.value_or(core_.static_friction);
+  e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction : core_.kinetic_friction;
+  if (!part_shares_.empty()) {
+    const std::size_t packet = geometry.packet_of(lap);
+    e->part = "packet " + std::to_string(packet + 1);
+    e->part_share = part_shares_[packet];
+  }
+  refuse_repetition(*e);
+  model_.elements.push_back({&step_lap_interface_kind(), e});
+}
+
+bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  constexpr double k_same = 1e-9; // m
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
+}
+
+// The same sheets at the same place twice would bear twice as much.
+void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
+  if (!problems_.empty()) return; // once is enough
+  const std::string own = core_.name + ": ";
+  for (const ElementEntry& entry : model_.elements) {
+    const auto* other = dynamic_cast<const StepLapInterface*>(entry.element.get());
+    if (!other || other->joint != face.joint || other->name.rfind(own, 0) == 0) continue;
+    if (!is_same_sheet(other->limb, face.limb) || !is_same_sheet(other->yoke, face.yoke)) continue;
+    return error("its sheets at joint '" + face.joint + "' are those of '" + other->name +
+                 "' over again, and would count twice: a core of several packets is one table with 'packets'; "
+                 "sheets of one width go into one packet, as a deeper stack or more 'interfaces'");
+  }
+}
+
+// --- the limbs' steel -------------------------------------------------------------------------------------
+
+void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
+  if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
+  problems_.push_back({body.where, "'" + std::string(field) + "' of body '" + body.name + "', " + number_text(given) + " " + unit +
+                                       ", contradicts core '" + core_.name + "', whose sheets make it " + number_text(std::round(steel)) +
+                                       " " + unit + " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" + field +
+                                       "' out to take it from the core"});
+}
+
+void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
+  Body* body = nullptr;
+  for (Body& candidate : model_.bodies)
+    if (candidate.name == limbs_[i]) body = &candidate;
+  if (core_.has_strips() || count_cores_of(model_, limbs_[i]) > 1 || body->fixed) return;
+  const LimbSteel steel = geometry.limb_steel(core_.is_middle(i), side_of_limb(core_, *body, active_part()));
+  if (steel.mass > 0.0) {
+    if (body->mass == 0.0) body->mass = steel.mass;
+    else check_steel(*body, "mass", body->mass, steel.mass, "kg");
+    if (body->inertia == 0.0) body->inertia = steel.inertia * body->mass / steel.mass;
+    else check_steel(*body, "inertia", body->inertia, steel.inertia, "kg m²");
+  }
+  if (core_.centre_of_gravity == "of_the_sheets" && body->cg == Vec2(Vec2::Zero()))
+    body->cg = rotated(steel.centre, active_part().angle - body->angle);
+}
+
+// The active part holds the yokes, and more.
+void CoreBuilder::check_yokes() {
+  const Core* last = nullptr; // of several tables the last one says it
+  for (const TableEntry& entry : model_.tables)
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get()); core && core->active_part == core_.active_part) last = core;
+  if (!problems_.empty() || (last && last->name != core_.name) || active_part().mass <= 0.0) return;
+  const double steel = yoke_steel(model_, core_.active_part).value_or(0.0);
+  if (active_part().mass < steel)
+    problems_.push_back({active_part().where, "'mass' of body '" + core_.active_part + "', " + number_text(active_part().mass) +
+                                                  " kg, is less than the yokes of core '" + core_.name + "' weigh alone, " +
+                                                  number_text(std::round(steel)) + " kg"});
+}
+
+// --- outlines, for bodies whose model gives none ---------------------------------------------------------
+
+// Of the largest packet, counter-clockwise from the bottom, in the active part's axes about the middle of the limb.
+std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& geometry) const {
+  const bool is_middle = core_.is_middle(i);
+  const Mitre mitre = geometry.mitre(geometry.largest(), is_middle);
+  const double side = side_of_limb(core_, limb(i), active_part());
+  std::vector<Vec2> corners;
+  for (const double level : {-1.0, 1.0}) {
+    std::vector<Vec2> end;
+    if (is_middle) {
+      const CornerFrame left = notch_frame(mitre, 1.0, level), right = notch_frame(mitre, -1.0, level);
+      end = {left.origin, left.origin + left.length * left.along, right.origin};
+    } else {
+      const CornerFrame corner = corner_frame(mitre, side, level);
+      end = {corner.origin, corner.origin + corner.length * corner.along};
+    }
+    // From left to right at the bottom, back again at the top.
+    std::sort(end.begin(), end.end(), [level](const Vec2& a, const Vec2& b) { return level * a.x() > level * b.x(); });
+    corners.insert(corners.end(), end.begin(), end.end());
+  }
+  return corners;
+}
+
+void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
+  const double turn = active_part().angle;
+  for (std::size_t i = 0; i < limbs_.size(); ++i)
+    for (Body& body : model_.bodies) {
+      if (body.name != limbs_[i] || !body.outline.empty()) continue;
+      for (const Vec2& p : limb_corners(i, geometry)) body.outline.push_back(middle_in_frame(core_, body) + rotated(p, turn - body.angle));
+    }
+}
+
+// What lies between the outer limbs: yokes, windings and all.
+void CoreBuilder::draw_active_part(const CoreGeometry& geometry) {
+  const Body* rear = nullptr;
+  const Body* front = nullptr;
+  std::vector<Vec2> at_rear, at_front;
+  for (Body& part : model_.bodies) {
+    if (part.name != core_.active_part || !part.outline.empty()) continue;
+    for (std::size_t i = 0; i < core_.limbs.size(); ++i) {
+      const Vec2 place = middle_of_limb(core_, limb(i), part);
+      const bool is_front = place.x() > 0.0;
+      (is_front ? front : rear) = &limb(i);
+      std::vector<Vec2>& corners = is_front ? at_front : at_rear;
+      corners = limb_corners(i, geometry);
+      for (Vec2& p : corners) p += part.cg + place;
+    }
+    if (!rear || !front) return;
+    // Corners of an outer limb: bottom left, bottom right, top right, top left.
+    part.outline = {at_rear[0], at_front[1], at_front[0], at_front[3], at_front[2], at_rear[3], at_rear[2], at_rear[1]};
+  }
+}
+
+} // namespace
+
+void build_core(const Core& core, Model& model) { CoreBuilder(core, model).build(); }
+
+Vec2 middle_of_limb(const Core& core, const Body& limb, const Body& active_part) {
+  const Vec2 middle = limb.position + rotated(middle_in_frame(core, limb), limb.angle);
+  return rotated(middle - active_part.reference_pose().head<2>(), -active_part.angle);
+}
+
+double side_of_limb(const Core& core, const Body& limb, const Body& active_part) {
+  return middle_of_limb(core, limb, active_part).x() > 0.0 ? 1.0 : -1.0;
+}
+
+std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model) {
+  std::vector<LimbPlace> places;
+  const std::vector<std::string> names = core.all_limbs();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Body &limb = *model.find_body(names[i]), &part = *model.find_body(core.active_part);
+    places.push_back({core.is_middle(i), side_of_limb(core, limb, part), middle_of_limb(core, limb, part).x()});
+  }
+  return places;
+}
+
+namespace {
+
+// Can its yokes be those of the other table: as many sheets of the same heights?
+bool has_same_yokes(const Core& a, const Core& b) {
+  const Stack one = stack_of(a), two = stack_of(b);
+  const auto is_same = [](const Packet& p, const Packet& q) { return p.yoke_height == q.yoke_height && p.depth == q.depth; };
+  return a.core_height == b.core_height && a.density == b.density && a.yoke_steps == b.yoke_steps &&
+         one.sheet_thickness == two.sheet_thickness && one.stacking_factor == two.stacking_factor &&
+         std::equal(one.packets.begin(), one.packets.end(), two.packets.begin(), two.packets.end(), is_same);
+}
+
+bool shares_limb(const Core& a, const Core& b) {
+  for (const std::string& limb : a.all_limbs())
+    for (const std::string& other : b.all_limbs())
+      if (limb == other) return true;
+  return false;
+}
+
+// Tables of one pair of yokes, with what their limbs take of it.
+struct Yokes {
+  struct Limb {
+    LimbPlace place;
+    const Core* core;
+  };
+  std::vector<const Core*> cores;
+  std::vector<Limb> limbs;
+
+  [[nodiscard]] std::optional<double> steel() const {
+    if (limbs.empty()) return {};
+    const auto is_before = [](const Limb& a, const Limb& b) { return a.place.x < b.place.x; };
+    const auto [rear, front] = std::minmax_element(limbs.begin(), limbs.end(), is_before);
+    if (rear->place.is_middle || front->place.is_middle || rear->place.side > 0.0 || front->place.side < 0.0) return {};
+    double mass = CoreGeometry(*front->core).yoke_strip(front->place) + CoreGeometry(*rear->core).yoke_strip(rear->place);
+    for (const Limb& limb : limbs) mass -= CoreGeometry(*limb.core).yoke_cut(limb.place);
+    return mass;
+  }
+};
+
+} // namespace
+
+std::optional<double> yoke_steel(const Model& model, const std::string& active_part) {
+  std::vector<Yokes> all;
+  for (const TableEntry& entry : model.tables) {
+    const auto* core = dynamic_cast<const Core*>(entry.table.get());
+    if (!core || core->active_part != active_part) continue;
+    const std::vector<std::string> names = core->all_limbs();
+    const auto is_body = [&](const std::string& name) { return model.find_body(name) != nullptr; };
+    if (!is_body(active_part) || !std::all_of(names.begin(), names.end(), is_body)) return {};
+    if (core->is_counted() || !check_dimensions(*core).empty()) return {};
+    const auto is_own = [&](const Yokes& yokes) {
+      return has_same_yokes(*yokes.cores.front(), *core) &&
+             std::none_of(yokes.cores.begin(), yokes.cores.end(), [&](const Core* other) { return shares_limb(*other, *core); });
+    };
+    auto yokes = std::find_if(all.begin(), all.end(), is_own);
+    if (yokes == all.end()) yokes = all.insert(all.end(), Yokes());
+    yokes->cores.push_back(core);
+    for (const LimbPlace& place : places_of_limbs(*core, model)) yokes->limbs.push_back({place, core});
+  }
+  if (all.empty()) return {};
+  double mass = 0.0;
+  for (const Yokes& yokes : all) {
+    const std::optional<double> steel = yokes.steel();
+    if (!steel) return {};
+    mass += *steel;
+  }
+  return mass;
+}
+
+std::size_t count_cores_of(const Model& model, const std::string& limb) {
+  std::size_t count = 0;
+  for (const TableEntry& entry : model.tables)
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) {
+      const std::vector<std::string> limbs = core->all_limbs();
+      if (std::find(limbs.begin(), limbs.end(), limb) != limbs.end()) ++count;
+    }
+  return count;
+}
+
+} // namespace steplap

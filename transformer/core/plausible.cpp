@@ -1,0 +1,230 @@
+#include "transformer/core/plausible.h"
+
+#include "elements/step_lap/step_lap_interface.h"
+#include "mbd/base/number_text.h"
+#include "transformer/core/clamp.h"
+#include "transformer/core/core.h"
+#include "transformer/core/core_builder.h"
+#include "transformer/core/core_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+// Given steel may be somewhat lighter than computed (stacking factor, cropped corners) and heavier
+// (tie plates, bindings).
+constexpr double k_light = 0.98, k_heavy = 1.10, k_small = 0.95, k_large = 1.15;
+constexpr double k_off_centre = 10e-3; // m, a given centre of gravity from that of the sheets
+
+const char* const k_assumed = "assumed: nothing published was found";
+
+constexpr double k_shop_mitre = 0.25 * std::numbers::pi;         // what workshops cut
+constexpr double k_same_angle = 0.05 * std::numbers::pi / 180.0; // angles are told to a tenth of a degree
+
+std::string degrees_text(double angle) { return number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "°"; }
+
+std::string rounded_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+class Look {
+public:
+  Look(const Model& model, const Core& core, std::vector<CoreRemark>& said) : model_(model), core_(core), said_(said) {}
+
+  void run() {
+    look_at_fields();
+    look_at_packets();
+    look_at_shape();
+    note_mitre();
+    if (!core_.has_strips()) look_at_steel();
+  }
+
+private:
+  void say(const std::string& field, const std::string& message) {
+    said_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
+  }
+  void look_at(const std::string& field, double value, const std::string& unit, const std::string& name) {
+    for (const UsualRange& usual : usual_ranges())
+      if (usual.field == field && (value < usual.low || value > usual.high))
+        say(field, name + " = " + number_text(value) + (unit.empty() ? "" : " " + unit) + " is unusual: " + usual.text + " are usual (" +
+                       usual.source + ")");
+  }
+
+  void look_at_fields() {
+    for (const Field& field : core_kind().fields.fields()) {
+      if (field.type != FieldType::number && field.type != FieldType::integer) continue;
+      const FieldValue value = field.get(&core_);
+      const std::string name = "'" + field.name + "'";
+      if (const double* number = std::get_if<double>(&value)) look_at(field.name, *number, field.unit, name);
+      if (const long* number = std::get_if<long>(&value)) look_at(field.name, static_cast<double>(*number), "", name);
+    }
+  }
+
+  // Of pressures: the least and the largest.
+  void look_at_shares(const std::string& field, const std::vector<double>& shares) {
+    if (shares.empty()) return;
+    const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
+    for (const double share : {*least, *most})
+      for (const UsualRange& usual : usual_ranges())
+        if (const double p = share * core_.pressure; usual.field == std::string("pressure") && (p < usual.low || p > usual.high) &&
+                                                     core_.pressure >= usual.low && core_.pressure <= usual.high)
+          say(field, "'" + field + "': " + number_text(share) + " of 'pressure' is " + number_text(p) +
+                         " Pa, which is unusual: " + usual.text + " are usual (" + usual.source + ")");
+  }
+
+  void look_at_packets() {
+    double width = 0.0, depth = 0.0, highest = 0.0;
+    for (const Vec2& packet : core_.packets) {
+      width = std::max(width, packet.x());
+      depth += packet.y();
+    }
+    if (!core_.packets.empty()) {
+      look_at("limb_width", width, "m", "the widest of 'packets'");
+      look_at("stack_depth", depth, "m", "the depth of all 'packets'");
+    }
+    for (const double height : core_.yoke_heights) highest = std::max(highest, height);
+    if (!core_.yoke_heights.empty()) look_at("yoke_height", highest, "m", "the highest of 'yoke_heights'");
+    look_at_shares("pressure_shares", core_.pressure_shares);
+    look_at_shares("joint_pressure_shares", core_.joint_pressure_shares);
+    for (const Vec2& duct : core_.ducts) look_at("ducts", duct.y(), "m", "the width of a duct in 'ducts'");
+  }
+
+  void look_at_shape() {
+    const CoreGeometry geometry(core_);
+    const Mitre m = geometry.mitre(geometry.largest(), false);
+    const double window = m.core_height - 2.0 * m.yoke_height;
+    if (window < m.limb_width)
+      say("core_height", "'core_height' = " + number_text(m.core_height) + " m leaves a window " + rounded_text(window) +
+                             " m high between limbs " + number_text(m.limb_width) +
+                             " m wide: windows are usually higher than limbs are wide (" + k_assumed + ")");
+    if (core_.is_counted()) return;
+    const double depth = depth_of(geometry.stack());
+    if (depth < 0.4 * m.limb_width || depth > 1.8 * m.limb_width)
+      say("stack_depth", "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(m.limb_width) +
+                             " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" + k_assumed + ")");
+  }
+
+  // From corner to corner the angle is nobody's choice.
+  void note_mitre() {
+    if (core_.mitre_angle || core_.limbs.empty()) return;
+    const CoreGeometry geometry(core_);
+    const std::size_t packets = geometry.stack().packets.size();
+    double least = k_shop_mitre, most = k_shop_mitre;
+    std::string each;
+    for (std::size_t p = 0; p < packets; ++p) {
+      const double angle = geometry.angle(p, false);
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+      each += (p == 0 ? "" : p + 1 == packets ? " and " : ", ") + degrees_text(angle);
+    }
+    if (k_shop_mitre - least < k_same_angle && most - k_shop_mitre < k_same_angle) return;
+    const bool is_one = packets == 1;
+    said_.push_back({core_.place("mitre_angle"),
+                     "core '" + core_.name + "': without 'mitre_angle' the mitre runs from corner to corner, here at " + each +
+                         " against the yoke" + (is_one ? "" : ", packet by packet") +
+                         ". Workshops cut 45°: if this core is cut so, give 'mitre_angle' = \"45 degree\"",
+                     true});
+  }
+
+  void look_at_steel() {
+    const CoreGeometry geometry(core_);
+    const std::vector<std::string> limbs = core_.all_limbs();
+    for (std::size_t i = 0; i < limbs.size(); ++i) {
+      if (count_cores_of(model_, limbs[i]) > 1) continue;
+      const Body &limb = *model_.find_body(limbs[i]), &part = *model_.find_body(core_.active_part);
+      const LimbSteel steel = geometry.limb_steel(core_.is_middle(i), side_of_limb(core_, limb, part));
+      const std::string body = "body '" + limb.name + "'";
+      if (steel.mass > 0.0) {
+        compare(limb.where, body + ": 'mass'", limb.mass, steel.mass, k_light, k_heavy, "kg");
+        compare(limb.where, body + ": 'inertia'", limb.inertia, steel.inertia, k_small, k_large, "kg m²");
+      }
+      const Vec2 centre = rotated(steel.centre, part.angle - limb.angle);
+      if (core_.centre_of_gravity == "of_the_sheets" && (limb.cg - centre).norm() > k_off_centre)
+        said_.push_back({limb.where, body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " + number_text(limb.cg.y()) +
+                                         "] m, the sheets of core '" + core_.name + "' have theirs at [" + rounded_text(centre.x()) + ", " +
+                                         rounded_text(centre.y()) + "] m from the middle of the limb"});
+    }
+  }
+
+  void compare(const Location& where, const std::string& what, double given, double steel, double low, double high, const char* unit) {
+    if (given >= low * steel && given <= high * steel) return;
+    said_.push_back({where, what + " = " + number_text(given) + " " + unit + ", the sheets of core '" + core_.name + "' make it " +
+                                rounded_text(steel) + " " + unit +
+                                (given < steel ? ": too light a limb takes too little friction to be held"
+                                               : ": more than tie plates and bindings usually add")});
+  }
+
+  const Model& model_;
+  const Core& core_;
+  std::vector<CoreRemark>& said_;
+};
+
+} // namespace
+
+const std::vector<UsualRange>& usual_ranges() {
+  static const std::vector<UsualRange> ranges = {
+      {"core_height", 0.8, 6.0, "0.8 m to 6 m", k_assumed},
+      {"limb_width", 0.15, 1.4, "0.15 m to 1.4 m", "assumed: 0.6 m to 0.8 m at 100 to 150 MVA"},
+      {"yoke_height", 0.1, 1.4, "0.1 m to 1.4 m", "assumed, as limbs"},
+      {"stack_depth", 0.1, 1.5, "0.1 m to 1.5 m", "assumed, as limbs"},
+      {"sheet_thickness", 0.18e-3, 0.35e-3, "0.18 mm to 0.35 mm", "grain-oriented sheet, US patent 4948656"},
+      {"stacking_factor", 0.91, 0.98, "0.91 to 0.98", "makers' data; 0.97 at 1 MPa by EN 60404-13"},
+      {"sheets_per_layer", 1, 2, "1 or 2", "Cogent Power, Multi-step lap core technical data"},
+      {"steps", 3, 7, "3 to 7", "Cogent Power, Multi-step lap core technical data"},
+      {"step_pitch", 3e-3, 10e-3, "3 mm to 10 mm", "assumed; 4 mm to 6 mm typical"},
+      {"clearance", 0.2e-3, 3e-3, "0.2 mm to 3 mm", "assumed; 0.5 mm to 1 mm typical"},
+      {"overlap", 2e-3, 25e-3, "2 mm to 25 mm", "assumed, by books of 3 to 7 steps"},
+      {"interfaces", 100, 6000, "100 to 6000 a corner", "assumed: sheets in a stack"},
+      {"mitre_angle", 0.52, 1.05, "30° to 60°", "assumed; 45° typical"},
+      {"notch_angle", 0.52, 1.05, "30° to 60°", "assumed; 45° typical"},
+      {"ducts", 2e-3, 15e-3, "2 mm to 15 mm", k_assumed},
+      {"bolt_hole_diameter", 8e-3, 60e-3, "8 mm to 60 mm", k_assumed},
+      {"density", 7600, 7700, "7600 to 7700 kg/m³", "iron with 3 % silicon, 7650"},
+      {"pressure", 0.05e6, 0.4e6, "0.05 MPa to 0.4 MPa", k_assumed},
+      {"bottom_pressure", 0.05e6, 0.4e6, "0.05 MPa to 0.4 MPa", k_assumed},
+      {"pressure_loss", 0.0, 0.5, "0 to 0.5", k_assumed},
+      {"tangential_stiffness", 1e9, 1e13, "1e9 to 1e13 N/m", "assumed: 'contact_stiffness' over 1 to 50 m² of interfaces"},
+      {"contact_stiffness", 2e9, 2e11, "2e9 to 2e11 N/m³", "assumed: a micrometre of micro-slip at 20 kPa, and a factor of ten"},
+      {"shear_modulus", 60e9, 130e9, "60 to 130 GPa", "crystals of iron with 3 % silicon, by direction"},
+      {"edge_stiffness", 1e8, 6e12, "1e8 to 6e12 N/m²", "assumed; at most that of sheets in compression, E h/(b/2)"},
+      {"allowed_line_load", 1e5, 4.5e8, "1e5 to 4.5e8 N/m", "assumed; at most yield, 300 MPa times the steel's thickness"},
+      {"static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: of coated sheets nobody has published any"},
+      {"kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: of coated sheets nobody has published any"},
+      {"bottom_static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: of coated sheets nobody has published any"},
+      {"bottom_kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: of coated sheets nobody has published any"},
+  };
+  return ranges;
+}
+
+std::vector<CoreRemark> implausible_cores(const Model& model) {
+  std::vector<CoreRemark> said;
+  for (const TableEntry& entry : model.tables)
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) Look(model, clamped(*core, model), said).run();
+  // Interfaces given one by one; those of a core stand where the core does.
+  const auto is_of_core = [&](const StepLapInterface& face) {
+    return std::any_of(model.tables.begin(), model.tables.end(),
+                       [&](const TableEntry& entry) { return face.name.rfind(entry.table->name + ": ", 0) == 0; });
+  };
+  for (const ElementEntry& entry : model.elements) {
+    const auto* face = dynamic_cast<const StepLapInterface*>(entry.element.get());
+    if (!face || is_of_core(*face)) continue;
+    for (const UsualRange& usual : usual_ranges())
+      for (const auto& [field, value] : {std::pair<std::string, double>{"pressure", face->pressure},
+                                         {"static_friction", face->static_friction},
+                                         {"kinetic_friction", face->kinetic_friction.value_or(face->static_friction)}})
+        if (field == usual.field && (value < usual.low || value > usual.high) && (field != "kinetic_friction" || face->kinetic_friction))
+          said.push_back({face->where, "step_lap_interface '" + face->name + "': '" + field + "' = " + number_text(value) +
+                                           (field == "pressure" ? " Pa" : "") + " is unusual: " + usual.text + " are usual (" +
+                                           usual.source + ")"});
+  }
+  return said;
+}
+
+} // namespace steplap
