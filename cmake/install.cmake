@@ -59,7 +59,7 @@ install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT pr
 if(TARGET steplap-study)
   install(TARGETS steplap-study RUNTIME DESTINATION libexec COMPONENT study)
 endif()
-install(DIRECTORY models examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap COMPONENT program)
+install(DIRECTORY models docs/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap COMPONENT program)
 install(FILES tools/editors/steplap.lua tools/editors/taplo_lsp.js DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap/editors COMPONENT program)
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program
@@ -78,7 +78,7 @@ if(STEPLAP_PYTHON3)
     \"$<TARGET_FILE:steplap>\" \"${CMAKE_CURRENT_BINARY_DIR}/shell\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
   install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/shell/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program)
 endif()
-install(FILES study/plotly/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME plotly COMPONENT program)
+install(FILES tools/pages/plotly/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME plotly COMPONENT program)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/steplap)
 install(EXPORT steplap NAMESPACE steplap:: FILE steplapTargets.cmake DESTINATION ${package_folder} COMPONENT development)

@@ -27,23 +27,27 @@ const std::vector<std::string> k_modules = {"mbd/base",
                                             "mbd/simulation",
                                             "mbd/rest",
                                             "mbd/trust",
-                                            "mbd/io",
+                                            "mbd/io", //
                                             "elements/step_lap/patch",
                                             "elements",
                                             "elements/machinery",
                                             "elements/step_lap",
-                                            "elements/catalog",
+                                            "elements/catalog", //
                                             "transformer/recorder",
                                             "transformer/core",
                                             "transformer/decision",
-                                            "transformer/catalog",
-                                            "run",
-                                            "report",
-                                            "explore/page",
-                                            "explore",
-                                            "python",
-                                            "study",
-                                            "assess",
+                                            "transformer/catalog", //
+                                            "run",                 //
+                                            "tools/pages/run",
+                                            "tools/pages/explore",
+                                            "tools/pages/study",
+                                            "tools/pages",
+                                            "tools/explore",
+                                            "tools/python",
+                                            "tools/study",
+                                            "tools/assess",
+                                            "tools/steplap",
+                                            "tools/study/program",
                                             "tools"};
 
 // Headers of libraries, of which one file of the product knows.
@@ -96,16 +100,15 @@ Source source_of(const fs::path& root, const fs::path& file) {
 std::vector<Source> all_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::vector<Source> sources;
-  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "explore", "python", "study", "assess", "tools"})
+  for (const char* top : {"mbd", "elements", "transformer", "run", "tools"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") sources.push_back(source_of(root, entry.path()));
   return sources;
 }
 
 // What cmake/install.cmake leaves out.
-const std::vector<std::string> k_not_installed = {
-    "transformer/recorder/", "transformer/decision/", "tools/", "study/", "report/", "explore/", "python/", "assess/",
-    "run/ordered_json.h",    "run/summary.h"};
+const std::vector<std::string> k_not_installed = {"transformer/recorder/", "transformer/decision/", "tools/", "run/ordered_json.h",
+                                                  "run/summary.h"};
 
 // Index of the innermost module that holds the path; −1 if there is none.
 int module_of(const std::string& path) {

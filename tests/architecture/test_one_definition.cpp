@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> k_rooms = {"mbd",     "elements", "transformer", "run",    "report",
-                                          "explore", "python",   "study",       "assess", "tools"};
+const std::vector<std::string> k_folders = {"mbd", "elements", "transformer", "run", "tools"};
 
 using Definitions = std::map<std::string, std::set<std::string>>; // files by the type's full name
 
@@ -43,9 +42,9 @@ void collect(std::istream& lines, const std::string& file, Definitions& out) {
 Definitions all_definitions() {
   const fs::path root = STEPLAP_SOURCE;
   Definitions out;
-  for (const std::string& room : k_rooms) {
-    if (!fs::exists(root / room)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
+  for (const std::string& folder : k_folders) {
+    if (!fs::exists(root / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       const std::string ending = entry.path().extension().string();
       if (ending != ".h" && ending != ".cpp") continue;
       std::ifstream lines(entry.path());

@@ -28,7 +28,8 @@ namespace {
 std::map<std::string, std::string> product_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::map<std::string, std::string> sources;
-  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "explore", "study", "assess", "tools/steplap", "tools/study"})
+  for (const char* top :
+       {"mbd", "elements", "transformer", "run", "tools/pages", "tools/explore", "tools/study", "tools/assess", "tools/steplap"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       std::string& text = sources[fs::relative(entry.path(), root).generic_string()];
@@ -84,12 +85,12 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
                             {"run/joint_view.cpp", "what bears beside a joint, for a remark"}};
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
-      {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
+      {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"tools/study/needs.cpp", "what is made rigid is welded"}}},
       {"limit",
        {{"run/report_json.cpp", "of a criterion"},
         {"tools/steplap/run_screen.cpp", "of a criterion"},
-        {"assess/static_json.cpp", "of a criterion"}}},
-      {"load", {{"assess/static_json.cpp", "an acceleration of a proof"}}},
+        {"tools/assess/static_json.cpp", "of a criterion"}}},
+      {"load", {{"tools/assess/static_json.cpp", "an acceleration of a proof"}}},
       {"buffer", {{"mbd/model/shunting_signal.cpp", "a field"}}},
       {"rope", {{"run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
       {"distance",
@@ -98,7 +99,7 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
         {"elements/limit.cpp", "a coordinate"},
         {"elements/joint_friction.cpp", "a coordinate"},
         {"elements/formula_force.cpp", "a coordinate"}}},
-      {"step_lap_joint", {{"study/scene.cpp", "channels that every verdict needs"}}},
+      {"step_lap_joint", {{"tools/study/scene.cpp", "channels that every verdict needs"}}},
       {"spring_damper", {{"mbd/model/model.h", "an example"}}},
   };
   int kinds = 0;
@@ -121,15 +122,16 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
   const auto sources = product_sources();
   // What else is called so, and who reads a kind's settings besides the kind itself.
   const std::map<std::string, Reasons> besides = {
-      {"sample", {{"study/store.cpp", "a table of the store"}}},
+      {"sample", {{"tools/study/store.cpp", "a table of the store"}}},
       {"reliability",
-       {{"study/limit_function.h", "hands its settings to the methods of reliability"}, {"study/limit_function.cpp", "the same"}}},
+       {{"tools/study/limit_function.h", "hands its settings to the methods of reliability"},
+        {"tools/study/limit_function.cpp", "the same"}}},
   };
-  const std::string& list = sources.at("study/kinds.cpp");
+  const std::string& list = sources.at("tools/study/kinds.cpp");
   const std::regex entry("(\\w+)_kind\\(\\)"); // read from the source: builds without studies have this test, too
   int kinds = 0;
   for (std::sregex_iterator found(list.begin(), list.end(), entry), end; found != end; ++found, ++kinds) {
-    const std::string name = (*found)[1].str(), file = "study/" + name;
+    const std::string name = (*found)[1].str(), file = "tools/study/" + name;
     CAPTURE(name);
     const std::set<std::string> own = {file + ".cpp", file + ".h"};
     const auto more = besides.find(name);
@@ -146,7 +148,7 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
       if (text.find("Settings") != std::string::npos && std::regex_search(text, settings))
         CHECK_MESSAGE((own.count(path) > 0 || reasons.count(path) > 0), path << " names the settings of '" << name << "'");
     }
-    CHECK(listed == std::set<std::string>{file + ".cpp", file + ".h", "study/kinds.cpp"});
+    CHECK(listed == std::set<std::string>{file + ".cpp", file + ".h", "tools/study/kinds.cpp"});
   }
   CHECK(kinds >= 8);
 }

@@ -1,7 +1,7 @@
 // Small machines on a driven tank, and histories to drive them by.
 #pragma once
 
-#include "assess/assessment.h"
+#include "tools/assess/assessment.h"
 
 #include <string>
 

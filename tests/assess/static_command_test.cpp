@@ -1,8 +1,8 @@
 // steplap assess --static: exit codes, files, and what is refused.
 #include "tests/tools/workbench.h"
 
-#include "assess/static_preset.h"
 #include "mbd/base/diagnostics.h"
+#include "tools/assess/static_preset.h"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // Machines for static proofs: models from TOML text.
 #pragma once
 
-#include "assess/static_proof.h"
 #include "mbd/io/reader.h"
+#include "tools/assess/static_proof.h"
 #include "transformer/catalog.h"
 
 #include <memory>

@@ -1,7 +1,7 @@
 // Lists of peaks: pulses of an assumed shape do what such pulses do, and what a list does not tell is asked for.
 #include "driven_scene.h"
 
-#include "assess/assumed_pulse.h"
+#include "tools/assess/assumed_pulse.h"
 #include "transformer/recorder/fields.h"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // Inputs that nobody meant: every mutation of a file is read as something, or refused with a place; nothing else happens.
 #include "driven_scene.h"
 
-#include "study/counter_random.h"
+#include "tools/study/counter_random.h"
 
 #include <doctest/doctest.h>
 

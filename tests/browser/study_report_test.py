@@ -89,7 +89,7 @@ def fingerprint(*values):
     return state - 2**64 if state >= 2**63 else state
 
 
-# What a forger has to do, too: all fingerprints of a store anew (study/store_check.cpp).
+# What a forger has to do, too: all fingerprints of a store anew (tools/study/store_check.cpp).
 def make_fingerprints(store):
     counts = [store.execute(f"SELECT count(*) FROM {table}").fetchone()[0] for table in ("finding", "note")]
     store.execute("UPDATE setting SET value = ? WHERE key = 'answer'", ("{} findings, {} notes".format(*counts),))

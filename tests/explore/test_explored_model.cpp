@@ -1,10 +1,10 @@
 // A model run with other values is the model that its file with these values makes: in memory, from a file of the changes, and as the
 // command line runs it. Held against each other byte by byte.
-#include "explore/explored_model.h"
-#include "explore/run_results.h"
-#include "explore/saved_changes.h"
 #include "run/overview.h"
 #include "tests/tools/workbench.h"
+#include "tools/explore/explored_model.h"
+#include "tools/explore/run_results.h"
+#include "tools/explore/saved_changes.h"
 
 #include <doctest/doctest.h>
 

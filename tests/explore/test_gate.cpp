@@ -1,5 +1,5 @@
 // Who is let in: each rule of the gate by itself, with everything else as it should be.
-#include "explore/gate.h"
+#include "tools/explore/gate.h"
 
 #include <doctest/doctest.h>
 

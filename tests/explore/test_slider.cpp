@@ -1,5 +1,5 @@
 // What can be varied: every number of every model of the project, by a path that sets it, within a range that holds its value.
-#include "explore/slider.h"
+#include "tools/explore/slider.h"
 
 #include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"

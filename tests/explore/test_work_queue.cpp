@@ -1,7 +1,7 @@
 // The order of tasks, and which of them are told that nobody wants them any more. A gate holds the queue's thread, so that no test
 // hangs on time.
-#include "explore/file_watch.h"
-#include "explore/work_queue.h"
+#include "tools/explore/file_watch.h"
+#include "tools/explore/work_queue.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Study files. Their models are those in tests/fuzz/scenes.
-#include "study/study_reader.h"
 #include "tests/fuzz/fuzz.h"
+#include "tools/study/study_reader.h"
 
 using namespace steplap;
 

@@ -1,4 +1,4 @@
-// steplap as a library: installed into a folder of its own, found by CMake, and used by the programs of examples/, whose
+// steplap as a library: installed into a folder of its own, found by CMake, and used by the programs of docs/examples/, whose
 // results are closed forms.
 #include <doctest/doctest.h>
 #include <sys/wait.h>
@@ -18,7 +18,7 @@ namespace {
 
 const std::string k_prefix = STEPLAP_SCRATCH "/installed", k_programs = STEPLAP_SCRATCH "/examples";
 const std::string k_warnings = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast " STEPLAP_WARNINGS_ARE;
-const std::string k_block = " " STEPLAP_SOURCE "/examples/braked_block.toml";
+const std::string k_block = " " STEPLAP_SOURCE "/docs/examples/braked_block.toml";
 
 constexpr double k_gravity = 9.81;
 
@@ -145,7 +145,7 @@ TEST_CASE("the installed library: one model, many values, in several threads") {
 
 TEST_CASE("the installed library: an element kind of one's own, in a model file and in the verdict") {
   REQUIRE(is_installed());
-  const std::string program = k_programs + "/own_element " STEPLAP_SOURCE "/examples/own_element.toml";
+  const std::string program = k_programs + "/own_element " STEPLAP_SOURCE "/docs/examples/own_element.toml";
   const std::string said = output_of(program);
   // m v' = −c v²: with τ = m/(c v₀) = 1 s, v = v₀/(1 + t/τ), x = x₀ + (m/c) ln(1 + t/τ), and what is missing of m v²/2 is
   // dissipated. The tolerance of 1e-9 of each step leaves less than the digits written.
@@ -160,7 +160,7 @@ TEST_CASE("the installed library: an element kind of one's own, in a model file 
   CHECK(weak.find("|damper.force| <= 1900 N: reject") != std::string::npos);
   CHECK(weak.find("verdict: reject") != std::string::npos);
   // Without the kind the file is refused by its line.
-  const std::string refused = output_of("(" + k_prefix + "/bin/steplap check " STEPLAP_SOURCE "/examples/own_element.toml || true)");
+  const std::string refused = output_of("(" + k_prefix + "/bin/steplap check " STEPLAP_SOURCE "/docs/examples/own_element.toml || true)");
   CHECK(refused.find("own_element.toml:24:8") != std::string::npos);
   CHECK(refused.find("orifice_damper") != std::string::npos);
 }

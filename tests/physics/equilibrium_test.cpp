@@ -354,7 +354,7 @@ TEST_CASE("a forklift with too much on its fork tips over, and is said to") {
 TEST_CASE("a limb rests on its elastic joint, and beyond its bound on what stands beside it") {
   const double weight = 9000.0 * 9.81;
   const auto sunk = [](const std::vector<std::string>& overrides) {
-    const Model model = read_model(STEPLAP_MODELS "/../examples/ratcheting.toml", transformer_catalog(), overrides);
+    const Model model = read_model(STEPLAP_MODELS "/../docs/examples/ratcheting.toml", transformer_catalog(), overrides);
     const auto system = compile(model);
     const Equilibrium rest = find_equilibrium(*system, system->initial_state());
     return -rest.state.q[3 * 2 + 1];

@@ -1,4 +1,4 @@
-"""The notebook in examples/ runs from its first cell to its last; data frames and figures hold what the run holds.
+"""The notebook in docs/examples/ runs from its first cell to its last; data frames and figures hold what the run holds.
 
 usage: as test_module.py
 """
@@ -18,7 +18,7 @@ matplotlib.use("Agg")
 
 
 def test_every_cell_of_the_notebook(tmp_path, monkeypatch, capsys):
-    notebook = json.loads((MODELS.parent / "examples/what_if.ipynb").read_text(encoding="utf-8"))
+    notebook = json.loads((MODELS.parent / "docs/examples/what_if.ipynb").read_text(encoding="utf-8"))
     cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
     assert len(cells) >= 8 and all(not cell["outputs"] for cell in notebook["cells"] if cell["cell_type"] == "code")
     monkeypatch.chdir(tmp_path)

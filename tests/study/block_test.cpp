@@ -2,9 +2,9 @@
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
 #include "mbd/model/completion.h"
 #include "mbd/rest/start.h"
-#include "study/law.h"
 #include "tests/study/block_scene.h"
 #include "tests/study/study_bench.h"
+#include "tools/study/law.h"
 
 using namespace steplap;
 using namespace steplap::testing;

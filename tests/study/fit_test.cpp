@@ -1,8 +1,8 @@
 // Fits of a block that slides under a pulse: the path it slides is known in closed form at every instant.
-#include "study/counter_random.h"
-#include "study/least_squares.h"
 #include "tests/study/block_scene.h"
 #include "tests/study/study_bench.h"
+#include "tools/study/counter_random.h"
+#include "tools/study/least_squares.h"
 
 #include <Eigen/Dense>
 

@@ -1,6 +1,6 @@
 // Distributions against their closed forms, random numbers against published ones.
-#include "study/counter_random.h"
-#include "study/law.h"
+#include "tools/study/counter_random.h"
+#include "tools/study/law.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Distributions fitted to measured values. The values are the quantiles of a known distribution at even probabilities,
 // so that what is found differs from it by what a thousand values are too coarse for, and not by chance.
-#include "study/law.h"
 #include "tests/study/study_bench.h"
+#include "tools/study/law.h"
 
 #include <numbers>
 

@@ -5,8 +5,8 @@
 // A row for each case: in how many of a hundred seeds the interval holds the exact value, and by what the mean of the
 // estimates is off, at each coefficient of variation that was asked for. Studies run as they do for users, each with a
 // store of its own, in as many processes as there are cases named.
-#include "study/kinds.h"
 #include "tests/study/known_cases.h"
+#include "tools/study/kinds.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // Limit states without dynamics whose probability is known exactly: closed forms, or quadrature in double precision.
-#include "study/law.h"
 #include "tests/study/known_cases.h"
 #include "tests/study/study_bench.h"
+#include "tools/study/law.h"
 
 #include <map>
 

@@ -1,11 +1,11 @@
 // The page of a study: bands and digits against what theory says of them, every kind's findings with their units,
 // thinning that is told, the same bytes for the same store.
-#include "study/counter_random.h"
-#include "study/report_data.h"
-#include "study/report_findings.h"
-#include "study/report_tally.h"
 #include "tests/study/study_bench.h"
-#include "tools/study/progress_line.h"
+#include "tools/study/counter_random.h"
+#include "tools/study/program/progress_line.h"
+#include "tools/study/report_data.h"
+#include "tools/study/report_findings.h"
+#include "tools/study/report_tally.h"
 
 #include <nlohmann/json.hpp>
 

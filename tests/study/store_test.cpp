@@ -1,7 +1,7 @@
 // What happens to a store: threads, ranks, interruptions, changed studies, disks that cannot be written.
-#include "study/store_writer.h"
-#include "study/study_reader.h"
 #include "tests/study/study_bench.h"
+#include "tools/study/store_writer.h"
+#include "tools/study/study_reader.h"
 
 #include <fcntl.h>
 #include <signal.h>

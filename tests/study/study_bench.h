@@ -1,10 +1,10 @@
 // Studies run in this process, in a scratch folder.
 #pragma once
 
-#include "study/finding.h"
-#include "study/store.h"
 #include "tools/steplap/command_line.h"
-#include "tools/study/commands.h"
+#include "tools/study/finding.h"
+#include "tools/study/program/commands.h"
+#include "tools/study/store.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // Study files: every mistake is told with its line before anything runs.
-#include "study/study_reader.h"
 #include "tests/study/study_bench.h"
+#include "tools/study/study_reader.h"
 
 #include <nlohmann/json.hpp>
 

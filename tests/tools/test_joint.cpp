@@ -78,7 +78,7 @@ TEST_CASE("joint refuses what it cannot answer") {
 }
 
 TEST_CASE("a joint says whose its capacity is: alone until it slides, or shared with what is beside it") {
-  const std::string model = STEPLAP_SOURCE "/examples/ratcheting.toml";
+  const std::string model = STEPLAP_SOURCE "/docs/examples/ratcheting.toml";
   CHECK(steplap_does({"joint", model}).out.find("shares its load with 'tie plate' (tie): the capacity is the joint's part alone") !=
         std::string::npos);
   CHECK(steplap_does({"joint", k_paper}).out.find("elastic") == std::string::npos);

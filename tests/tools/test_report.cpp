@@ -1,15 +1,15 @@
 // Results read back, thinned, made into a page and into images.
 #include "mbd/io/reader.h"
-#include "report/figure.h"
-#include "report/report_data.h"
-#include "report/report_page.h"
-#include "report/thinning.h"
 #include "run/catalogue.h"
 #include "run/drawing.h"
 #include "run/result_files.h"
 #include "run/results.h"
 #include "run/symbols.h"
 #include "tests/tools/workbench.h"
+#include "tools/pages/figure.h"
+#include "tools/pages/report_data.h"
+#include "tools/pages/report_page.h"
+#include "tools/pages/thinning.h"
 #include "tools/steplap/command.h"
 
 #include <doctest/doctest.h>

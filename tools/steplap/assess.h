@@ -1,5 +1,5 @@
 // steplap assess: from recorders' files and models to a decision. What the command line takes; the work is done by the program of
-// studies (tools/study/assess.h), whose libraries it needs, or, with --static, here.
+// studies (tools/study/program/assess.h), whose libraries it needs, or, with --static, here.
 #pragma once
 
 #include "tools/steplap/record_options.h"

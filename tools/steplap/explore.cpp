@@ -1,8 +1,8 @@
 #include "tools/steplap/explore.h"
 
-#include "explore/explorer.h"
-#include "explore/local_server.h"
 #include "mbd/io/read_input.h"
+#include "tools/explore/explorer.h"
+#include "tools/explore/local_server.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 

@@ -2,8 +2,8 @@
 
 #include "mbd/io/csv.h"
 #include "mbd/rest/modes.h"
-#include "report/modes_page.h"
 #include "run/run.h"
+#include "tools/pages/modes_page.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"

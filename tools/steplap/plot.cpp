@@ -2,7 +2,7 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
-#include "report/figure.h"
+#include "tools/pages/figure.h"
 #include "tools/steplap/output_files.h"
 
 #include <nlohmann/json.hpp>

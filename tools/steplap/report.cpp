@@ -1,8 +1,8 @@
 #include "tools/steplap/report.h"
 
 #include "mbd/io/atomic_file.h"
-#include "report/assessment_page.h"
-#include "report/report_page.h"
+#include "tools/pages/assessment_page.h"
+#include "tools/pages/report_page.h"
 #include "tools/steplap/output_files.h"
 
 #include <algorithm>

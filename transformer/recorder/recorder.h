@@ -1,7 +1,7 @@
 // [[recorder]]: where a shock recorder sat on the tank, which way it pointed, and what its record takes the place of.
 //
 // A model is one plane: two of the recorder's axes lie in it, each mapped with its sign onto an axis of the marker. The table
-// changes nothing of a usual run. An assessment drives the marker's body by the recorded acceleration (assess/driven_model.h).
+// changes nothing of a usual run. An assessment drives the marker's body by the recorded acceleration (tools/assess/driven_model.h).
 // Assumes that the body of the marker is rigid from the recorder to where the rest of the machine stands on it.
 #pragma once
 

@@ -233,7 +233,7 @@ TEST_CASE("a limb that slides off its yoke comes apart where its sheets have par
 TEST_CASE("a shaken limb ratchets down its joint, and shakes down onto a tie plate") {
   // The example of docs/explanation/step_lap_joint.md: its table.
   const auto slid = [](const char* plate) {
-    const Run r = run(steplap::read_model(std::string(STEPLAP_MODELS) + "/../examples/ratcheting.toml", steplap::transformer_catalog(),
+    const Run r = run(steplap::read_model(std::string(STEPLAP_MODELS) + "/../docs/examples/ratcheting.toml", steplap::transformer_catalog(),
                                           {std::string("element.tie plate.stiffness=") + plate}));
     const auto dy = r.series("joint.dy");
     return std::vector<double>{-dy[10], -dy[20], -dy[30]};

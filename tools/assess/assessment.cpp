@@ -1,0 +1,195 @@
+#include "tools/assess/assessment.h"
+
+#include "mbd/base/shown_text.h"
+#include "run/failure.h"
+#include "tools/assess/hangs_on.h"
+#include "transformer/recorder/fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::assess {
+
+namespace {
+
+constexpr double k_same_margin = 0.02; // between a run with errors estimated and the same run among the samples
+constexpr double k_still = 1e-3;       // m/s: what moves more slowly is at rest for the next event
+
+void stop_if_asked(const AssessmentOptions& options, const std::string& where) {
+  if (!options.stop) return;
+  if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why + " " + where + ".");
+}
+
+VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::string& model) {
+  VoyageSummary s;
+  const std::string where = "event " + std::to_string(number) + " of '" + model + "': ";
+  if (!passage.is_made) s.unknown = where + passage.reason;
+  else if (!passage.is_trusted) s.unknown = where + passage.trust;
+  for (const JointPassage& joint : passage.joints) {
+    if (std::isnan(joint.margin)) s.unknown = where + "the margin of '" + joint.name + "' is not known.";
+    s.least_margin = std::min(s.least_margin, joint.margin);
+    s.slid = std::max(s.slid, joint.slid_total);
+    s.overlap_left = std::min(s.overlap_left, joint.overlap_left);
+    s.comes_apart |= joint.came_apart;
+    s.slips |= joint.slips;
+    if (joint.slips && s.first_slip.empty()) s.first_slip = "'" + joint.name + "' slips in event " + std::to_string(number);
+  }
+  for (const auto* limits : {&passage.reactions, &passage.clearances, &passage.others})
+    for (const LimitPassage& limit : *limits) {
+      if (limit.outcome <= s.acceptance) continue;
+      s.acceptance = limit.outcome;
+      s.first_unmet = "'" + limit.name + "' in event " + std::to_string(number) +
+                      (std::isfinite(limit.share) ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : "");
+    }
+  if (passage.is_made && passage.verdict == Verdict::open && s.acceptance < Verdict::open) {
+    s.acceptance = Verdict::open;
+    s.first_unmet = "event " + std::to_string(number) + ": " + passage.reason;
+  }
+  s.lifts = !passage.feet.empty();
+  return s;
+}
+
+void read_inputs(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options,
+                 Assessment& a) {
+  a.criteria = read_criteria(options.criteria);
+  a.accepted = options.accepted;
+  std::vector<Diagnostic> problems;
+  for (const std::string& model : models) {
+    try {
+      a.models.push_back(read_driven_model(model, options.overrides));
+    } catch (const ModelError& error) {
+      problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  if (!problems.empty()) throw ModelError(std::move(problems));
+  a.uncertain = std::make_unique<UncertainValues>(a.models);
+  for (const std::string& record : records) {
+    stop_if_asked(options, "before '" + record + "' was read");
+    a.records.push_back(read_events(record, options.reading));
+  }
+  if (options.reading.pulse && std::none_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.pulse.has_value(); }))
+    throw FileError(a.records.front().file,
+                    "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: assume none");
+  std::string order;
+  order_records(a.records, order);
+  if (!order.empty()) a.assumptions.push_back(order);
+  for (std::size_t r = 0; r < a.records.size(); ++r)
+    for (std::size_t e = 0; e < a.records[r].events.size(); ++e) a.events.push_back({r, e, {}, {}});
+  for (const RecordEvents& record : a.records)
+    for (const DrivenModel& model : a.models)
+      if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
+  for (const DrivenModel& model : a.models) {
+    std::vector<DriveHistory>& histories = a.histories.emplace_back();
+    for (const VoyageEvent& event : a.events)
+      histories.push_back(
+          drive_history(a.records[event.record], a.records[event.record].events[event.event], model.recorder, model.marker_angle));
+  }
+}
+
+void pass_events(const AssessmentOptions& options, Assessment& a) {
+  std::vector<Traveller> travellers;
+  for (const DrivenModel& model : a.models) travellers.emplace_back(model);
+  long done = 0;
+  for (std::size_t e = 0; e < a.events.size(); ++e)
+    for (std::size_t m = 0; m < a.models.size(); ++m) {
+      stop_if_asked(options, "in event " + std::to_string(e + 1));
+      if (options.progress) options.progress("events", done++, static_cast<long>(a.events.size() * a.models.size()));
+      Passage passage = travellers[m].pass(a.histories[m][e], options.estimating);
+      passage.event = e, passage.model = m;
+      if (passage.still_moving > k_still && !a.histories[m][e].goes_on)
+        passage.findings.push_back("The machine still moves at " + rounded_text(passage.still_moving, 2) +
+                                   " m/s when the event is over: raise 'settle' of [[recorder]] if the next event begins from rest.");
+      worsen(a.summary, summary_of(passage, e + 1, a.models[m].name));
+      a.events[e].passages.push_back(std::move(passage));
+    }
+}
+
+// The same voyage by the way of the samples: two ways to one result.
+void check_against_samples(Assessment& a) {
+  const VoyageSummary twin = voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal()).summary;
+  if (!a.summary.unknown.empty()) return;
+  const VoyageSummary& own = a.summary;
+  const bool is_margin_same = (std::isinf(own.least_margin) && std::isinf(twin.least_margin)) ||
+                              std::abs(twin.least_margin - own.least_margin) <= k_same_margin * std::abs(own.least_margin);
+  const bool is_same = twin.unknown.empty() && own.slips == twin.slips && own.comes_apart == twin.comes_apart && is_margin_same;
+  if (!is_same)
+    a.summary.unknown = "two ways of computing the voyage differ: a least margin of " + rounded_text(own.least_margin, 4) + " and " +
+                        rounded_text(twin.least_margin, 4) + (twin.unknown.empty() ? "" : " (" + twin.unknown + ")") +
+                        ". Tighten the tolerance of the models.";
+}
+
+void sample(const AssessmentOptions& options, Assessment& a) {
+  if (a.events.empty()) return;
+  check_against_samples(a);
+  if (a.uncertain->empty() || options.sampling.samples <= 0) return;
+  SamplingOptions sampling = options.sampling;
+  sampling.stop = options.stop;
+  if (options.progress) sampling.progress = [&](long done, long all) { options.progress("samples", done, all); };
+  a.samples = sample_voyages(a.models, a.histories, *a.uncertain, sampling);
+  a.damage = damage_probability(a.samples);
+  a.shares = shares_of(a.samples);
+  for (std::size_t e = 0; e < a.events.size(); ++e)
+    for (std::size_t m = 0; m < a.models.size(); ++m) a.events[e].slip.push_back(slip_probability(a.samples, m, e, a.events.size()));
+}
+
+void assume(Assessment& a) {
+  for (const DrivenModel& model : a.models) {
+    const std::string name = "'" + model.name + "': ";
+    a.assumptions.push_back(name + "the body '" + model.body + "' moves as the recorder on it read" +
+                            (model.recorder.rotation == "held" ? ", without turning." : ", turning freely about the recorder.") +
+                            " It is rigid from there to where the rest stands on it.");
+    for (const std::string& note : model.notes) a.assumptions.push_back(name + note);
+    if (model.recorder.drift == "line")
+      a.assumptions.push_back(name + "of each event a constant is taken away, so that velocity ends where it began.");
+  }
+  a.assumptions.push_back(
+      "The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
+      rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) +
+      " g is not run, but for what is greatest of each axis.");
+  for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
+  for (const UncertainValue& value : a.uncertain->values())
+    if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
+  constexpr double k_unlikely = 0.01; // on either side
+  for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
+    const UncertainValue& value = a.uncertain->values()[i];
+    if (value.nominal >= a.uncertain->quantile(i, k_unlikely) && value.nominal <= a.uncertain->quantile(i, 1.0 - k_unlikely)) continue;
+    a.assumptions.push_back("The models' own " + value.name + ", " + rounded_text(value.nominal, 4) +
+                            ", lies outside the middle 98 % of its distribution (" + a.uncertain->law_text(i) +
+                            "): events in detail and probabilities are of different machines. Give both the same value.");
+  }
+  if (a.uncertain->values().size() > 1) a.assumptions.push_back("Uncertain values are taken to be independent of each other.");
+  for (const RecordEvents& record : a.records)
+    for (const RecordFault fault : record.faults)
+      if (std::find(a.accepted.begin(), a.accepted.end(), fault) != a.accepted.end())
+        a.assumptions.push_back("That '" + record.file + "' is not whole (" + name_of(fault) + ") was accepted by whoever asked.");
+  for (const RecordEvents& record : a.records) {
+    const ReadFacts& facts = record.recording.facts;
+    const std::string start = record.recording.layout.time.start;
+    constexpr double k_hours = 7200.0; // s: beyond, people count in hours
+    const double covered = facts.last - facts.first;
+    a.assumptions.push_back("'" + record.file + "' covers " +
+                            (covered > k_hours ? rounded_text(covered / 3600.0, 4) + " h" : rounded_text(covered, 4) + " s") +
+                            (start.empty() ? "" : "; it starts " + start) + ". What came before or after is in no record.");
+    if (facts.repeated.count > 0)
+      a.assumptions.push_back("Of '" + record.file + "' " + counted(facts.repeated.count, "row", "rows") +
+                              " with the time of another are left out, as asked.");
+    if (facts.unended_line > 0)
+      a.assumptions.push_back("The last line of '" + record.file +
+                              "' does not end with a line break: that the file is whole could not be seen.");
+  }
+}
+
+} // namespace
+
+Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options) {
+  Assessment a;
+  read_inputs(records, models, options, a);
+  pass_events(options, a);
+  sample(options, a);
+  decide(a);
+  find_what_it_hangs_on(options, a);
+  assume(a);
+  return a;
+}
+
+} // namespace steplap::assess

@@ -1,0 +1,285 @@
+// assessment.json: all that the printed page and scripts read. SI unless a unit stands beside; null where nothing is known.
+#include "run/left_out.h"
+#include "run/ordered_json.h"
+#include "run/version.h"
+#include "tools/assess/assessment.h"
+#include "transformer/recorder/time_text.h"
+
+#include "mbd/io/digest.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::assess {
+
+namespace {
+
+using Json = OrderedJson;
+constexpr std::size_t k_figure_points = 600; // of a curve that a page draws a hand wide
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
+Json probability(const Probability& p) {
+  if (p.runs == 0) return nullptr;
+  return {{"value", number(p.value)}, {"low", p.low}, {"high", p.high}, {"runs", p.runs}, {"unknown", p.unknown}};
+}
+
+Json records(const Assessment& a) {
+  Json all = Json::array();
+  for (const RecordEvents& record : a.records) {
+    Json faults = Json::array();
+    for (const RecordFault fault : record.faults)
+      faults.push_back(
+          {{"what", name_of(fault)}, {"accepted", std::find(a.accepted.begin(), a.accepted.end(), fault) != a.accepted.end()}});
+    Json subtracted = Json::object();
+    for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i)
+      subtracted[std::string(1, record.recording.layout.axes[i].axis)] = record.offset[i];
+    Json peaks = Json::array();
+    for (const PeakEntry& entry : record.recording.peaks)
+      peaks.push_back({{"time", number(entry.t)},
+                       {"line", entry.line},
+                       {"x", number(entry.axis[0])},
+                       {"y", number(entry.axis[1])},
+                       {"z", number(entry.axis[2])},
+                       {"magnitude", number(entry.magnitude)},
+                       {"duration", number(entry.duration)},
+                       {"velocity_change", number(entry.velocity_change)}});
+    all.push_back({{"file", record.file},
+                   {"sha256", record.sha256},
+                   {"taken_for", facts_text(record.recording)},
+                   {"warnings", record.warnings()},
+                   {"faults", faults},
+                   {"rate", number(record.rate)},
+                   {"bandwidth", number(record.bandwidth)},
+                   {"threshold", record.rules.threshold},
+                   {"subtracted", subtracted},
+                   {"events", record.events.size()},
+                   {"peaks_only", peaks}});
+  }
+  return all;
+}
+
+Json uncertain_of_model(const Assessment& a, std::size_t model) {
+  Json all = Json::array();
+  const std::vector<UncertainValue>& values = a.uncertain->values();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const UncertainValue& value = values[i];
+    const auto here =
+        std::find_if(value.settings.begin(), value.settings.end(), [&](const UncertainValue::Setting& s) { return s.model == model; });
+    if (here == value.settings.end()) continue;
+    constexpr double k_low = 0.05, k_high = 0.95;
+    all.push_back({{"path", here->path},
+                   {"name", value.name},
+                   {"nominal", value.nominal},
+                   {"unit", value.is_factor ? "" : value.unit},
+                   {"is_factor", value.is_factor},
+                   {"law", a.uncertain->law_text(i)},
+                   {"low", a.uncertain->quantile(i, k_low)},
+                   {"high", a.uncertain->quantile(i, k_high)},
+                   {"source", value.source},
+                   {"source_text", value.source_text},
+                   {"share", i < a.shares.size() ? number(a.shares[i]) : Json(nullptr)}});
+  }
+  return all;
+}
+
+Json models(const Assessment& a) {
+  Json all = Json::array();
+  for (std::size_t m = 0; m < a.models.size(); ++m) {
+    const DrivenModel& model = a.models[m];
+    const Recorder& r = model.recorder;
+    std::vector<std::string> unknown = r.knows_not;
+    for (std::string& text : left_out_of(model.given)) unknown.push_back(std::move(text));
+    all.push_back({{"name", model.name},
+                   {"file", model.file},
+                   {"sha256", model.sha256},
+                   {"plane", r.plane},
+                   {"recorder",
+                    {{"name", r.name},
+                     {"marker", r.marker},
+                     {"body", model.body},
+                     {"x", r.x},
+                     {"y", r.y},
+                     {"angle", model.marker_angle},
+                     {"rotation", r.rotation},
+                     {"drift", r.drift},
+                     {"settle", r.settle}}},
+                   {"replaced", r.replaces},
+                   {"notes", model.notes},
+                   {"knows_not", unknown},
+                   {"uncertain", uncertain_of_model(a, m)}});
+  }
+  return all;
+}
+
+// Of each stretch the sample that is furthest from zero, so that peaks stay.
+Json figure(const RecordEvents& record, const Window& window) {
+  const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (count + k_figure_points - 1) / k_figure_points);
+  const std::string axes = record.axes();
+  Json curve = {{"times", Json::array()}};
+  for (std::size_t i = 0; i < axes.size(); ++i) curve[std::string(1, axes[i])] = Json::array();
+  for (std::size_t from = 0; from < count; from += stride) {
+    std::size_t best = from;
+    double furthest = -1.0;
+    for (std::size_t k = from; k < std::min(count, from + stride); ++k)
+      for (std::size_t i = 0; i < axes.size(); ++i)
+        if (std::abs(window.filtered[i][k]) > furthest) furthest = std::abs(window.filtered[i][k]), best = k;
+    curve["times"].push_back(window.times[best]);
+    for (std::size_t i = 0; i < axes.size(); ++i) curve[std::string(1, axes[i])].push_back(window.filtered[i][best]);
+  }
+  return curve;
+}
+
+Json limits(const std::vector<LimitPassage>& all, const char* value_name) {
+  Json list = Json::array();
+  for (const LimitPassage& limit : all)
+    list.push_back({{"name", limit.name},
+                    {value_name, number(limit.value)},
+                    {"allowed", number(limit.allowed)},
+                    {"unit", limit.unit},
+                    {"share", number(limit.share)},
+                    {"met", limit.is_met},
+                    {"outcome", name_of(limit.outcome)},
+                    {"text", limit.text}});
+  return list;
+}
+
+Json passage(const Passage& p, const Assessment& a, const Probability* slip) {
+  Json joints = Json::array(), feet = Json::array();
+  for (const JointPassage& joint : p.joints)
+    joints.push_back({{"name", joint.name},
+                      {"slips", joint.slips},
+                      {"came_apart", joint.came_apart},
+                      {"margin", number(joint.margin)},
+                      {"at", joint.at},
+                      {"slid", joint.slid},
+                      {"slid_total", joint.slid_total},
+                      {"overlap_left", number(joint.overlap_left)},
+                      {"error", number(joint.error)}});
+  for (const FootPassage& foot : p.feet)
+    feet.push_back({{"name", foot.name}, {"lifts", true}, {"from", foot.from}, {"height", number(foot.height)}});
+  static constexpr const char* k_trust[] = {"good", "limited", "none"};
+  return {{"model", a.models[p.model].name},
+          {"made", p.is_made},
+          {"verdict", name_of(p.verdict)},
+          {"reason", p.reason},
+          {"trust", p.trust},
+          {"trust_level", k_trust[static_cast<int>(p.trust_level)]},
+          {"joints", joints},
+          {"feet", feet},
+          {"reactions", limits(p.reactions, "value")},
+          {"clearances", limits(p.clearances, "left")},
+          {"criteria", limits(p.others, "value")},
+          {"findings", p.findings},
+          {"still_moving", p.still_moving},
+          {"slip_probability", slip ? probability(*slip) : Json(nullptr)}};
+}
+
+Json event(const Assessment& a, std::size_t number_) {
+  const VoyageEvent& e = a.events[number_];
+  const RecordEvents& record = a.records[e.record];
+  const RecordedEvent& recorded = record.events[e.event];
+  const ShockEvent& shock = recorded.event;
+  const std::string axes = record.axes();
+  Json peaks = Json::array(), passages = Json::array();
+  for (std::size_t i = 0; i < shock.axes.size(); ++i) {
+    const AxisEvent& axis = shock.axes[i];
+    peaks.push_back({{"axis", std::string(1, axes[i])},
+                     {"value", axis.peak},
+                     {"unit", "m/s^2"},
+                     {"bandwidth", record.pulse ? Json(nullptr) : Json(record.bandwidth)},
+                     {"time", axis.peak_time},
+                     {"velocity_change", axis.velocity_change},
+                     {"duration", axis.duration},
+                     {"frequency", axis.frequency},
+                     {"up_to_100_Hz", number(axis.at_cfc60)},
+                     {"up_to_17_Hz", number(axis.at_cfc10)}});
+  }
+  for (std::size_t m = 0; m < e.passages.size(); ++m)
+    passages.push_back(passage(e.passages[m], a, m < e.slip.size() ? &e.slip[m] : nullptr));
+  const double time = shock.axes.empty() ? shock.begin : shock.axes[shock.worst].peak_time;
+  Json clock = nullptr;
+  if (record.clock_ns) {
+    std::string stamp = stamp_text(*record.clock_ns + static_cast<std::int64_t>(std::llround(time * 1e9)));
+    if (const std::size_t blank = stamp.find(' '); blank != std::string::npos) stamp[blank] = 'T';
+    clock = stamp;
+  }
+  return {{"number", number_ + 1},
+          {"record", record.file},
+          {"in_record", shock.number},
+          {"line", shock.line},
+          {"time", time},
+          {"begin", shock.begin},
+          {"end", shock.end},
+          {"clock", clock},
+          {"duration", shock.axes.empty() ? 0.0 : shock.axes[shock.worst].duration},
+          {"goes_on", shock.goes_on},
+          {"below_threshold", recorded.is_below},
+          {"peaks", peaks},
+          {"figure", figure(record, recorded.window)},
+          {"models", passages}};
+}
+
+// Each joint's sums after the last event that was run.
+Json voyage(const Assessment& a) {
+  Json joints = Json::array();
+  for (std::size_t m = 0; m < a.models.size(); ++m) {
+    std::vector<JointPassage> last;
+    std::vector<std::string> names;
+    std::vector<long> slips;
+    for (const VoyageEvent& e : a.events)
+      for (const JointPassage& joint : e.passages[m].joints) {
+        const auto known = std::find(names.begin(), names.end(), joint.name);
+        const auto i = static_cast<std::size_t>(known - names.begin());
+        if (known == names.end()) names.push_back(joint.name), slips.push_back(0), last.push_back(joint);
+        slips[i] += joint.slips ? 1 : 0;
+        const double least = std::min(last[i].margin, joint.margin);
+        last[i] = joint;
+        last[i].margin = least;
+      }
+    for (std::size_t i = 0; i < last.size(); ++i)
+      joints.push_back({{"model", a.models[m].name},
+                        {"name", last[i].name},
+                        {"slid_total", last[i].slid_total},
+                        {"slips", slips[i]},
+                        {"overlap_left", number(last[i].overlap_left)},
+                        {"least_margin", number(last[i].margin)}});
+  }
+  return {{"joints", joints}, {"damage_probability", probability(a.damage)}};
+}
+
+Json reasons(const Assessment& a) {
+  Json all = Json::array();
+  for (const Reason& r : a.reasons)
+    all.push_back(
+        {{"criterion", r.criterion}, {"outcome", name_of(r.outcome)}, {"text", r.text}, {"source", r.source}, {"tests", r.tests}});
+  return all;
+}
+
+} // namespace
+
+std::string assessment_json(const Assessment& a) {
+  Json events = Json::array();
+  for (std::size_t i = 0; i < a.events.size(); ++i) events.push_back(event(a, i));
+  const Json json = {{"program", std::string("steplap ") + k_version},
+                     {"decision", name_of(a.decision)},
+                     {"reason", a.reason},
+                     {"reasons", reasons(a)},
+                     {"records", records(a)},
+                     {"models", models(a)},
+                     {"events", std::move(events)},
+                     {"voyage", voyage(a)},
+                     {"hangs_on", a.hangs_on},
+                     {"assumptions", a.assumptions},
+                     {"tests", a.tests},
+                     {"criteria",
+                      {{"name", a.criteria.name},
+                       {"file", a.criteria.file},
+                       {"sha256", sha256(a.criteria.toml)},
+                       {"text", a.criteria.text},
+                       {"source", a.criteria.source}}}};
+  return json.dump(1) + "\n";
+}
+
+} // namespace steplap::assess

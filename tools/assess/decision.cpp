@@ -1,0 +1,267 @@
+// Criteria against what was found.
+#include "tools/assess/assessment.h"
+
+#include "mbd/base/shown_text.h"
+#include "run/quantity_text.h"
+#include "transformer/recorder/fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::assess {
+
+namespace {
+
+std::string percent(double share) { return rounded_text(std::round(1e3 * share) / 10.0) + " %"; }
+
+Decision outcome_of(const DecisionCriterion& c) { return c.outcome == "return" ? Decision::send_back : Decision::inspect; }
+
+// The largest of what the recorder read, with where it was read.
+struct Reading {
+  double value = 0.0;
+  std::size_t event = k_no_event;
+  char axis = 'x';
+  double bandwidth = 0.0; ///< Hz
+  bool is_known = true;
+  bool is_beneath = false; ///< shocks below the threshold were not looked at, and may be larger than the limit
+  static constexpr std::size_t k_no_event = static_cast<std::size_t>(-1);
+};
+
+constexpr double k_told = 95.0; // Hz: with less of a shock its peak in g says nothing (the same impact reads 18 g or 1.5 g)
+
+// Does the criterion look at what the recorder read itself? It does where no filter is between, or one that hides shocks.
+bool looks_at_rows(const DecisionCriterion& c, const RecordEvents& record) {
+  return c.quantity == "peak" && c.bandwidth == "record" && (!record.is_filtered || record.bandwidth < k_told);
+}
+
+double value_of(const DecisionCriterion& c, const AxisEvent& axis) {
+  if (c.quantity == "velocity_change") return std::abs(axis.velocity_change);
+  return std::abs(c.bandwidth == "100 Hz" ? axis.at_cfc60 : c.bandwidth == "17 Hz" ? axis.at_cfc10 : axis.peak);
+}
+
+// Of all rows, less what was subtracted.
+double largest_row(const RecordEvents& record, std::size_t axis) {
+  const AxisFacts& facts = record.recording.facts.axes[axis];
+  return std::max(std::abs(facts.greatest - record.offset[axis]), std::abs(facts.least - record.offset[axis]));
+}
+
+std::size_t event_of_row(const Assessment& a, std::size_t record, std::size_t axis) {
+  std::size_t best = Reading::k_no_event;
+  double most = -1.0;
+  for (std::size_t e = 0; e < a.events.size(); ++e)
+    if (a.events[e].record == record)
+      for (const double value : a.records[record].events[a.events[e].event].window.plain[axis])
+        if (std::abs(value) > most) most = std::abs(value), best = e;
+  return most >= 0.98 * largest_row(a.records[record], axis) ? best : Reading::k_no_event; // resampling may take a little off
+}
+
+void take(Reading& largest, double value, std::size_t event, char axis, double bandwidth) {
+  if (std::isnan(value)) largest.is_known = false;
+  else if (value > largest.value) largest.value = value, largest.event = event, largest.axis = axis, largest.bandwidth = bandwidth;
+}
+
+void look_at_record(const DecisionCriterion& c, const Assessment& a, std::size_t r, Reading& largest) {
+  const RecordEvents& record = a.records[r];
+  const std::vector<AxisColumn>& axes = record.recording.layout.axes;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (c.axis != "any" && axes[i].axis != c.axis.front()) continue;
+    if (looks_at_rows(c, record)) {
+      take(largest, largest_row(record, i), event_of_row(a, r, i), axes[i].axis, 0.5 * record.rate);
+      continue;
+    }
+    for (std::size_t e = 0; e < a.events.size(); ++e)
+      if (a.events[e].record == r)
+        take(largest, value_of(c, record.events[a.events[e].event].event.axes[i]), e, axes[i].axis, record.bandwidth);
+    largest.is_beneath |= c.quantity == "peak" && record.rules.threshold > *c.at_most && largest_row(record, i) > *c.at_most;
+  }
+}
+
+Reading largest_reading(const DecisionCriterion& c, const Assessment& a) {
+  constexpr std::size_t k_axes = 3;
+  Reading largest;
+  for (std::size_t r = 0; r < a.records.size(); ++r) {
+    const RecordLayout& layout = a.records[r].recording.layout;
+    if (layout.is_peaks || (c.axis != "any" ? !a.records[r].axis(c.axis.front()) : layout.axes.size() < k_axes)) largest.is_known = false;
+    if (!layout.is_peaks) look_at_record(c, a, r, largest);
+    for (const PeakEntry& entry : a.records[r].recording.peaks) // of a table of peaks at least that
+      for (const double value : {entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude})
+        if (c.quantity == "peak" && std::abs(value) > largest.value) largest.value = std::abs(value), largest.event = Reading::k_no_event;
+  }
+  return largest;
+}
+
+// What a criterion makes of a number of which more may be known to be too much, or too little to be known.
+Reason judged(const DecisionCriterion& c, Decision outcome, std::string text) {
+  Reason reason{c.name, std::move(text), c.source, outcome, {}};
+  if (outcome == Decision::inspect || outcome == Decision::send_back) reason.tests = c.tests;
+  return reason;
+}
+
+Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
+  const Reading largest = largest_reading(c, a);
+  const bool is_peak = c.quantity == "peak", has_event = largest.event < a.events.size();
+  const auto shown = [&](double value) { return is_peak ? rounded_text(value / k_gravity, 3) + " g" : quantity_text(value, "m/s"); };
+  const std::string band = !is_peak                  ? ""
+                           : c.bandwidth != "record" ? ", up to " + c.bandwidth
+                           : largest.bandwidth > 0.0 ? ", up to " + rounded_text(largest.bandwidth, 3) + " Hz"
+                                                     : "";
+  const std::string where = largest.bandwidth > 0.0 ? " (axis " + std::string(1, largest.axis) + band +
+                                                          (has_event ? ", event " + std::to_string(largest.event + 1) : "") + ")"
+                                                    : "";
+  const std::string what = is_peak ? "The recorder read at most " : "The largest change of velocity is ";
+  if (largest.value > *c.at_most)
+    return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".");
+  if (!largest.is_known)
+    return judged(c, Decision::open,
+                  "A record does not tell all that '" + c.name + "' asks: an axis, or frequencies that high, are not in it.");
+  if (largest.is_beneath)
+    return judged(c, Decision::open,
+                  "Shocks above " + shown(*c.at_most) +
+                      " may lie below the threshold from which shocks are looked at. Lower the threshold.");
+  return judged(c, Decision::energise, what + shown(largest.value) + where + "; " + shown(*c.at_most) + " are allowed.");
+}
+
+// Of criteria that look at joints: why nothing can be said of them; "".
+std::string joints_unknown(const Assessment& a) {
+  bool has_joints = false;
+  for (const VoyageEvent& event : a.events)
+    for (const Passage& passage : event.passages) {
+      has_joints |= !passage.joints.empty();
+      if (!passage.unjudged.empty())
+        return "the joint '" + passage.unjudged.front() + "' has no sheets that overlap, and cannot be judged.";
+    }
+  return has_joints ? "" : "no model has a joint that can be judged.";
+}
+
+// Of criteria that look at runs: a record that no model was driven by; "".
+std::string waves_unknown(const Assessment& a) {
+  for (const RecordEvents& record : a.records)
+    if (record.recording.layout.is_peaks && !record.pulse)
+      return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them: a pulse can be assumed.";
+  return a.events.empty() ? "no model was driven by a record." : "";
+}
+
+std::string unknown_of(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
+  if (!s.unknown.empty()) return s.unknown;
+  if (const std::string waves = waves_unknown(a); !waves.empty()) return waves;
+  return c.quantity == "acceptance" || c.quantity == "lift" ? "" : joints_unknown(a);
+}
+
+Reason judge_flag(const DecisionCriterion& c, const std::string& unknown, bool happens, const std::string& yes, const std::string& no) {
+  if (happens) return judged(c, outcome_of(c), yes);
+  if (!unknown.empty()) return judged(c, Decision::open, "It is not known: " + unknown);
+  return judged(c, Decision::energise, no);
+}
+
+Reason judge_acceptance(const DecisionCriterion& c, const VoyageSummary& s, const std::string& unknown) {
+  if (s.acceptance == Verdict::reject) return judged(c, Decision::send_back, "A model rejects the machine: " + s.first_unmet + ".");
+  if (s.acceptance == Verdict::inspect) return judged(c, outcome_of(c), "A model asks to inspect the machine: " + s.first_unmet + ".");
+  if (!unknown.empty()) return judged(c, Decision::open, "It is not known: " + unknown);
+  if (s.acceptance == Verdict::open) return judged(c, Decision::open, "A model cannot say that the machine holds. " + s.first_unmet);
+  return judged(c, Decision::energise, "All that the models ask is met in every event.");
+}
+
+Reason judge_probability(const DecisionCriterion& c, const Probability& p, const std::string& of, const std::string& waves) {
+  if (!waves.empty()) return judged(c, Decision::open, "The probability of " + of + " is not known: " + waves);
+  if (p.runs == 0)
+    return judged(c, Decision::open,
+                  "The probability of " + of +
+                      " is not known: no model says by [[uncertain]] what is not known exactly, or no samples were asked for.");
+  const std::string text = "The probability of " + of + " is " + percent(p.value) + " (95 % interval " + percent(p.low) + " to " +
+                           percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
+                           (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " +
+                           percent(*c.at_most) + " are allowed";
+  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".");
+  if (p.high > *c.at_most) return judged(c, Decision::open, text + ", which lies within the interval: more samples are needed.");
+  return judged(c, Decision::energise, text + ".");
+}
+
+Probability largest_slip(const Assessment& a) {
+  Probability worst;
+  for (const VoyageEvent& event : a.events)
+    for (const Probability& p : event.slip)
+      if (worst.runs == 0 || p.high > worst.high) worst = p;
+  return worst;
+}
+
+Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
+  if (c.quantity == "peak" || c.quantity == "velocity_change") return judge_reading(c, a);
+  const std::string unknown = unknown_of(c, a, s);
+  if (c.quantity == "slip")
+    return judge_flag(c, unknown, s.slips, s.first_slip.empty() ? "A joint slips." : s.first_slip + ".", "No joint slips in any event.");
+  if (c.quantity == "comes_apart") return judge_flag(c, unknown, s.comes_apart, "A joint comes apart.", "No joint comes apart.");
+  if (c.quantity == "lift") return judge_flag(c, unknown, s.lifts, "A contact lifts.", "No contact lifts.");
+  if (c.quantity == "slid")
+    return judge_flag(c, unknown, s.slid > *c.at_most,
+                      "A joint slid " + quantity_text(s.slid, "m") + " in all; " + quantity_text(*c.at_most, "m") + " are allowed.",
+                      "No joint slid further than " + quantity_text(s.slid, "m") + ".");
+  if (c.quantity == "overlap_left")
+    return judge_flag(c, unknown, s.overlap_left < *c.at_least,
+                      percent(s.overlap_left) + " of an overlap are left; " + percent(*c.at_least) + " are asked.",
+                      "Of every overlap at least " + percent(s.overlap_left) + " are left.");
+  if (c.quantity == "margin")
+    return judge_flag(c, unknown, s.least_margin < *c.at_least,
+                      "The least margin of a joint is " + rounded_text(s.least_margin, 3) + "; " + rounded_text(*c.at_least, 3) +
+                          " is asked.",
+                      "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
+  if (c.quantity == "acceptance") return judge_acceptance(c, s, unknown);
+  if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", waves_unknown(a));
+  return judge_probability(c, a.damage, "damage in the voyage", waves_unknown(a));
+}
+
+// Of whatever the criteria say: what is not known forbids "energise".
+void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
+  const auto open = [&](const char* name, const std::string& text) {
+    reasons.push_back({name, text, "rules of this program", Decision::open, {}});
+  };
+  for (const RecordEvents& record : a.records)
+    for (const RecordFault& fault : record.faults)
+      if (std::find(a.accepted.begin(), a.accepted.end(), fault) == a.accepted.end())
+        open("whole record", "'" + record.file + "': " + record.warnings()[static_cast<std::size_t>(&fault - record.faults.data())] +
+                                 " What a record does not show cannot be judged.");
+  for (std::size_t e = 0; e < a.events.size(); ++e) {
+    const auto slips = [](const Passage& p) {
+      return std::any_of(p.joints.begin(), p.joints.end(), [](const JointPassage& j) { return j.slips; });
+    };
+    if (!a.records[a.events[e].record].events[a.events[e].event].is_below ||
+        std::none_of(a.events[e].passages.begin(), a.events[e].passages.end(), slips))
+      continue;
+    open("threshold", "A joint slips in event " + std::to_string(e + 1) + ", which stays below the threshold of " +
+                          rounded_text(a.records[a.events[e].record].rules.threshold / k_gravity, 3) +
+                          " g: others that were not run may slip it as well. Lower the threshold.");
+    break;
+  }
+  if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
+}
+
+std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
+  std::vector<Reason> reasons;
+  for (const DecisionCriterion& c : a.criteria.criteria) reasons.push_back(judge_criterion(c, a, s));
+  add_own(a, s, reasons);
+  std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& x, const Reason& y) { return x.outcome > y.outcome; });
+  return reasons;
+}
+
+} // namespace
+
+Decision decision_of(const Assessment& assessment, const VoyageSummary& summary) {
+  Decision worst = Decision::energise;
+  for (const DecisionCriterion& c : assessment.criteria.criteria)
+    if (!c.quantity.ends_with("probability")) worst = std::max(worst, judge_criterion(c, assessment, summary).outcome);
+  std::vector<Reason> own;
+  add_own(assessment, summary, own);
+  for (const Reason& reason : own) worst = std::max(worst, reason.outcome);
+  return worst;
+}
+
+void decide(Assessment& a) {
+  a.reasons = reasons_of(a, a.summary);
+  a.decision = a.reasons.empty() ? Decision::open : a.reasons.front().outcome;
+  a.reason = a.decision == Decision::energise ? "All " + std::to_string(a.reasons.size()) + " criteria are met." : a.reasons.front().text;
+  a.tests.clear();
+  for (const Reason& reason : a.reasons)
+    for (const std::string& test : reason.tests)
+      if (std::find(a.tests.begin(), a.tests.end(), test) == a.tests.end()) a.tests.push_back(test);
+}
+
+} // namespace steplap::assess

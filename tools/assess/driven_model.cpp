@@ -1,0 +1,224 @@
+#include "tools/assess/driven_model.h"
+
+#include "elements/prescribed_motion.h"
+#include "mbd/base/portable_math.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/io/input_files.h"
+#include "mbd/io/read_input.h"
+#include "mbd/io/reader.h"
+#include "mbd/model/completion.h"
+#include "mbd/model/model_building.h"
+#include "run/catalogue.h"
+#include "transformer/recorder/fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace steplap::assess {
+
+namespace {
+
+// A history that stands in no file.
+struct Recorded : SignalDefinition {
+  std::vector<DriveHistory> histories;
+  bool is_y = false;
+};
+
+Signal build_recorded(const SignalDefinition& definition) {
+  const auto& recorded = static_cast<const Recorded&>(definition);
+  std::vector<Signal::Piece> pieces(1); // at rest from t = 0 on
+  for (const DriveHistory& history : recorded.histories) {
+    const std::vector<double>& a = recorded.is_y ? history.y : history.x;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      Signal::Piece piece;
+      piece.start = history.begin + static_cast<double>(i) * history.step;
+      if (i + 1 < a.size()) piece.c[0] = a[i], piece.c[1] = (a[i + 1] - a[i]) / history.step; // the last one: 0 from there on
+      if (piece.start > pieces.back().start) pieces.push_back(std::move(piece));
+      else pieces.back() = std::move(piece);
+    }
+  }
+  return Signal(std::move(pieces));
+}
+
+const SignalKind& recorded_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k;
+    k.name = "recorded event";
+    k.doc = "The acceleration of a recorder.";
+    k.holds<Recorded>();
+    k.build = build_recorded;
+    return k;
+  }();
+  return kind;
+}
+
+constexpr const char *k_along_x = "recorder drive x", *k_along_y = "recorder drive y", *k_angle = "recorder drive angle";
+
+void add_drive(Model& model, const std::string& name, const Recorder& recorder, const std::string& coordinate) {
+  auto definition = std::make_shared<Recorded>();
+  definition->name = name;
+  definition->is_y = coordinate == "y";
+  model.signals.emplace_back(&recorded_kind(), std::move(definition));
+  auto& motion = add_element<PrescribedMotion>(model, prescribed_motion_kind(), name);
+  motion.a = recorder.marker;
+  motion.b = "ground";
+  motion.coordinate = coordinate;
+  motion.signal = name;
+  motion.as = "acceleration";
+}
+
+// What else drives the body would contradict the record.
+void refuse_other_drives(const Model& model, const Recorder& recorder, const std::string& body) {
+  const auto body_of = [&](const std::string& marker) {
+    for (const Marker& m : model.markers)
+      if (m.name == marker) return m.body;
+    return marker;
+  };
+  for (const ElementEntry& entry : model.elements) {
+    const auto* const motion = dynamic_cast<const PrescribedMotion*>(entry.element.get());
+    if (!motion || (body_of(motion->a) != body && body_of(motion->b) != body)) continue;
+    throw ModelError(recorder.where, "'" + motion->name + "' drives '" + body + "', and so does the recorder '" + recorder.name +
+                                         "': name it in 'replaces', as the record takes its place");
+  }
+}
+
+// Of a criterion or a figure that looks at elements which are gone.
+bool looks_at(const std::string& channel, const std::set<std::string>& gone) {
+  return std::any_of(gone.begin(), gone.end(), [&](const std::string& name) { return channel.starts_with(name + "."); });
+}
+
+void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
+  const std::set<std::string> gone(recorder.replaces.begin(), recorder.replaces.end());
+  std::erase_if(model.elements, [&](const ElementEntry& e) { return gone.contains(e.element->name); });
+  for (const TableEntry& entry : model.tables)
+    if (const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
+        c && (looks_at(c->channel, gone) || gone.contains(c->element)))
+      notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
+  std::erase_if(model.tables, [&](const TableEntry& entry) {
+    const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
+    return (c && (looks_at(c->channel, gone) || gone.contains(c->element))) ||
+           dynamic_cast<const Plot*>(entry.table.get()); // nothing is drawn
+  });
+  for (const std::string& name : recorder.replaces) notes.push_back("The record takes the place of '" + name + "'.");
+}
+
+void begin_at_rest(Model& model, std::vector<std::string>& notes) {
+  bool had_speed = model.simulation.velocity != Vec2::Zero();
+  model.simulation.velocity.setZero();
+  for (Body& body : model.bodies) {
+    had_speed |= body.velocity != Vec2::Zero() || body.angular_velocity != 0.0;
+    body.velocity.setZero();
+    body.angular_velocity = 0.0;
+  }
+  if (had_speed) notes.push_back("The model's own velocities at the start are left out: the voyage begins at rest.");
+  model.simulation.initial = "equilibrium";
+}
+
+} // namespace
+
+DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& event, const Recorder& recorder, double angle) {
+  const Window& window = event.window;
+  const std::size_t count = window.times.size();
+  const auto along = [&](const std::string& axis) -> std::vector<double> {
+    if (axis == "none") return std::vector<double>(count, 0.0);
+    const auto index = record.axis(axis.back());
+    if (!index)
+      throw FileError(record.file,
+                      "the model wants axis " + axis.substr(axis.size() - 1) + " of the record, which '" + record.file + "' does not have");
+    std::vector<double> values = window.filtered[*index];
+    if (axis.starts_with('-'))
+      for (double& value : values) value = -value;
+    return values;
+  };
+  DriveHistory history;
+  history.step = 1.0 / window.rate;
+  history.goes_on = event.event.goes_on;
+  std::vector<double> a = along(recorder.x), b = along(recorder.y);
+  for (std::vector<double>* const values : {&a, &b}) {
+    if (recorder.drift != "line" || count < 2) continue;
+    double sum = 0.0; // of the trapezoids between samples
+    for (std::size_t i = 1; i < count; ++i) sum += 0.5 * ((*values)[i - 1] + (*values)[i]);
+    const double mean = sum / static_cast<double>(count - 1);
+    for (double& value : *values) value -= mean;
+  }
+  const double c = portable::cos(angle), s = portable::sin(angle);
+  for (std::size_t i = 0; i < count; ++i) {
+    history.x.push_back(c * a[i] - s * b[i]);
+    history.y.push_back(s * a[i] + c * b[i]);
+  }
+  return history;
+}
+
+std::string check_gravity(const RecordEvents& record, const DrivenModel& model) {
+  constexpr double k_seen = 0.7, k_other = 0.5; // g: rests in the record at all; is somewhere else, whatever the first second shakes
+  const std::vector<AxisColumn>& axes = record.recording.layout.axes;
+  double size = 0.0;
+  for (std::size_t i = 0; i < axes.size(); ++i) size += record.recording.facts.axes[i].rest * record.recording.facts.axes[i].rest;
+  if (model.given.header.gravity.norm() < k_seen * k_gravity || record.recording.layout.is_peaks) return "";
+  if (std::sqrt(size) < k_seen * k_gravity)
+    return "'" + record.file + "' has no gravity in it: that its axes point as '" + model.name + "' says could not be seen.";
+  // What stands still feels the push of its support: against gravity.
+  const Vec2 up = -model.given.header.gravity / model.given.header.gravity.norm();
+  const double c = portable::cos(model.marker_angle), s = portable::sin(model.marker_angle);
+  const std::pair<std::string, double> felt[] = {{model.recorder.x, c * up.x() + s * up.y()}, {model.recorder.y, -s * up.x() + c * up.y()}};
+  for (const auto& [axis, share] : felt) {
+    const auto index = axis == "none" ? std::nullopt : record.axis(axis.back());
+    if (!index) continue;
+    const double sign = axis.starts_with('-') ? -1.0 : 1.0, rest = record.recording.facts.axes[*index].rest / k_gravity;
+    if (std::abs(sign * rest - share) < k_other) continue;
+    throw FileError(record.file, "axis " + axis.substr(axis.size() - 1) + " of '" + record.file + "' reads " + rounded_text(rest, 3) +
+                                     " g in its first second, and would read " + rounded_text(sign * share, 3) +
+                                     " g at rest if it sat as '" + model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" +
+                                     model.recorder.y +
+                                     "\" of [[recorder]]): correct the axes there, or choose columns and signs of the record");
+  }
+  return "";
+}
+
+DrivenModel driven_model(Model given, const std::string& name) {
+  const Recorder* const found = recorder_of(given);
+  if (!found)
+    throw ModelError({name, 0, 0},
+                     "the model has no [[recorder]]: say where the recorder sat and which way it pointed (steplap elements recorder)");
+  DrivenModel driven;
+  driven.name = name;
+  driven.recorder = *found;
+  const Model whole = completed(given); // inherited places of bodies are known then
+  const auto marker = std::find_if(whole.markers.begin(), whole.markers.end(), [&](const Marker& m) { return m.name == found->marker; });
+  driven.body = marker->body;
+  driven.marker_angle = marker->angle + whole.find_body(driven.body)->angle;
+  take_out(given, driven.recorder, driven.notes);
+  begin_at_rest(given, driven.notes);
+  refuse_other_drives(given, driven.recorder, driven.body);
+  add_drive(given, k_along_x, driven.recorder, "x");
+  add_drive(given, k_along_y, driven.recorder, "y");
+  if (driven.recorder.rotation == "held") add_drive(given, k_angle, driven.recorder, "angle");
+  for (TableEntry& entry : given.tables) // what it names is gone, and no usual run looks at it
+    if (entry.kind == &recorder_kind()) static_cast<Recorder&>(*entry.table).replaces.clear();
+  driven.given = std::move(given);
+  return driven;
+}
+
+DrivenModel read_driven_model(const std::string& path, const std::vector<std::string>& overrides) {
+  if (is_standard_input(path)) throw FileError(path, "a decision names its model: give a file, not standard input");
+  DrivenModel driven = driven_model(read_given_model(path, program_catalogue(), overrides), std::filesystem::path(path).stem().string());
+  driven.file = path;
+  driven.sha256 = sha256_of_file(path);
+  driven.text = effective_model_text(path, program_catalogue(), overrides);
+  if (!driven.given.header.title.empty()) driven.name = driven.given.header.title;
+  return driven;
+}
+
+void drive_by(Model& driven, std::vector<DriveHistory> histories, double end) {
+  for (SignalEntry& entry : driven.signals) {
+    if (entry.kind != &recorded_kind()) continue;
+    auto& recorded = static_cast<Recorded&>(*entry.definition);
+    if (recorded.name != k_angle) recorded.histories = histories;
+  }
+  driven.simulation.end = end;
+  driven.output.step = end; // extremes and events do not hang on it
+}
+
+} // namespace steplap::assess

@@ -1,0 +1,129 @@
+#include "tools/assess/passage.h"
+
+#include "mbd/base/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::assess {
+
+namespace {
+
+// Relative to the driven body: that one may move on evenly.
+double still_moving(const System& system, const State& state, const std::string& driven) {
+  std::size_t base = 0;
+  for (std::size_t i = 1; i < system.bodies.size(); ++i)
+    if (system.bodies[i].name == driven) base = i;
+  double fastest = 0.0;
+  for (std::size_t i = 1; i < system.bodies.size(); ++i)
+    fastest = std::max(fastest, portable::hypot(state.v[3 * i] - state.v[3 * base], state.v[3 * i + 1] - state.v[3 * base + 1]));
+  return fastest;
+}
+
+LimitPassage limit_of(const CriterionResult& criterion, const Overview& overview) {
+  LimitPassage limit;
+  limit.name = criterion.name;
+  limit.unit = criterion.unit;
+  limit.text = criterion.text;
+  limit.outcome = criterion.outcome;
+  limit.is_met = criterion.outcome == Verdict::hold;
+  limit.value = criterion.value.value_or(std::nan(""));
+  limit.allowed = criterion.limit.value_or(std::nan(""));
+  limit.share = std::nan("");
+  for (const Utilisation& u : overview.utilisations)
+    if (u.channel == criterion.channel && u.limit == criterion.limit) limit.share = u.share;
+  return limit;
+}
+
+// What the elements that gave way have left behind.
+bool is_of_replaced(const Finding& finding) { return finding.code == "unused_signal" || finding.code == "unused_marker"; }
+
+std::vector<FootPassage> feet_of(const Report& report) {
+  std::vector<FootPassage> feet;
+  for (const Event& event : report.run.result.events) {
+    const bool is_known = std::any_of(feet.begin(), feet.end(), [&](const FootPassage& f) { return f.name == event.element; });
+    if (event.kind != EventKind::opens || is_known) continue;
+    FootPassage foot{event.element, event.t, {}};
+    if (const ChannelRange* const gap = report.find(event.element + ".gap"); gap && std::isfinite(gap->high.value))
+      foot.height = gap->high.value;
+    feet.push_back(std::move(foot));
+  }
+  return feet;
+}
+
+} // namespace
+
+Passage Traveller::broken(const std::string& why) {
+  Passage passage;
+  passage.reason = why;
+  passage.trust = "Nothing is known of this event.";
+  ended_ = why;
+  return passage;
+}
+
+void Traveller::look(const Report& report, Passage& passage) {
+  const RunResult& result = report.run.result;
+  const Overview overview = overview_of(report);
+  passage.verdict = overview.verdict;
+  passage.reason = overview.reason;
+  passage.trust = overview.trust.text;
+  passage.trust_level = overview.trust.level;
+  passage.is_trusted = report.judgement.distrust.empty() && overview.trust.level != TrustLevel::none;
+  slid_x_.resize(report.joints.size(), 0.0), slid_y_.resize(report.joints.size(), 0.0), slid_total_.resize(report.joints.size(), 0.0);
+  for (std::size_t i = 0; i < report.joints.size(); ++i) {
+    const JointAssessment& joint = report.joints[i];
+    if (joint.verdict == JointVerdict::not_assessed) {
+      passage.unjudged.push_back(joint.joint);
+      continue;
+    }
+    JointPassage p;
+    p.name = joint.joint;
+    p.slips = would_slip(joint);
+    p.came_apart = joint.has_come_apart;
+    p.margin = joint.smallest_margin;
+    p.at = joint.time_of_smallest;
+    if (joint.has_slipped) p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]); // else it is rounding, or yields
+    slid_x_[i] = joint.slid_x, slid_y_[i] = joint.slid_y;
+    p.slid_total = slid_total_[i] += p.slid;
+    if (const ChannelRange* const left = report.find(joint.joint + ".overlap_left")) p.overlap_left = left->final;
+    if (report.estimate.errors) p.error = joint_errors(joint, *report.run.loaded->system, result, *report.estimate.errors).smallest_margin;
+    passage.joints.push_back(std::move(p));
+  }
+  passage.feet = feet_of(report);
+  for (const CriterionResult& criterion : report.judgement.criteria)
+    (criterion.unit == "N"   ? passage.reactions
+     : criterion.unit == "m" ? passage.clearances
+                             : passage.others)
+        .push_back(limit_of(criterion, overview));
+  for (const Finding& finding : report.findings)
+    if (finding.level == FindingLevel::warning && !is_of_replaced(finding)) passage.findings.push_back(text_with_place(finding));
+  if (!report.judgement.distrust.empty()) passage.findings.push_back(report.judgement.distrust);
+  for (const std::string& cap : report.judgement.caps)
+    if (std::find(passage.findings.begin(), passage.findings.end(), cap) == passage.findings.end()) passage.findings.push_back(cap);
+}
+
+Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
+  if (!ended_.empty()) return broken(std::string(ended_));
+  Model model = model_.given;
+  drive_by(model, {history}, history.end() + (history.goes_on ? 0.0 : model_.recorder.settle));
+  const std::shared_ptr<const LoadedModel> loaded = load_given(model, model_.name);
+  RunOptions options;
+  options.estimating = estimating;
+  options.start = state_;
+  try {
+    const Report report = judged_run(loaded, options);
+    if (report.run.failure) return broken(report.run.failure->text);
+    Passage passage;
+    passage.is_made = true;
+    look(report, passage);
+    if (!report.run.result.stop_reason.empty()) ended_ = report.run.result.stop_reason;
+    state_ = report.run.result.final_state;
+    state_->t = state_->dissipated = state_->work = 0.0;
+    passage.still_moving = still_moving(*loaded->system, *state_, model_.body);
+    return passage;
+  } catch (const NumericalFailure& failure) {
+    return broken(failure.what());
+  }
+}
+
+} // namespace steplap::assess

@@ -1,0 +1,242 @@
+#include "tools/assess/record_events.h"
+
+#include "tools/assess/assumed_pulse.h"
+#include "tools/assess/quiet_watch.h"
+#include "tools/assess/record_faults.h"
+
+#include "mbd/base/shown_text.h"
+#include "mbd/io/digest.h"
+#include "mbd/io/read_input.h"
+#include "transformer/recorder/fields.h"
+#include "transformer/recorder/time_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace steplap::assess {
+
+namespace {
+
+constexpr double k_felt = 0.5; // of the threshold: what rests there would tell of gravity, not of shocks
+
+std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
+
+std::string sha256_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> part(1 << 20);
+  Sha256 sum;
+  while (file.read(part.data(), static_cast<std::streamsize>(part.size())), file.gcount() > 0)
+    sum.add({part.data(), static_cast<std::size_t>(file.gcount())});
+  return sum.hex();
+}
+
+// The mean of each axis over a stretch of time.
+class StretchMean : public SampleSink {
+public:
+  explicit StretchMean(const std::array<double, 2>& stretch) : stretch_(stretch) {}
+  void begin(const RecordLayout& layout) override { axes_ = layout.axes.size(); }
+  void begin_segment(std::size_t) override {}
+  void put(double t, const double* a) override {
+    if (t < stretch_[0] || t > stretch_[1]) return;
+    ++count_;
+    for (std::size_t i = 0; i < axes_; ++i) sums_[i] += a[i];
+  }
+  void end_segment() override {}
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::array<double, 3> means() const {
+    std::array<double, 3> means{};
+    for (std::size_t i = 0; i < axes_; ++i) means[i] = sums_[i] / static_cast<double>(count_);
+    return means;
+  }
+
+private:
+  std::array<double, 2> stretch_;
+  std::size_t axes_ = 0, count_ = 0;
+  std::array<double, 3> sums_{};
+};
+
+std::array<double, 3> rest_of(const std::string& file, const EventReading& reading) {
+  StretchMean mean(*reading.rest);
+  LineSource source(file);
+  static_cast<void>(read_record(source, reading.read, mean));
+  if (mean.count() < 2)
+    throw FileError(file, "'" + file + "' has no two samples from " + rounded_text((*reading.rest)[0]) + " s to " +
+                              rounded_text((*reading.rest)[1]) + " s: give a stretch at rest within the record");
+  return mean.means();
+}
+
+// Gravity is along an axis of the record, which is known when its columns are.
+class WithoutGravity : public SampleSink {
+public:
+  WithoutGravity(Conditioning conditioning, const EventReading& reading, SignalSink& sink)
+      : conditioning_(conditioning), reading_(reading), sink_(sink) {}
+  void begin(const RecordLayout& layout) override {
+    if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // of peaks, see assumed_pulse.h
+      const bool is_turned = reading_.gravity->starts_with('-');
+      const std::string axis = reading_.gravity->substr(is_turned ? 1 : 0);
+      const auto found =
+          std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
+      if (found == layout.axes.end())
+        throw FileError(layout.file, "gravity along '" + *reading_.gravity + "': '" + layout.file + "' has no such axis");
+      conditioning_.offset[static_cast<std::size_t>(found - layout.axes.begin())] += is_turned ? -k_gravity : k_gravity;
+    }
+    if (conditioning_.rate && *conditioning_.rate < layout.time.rate * (1.0 - 1e-9))
+      throw FileError(layout.file, "'" + layout.file + "' has " + rounded_text(layout.time.rate) +
+                                       " Hz: fewer samples would fold high frequencies into low ones");
+    axes_ = layout.axes.size();
+    conditioner_.emplace(conditioning_, sink_);
+    conditioner_->begin(layout);
+  }
+  void begin_segment(std::size_t line) override {
+    conditioner_->begin_segment(line);
+    fall_.begin_segment();
+  }
+  void put(double t, const double* a) override {
+    conditioner_->put(t, a);
+    fall_.put(t, a, axes_);
+  }
+  void end_segment() override { conditioner_->end_segment(); }
+  [[nodiscard]] const Conditioner& conditioner() const { return *conditioner_; }
+  [[nodiscard]] const Conditioning& conditioning() const { return conditioning_; }
+  [[nodiscard]] const FallWatch& fall() const { return fall_; }
+
+private:
+  Conditioning conditioning_;
+  const EventReading& reading_;
+  SignalSink& sink_;
+  std::optional<Conditioner> conditioner_;
+  FallWatch fall_;
+  std::size_t axes_ = 0;
+};
+
+// Both see the conditioned signal.
+class EventsAndQuiet : public SignalSink {
+public:
+  EventsAndQuiet(const EventRules& rules, ShockFinder::Found found) : quiet(rules), events_(rules, std::move(found)) {}
+  void begin(const RecordLayout& layout, double rate) override {
+    events_.begin(layout, rate);
+    quiet.begin(layout, rate);
+  }
+  void begin_segment(std::size_t line) override {
+    events_.begin_segment(line);
+    quiet.begin_segment(line);
+  }
+  void put(double t, const double* plain, const double* filtered) override {
+    events_.put(t, plain, filtered);
+    quiet.put(t, plain, filtered);
+  }
+  void end_segment() override {
+    events_.end_segment();
+    quiet.end_segment();
+  }
+  QuietWatch quiet;
+
+private:
+  ShockFinder events_;
+};
+
+constexpr double k_noticed = 0.1; // of the threshold: what is smaller shakes nothing loose that the road had left
+
+// What stays below the threshold is run where it is greatest: of a record without an event that is all there is.
+void add_quiet(const QuietWatch& quiet, RecordEvents& record) {
+  const double least = record.events.empty() ? 0.0 : k_noticed * record.rules.threshold;
+  for (const QuietWatch::Stretch& stretch : quiet.greatest(least)) {
+    RecordedEvent event{describe_event(stretch.window, record.recording.layout.axes.size()), stretch.window, true};
+    event.event.segment = stretch.segment, event.event.line = stretch.line;
+    record.events.push_back(std::move(event));
+  }
+  const auto is_before = [](const RecordedEvent& a, const RecordedEvent& b) {
+    return a.event.segment != b.event.segment ? a.event.segment < b.event.segment : a.event.begin < b.event.begin;
+  };
+  std::stable_sort(record.events.begin(), record.events.end(), is_before);
+}
+
+void refuse_gravity_as_shock(const RecordEvents& record) {
+  const RecordLayout& layout = record.recording.layout;
+  for (std::size_t i = 0; i < layout.axes.size(); ++i) {
+    const double rest = record.recording.facts.axes[i].rest - record.offset[i];
+    if (std::abs(rest) < k_felt * record.rules.threshold) continue;
+    throw FileError(record.file, "axis " + std::string(1, layout.axes[i].axis) + " of '" + record.file + "' reads " + in_g(rest) +
+                                     " at rest, which would count towards the threshold of " + in_g(record.rules.threshold) +
+                                     ": the model has gravity already, so subtract it from the record, or what the record reads at rest");
+  }
+}
+
+// The time 0 of the record, where its start is told with a date and a clock.
+std::optional<std::int64_t> clock_of(const RecordLayout& layout) {
+  std::string text = layout.time.start.substr(0, layout.time.start.find(" ("));
+  if (text.ends_with(" UTC")) text.resize(text.size() - 4);
+  const unsigned orders = possible_date_orders(text);
+  if (orders == 0 || (orders & (orders - 1)) != 0) return {}; // none, or more than one
+  const auto stamp = parse_stamp(text, orders);
+  if (!stamp || !stamp->has_date || !stamp->has_clock) return {};
+  return stamp->ns;
+}
+
+} // namespace
+
+std::optional<std::size_t> RecordEvents::axis(char letter) const {
+  const std::size_t index = axes().find(letter);
+  return index == std::string::npos ? std::nullopt : std::optional(index);
+}
+
+std::string RecordEvents::axes() const {
+  if (pulse) return "xyz"; // what the list does not tell is zero
+  std::string letters;
+  for (const AxisColumn& each : recording.layout.axes) letters += each.axis;
+  return letters;
+}
+
+RecordEvents read_events(const std::string& file, const EventReading& reading) {
+  if (is_standard_input(file)) throw FileError(file, "a decision names its record: give a file, not standard input");
+  RecordEvents record;
+  record.file = file;
+  record.rules = reading.rules;
+  Conditioning conditioning;
+  conditioning.frequency_class = reading.frequency_class;
+  conditioning.rate = reading.rate;
+  if (reading.rest) conditioning.offset = rest_of(file, reading);
+  EventsAndQuiet finder(reading.rules, [&](const ShockEvent& event, const Window& window) {
+    record.events.push_back({event, window, false});
+  });
+  WithoutGravity first(conditioning, reading, finder);
+  LineSource source(file);
+  record.recording = read_record(source, reading.read, first);
+  record.sha256 = sha256_of(file);
+  record.clock_ns = clock_of(record.recording.layout);
+  record.fall = first.fall();
+  find_faults(record);
+  if (record.recording.layout.is_peaks) {
+    record.pulse = reading.pulse;
+    if (record.pulse) add_assumed_pulses(reading, record);
+    return record;
+  }
+  record.offset = first.conditioning().offset;
+  record.rate = first.conditioner().rate();
+  record.bandwidth = first.conditioner().bandwidth();
+  record.is_filtered = reading.frequency_class.has_value();
+  if (!reading.gravity || *reading.gravity != "none") refuse_gravity_as_shock(record);
+  add_quiet(finder.quiet, record);
+  return record;
+}
+
+void order_records(std::vector<RecordEvents>& records, std::string& note) {
+  if (records.size() < 2) return;
+  const bool have_clocks = std::all_of(records.begin(), records.end(), [](const RecordEvents& r) { return r.clock_ns.has_value(); });
+  if (!have_clocks) {
+    note = "Not every record tells when it began: they are taken one after the other, in the order in which they were given.";
+    return;
+  }
+  std::stable_sort(records.begin(), records.end(), [](const RecordEvents& a, const RecordEvents& b) { return *a.clock_ns < *b.clock_ns; });
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const RecordEvents &a = records[i - 1], &b = records[i];
+    const double begins = 1e-9 * static_cast<double>(*b.clock_ns - *a.clock_ns) + b.recording.facts.first;
+    if (begins < a.recording.facts.last)
+      throw FileError(b.file,
+                      "'" + b.file + "' begins before '" + a.file + "' ends: records of one time are not one voyage. Give one of them");
+  }
+  note = "The records are taken in the order of their clocks.";
+}
+
+} // namespace steplap::assess

@@ -1,0 +1,213 @@
+#include "tools/assess/samples.h"
+
+#include "tools/assess/sample_store.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <numeric>
+
+namespace steplap::assess {
+
+namespace {
+
+using Runners = std::vector<std::unique_ptr<VoyageRunner>>; ///< one for each model
+
+Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                   const UncertainValues& uncertain) {
+  Runners runners;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    runners.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
+  return runners;
+}
+
+void run(Runners& runners, const UncertainValues& uncertain, VoyageSample& sample, const std::function<bool()>& stop) {
+  for (std::size_t m = 0; m < runners.size(); ++m) {
+    const VoyageOutcome outcome = runners[m]->run(uncertain.numbers(m, sample.values), stop);
+    worsen(sample.summary, outcome.summary);
+    sample.slips.insert(sample.slips.end(), outcome.slips.begin(), outcome.slips.end());
+  }
+}
+
+Probability probability(long harmful, long unknown, long runs) {
+  Probability p;
+  p.runs = runs, p.unknown = unknown;
+  if (runs == 0) return p;
+  constexpr double k_confidence = 0.95;
+  p.value = runs > unknown ? static_cast<double>(harmful) / static_cast<double>(runs - unknown) : std::nan("");
+  p.low = study::proportion_interval(static_cast<double>(harmful), static_cast<double>(runs), k_confidence).low;
+  p.high = study::proportion_interval(static_cast<double>(harmful + unknown), static_cast<double>(runs), k_confidence).high;
+  return p;
+}
+
+// Places in the order of the values; ties share their mean.
+std::vector<double> ranks_of(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i;
+    while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
+    for (std::size_t k = i; k < end; ++k) ranks[order[k]] = 0.5 * static_cast<double>(i + end - 1);
+    i = end;
+  }
+  return ranks;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const double n = static_cast<double>(a.size()), ma = std::accumulate(a.begin(), a.end(), 0.0) / n,
+               mb = std::accumulate(b.begin(), b.end(), 0.0) / n;
+  double aa = 0.0, bb = 0.0, ab = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    aa += (a[i] - ma) * (a[i] - ma), bb += (b[i] - mb) * (b[i] - mb), ab += (a[i] - ma) * (b[i] - mb);
+  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+// Samples as they come: those that are there without a gap are kept, each half second.
+class VoyageCourse {
+public:
+  VoyageCourse(const SamplingOptions& options, SampleStore& store, std::vector<VoyageSample>& samples)
+      : options_(options), store_(store), samples_(samples), is_made_(samples.size()), done_(store.load(samples)), kept_(done_) {
+    if (options_.progress) options_.progress(done_, options_.samples);
+  }
+
+  /// So many from the first on are there.
+  [[nodiscard]] long done() const { return done_; }
+
+  /// On any thread: makes sample n, unless it is time to stop. What goes wrong is told by end().
+  void make(long n, const std::function<void(VoyageSample&, const std::function<bool()>&)>& run) {
+    try {
+      if (should_stop()) return;
+      run(samples_[static_cast<std::size_t>(n)], [this] { return should_stop(); });
+      if (!should_stop()) add(n); // else it may be cut off
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      is_ended_ = true;
+    }
+  }
+
+  /// Keeps what is left to keep. Throws what went wrong, or NumericalFailure if there was a stop.
+  void end() {
+    keep();
+    if (failure_) std::rethrow_exception(failure_);
+    if (done_ == options_.samples) return;
+    throw NumericalFailure(why_ + " after " + std::to_string(done_) + " of " + std::to_string(options_.samples) + " samples." +
+                           (options_.store.empty() ? "" : " Ask again, and it goes on there."));
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  bool should_stop() {
+    if (is_ended_ || !options_.stop) return is_ended_;
+    const std::string why = options_.stop();
+    if (why.empty()) return false;
+    const std::scoped_lock lock(mutex_);
+    why_ = why;
+    is_ended_ = true;
+    return true;
+  }
+  void add(long n) {
+    const std::scoped_lock lock(mutex_);
+    is_made_[static_cast<std::size_t>(n)] = true;
+    const long before = done_;
+    while (done_ < options_.samples && is_made_[static_cast<std::size_t>(done_)]) ++done_;
+    if (done_ > before && options_.progress) options_.progress(done_, options_.samples);
+    if (Clock::now() - last_ > std::chrono::milliseconds(500)) keep();
+  }
+  void keep() {
+    if (done_ > kept_) store_.append(samples_, kept_, done_);
+    kept_ = done_;
+    last_ = Clock::now();
+  }
+
+  const SamplingOptions& options_;
+  SampleStore& store_;
+  std::vector<VoyageSample>& samples_;
+  std::mutex mutex_; ///< of all below, while threads make samples
+  std::vector<bool> is_made_;
+  long done_, kept_;
+  Clock::time_point last_ = Clock::now();
+  std::string why_; ///< it was stopped
+  std::exception_ptr failure_;
+  std::atomic<bool> is_ended_ = false;
+};
+
+} // namespace
+
+VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                         const UncertainValues& uncertain, const std::vector<double>& values) {
+  Runners runners = runners_of(models, histories, uncertain);
+  VoyageSample sample;
+  sample.values = values;
+  run(runners, uncertain, sample, {});
+  return sample;
+}
+
+std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                                         const UncertainValues& uncertain, const SamplingOptions& options) {
+  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
+  std::vector<VoyageSample> samples(static_cast<std::size_t>(std::max(0L, options.samples)));
+  for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
+  SampleStore store(options, models, histories, uncertain);
+  VoyageCourse course(options, store, samples);
+  std::vector<Runners> teams; // compiled by one thread: models are read and completed here
+  for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, uncertain));
+    // Without batches, at whose ends threads would wait for the longest voyage.
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+  for (long n = course.done(); n < options.samples; ++n)
+    course.make(n, [&](VoyageSample& sample, const std::function<bool()>& stop) {
+      run(teams[static_cast<std::size_t>(omp_get_thread_num())], uncertain, sample, stop);
+    });
+  course.end();
+  return samples;
+}
+
+bool is_damaged(const VoyageSummary& s) { return s.slips || s.comes_apart || s.acceptance >= Verdict::inspect; }
+
+Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event, std::size_t events) {
+  long slips = 0, unknown = 0;
+  for (const VoyageSample& sample : samples) {
+    if (sample.slips[model * events + event] != 0) ++slips;
+    else if (!sample.summary.unknown.empty()) ++unknown;
+  }
+  return probability(slips, unknown, static_cast<long>(samples.size()));
+}
+
+Probability damage_probability(const std::vector<VoyageSample>& samples) {
+  long damaged = 0, unknown = 0;
+  for (const VoyageSample& sample : samples) {
+    if (is_damaged(sample.summary)) ++damaged; // whatever came after
+    else if (!sample.summary.unknown.empty() || sample.summary.acceptance == Verdict::open) ++unknown;
+  }
+  return probability(damaged, unknown, static_cast<long>(samples.size()));
+}
+
+std::vector<double> shares_of(const std::vector<VoyageSample>& samples) {
+  std::vector<double> margins;
+  std::vector<std::vector<double>> values;
+  for (const VoyageSample& sample : samples) {
+    if (!sample.summary.unknown.empty() || !std::isfinite(sample.summary.least_margin)) continue;
+    margins.push_back(sample.summary.least_margin);
+    values.resize(sample.values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(sample.values[i]);
+  }
+  std::vector<double> shares;
+  if (margins.size() < 3) return shares;
+  const std::vector<double> ranks = ranks_of(margins);
+  for (const std::vector<double>& of : values) {
+    const double r = correlation(ranks_of(of), ranks);
+    shares.push_back(r * r);
+  }
+  return shares;
+}
+
+} // namespace steplap::assess

@@ -1,0 +1,325 @@
+#include "tools/assess/static_proof.h"
+
+#include "mbd/base/name_pattern.h"
+#include "mbd/base/portable_math.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/trust/criteria.h"
+#include "mbd/trust/element_judgement.h"
+#include "run/prominence.h"
+#include "run/quantity_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace steplap::assess {
+
+namespace {
+
+constexpr double k_close = 1e-6;      // of a margin: searched rests are not known closer
+constexpr double k_just_below = 1e-3; // of the first limit of a direction: where other ways to the load are asked
+
+// Rests have places and forces; velocities and accelerations of a run are not among them.
+bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
+
+// What rests under one load tell, as a run from the rest without acceleration to them would.
+RunResult as_run(const StaticMachine& machine, const Probe& probe) {
+  RunResult result;
+  result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
+  const Probe& before = machine.at_rest();
+  for (std::size_t i = 0; i < machine.system().channels.size(); ++i) {
+    const double first = before.values[i], last = probe.values[i];
+    ChannelRange range;
+    range.channel = &machine.system().channels[i];
+    range.first = first;
+    range.final = last;
+    range.low = {first < last ? first : last, 0.0};
+    range.high = {first > last ? first : last, 0.0};
+    if (std::isnan(last)) range.low.value = range.high.value = last;
+    range.had_no_value = std::isnan(first) || std::isnan(last);
+    result.ranges.push_back(range);
+  }
+  return result;
+}
+
+// Of one rest: criteria of elements and of the model.
+std::vector<CriterionResult> judged(const StaticMachine& machine, const Probe& probe) {
+  const RunResult result = as_run(machine, probe);
+  const Model& model = machine.model();
+  std::vector<CriterionResult> criteria;
+  for (const ElementEntry& entry : model.elements) {
+    if (!entry.kind->judge) continue;
+    const ElementJudgement own = entry.kind->judge(*entry.element, model, result);
+    criteria.insert(criteria.end(), own.criteria.begin(), own.criteria.end());
+  }
+  for (const Criterion& criterion : model.criteria) {
+    if (criterion.channel.empty()) continue;
+    CriterionResult one = judge_criterion(criterion, result);
+    if (is_of_rest(one.unit)) criteria.push_back(std::move(one));
+  }
+  return criteria;
+}
+
+Verdict proof_of(Verdict outcome) { return outcome == Verdict::inspect ? Verdict::reject : outcome; }
+int weight(Verdict verdict) { return verdict == Verdict::hold ? 0 : verdict == Verdict::open ? 1 : 2; }
+
+std::string number(double value, const std::string& unit) { return quantity_text(value, unit, 1.0); }
+std::string acceleration(double a) { return rounded_text(a, 4) + " m/s²"; }
+
+std::string criterion_text(const CriterionResult& c, const std::string& begin) {
+  const std::string what = "'" + (c.channel.empty() ? c.where : c.channel) + "'";
+  return begin + ": " + c.text + " (" + what + (c.value ? " is " + number(*c.value, c.unit) : " has no value") + ")";
+}
+
+// One load, asked in several ways.
+class CaseProof {
+public:
+  CaseProof(StaticMachine& machine, const LoadedModel& loaded, const StaticLoad& load) : machine_(machine), loaded_(loaded) {
+    case_.load = load;
+    case_.apparent = machine.gravity() + load.pull;
+  }
+
+  StaticCase run() {
+    const double a = case_.load.pull.norm();
+    grown_ = a > 0.0 ? machine_.ramped(case_.load.pull) : machine_.at_rest();
+    if (a > 0.0) follow(a);
+    if (!grown_.rest) return std::move(case_);
+    case_.verdict = Verdict::hold; // until something speaks against it
+    ways_.push_back(&grown_);
+    ask_other_ways();
+    collect();
+    decide();
+    return std::move(case_);
+  }
+
+private:
+  void note(Verdict verdict, const std::string& why) {
+    if (weight(verdict) < weight(case_.verdict) || (verdict == case_.verdict && !case_.why.empty())) return;
+    if (verdict == Verdict::hold) return;
+    case_.verdict = verdict;
+    case_.why = why;
+  }
+
+  // What gives way first on the way to the load.
+  void follow(double a) {
+    const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
+    if (!ray.limits.empty()) {
+      const std::string words = limit_words(ray, 0);
+      case_.first = words + " at " + acceleration(ray.limits.front().acceleration);
+    }
+    if (grown_.rest) return;
+    const StaticLimit* const end = ray.limits.empty() || ray.limits.back().kind != LimitKind::ends ? nullptr : &ray.limits.back();
+    const bool is_explained = end && ray.is_explained;
+    if (is_explained)
+      case_.why = limit_words(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
+                  rounded_text(100.0 * end->acceleration / a, 3) + " % of this load";
+    else if (end && end->acceleration < 1e-3 * a)
+      case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
+    else case_.why = "no rest is found, and whether there is none is not known: " + grown_.failure;
+    case_.verdict = is_explained ? Verdict::reject : Verdict::open;
+  }
+
+  void ask_other_ways() {
+    const Vec2& pull = case_.load.pull;
+    if (pull == Vec2::Zero()) return;
+    if (const Probe turned = machine_.ramped(-pull); turned.rest) {
+      returned_ = machine_.ramped_from(turned, pull);
+      if (returned_.rest) ways_.push_back(&returned_);
+      else
+        note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " +
+                                returned_.failure);
+    } else {
+      case_.remarks.push_back("the load turned round is not borne, so what it would leave behind was not asked");
+    }
+    loose_ = machine_.worked_loose(pull);
+    if (loose_.rest) ways_.push_back(&loose_);
+    else case_.remarks.push_back("it needs friction between bodies to hold: without, " + loose_.failure);
+  }
+
+  void collect() {
+    for (const std::string& joint : machine_.joints()) {
+      StaticJoint one{joint, std::numeric_limits<double>::infinity()};
+      for (const Probe* way : ways_) {
+        const double margin = machine_.value(*way, joint + ".margin");
+        if (!(margin >= one.margin)) one.margin = margin; // not-a-number is the worst
+      }
+      case_.joints.push_back(one);
+    }
+    for (std::size_t w = 0; w < machine_.watches().size(); ++w) {
+      const Watch& watch = machine_.watches()[w];
+      if (watch.kind == LimitKind::slides && grown_.left[w] < 0.0) case_.slid.push_back(watch.element);
+      if (watch.kind != LimitKind::lifts) continue;
+      StaticFoot foot{watch.element, false, machine_.value(grown_, watch.element + ".force"), 0.0};
+      for (const Probe* way : ways_) {
+        foot.lifts = foot.lifts || way->left[w] <= 0.0;
+        foot.height = std::max(foot.height, machine_.value(*way, watch.element + ".gap"));
+      }
+      case_.feet.push_back(foot);
+    }
+    collect_reactions();
+    const State& rest = machine_.at_rest().rest->state;
+    for (std::size_t i = 3; i < rest.q.size(); ++i)
+      if (i % 3 < 2) case_.moved = std::max(case_.moved, std::abs(grown_.rest->state.q[i] - rest.q[i]));
+    find_tipping();
+  }
+
+  void collect_reactions() {
+    const std::vector<Channel>& channels = machine_.system().channels;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      if (!is_reaction(channels[i])) continue;
+      StaticReaction reaction{channels[i].name, 0.0, channels[i].unit, {}};
+      for (const Probe* way : ways_)
+        if (!(std::abs(way->values[i]) <= std::abs(reaction.value))) reaction.value = way->values[i];
+      for (const Criterion& c : machine_.model().criteria) {
+        if (!matches_pattern(reaction.name, c.channel)) continue;
+        const std::optional<double> bound = c.within ? c.within : c.at_most;
+        if (bound && (!reaction.allowed || *bound < *reaction.allowed)) reaction.allowed = bound;
+      }
+      case_.reactions.push_back(reaction);
+    }
+  }
+
+  // Of a machine whose gravity is the apparent one.
+  void find_tipping() {
+    if (!(case_.apparent.norm() > 0.0)) return;
+    Model model = loaded_.model;
+    model.header.gravity = case_.apparent;
+    std::shared_ptr<const System> system = compile(model);
+    LoadedModel turned;
+    turned.path = loaded_.path;
+    turned.name = loaded_.name;
+    turned.model = std::move(model);
+    turned.system = std::move(system);
+    turned.assembled = loaded_.assembled;
+    case_.tipping = tipping_of(turned, grown_.rest->state);
+  }
+
+  void decide() {
+    for (std::size_t w = 0; w < ways_.size(); ++w) {
+      const std::vector<CriterionResult> criteria = judged(machine_, *ways_[w]);
+      if (w == 0) case_.criteria = criteria;
+      for (std::size_t i = 0; i < criteria.size(); ++i) {
+        const Verdict outcome = proof_of(criteria[i].outcome);
+        const bool agrees = w == 0 || proof_of(case_.criteria[i].outcome) == outcome;
+        if (agrees) note(outcome, criterion_text(criteria[i], "not met"));
+        else note(Verdict::open, criterion_text(criteria[i], "not met after some ways to the load") + "; friction allows several rests");
+        if (w > 0 && weight(outcome) > weight(proof_of(case_.criteria[i].outcome))) case_.criteria[i] = criteria[i];
+      }
+      if (ways_[w] != &loose_ && !ways_[w]->rest->indifferent.empty())
+        note(Verdict::open,
+             "nothing holds " + part_text(machine_.system(), ways_[w]->rest->indifferent.front()) + ": it rests wherever it is");
+      for (std::string& remark : remarks_on(machine_.system(), *ways_[w]->rest))
+        if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end())
+          case_.remarks.push_back(std::move(remark));
+    }
+    for (const StaticJoint& joint : case_.joints)
+      if (!(std::abs(joint.margin - 1.0) > k_close)) note(Verdict::open, "the margin of '" + joint.name + "' is 1 within rounding");
+    for (const FrictionMargin& margin : grown_.rest->margins)
+      if (margin.is_shared && margin.used > 0.0) {
+        const int element = machine_.system().frictions[static_cast<std::size_t>(margin.friction)].element;
+        case_.remarks.push_back("'" + machine_.system().element_names[static_cast<std::size_t>(element)] +
+                                "' and others can share their load in several ways");
+      }
+  }
+
+  StaticMachine& machine_;
+  const LoadedModel& loaded_;
+  Probe grown_, returned_, loose_;
+  std::vector<const Probe*> ways_;
+  StaticCase case_;
+};
+
+// Just below its first limit, in the other ways.
+bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
+  const auto is_intact = [](const Probe& probe) {
+    return probe.rest && std::all_of(probe.left.begin(), probe.left.end(), [](double left) { return left > 0.0; });
+  };
+  const Probe turned = machine.ramped(-pull);
+  if (!is_intact(turned)) return true; // what it would leave behind is not this machine's
+  return is_intact(machine.ramped_from(turned, pull));
+}
+
+StaticDirection look_along(StaticMachine& machine, double angle, double largest) {
+  const auto without_rounding = [](double x) { return std::abs(x) < 1e-15 ? 0.0 : x; };
+  const Vec2 direction(without_rounding(portable::cos(angle)), without_rounding(portable::sin(angle)));
+  StaticDirection found{angle, grow_pull(machine, direction, largest), true};
+  if (!found.ray.limits.empty() && found.ray.limits.front().acceleration > 0.0)
+    found.is_unique = is_borne_otherwise(machine, (1.0 - k_just_below) * found.ray.limits.front().acceleration * direction);
+  return found;
+}
+
+std::vector<std::string> assumptions_of(Plane plane) {
+  return {std::string("x of the model points ") + (plane == Plane::lengthwise ? "forward" : "to one side of the vehicle") + ", y up",
+          "the vehicle is held by the drives of the model, and its acceleration is constant; the swing with which a sudden one begins is "
+          "not part of it",
+          "friction, pressures and stiffnesses are those of the model: their scatter is not part of the margins",
+          "the bodies of the model are rigid: what bends in them, and the other plane, is not known to it"};
+}
+
+void conclude(StaticProof& proof, const StaticMachine& machine) {
+  proof.verdict = Verdict::hold;
+  for (const StaticCase& one : proof.cases) {
+    if (weight(one.verdict) <= weight(proof.verdict)) continue;
+    proof.verdict = one.verdict;
+    proof.reason = one.load.name + ": " + one.why;
+  }
+  if (proof.verdict != Verdict::hold) return;
+  proof.reason = "at rest under every load, with all criteria met that a rest can answer";
+  const bool is_asked = !machine.watches().empty() ||
+                        std::any_of(proof.cases.begin(), proof.cases.end(), [](const StaticCase& one) { return !one.criteria.empty(); });
+  if (is_asked) return;
+  proof.verdict = Verdict::open;
+  proof.reason = "at rest under every load, but nothing was asked: the model has no joint, contact or friction that could give way, and no "
+                 "criterion on a force or a place";
+}
+
+} // namespace
+
+std::string limit_words(const StaticRay& ray, std::size_t limit) {
+  const StaticLimit& one = ray.limits[limit];
+  if (one.kind != LimitKind::ends) return one.text;
+  std::string lifting, sliding, slipping;
+  for (const StaticLimit& other : ray.limits) {
+    if (!(other.acceleration >= one.acceleration - 4.0 * (one.error + other.error))) continue;
+    if (other.kind == LimitKind::lifts) lifting = other.element;
+    if (other.kind == LimitKind::slides) sliding = other.element;
+    if (other.kind == LimitKind::slips) slipping = other.element;
+  }
+  if (!slipping.empty()) return "'" + slipping + "' slips, and nothing else holds";
+  if (!sliding.empty()) return "'" + sliding + "' slides away";
+  if (!lifting.empty()) return "the machine tips over as '" + lifting + "' lifts";
+  return "the machine leaves its rest (" + one.text + ")";
+}
+
+StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& preset, const StaticProofOptions& options) {
+  StaticMachine machine(loaded);
+  StaticProof proof;
+  proof.model = loaded.name;
+  proof.file = loaded.path;
+  proof.overrides = loaded.overrides;
+  proof.assumptions = assumptions_of(options.plane);
+  proof.plane = options.plane;
+  proof.preset = preset;
+  proof.gravity = machine.gravity();
+  proof.largest = options.largest;
+  const auto ask_whether_to_stop = [&options] {
+    if (!options.stop) return;
+    if (const std::string why = options.stop(); !why.empty()) throw NumericalFailure(why);
+  };
+  for (const StaticLoad& load : loads_for(preset, options.plane)) {
+    ask_whether_to_stop();
+    proof.cases.push_back(CaseProof(machine, loaded, load).run());
+  }
+  for (int i = 0; i < options.directions; ++i) {
+    ask_whether_to_stop();
+    proof.polar.push_back(look_along(machine, 2.0 * std::numbers::pi * i / options.directions, options.largest));
+  }
+  const RunResult rest = as_run(machine, machine.at_rest());
+  for (const Criterion& criterion : machine.model().criteria)
+    if (criterion.channel.empty() || !is_of_rest(judge_criterion(criterion, rest).unit)) proof.unasked.push_back(criterion.name);
+  conclude(proof, machine);
+  return proof;
+}
+
+} // namespace steplap::assess

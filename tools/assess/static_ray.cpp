@@ -1,0 +1,129 @@
+#include "tools/assess/static_ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::assess {
+
+namespace {
+
+constexpr double k_first_step = 1.0 / 16.0; // of the machine's own gravity, or of the largest pull without any
+constexpr double k_growth = 1.3;
+constexpr double k_width = 1e-6;    // of the acceleration: how closely a limit is closed in on
+constexpr double k_at_limit = 1e-4; // of what a watch has left at rest: hundred times what is left at the end of such an interval
+constexpr int k_most_probes = 80;
+
+struct Point {
+  double a = 0.0;
+  Probe probe;
+};
+
+class Ray {
+public:
+  Ray(StaticMachine& machine, const Vec2& direction, double most)
+      : machine_(machine), direction_(direction), most_(most), is_reached_(machine.watches().size(), 0) {}
+
+  StaticRay run() {
+    Point low{0.0, machine_.at_rest()};
+    for (std::size_t w = 0; w < is_reached_.size(); ++w)
+      if (!(low.probe.left[w] > 0.0)) note(w, 0.0, 0.0);
+    const double g = machine_.gravity().norm();
+    const double first = k_first_step * (g > 0.0 ? std::min(g, most_) : most_);
+    for (double a = std::min(first, most_);; a = std::min(most_, std::max(a + first, a * k_growth))) {
+      Point high = at(a);
+      if (!high.probe.rest) {
+        end_between(low, high);
+        break;
+      }
+      look_between(low, high);
+      low = std::move(high);
+      found_.largest = a;
+      if (a >= most_) break;
+    }
+    std::stable_sort(found_.limits.begin(), found_.limits.end(),
+                     [](const StaticLimit& x, const StaticLimit& y) { return x.acceleration < y.acceleration; });
+    return std::move(found_);
+  }
+
+private:
+  [[nodiscard]] Point at(double a) { return {a, machine_.ramped(a * direction_)}; }
+
+  void note(std::size_t w, double a, double error) {
+    is_reached_[w] = 1;
+    const Watch& watch = machine_.watches()[w];
+    found_.limits.push_back({watch.kind, watch.element, "'" + watch.element + "' " + name_of(watch.kind), a, error});
+  }
+
+  // Where the straight line through what w had left at two points says that it has nothing left.
+  [[nodiscard]] static double foreseen(const Point& before, const Point& low, std::size_t w) {
+    const double slope = (low.probe.left[w] - before.probe.left[w]) / (low.a - before.a);
+    return slope < 0.0 ? low.a - low.probe.left[w] / slope : low.a - 1.0;
+  }
+
+  // The first place where the watches still to come, or w alone, are foreseen to be at their limits.
+  [[nodiscard]] double foreseen(const Point& before, const Point& low, std::optional<std::size_t> only) const {
+    double first = low.a - 1.0;
+    for (std::size_t w = 0; w < is_reached_.size(); ++w) {
+      if (only ? w != *only : is_reached_[w] != 0) continue;
+      const double a = foreseen(before, low, w);
+      if (a > low.a && (first < low.a || a < first)) first = a;
+    }
+    return first;
+  }
+
+  // Closes in on where `is_good` ends, from a good point to a bad one.
+  template <class IsGood> void close_in(Point& low, Point& high, std::optional<std::size_t> only, const IsGood& is_good) {
+    Point before = low;
+    for (int i = 0; i < k_most_probes; ++i) {
+      const double width = high.a - low.a, enough = k_width * high.a;
+      if (width <= enough) return;
+      double next = low.a + 0.5 * width;
+      if (i % 3 != 2 && low.a > before.a) {
+        const double guess = foreseen(before, low, only), aside = 0.3 * enough;
+        if (guess > low.a && guess < high.a) next = i % 3 == 0 ? guess - aside : guess + aside;
+      }
+      if (!(next > low.a && next < high.a)) next = low.a + 0.5 * width;
+      Point middle = at(next);
+      if (is_good(middle.probe)) {
+        before = std::move(low);
+        low = std::move(middle);
+      } else {
+        high = std::move(middle);
+      }
+    }
+  }
+
+  // Limits that watches reach between two points of rest.
+  void look_between(const Point& from, const Point& to) {
+    for (std::size_t w = 0; w < is_reached_.size(); ++w) {
+      if (is_reached_[w] != 0 || to.probe.left[w] > 0.0) continue;
+      Point low = from, high = to;
+      close_in(low, high, w, [w](const Probe& p) { return p.rest && p.left[w] > 0.0; });
+      note(w, 0.5 * (low.a + high.a), 0.5 * (high.a - low.a));
+    }
+  }
+
+  void end_between(const Point& from, const Point& to) {
+    Point low = from, high = to;
+    close_in(low, high, std::nullopt, [](const Probe& p) { return p.rest.has_value(); });
+    look_between(from, low);
+    found_.largest = low.a;
+    const double a = 0.5 * (low.a + high.a), error = 0.5 * (high.a - low.a);
+    for (std::size_t w = 0; w < is_reached_.size(); ++w)
+      if (is_reached_[w] == 0 && low.probe.left[w] <= k_at_limit * std::max(1.0, machine_.at_rest().left[w])) note(w, a, error);
+    found_.is_explained = !found_.limits.empty() && !high.probe.is_unknown;
+    found_.limits.push_back({LimitKind::ends, "", high.probe.failure, a, error});
+  }
+
+  StaticMachine& machine_;
+  const Vec2 direction_;
+  const double most_;
+  std::vector<char> is_reached_;
+  StaticRay found_;
+};
+
+} // namespace
+
+StaticRay grow_pull(StaticMachine& machine, const Vec2& direction, double most) { return Ray(machine, direction, most).run(); }
+
+} // namespace steplap::assess

@@ -1,0 +1,14 @@
+#include "tools/python/bindings.h"
+
+#include "run/version.h"
+
+PYBIND11_MODULE(_steplap, module) {
+  using namespace steplap::python;
+  module.doc() = "Planar multibody dynamics with exact friction: models, runs, verdicts.";
+  module.attr("__version__") = steplap::k_version;
+  add_errors(module);
+  add_model(module);
+  add_analysis(module);
+  add_run(module);
+  add_samples(module);
+}

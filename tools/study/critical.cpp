@@ -1,0 +1,248 @@
+#include "tools/study/critical.h"
+
+#include "tools/study/crossing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::study {
+
+namespace {
+
+FieldTable critical_fields() {
+  using S = CriticalSettings;
+  FieldTable t;
+  t.add("variable", &S::variable).required().doc("whose critical values are looked for, within its range");
+  t.add("expression", &S::expression).required().doc("of responses and variables: critical where it is zero");
+  t.add("points", &S::points).at_least(3).at_most(1e6).doc("of the first look along the range: closer pairs of crossings are not seen");
+  t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of the critical value, of the range");
+  return t;
+}
+
+std::vector<std::string> names_of(const Study& study) {
+  std::vector<std::string> names;
+  for (const Variable& v : study.variables) names.push_back(v.name);
+  return names;
+}
+
+// The expression along the variable, the others at their values.
+class Line {
+public:
+  explicit Line(StudyRun& run)
+      : run_(run), variable_(static_cast<std::size_t>(run.study().index_of_variable(settings_of<CriticalSettings>(run.study()).variable))),
+        place_(static_cast<std::size_t>(run.loaded.index_of_number("critical"))) {}
+
+  std::vector<double> at(const std::vector<double>& xs) {
+    std::vector<double> points;
+    for (const double x : xs) {
+      points.insert(points.end(), run_.law.nominal().begin(), run_.law.nominal().end());
+      points[points.size() - run_.law.nominal().size() + variable_] = x;
+    }
+    std::vector<double> values;
+    for (const StoredSample& sample : run_.evaluator.evaluate(points)) {
+      const bool is_ok = sample.outcome.status == SampleStatus::ok;
+      values.push_back(is_ok ? sample.outcome.numbers[place_] : std::nan(""));
+      bad_ += !is_ok;
+    }
+    return values;
+  }
+  [[nodiscard]] long bad() const { return bad_; }
+
+private:
+  StudyRun& run_;
+  std::size_t variable_, place_;
+  long bad_ = 0;
+};
+
+struct Look {
+  std::vector<double> x, g;
+};
+
+void look_at(Line& line, std::vector<double> more, Look& look) {
+  std::sort(more.begin(), more.end());
+  more.erase(std::unique(more.begin(), more.end()), more.end());
+  const std::vector<double> values = line.at(more);
+  std::vector<std::pair<double, double>> all;
+  for (std::size_t i = 0; i < look.x.size(); ++i) all.emplace_back(look.x[i], look.g[i]);
+  for (std::size_t i = 0; i < more.size(); ++i) all.emplace_back(more[i], values[i]);
+  std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
+  look = {};
+  for (const auto& [x, g] : all) look.x.push_back(x), look.g.push_back(g);
+}
+
+// Where the expression has the same sign on both sides and is nearer to zero than there: it may touch zero, or cross it
+// twice. Those that come nearest first.
+std::vector<std::size_t> turns_of(const Look& look) {
+  constexpr std::size_t k_most = 6;
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 1; i + 1 < look.x.size(); ++i) {
+    const double before = look.g[i - 1], here = look.g[i], after = look.g[i + 1];
+    const bool is_one_side = before * after > 0.0 && here * before >= 0.0;
+    if (is_one_side && std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after)) turns.push_back(i);
+  }
+  std::stable_sort(turns.begin(), turns.end(), [&](std::size_t l, std::size_t r) { return std::abs(look.g[l]) < std::abs(look.g[r]); });
+  if (turns.size() > k_most) turns.resize(k_most);
+  return turns;
+}
+
+void look_closer(Line& line, Look& look) {
+  constexpr int k_rounds = 4, k_parts = 8;
+  for (int round = 0; round < k_rounds; ++round) {
+    std::vector<double> more;
+    for (const std::size_t i : turns_of(look))
+      for (int k = 1; k < k_parts; ++k)
+        for (const std::size_t from : {i - 1, i}) more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
+    if (more.empty()) return;
+    look_at(line, std::move(more), look);
+  }
+}
+
+// Zero at two neighbouring looks: all over between them, or two zeros that happen to lie there?
+void look_into_flats(Line& line, Look& look) {
+  constexpr int k_parts = 4;
+  std::vector<double> more;
+  for (std::size_t i = 1; i < look.x.size(); ++i)
+    for (int k = 1; k < k_parts && look.g[i - 1] == 0.0 && look.g[i] == 0.0; ++k)
+      more.push_back(look.x[i - 1] + (look.x[i] - look.x[i - 1]) * k / k_parts);
+  if (!more.empty()) look_at(line, std::move(more), look);
+}
+
+std::string where_nearest(const Look& look) {
+  std::size_t best = look.g.size();
+  for (std::size_t i = 0; i < look.g.size(); ++i)
+    if (!std::isnan(look.g[i]) && (best == look.g.size() || std::abs(look.g[i]) < std::abs(look.g[best]))) best = i;
+  char text[80];
+  std::snprintf(text, sizeof text, "; nearest to zero at %.6g, where it is %.3g", look.x[best], look.g[best]);
+  return text;
+}
+
+std::string monotonic_text(const Look& look) {
+  bool rises = false, falls = false, is_known = true;
+  for (std::size_t i = 1; i < look.g.size(); ++i) {
+    is_known = is_known && !std::isnan(look.g[i]) && !std::isnan(look.g[i - 1]);
+    rises = rises || look.g[i] > look.g[i - 1];
+    falls = falls || look.g[i] < look.g[i - 1];
+  }
+  if (!is_known) return "may be monotonic or not: some runs gave no value";
+  if (rises && falls) return "is not monotonic over the range: all crossings that the looks tell apart are given";
+  return rises ? "rises all over the range" : falls ? "falls all over the range" : "is constant over the range";
+}
+
+// Where the expression is zero at two neighbouring looks, it is at all values between; neighbours are joined.
+void add_flat(double low, double high, const std::string& variable, long samples, Answer& answer) {
+  answer.degrade(Standing::not_met);
+  if (!answer.findings.empty() && answer.findings.back().high == low) {
+    answer.findings.back().high = high;
+    return;
+  }
+  Finding f{"critical", variable, "critical value", std::nan(""), low, high, samples};
+  f.status = "the expression is zero all over this interval: no value of it is critical";
+  answer.findings.push_back(f);
+}
+
+// Intervals at whose ends the signs differ, and looks that have hit a zero.
+std::vector<Crossing> crossings_of(const Look& look, const std::string& variable, long samples, Answer& answer) {
+  std::vector<Crossing> crossings;
+  const auto is_zero = [&](std::size_t i) { return i < look.g.size() && look.g[i] == 0.0; };
+  for (std::size_t i = 0; i < look.x.size(); ++i) {
+    const double here = look.g[i];
+    if (here == 0.0 && !is_zero(i + 1) && !(i > 0 && is_zero(i - 1))) crossings.push_back({look.x[i], look.x[i], here, here});
+    if (i + 1 == look.x.size()) break;
+    const double next = look.g[i + 1];
+    if (here == 0.0 && next == 0.0) add_flat(look.x[i], look.x[i + 1], variable, samples, answer);
+    if (here * next < 0.0) crossings.push_back({look.x[i], look.x[i + 1], here, next});
+  }
+  return crossings;
+}
+
+// Between looks that lie hardly closer than the crossings do there may be pairs of them that none of the looks tells.
+void say_if_dense(std::size_t crossings, long points, Answer& answer) {
+  constexpr long k_looks = 3; // for each crossing
+  if (crossings < 3 || k_looks * static_cast<long>(crossings) < points) return;
+  answer.notes.push_back(std::to_string(crossings) + " crossings among " + std::to_string(points) +
+                         " looks: there may be more between them; look in more places (points)");
+  answer.degrade(Standing::not_met);
+}
+
+// To all that evaluates samples the expression is a limit state.
+void add_critical_expression(LoadedStudy& loaded) {
+  const auto& s = settings_of<CriticalSettings>(loaded.study);
+  loaded.study.limit_states.push_back({"critical", s.expression, s.where, true});
+}
+
+void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
+  const auto& s = settings_of<CriticalSettings>(loaded.study);
+  const int v = loaded.study.index_of_variable(s.variable);
+  if (v < 0) problems.push_back({s.where, "there is no variable '" + s.variable + "'" + did_you_mean(s.variable, names_of(loaded.study))});
+  else if (loaded.study.variables[static_cast<std::size_t>(v)].range.size() != 2)
+    problems.push_back({loaded.study.variables[static_cast<std::size_t>(v)].where,
+                        "variable '" + s.variable + "' needs a 'range' to look for critical values in"});
+}
+
+Answer run_critical(StudyRun& run) {
+  const auto& s = settings_of<CriticalSettings>(run.study());
+  const Variable& v = run.study().variables[static_cast<std::size_t>(run.study().index_of_variable(s.variable))];
+  const double low = v.range[0], width = v.range[1] - v.range[0];
+  Line line(run);
+  Look look;
+  for (long k = 0; k < s.points; ++k)
+    look.x.push_back(k + 1 == s.points ? v.range[1] : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
+  look.g = line.at(look.x);
+  look_into_flats(line, look);
+  look_closer(line, look);
+
+  Answer answer;
+  std::vector<Crossing> crossings = crossings_of(look, s.variable, run.evaluator.asked(), answer);
+  say_if_dense(crossings.size(), s.points, answer);
+  close_crossings(crossings, s.tolerance * width,
+                  [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
+
+  for (const Crossing& c : crossings) {
+    Finding f{"critical", s.variable, "critical value", c.root(), c.low, c.high, run.evaluator.asked()};
+    if (c.is_jump) f.status = "the expression jumps past zero there: it is discontinuous";
+    if (c.is_bad) f.status = "a run between both ends gave no value: closed in no further";
+    if (c.is_bad) answer.degrade(Standing::not_met);
+    answer.findings.push_back(f);
+  }
+  if (answer.findings.empty()) {
+    Finding f{"critical", s.variable, "critical value"};
+    f.samples = run.evaluator.asked();
+    const auto known = std::find_if(look.g.begin(), look.g.end(), [](double g) { return !std::isnan(g); });
+    f.status = known == look.g.end() ? "no run gave a value"
+                                     : std::string("none in the range: the expression is ") + (*known < 0.0 ? "negative" : "positive") +
+                                           " wherever it was looked at" + where_nearest(look);
+    answer.findings.push_back(f);
+    answer.degrade(Standing::not_met);
+  }
+  answer.notes.push_back("The expression " + monotonic_text(look) + ".");
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "Looks lie %.3g apart: two crossings nearer to each other may lie between them unseen, where nothing "
+                "points to them; 'points' looks closer.",
+                width / static_cast<double>(s.points - 1));
+  answer.notes.emplace_back(text);
+  if (line.bad() > 0) {
+    answer.notes.push_back(std::to_string(line.bad()) +
+                           " runs did not reach their end or are not to be trusted: crossings beside them are not seen");
+    answer.degrade(Standing::not_met);
+  }
+  return answer;
+}
+
+} // namespace
+
+StudyKind critical_kind() {
+  StudyKind kind;
+  kind.name = "critical";
+  kind.doc = "the values of a variable at which an expression is zero";
+  kind.fields = critical_fields();
+  kind.holds<CriticalSettings>();
+  kind.shown = {"variable"};
+  kind.parts = {{"critical", "critical value", UnitOf::subject}};
+  kind.prepare = add_critical_expression;
+  kind.check = check_critical;
+  kind.run = run_critical;
+  return kind;
+}
+
+} // namespace steplap::study

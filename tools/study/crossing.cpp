@@ -1,0 +1,66 @@
+#include "tools/study/crossing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace steplap::study {
+
+double Crossing::root() const { return std::abs(g_low) < std::abs(g_high) ? low : high; }
+
+namespace {
+
+struct Closing {
+  double low, high; ///< values of the ends, halved where an end stands still
+  double first;     ///< larger of both at the beginning
+  int stuck = 0;
+};
+
+void take(Crossing& c, Closing& closing, double x, double g) {
+  if (std::isnan(g)) {
+    c.is_bad = true;
+    return;
+  }
+  if ((g < 0.0) == (c.g_low < 0.0)) {
+    c.low = x;
+    c.g_low = closing.low = g;
+    closing.stuck = std::max(closing.stuck, 0) + 1;
+    if (closing.stuck > 1) closing.high *= 0.5;
+  } else {
+    c.high = x;
+    c.g_high = closing.high = g;
+    closing.stuck = std::min(closing.stuck, 0) - 1;
+    if (closing.stuck < -1) closing.low *= 0.5;
+  }
+}
+
+} // namespace
+
+void close_crossings(std::vector<Crossing>& crossings, double tolerance, const BatchFunction& function) {
+  std::vector<Closing> closing;
+  for (const Crossing& c : crossings) closing.push_back({c.g_low, c.g_high, std::max(std::abs(c.g_low), std::abs(c.g_high))});
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::size_t> which;
+    std::vector<double> at;
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+      const Crossing& c = crossings[i];
+      if (c.is_bad || c.high - c.low <= tolerance || c.g_low == 0.0 || c.g_high == 0.0) continue;
+      double x = c.high - closing[i].high * (c.high - c.low) / (closing[i].high - closing[i].low);
+      // Not so near to an end that the other never moves.
+      const double inside = 0.3 * tolerance;
+      x = round % 4 == 3 ? 0.5 * (c.low + c.high) : std::clamp(x, c.low + inside, c.high - inside);
+      which.push_back(i);
+      at.push_back(x);
+    }
+    if (which.empty()) break;
+    const std::vector<double> values = function(which, at);
+    for (std::size_t k = 0; k < which.size(); ++k) take(crossings[which[k]], closing[which[k]], at[k], values[k]);
+  }
+  constexpr double k_continuous = 1e-3; // of what it was at the interval's ends
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    Crossing& c = crossings[i];
+    c.is_jump = !c.is_bad && std::min(std::abs(c.g_low), std::abs(c.g_high)) > k_continuous * closing[i].first;
+  }
+}
+
+} // namespace steplap::study

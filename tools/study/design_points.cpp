@@ -1,0 +1,307 @@
+#include "tools/study/design_points.h"
+
+#include "tools/study/design_search.h"
+#include "tools/study/reliability.h"
+
+#include <openturns/AbdoRackwitz.hxx>
+#include <openturns/CompositeRandomVector.hxx>
+#include <openturns/Less.hxx>
+#include <openturns/Log.hxx>
+#include <openturns/Normal.hxx>
+#include <openturns/SORM.hxx>
+#include <openturns/ThresholdEvent.hxx>
+
+#include <cmath>
+
+namespace steplap::study {
+
+namespace {
+
+// A run that has no result has no gradient either: the search from this start ends.
+class BadSample : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+double cosine_between(const std::vector<double>& a, const std::vector<double>& b) {
+  double product = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) product += a[i] * b[i];
+  const double lengths = length_of(a.data(), a.size()) * length_of(b.data(), b.size());
+  return lengths > 0.0 ? product / lengths : 0.0;
+}
+
+std::vector<double> vector_of(const OT::Point& p) { return {p.begin(), p.end()}; }
+
+double g_at(LimitFunction& limit, const OT::Point& u) {
+  const LimitValue value = limit.at_point(vector_of(u));
+  if (value.is_bad) throw BadSample("a run without result lay on the way");
+  return value.g;
+}
+
+// g, and its differences asked for in one batch each, so that all processors have something to do.
+class LimitEvaluation : public OT::EvaluationImplementation {
+public:
+  explicit LimitEvaluation(LimitFunction& limit) : limit_(&limit) {
+    setInputDescription(OT::Description::BuildDefault(limit.dimension(), "u"));
+    setOutputDescription(OT::Description(1, "g"));
+  }
+  LimitEvaluation* clone() const override { return new LimitEvaluation(*this); }
+  OT::UnsignedInteger getInputDimension() const override { return limit_->dimension(); }
+  OT::UnsignedInteger getOutputDimension() const override { return 1; }
+  OT::Point operator()(const OT::Point& u) const override { return OT::Point(1, g_at(*limit_, u)); }
+  OT::Sample operator()(const OT::Sample& sample) const override {
+    OT::Sample result(sample.getSize(), 1);
+    for (OT::UnsignedInteger i = 0; i < sample.getSize(); ++i) result(i, 0) = g_at(*limit_, sample[i]);
+    return result;
+  }
+
+private:
+  LimitFunction* limit_;
+};
+
+class LimitGradient : public OT::GradientImplementation {
+public:
+  LimitGradient(LimitFunction& limit, double h) : limit_(&limit), h_(h) {}
+  LimitGradient* clone() const override { return new LimitGradient(*this); }
+  OT::UnsignedInteger getInputDimension() const override { return limit_->dimension(); }
+  OT::UnsignedInteger getOutputDimension() const override { return 1; }
+  OT::Matrix gradient(const OT::Point& u) const override {
+    const auto d = gradient_at(*limit_, vector_of(u), h_);
+    if (!d) throw BadSample("a run without result lay on the way");
+    OT::Matrix matrix(d->size(), 1);
+    for (std::size_t i = 0; i < d->size(); ++i) matrix(i, 0) = (*d)[i];
+    return matrix;
+  }
+
+private:
+  LimitFunction* limit_;
+  double h_;
+};
+
+class LimitHessian : public OT::HessianImplementation {
+public:
+  LimitHessian(LimitFunction& limit, double h) : limit_(&limit), h_(h) {}
+  LimitHessian* clone() const override { return new LimitHessian(*this); }
+  OT::UnsignedInteger getInputDimension() const override { return limit_->dimension(); }
+  OT::UnsignedInteger getOutputDimension() const override { return 1; }
+  OT::SymmetricTensor hessian(const OT::Point& at) const override {
+    const std::vector<double> u = vector_of(at);
+    const std::size_t n = u.size();
+    std::vector<double> points(u);
+    const auto add = [&](std::size_t i, double di, std::size_t j, double dj) {
+      points.insert(points.end(), u.begin(), u.end());
+      points[points.size() - n + i] += di;
+      points[points.size() - n + j] += dj;
+    };
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j <= i; ++j)
+        for (const double si : {1.0, -1.0})
+          for (const double sj : {1.0, -1.0})
+            if (i != j || si == sj) add(i, 0.5 * si * h_ * (i == j ? 1.0 : 2.0), j, 0.5 * sj * h_ * (i == j ? 1.0 : 2.0));
+    const std::vector<LimitValue>& g = limit_->at(points);
+    for (const LimitValue& value : g)
+      if (value.is_bad) throw BadSample("a run without result lay on the way");
+    OT::SymmetricTensor tensor(n, 1);
+    std::size_t k = 1;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j <= i; ++j) {
+        if (i == j) tensor(i, j, 0) = (g[k].g - 2.0 * g[0].g + g[k + 1].g) / (h_ * h_), k += 2;
+        else tensor(i, j, 0) = (g[k].g - g[k + 1].g - g[k + 2].g + g[k + 3].g) / (4.0 * h_ * h_), k += 4;
+      }
+    return tensor;
+  }
+
+private:
+  LimitFunction* limit_;
+  double h_;
+};
+
+OT::RandomVector event_of(LimitFunction& limit, double h) {
+  // Second differences take a larger step: their noise goes with its square.
+  const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
+                              OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
+                              OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
+  const OT::RandomVector input{OT::Distribution(OT::Normal(limit.dimension()))};
+  return OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0);
+}
+
+// Where a search has ended, held against what a design point is.
+DesignPoint point_of(LimitFunction& limit, const SearchEnd& end, bool is_origin_failing) {
+  constexpr double k_on_surface = 1e-4, k_aligned = 1e-4;
+  DesignPoint point;
+  point.u = end.u;
+  const std::size_t n = point.u.size();
+  const double distance = length_of(point.u.data(), n);
+  point.beta = is_origin_failing ? -distance : distance;
+  for (const double x : point.u) point.alpha.push_back(distance > 0.0 ? -x / point.beta : 0.0);
+  point.breitung = point.hohenbichler = point.tvedt = std::nan("");
+  point.g = end.g;
+  point.off_surface = std::numeric_limits<double>::infinity();
+  const auto gradient = gradient_at(limit, point.u, limit.settings().difference);
+  const double steepness = gradient ? length_of(gradient->data(), n) : 0.0;
+  if (!(steepness > 0.0)) return point;
+  point.off_surface = std::abs(point.g) / steepness;
+  double product = 0.0;
+  for (std::size_t i = 0; i < n; ++i) product += point.u[i] * (*gradient)[i];
+  point.misalignment = distance > 0.0 ? 1.0 - std::abs(product) / (distance * steepness) : 0.0;
+  point.is_found = point.off_surface < k_on_surface * std::max(1.0, distance) && point.misalignment < k_aligned;
+  return point;
+}
+
+bool is_same(const DesignPoint& a, const DesignPoint& b) {
+  constexpr double k_near = 1e-2;
+  return distance_between(a.u, b.u) < k_near * std::max(1.0, std::abs(a.beta));
+}
+
+void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& search, double h, DesignPoint& point) {
+  try {
+    OT::Point start(point.u.size());
+    std::copy(point.u.begin(), point.u.end(), start.begin());
+    OT::SORM sorm(search, event_of(limit, h), start);
+    sorm.run();
+    const OT::SORMResult result = sorm.getResult();
+    point.breitung = result.getEventProbabilityBreitung();
+    try {
+      point.hohenbichler = result.getEventProbabilityHohenbichler();
+      point.tvedt = result.getEventProbabilityTvedt();
+    } catch (const OT::Exception&) { // where curvatures are too large for them
+    }
+  } catch (const OT::Exception&) {
+  } catch (const BadSample&) {}
+}
+
+// What OpenTURNS asks for beside a design point that is there already.
+OT::AbdoRackwitz search_algorithm() {
+  OT::Log::Show(OT::Log::NONE);
+  OT::AbdoRackwitz search;
+  search.setMaximumEvaluationNumber(1000);
+  search.setMaximumIterationNumber(60);
+  search.setMaximumAbsoluteError(1e-6);
+  search.setMaximumRelativeError(1e-6);
+  search.setMaximumConstraintError(1e-12);
+  search.setMaximumResidualError(1e-12);
+  return search;
+}
+
+// True if the point is new.
+bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
+  for (DesignPoint& other : points)
+    if (is_same(point, other)) {
+      if (point.is_found && (!other.is_found || point.off_surface < other.off_surface)) other = std::move(point);
+      return false;
+    }
+  points.push_back(std::move(point));
+  return true;
+}
+
+// One search, which may take samples until there are `last`; what ends it early is noted.
+bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found) {
+  ++found.starts;
+  constexpr double k_near_surface = 1e-2; // where another search would go to and fro as well
+  std::vector<std::vector<double>> known;
+  for (const DesignPoint& p : found.points)
+    if (p.is_found || p.off_surface < k_near_surface) known.push_back(p.u);
+  const SearchEnd end = search_design_point(limit, start, known, last);
+  if (!end.trouble.empty() && found.failed_starts++ == 0) found.trouble = end.trouble;
+  if (end.is_known || end.is_bad) return false;
+  return add_point(point_of(limit, end, found.is_origin_failing), found.points);
+}
+
+void sort_points(std::vector<DesignPoint>& points) {
+  std::stable_sort(points.begin(), points.end(), [](const DesignPoint& a, const DesignPoint& b) {
+    return a.is_found != b.is_found ? a.is_found : std::abs(a.beta) < std::abs(b.beta);
+  });
+}
+
+// For all searches together: a search takes some five steps of a gradient each, and most end at the first.
+long budget_of(const LimitFunction& limit) {
+  return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
+}
+
+// Directions that lie apart: of many random ones each time the one that is farthest from all taken before.
+std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, long count) {
+  constexpr long k_pool = 20; // for each
+  const CounterRandom random(static_cast<std::uint64_t>(limit.study().seed), 3);
+  std::vector<std::vector<double>> pool, directions;
+  for (long k = 1; k <= k_pool * count; ++k) {
+    std::vector<double> a;
+    for (std::size_t i = 0; i < limit.dimension(); ++i)
+      a.push_back(random.normal(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i)));
+    const double length = length_of(a.data(), a.size());
+    for (double& x : a) x /= length;
+    pool.push_back(std::move(a));
+  }
+  std::vector<double> nearest(pool.size(), -1.0); // cosine
+  for (std::size_t next = 0; static_cast<long>(directions.size()) < count;) {
+    directions.push_back(pool[next]);
+    for (std::size_t i = 0; i < pool.size(); ++i) nearest[i] = std::max(nearest[i], cosine_between(pool[i], directions.back()));
+    next = static_cast<std::size_t>(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  return directions;
+}
+
+// Where searches begin: of looks in directions that lie apart, three for each start, those at which the limit state is
+// lowest (where the origin holds; highest, where it fails), and which lie apart from one another and from what is known.
+std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, const DesignPoints& found) {
+  constexpr double k_far = 3.0, k_apart = 0.9; // of the cosine between two directions
+  std::vector<std::vector<double>> looks = spread_directions(limit, 3 * count);
+  std::vector<double> points;
+  for (std::vector<double>& u : looks) {
+    for (double& x : u) x *= k_far;
+    points.insert(points.end(), u.begin(), u.end());
+  }
+  if (looks.empty()) return {};
+  const std::vector<LimitValue> values = limit.at(points);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (!values[i].is_bad) order.push_back(i);
+  const double sign = found.is_origin_failing ? -1.0 : 1.0;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sign * values[a].g < sign * values[b].g; });
+  std::vector<std::vector<double>> starts, taken;
+  for (const DesignPoint& p : found.points)
+    if (p.is_found) taken.push_back(p.u);
+  for (const std::size_t i : order) {
+    if (static_cast<long>(starts.size()) == count) break;
+    const bool is_apart = std::none_of(taken.begin(), taken.end(),
+                                       [&](const std::vector<double>& other) { return cosine_between(other, looks[i]) > k_apart; });
+    if (!is_apart) continue;
+    taken.push_back(looks[i]);
+    starts.push_back(looks[i]);
+  }
+  return starts;
+}
+
+} // namespace
+
+DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
+  const auto& settings = limit.settings();
+  const std::vector<double> origin(limit.dimension(), 0.0);
+  DesignPoints found;
+  const long before = limit.asked(), last = before + budget_of(limit);
+  const LimitValue value = limit.at_point(origin);
+  found.is_origin_failing = !value.is_bad && value.g < 0.0;
+  (void)search_from(limit, origin, last, found);
+  for (const std::vector<double>& start : starts_of(limit, settings.starts - 1, found)) {
+    if (limit.asked() >= last) {
+      ++found.left_starts;
+      continue;
+    }
+    (void)search_from(limit, start, last, found);
+  }
+  sort_points(found.points);
+  if (is_second_order && !found.points.empty() && found.points.front().is_found)
+    for (DesignPoint& point : found.points)
+      if (point.is_found) add_second_order(limit, search_algorithm(), settings.difference, point);
+  found.samples = limit.asked() - before;
+  return found;
+}
+
+bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found) {
+  const long before = limit.asked();
+  const bool is_new = search_from(limit, start, before + budget_of(limit) / 2, found);
+  sort_points(found.points);
+  found.samples += limit.asked() - before;
+  return is_new;
+}
+
+} // namespace steplap::study

@@ -1,0 +1,238 @@
+#include "tools/study/sampling_course.h"
+
+#include <cmath>
+
+namespace steplap::study {
+
+namespace {
+
+// Where importance sampling draws: normal around each design point, and a wide one around the origin.
+class Proposal {
+public:
+  Proposal(const std::vector<DesignPoint>& points, const std::vector<std::vector<double>>& more, std::size_t dimension)
+      : dimension_(dimension) {
+    const std::vector<const DesignPoint*> usable = usable_of(points);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const DesignPoint* p : usable) nearest = std::min(nearest, std::abs(p->beta));
+    constexpr double k_too_far = 3.0; // what lies so much further matters little
+    for (const DesignPoint* p : usable)
+      if (std::abs(p->beta) < nearest + k_too_far) centres_.push_back(p->u);
+    centres_.insert(centres_.end(), more.begin(), more.end());
+    wide_ = std::max(1.0, 1.2 * nearest / std::sqrt(static_cast<double>(dimension)));
+  }
+
+  void draw(const CounterRandom& random, std::uint64_t sample, std::vector<double>& points) const {
+    const double share = random.uniform(sample, 0);
+    const bool is_wide = share < k_wide;
+    const std::size_t k = is_wide ? 0
+                                  : std::min(centres_.size() - 1, static_cast<std::size_t>((share - k_wide) / (1.0 - k_wide) *
+                                                                                           static_cast<double>(centres_.size())));
+    for (std::size_t d = 0; d < dimension_; ++d) {
+      const double z = random.normal(sample, static_cast<std::uint32_t>(d + 2));
+      points.push_back(is_wide ? wide_ * z : centres_[k][d] + z);
+    }
+  }
+
+  /// Nearly nothing is drawn there but by the wide part: a failure there tells of a design point that is not known.
+  [[nodiscard]] bool is_stray(const double* u) const { return wide_part(u) * weight(u) > 0.9; }
+
+  /// Density of the standard normal over that of the proposal.
+  [[nodiscard]] double weight(const double* u) const {
+    double sum = wide_part(u);
+    for (const auto& c : centres_) {
+      double product = 0.0, own = 0.0;
+      for (std::size_t d = 0; d < dimension_; ++d) product += u[d] * c[d], own += c[d] * c[d];
+      sum += (1.0 - k_wide) / static_cast<double>(centres_.size()) * std::exp(product - 0.5 * own);
+    }
+    return 1.0 / sum;
+  }
+
+private:
+  // Design points; where there are none, places near which the limit state is; else wherever searches have ended.
+  static std::vector<const DesignPoint*> usable_of(const std::vector<DesignPoint>& points) {
+    std::vector<const DesignPoint*> usable;
+    const auto take = [&](auto is_usable) {
+      if (!usable.empty()) return;
+      for (const DesignPoint& p : points)
+        if (is_usable(p)) usable.push_back(&p);
+    };
+    take([](const DesignPoint& p) { return p.is_found; });
+    take([](const DesignPoint& p) { return std::isfinite(p.off_surface); });
+    take([](const DesignPoint&) { return true; });
+    return usable;
+  }
+
+  // Densities over that of the standard normal.
+  [[nodiscard]] double wide_part(const double* u) const {
+    const double distance = length_of(u, dimension_);
+    return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
+  }
+
+  static constexpr double k_wide = 0.2;
+  std::size_t dimension_;
+  std::vector<std::vector<double>> centres_;
+  double wide_ = 1.0;
+};
+
+// Weights of the samples that fail and of those that hold; runs without a result are with both, or with neither.
+struct Sums {
+  WeightedMean fails, fails_or_bad, holds, holds_or_bad;
+  void add(const LimitValue& value, double w) {
+    const bool is_failure = !value.is_bad && value.g < 0.0, is_hold = !value.is_bad && !is_failure;
+    fails.add(is_failure ? w : 0.0);
+    fails_or_bad.add(is_hold ? 0.0 : w);
+    holds.add(is_hold ? w : 0.0);
+    holds_or_bad.add(is_failure ? 0.0 : w);
+  }
+};
+
+class ImportanceSampling {
+public:
+  ImportanceSampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target)
+      : limit_(limit), design_(design), target_(target), course_(limit, target),
+        random_(static_cast<std::uint64_t>(limit.run().study().seed), 4), proposal_(design.points, {}, limit.dimension()) {
+    e_.method = "importance_sampling";
+  }
+
+  Estimate estimate() {
+    do run_stages();
+    while (!course_.is_over() && finds_from_stray());
+    course_.say_why_it_ended(e_);
+    judge();
+    return e_;
+  }
+
+private:
+  // The first stage ends with all places known to draw from that it tells of.
+  void run_stages() {
+    // A tenth of the samples there are, within bounds: fewer say little about the scatter, more cost much.
+    const long first = std::clamp(target_.samples / 10, 100L, 300L);
+    do {
+      begin();
+      draw_until(first);
+    } while (!course_.is_over() && (finds_from_stray() || finds_from_heaviest()));
+    if (course_.is_over()) return; // then the first stage is what there is
+    is_complement_ = holds_better();
+    set();
+    // Fewer than that give an interval of little use, whatever was asked for.
+    constexpr long k_fewest = 300;
+    const long second = std::max(course_.planned(first, e_.cov), k_fewest);
+    begin();
+    draw_until(second);
+    while (!course_.is_over() && !(e_.cov <= target_.cov))
+      draw_until(std::max(course_.planned(sums_.fails.count(), e_.cov), sums_.fails.count() + k_fewest));
+  }
+
+  void begin() {
+    proposal_ = Proposal(design_.points, outposts_, limit_.dimension());
+    sums_ = {};
+    nearest_stray_ = std::numeric_limits<double>::infinity();
+    stray_.clear();
+    heaviest_ = 0.0;
+    e_.bad = 0;
+  }
+
+  void draw_until(long count) {
+    constexpr std::size_t k_most = 1000; // between two looks at the clock
+    const std::size_t n = limit_.dimension();
+    while (sums_.fails.count() < count && !course_.is_over()) {
+      const std::size_t block = std::min({std::min(course_.block(), k_most), static_cast<std::size_t>(count - sums_.fails.count()),
+                                          static_cast<std::size_t>(course_.left())});
+      points_.clear();
+      for (std::size_t i = 0; i < block; ++i) proposal_.draw(random_, next_++, points_);
+      const std::vector<LimitValue>& values = limit_.at(points_);
+      for (std::size_t i = 0; i < block; ++i) {
+        const double w = proposal_.weight(&points_[i * n]);
+        sums_.add(values[i], w);
+        e_.bad += values[i].is_bad;
+        if (!values[i].is_bad && values[i].g < 0.0) remember(&points_[i * n], n, w);
+      }
+      set();
+      course_.note(e_);
+    }
+  }
+
+  // Of the failures the stray one that is nearest, and the one of the largest weight.
+  void remember(const double* u, std::size_t n, double w) {
+    if (w > heaviest_) {
+      heaviest_ = w;
+      heaviest_place_.assign(u, u + n);
+    }
+    const double distance = length_of(u, n);
+    if (distance >= nearest_stray_ || !proposal_.is_stray(u)) return;
+    nearest_stray_ = distance;
+    stray_.assign(u, u + n);
+  }
+
+  // Searches from the nearest stray failure. What was drawn until now does not tell of what it finds.
+  bool finds_from_stray() {
+    if (stray_.empty() || searches_++ >= k_most_searches) return false;
+    const std::vector<double> start = std::move(stray_);
+    stray_.clear();
+    return search_again(limit_, start, design_);
+  }
+
+  // A failure of many times the usual weight lies where too little is drawn: there is a design point near by that is
+  // not known, or one is drawn around the place itself.
+  bool finds_from_heaviest() {
+    constexpr double k_many = 15.0; // a plane at a distance of 5 has 6
+    const double hits = static_cast<double>(sums_.fails.hits()),
+                 mean = sums_.fails.mean() * static_cast<double>(sums_.fails.count()) / std::max(hits, 1.0);
+    if (hits < 10.0 || heaviest_ < k_many * mean || searches_++ >= k_most_searches) return false;
+    if (search_again(limit_, heaviest_place_, design_)) return true;
+    outposts_.push_back(heaviest_place_);
+    return true;
+  }
+
+  // Where failing is the rule the probability of holding is the better known one. Both have to have been met often
+  // enough for their scatter to be known.
+  [[nodiscard]] bool holds_better() const {
+    constexpr long k_enough = 20;
+    return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();
+  }
+
+  void set() {
+    const Share safe = share_of(is_complement_ ? sums_.holds_or_bad : sums_.fails, is_complement_, target_),
+                unsafe = share_of(is_complement_ ? sums_.holds : sums_.fails_or_bad, is_complement_, target_);
+    course_.set(e_, safe, unsafe);
+  }
+
+  void judge() {
+    constexpr double k_uneven = 0.1;
+    const WeightedMean& counted = is_complement_ ? sums_.holds : sums_.fails;
+    if (sums_.fails.hits() == 0) {
+      e_.status = "no failure was met around the design points";
+      e_.is_trusted = false;
+    } else if (counted.largest_share() > k_uneven) {
+      e_.status += std::string(e_.status.empty() ? "" : "; ") +
+                   "one sample carries more than a tenth of the estimate: its interval is not to be relied on";
+      e_.is_trusted = false;
+    }
+  }
+
+  static constexpr int k_most_searches = 12;
+
+  LimitFunction& limit_;
+  DesignPoints& design_;
+  const SamplingTarget& target_;
+  SamplingCourse course_;
+  CounterRandom random_;
+  Proposal proposal_;
+  Estimate e_;
+  Sums sums_;
+  std::uint64_t next_ = 0;
+  std::vector<double> points_, stray_, heaviest_place_;
+  std::vector<std::vector<double>> outposts_;
+  double heaviest_ = 0.0;
+  double nearest_stray_ = std::numeric_limits<double>::infinity();
+  int searches_ = 0;
+  bool is_complement_ = false;
+};
+
+} // namespace
+
+Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target) {
+  return ImportanceSampling(limit, design, target).estimate();
+}
+
+} // namespace steplap::study

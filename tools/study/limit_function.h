@@ -1,0 +1,52 @@
+// The system of limit states as a function of standard normal space: what all methods of reliability ask.
+#pragma once
+
+#include "tools/study/counter_random.h"
+#include "tools/study/study_run.h"
+
+namespace steplap::study {
+
+/// Of one sample.
+struct LimitValue {
+  double g = 0.0;      ///< negative: failure
+  bool is_bad = false; ///< its run did not reach its end, or is not to be trusted: g says nothing
+};
+
+struct ReliabilitySettings;
+
+class LimitFunction {
+public:
+  explicit LimitFunction(StudyRun& run);
+
+  [[nodiscard]] std::size_t dimension() const { return run_.law.dimension(); }
+  /// At `points` of standard normal space, one after the other; good until the next call.
+  const std::vector<LimitValue>& at(const std::vector<double>& points);
+  [[nodiscard]] LimitValue at_point(const std::vector<double>& u);
+
+  [[nodiscard]] StudyRun& run() { return run_; }
+  [[nodiscard]] const Study& study() const { return run_.study(); }
+  [[nodiscard]] const ReliabilitySettings& settings() const { return settings_; }
+  [[nodiscard]] long asked() const { return run_.evaluator.asked(); }
+  [[nodiscard]] const std::string& subject() const { return subject_; }
+  [[nodiscard]] long bad() const { return bad_; } ///< met so far
+  /// Of all failing points met so far the nearest to the origin; infinite if there was none.
+  [[nodiscard]] double nearest_failure() const { return nearest_; }
+  [[nodiscard]] const std::vector<double>& nearest_point() const { return nearest_point_; }
+
+private:
+  StudyRun& run_;
+  const ReliabilitySettings& settings_;
+  std::vector<std::size_t> places_; ///< of the system's limit states among the numbers
+  bool is_any_;
+  std::string subject_;
+  std::vector<double> values_;
+  std::vector<LimitValue> limits_;
+  long bad_ = 0;
+  double nearest_ = std::numeric_limits<double>::infinity();
+  std::vector<double> nearest_point_;
+};
+
+/// Length of a vector.
+[[nodiscard]] double length_of(const double* u, std::size_t n);
+
+} // namespace steplap::study

@@ -1,0 +1,88 @@
+#include "tools/study/program/show.h"
+
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <sstream>
+
+namespace steplap::study {
+
+namespace {
+
+std::string digits(double value) {
+  if (std::isnan(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.8g", value);
+  return text;
+}
+
+std::string interval_text(const Finding& f) {
+  if (std::isnan(f.low) && std::isnan(f.high)) return "";
+  return "[" + digits(f.low) + ", " + digits(f.high) + "]";
+}
+
+// Reasons that differ by their numbers only are one: the first is told, and how many there are of them.
+void show_reasons(Store& store, std::ostream& out) {
+  constexpr std::size_t k_most = 20;
+  struct Group {
+    std::string key;
+    Store::Reason first;
+    bool is_alike = true;
+  };
+  std::vector<Group> groups;
+  for (const Store::Reason& reason : store.reasons()) {
+    if (reason.status == "ok") continue;
+    std::string key = reason.status + " ";
+    for (const char c : reason.reason)
+      if (std::string("0123456789.+-e").find(c) == std::string::npos) key += c;
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.key == key; });
+    if (same == groups.end()) {
+      groups.push_back({key, reason});
+      continue;
+    }
+    same->is_alike = false;
+    const long count = same->first.count + reason.count;
+    if (reason.first < same->first.first) same->first = reason;
+    same->first.count = count;
+  }
+  for (std::size_t i = 0; i < std::min(groups.size(), k_most); ++i) {
+    const Store::Reason& r = groups[i].first;
+    out << "  " << r.count << " " << r.status << ", first sample " << r.first << ": " << r.reason
+        << (groups[i].is_alike ? "" : " (others alike, with other numbers)") << "\n";
+  }
+  if (groups.size() > k_most) out << "  and " << groups.size() - k_most << " more reasons\n";
+}
+
+} // namespace
+
+void show(Store& store, const std::string& title, std::ostream& out) {
+  if (!title.empty()) out << title << "\n";
+  const std::string standing = store.setting("standing");
+  out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": " << store.size() << " samples"
+      << (standing.empty() ? ", not finished" : "") << "\n";
+  show_reasons(store, out);
+  std::vector<Finding> findings = store.findings();
+  if (standing.empty()) {
+    findings = store.growth();
+    if (findings.size() > 1) findings = {findings.back()};
+  }
+  using Align = TextTable::Align;
+  TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right, Align::left});
+  if (!findings.empty())
+    table.set_head("findings", {"method", "of", "quantity", "value", "interval", "samples", ""},
+                   {"method", "of", "quantity", "value", "interval", "samples", "status"});
+  for (const Finding& f : findings)
+    table.add_row({f.method, f.subject, f.quantity, Cell(digits(f.value), f.value), interval_text(f),
+                   count_cell(static_cast<std::size_t>(f.samples)), f.status});
+  out << table;
+  for (const std::string& note : store.notes()) out << note << "\n";
+  std::istringstream files(store.setting("files"));
+  for (std::string line; std::getline(files, line);)
+    if (const std::size_t space = line.find(' '); space != std::string::npos)
+      out << "Read from " << line.substr(space + 1) << " (" << line.substr(0, space) << ")\n";
+  if (!standing.empty() && standing != "done") out << "Standing: " << standing << "\n";
+}
+
+} // namespace steplap::study

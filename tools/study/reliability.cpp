@@ -1,0 +1,304 @@
+#include "tools/study/reliability.h"
+
+#include "tools/study/random_variables.h"
+#include "tools/study/samplers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap::study {
+
+namespace {
+
+FieldTable reliability_fields() {
+  using S = ReliabilitySettings;
+  FieldTable t;
+  t.add("methods", &S::methods)
+      .doc("monte_carlo, form, sorm, importance_sampling, directional, subset; the first that samples gives the answer");
+  t.add("limit_states", &S::limit_states).doc("those that make the system; all if none is named");
+  t.add("combination", &S::combination).one_of({"any", "all"}).doc("the system fails where any of them does, or where all do");
+  t.add("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
+  t.add("samples", &S::samples).at_least(1).at_most(1e10).doc("and at this number of samples, for each method");
+  t.add("seconds", &S::seconds).in("s").positive().doc("and after this time, for each method");
+  t.add("difference", &S::difference)
+      .positive()
+      .at_most(0.5)
+      .doc("step of the difference quotients of FORM and SORM, in standard deviations");
+  t.add("starts", &S::starts).at_least(1).at_most(1000).doc("of the search for design points");
+  t.add("search_samples", &S::search_samples)
+      .at_least(10)
+      .at_most(1e7)
+      .doc("for all searches for design points together; 300 and 50 more for each variable if not given");
+  t.add("subset_samples", &S::subset_samples).at_least(100).at_most(1e7).doc("samples a level of subset simulation");
+  t.add("repetitions", &S::repetitions).at_least(2).at_most(1000).doc("of subset simulation; their scatter gives its interval");
+  t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of all intervals");
+  return t;
+}
+
+const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset"};
+
+constexpr double k_alarm = 0.01; // chance of a false alarm, of all comparisons of a study together
+
+SamplingTarget target_of(const ReliabilitySettings& s) {
+  SamplingTarget target;
+  target.cov = s.cov;
+  target.samples = s.samples;
+  target.seconds = s.seconds;
+  target.confidence = s.confidence;
+  return target;
+}
+
+std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0) {
+  char text[240];
+  std::snprintf(text, sizeof text, format, a, b, c);
+  return text;
+}
+
+class Reliability {
+public:
+  explicit Reliability(StudyRun& run)
+      : run_(run), limit_(run), settings_(settings_of<ReliabilitySettings>(run.study())), target_(target_of(settings_)) {}
+
+  Answer answer() {
+    const bool has_form = asks("form") || asks("sorm");
+    target_.test_confidence = 1.0 - k_alarm / static_cast<double>(comparisons());
+    if (has_form || asks("importance_sampling")) points_ = find_design_points(limit_, asks("sorm"));
+    for (const std::string& method : settings_.methods) {
+      run_.evaluator.expect(0);
+      if (method == "monte_carlo") estimates_.push_back(monte_carlo(limit_, target_));
+      if (method == "directional") estimates_.push_back(directional(limit_, target_));
+      if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_));
+      if (method == "importance_sampling") sample_around(target_);
+    }
+    if (has_form && estimates_.empty()) { // never alone
+      SamplingTarget check = target_;
+      check.cov = std::max(check.cov, 0.1);
+      check.samples = std::min(check.samples, 5000L);
+      sample_around(check);
+    }
+    if (has_form) report_form();
+    for (const Estimate& e : estimates_) add_findings(e, limit_, run_.study().failed, answer_);
+    compare_estimates();
+    if (limit_.bad() > 0)
+      answer_.notes.push_back(std::to_string(limit_.bad()) + " runs did not reach their end or are not to be trusted: they count as \"" +
+                              run_.study().failed + "\"");
+    return std::move(answer_);
+  }
+
+private:
+  [[nodiscard]] bool asks(const char* method) const {
+    return std::find(settings_.methods.begin(), settings_.methods.end(), method) != settings_.methods.end();
+  }
+  [[nodiscard]] const DesignPoint* best() const {
+    return points_.points.empty() || !points_.points.front().is_found ? nullptr : &points_.points.front();
+  }
+
+  void sample_around(const SamplingTarget& target) {
+    if (!points_.points.empty()) {
+      estimates_.push_back(importance_sampling(limit_, points_, target));
+      return;
+    }
+    Finding f{"importance_sampling", limit_.subject(), "probability"};
+    f.status = "no design point was found to sample around: " + points_.trouble;
+    answer_.findings.push_back(f);
+    answer_.degrade(Standing::not_trusted);
+  }
+
+  // What speaks against a design point, "" if nothing does.
+  std::string doubt(const DesignPoint& p) const {
+    if (p.off_surface >= 1e-4 * std::max(1.0, std::abs(p.beta)))
+      return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g), p.off_surface);
+    if (!p.is_found) return text_of("not the nearest point around it: off the gradient's line by 1 - cos = %.3g", p.misalignment);
+    const double slack = 1e-3 * std::max(1.0, p.beta);
+    if (p.beta > 0.0 && limit_.nearest_failure() < p.beta - slack)
+      return text_of("another design point beats it: a sample failed at a distance of %.5g, nearer than %.5g", limit_.nearest_failure(),
+                     p.beta);
+    return "";
+  }
+
+  // How many times intervals are held against each other or against a theory: one false alarm in a hundred studies
+  // comes by chance from all of them together (Bonferroni).
+  [[nodiscard]] long comparisons() const {
+    const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 3 : 0);
+    const auto samplings = std::max<long>(1, std::count_if(settings_.methods.begin(), settings_.methods.end(),
+                                                           [](const std::string& method) { return method != "form" && method != "sorm"; }));
+    return std::max(1L, samplings * theories + samplings * (samplings - 1)); // of both bounds, among samplings
+  }
+
+  // What sampling says of a probability by theory: by what factor it is off, with the interval of that.
+  std::string sampling_doubt(double p, const char* whose) const {
+    for (const Estimate& e : estimates_) {
+      const Interval test = e.test(run_.study().failed);
+      if (!e.is_trusted || (p >= test.low && p <= test.high)) continue;
+      return std::string(whose) + " is off: " + e.method + text_of(" gives %.4g to %.4g", test.low, test.high) + ", which it is " +
+             factor_text(p, test) + " times";
+    }
+    return "";
+  }
+  static std::string factor_text(double p, const Interval& test) {
+    return text_of("%.3g", p / test.high) + (test.low > 0.0 ? text_of(" to %.3g", p / test.low) : " or more");
+  }
+
+  // Whether it is off or not: how well sampling bears a theory out.
+  void report_factors(const char* method, const std::string& name, double p) {
+    for (const Estimate& e : estimates_) {
+      if (!e.is_trusted || !std::isfinite(e.cov)) continue;
+      const Interval test = e.test(run_.study().failed);
+      const double sampled = run_.study().failed == "unsafe" ? e.unsafe : e.safe;
+      const auto over = [p](double q) { return q > 0.0 ? p / q : std::nan(""); };
+      answer_.findings.push_back(
+          {method, limit_.subject(), name + " to " + e.method, over(sampled), over(test.high), over(test.low), e.samples});
+    }
+  }
+
+  void report_form() {
+    const long samples = points_.samples;
+    const std::string subject = limit_.subject();
+    if (points_.points.empty()) {
+      Finding f{"form", subject, "beta"};
+      f.samples = samples;
+      f.status = "no search for a design point arrived: " + points_.trouble;
+      answer_.findings.push_back(f);
+      answer_.degrade(Standing::not_trusted);
+      return;
+    }
+    const DesignPoint& first = points_.points.front();
+    const double probability = normal_cdf(-first.beta);
+    std::string status = doubt(first);
+    if (status.empty()) status = sampling_doubt(probability, "first order");
+    if (!status.empty() && !has_trusted_estimate()) answer_.degrade(Standing::not_trusted);
+    add("form", "beta", first.beta, status);
+    add("form", "probability", probability, status);
+    report_factors("form", "factor", probability);
+    if (asks("sorm")) report_sorm(first);
+    report_points();
+    if (points_.failed_starts > 0)
+      answer_.notes.push_back(std::to_string(points_.failed_starts) + " of " + std::to_string(points_.starts) +
+                              " searches for a design point gave up: " + points_.trouble);
+    if (points_.left_starts > 0)
+      answer_.notes.push_back("The samples for searches were used up before " + std::to_string(points_.left_starts) +
+                              " more were begun: 'search_samples' gives more");
+  }
+
+  void report_sorm(const DesignPoint& first) {
+    const std::pair<const char*, double> all[] = {{"probability (Breitung)", first.breitung},
+                                                  {"probability (Hohenbichler)", first.hohenbichler},
+                                                  {"probability (Tvedt)", first.tvedt}};
+    for (const auto& [quantity, p] : all) {
+      std::string status = doubt(first);
+      const bool is_known = p > 0.0 && p < 1.0;
+      if (status.empty())
+        status = is_known ? sampling_doubt(p, "second order") : "the curvatures at the design point are too large for it, or unknown";
+      add("sorm", quantity, is_known ? p : std::nan(""), status);
+      if (is_known) report_factors("sorm", "factor" + std::string(quantity).substr(std::string("probability").size()), p);
+      if (is_known)
+        add("sorm",
+            quantity == std::string("probability (Breitung)") ? "beta (Breitung)"
+            : quantity == std::string("probability (Tvedt)")  ? "beta (Tvedt)"
+                                                              : "beta (Hohenbichler)",
+            -normal_quantile(p), status);
+    }
+  }
+
+  void report_points() {
+    const auto& random = run_.law.random();
+    std::vector<double> values(run_.study().variables.size());
+    std::size_t k = 0;
+    for (const DesignPoint& p : points_.points) {
+      if (!p.is_found && k > 0) continue;
+      const std::string name = "design point " + std::to_string(++k);
+      run_.law.values_at(p.u.data(), values.data());
+      answer_.findings.push_back({"form", name, "beta", p.beta, std::nan(""), std::nan(""), points_.samples, doubt(p)});
+      for (std::size_t i = 0; i < random.size(); ++i) {
+        const std::string& variable = run_.study().variables[random[i]].name;
+        answer_.findings.push_back({"form", name, variable, values[random[i]], std::nan(""), std::nan(""), points_.samples});
+        answer_.findings.push_back(
+            {"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""), std::nan(""), points_.samples});
+      }
+    }
+    if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
+  }
+
+  void add(const char* method, const char* quantity, double value, const std::string& status) {
+    answer_.findings.push_back({method, limit_.subject(), quantity, value, std::nan(""), std::nan(""), points_.samples, status});
+  }
+
+  [[nodiscard]] bool has_trusted_estimate() const {
+    return std::any_of(estimates_.begin(), estimates_.end(), [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
+  }
+
+  // Two samplings whose intervals lie apart: one of them has missed something. Both bounds one by one: what runs
+  // without a result leave open between them would hide it.
+  void compare_estimates() {
+    for (std::size_t i = 0; i < estimates_.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Estimate &a = estimates_[i], &b = estimates_[j];
+        const bool is_of_safe = run_.study().failed != "unsafe" && lie_apart(a.safe_test, b.safe_test),
+                   is_of_unsafe = run_.study().failed != "safe" && lie_apart(a.unsafe_test, b.unsafe_test);
+        if (!is_of_safe && !is_of_unsafe) continue;
+        answer_.notes.push_back(a.method + " and " + b.method + " contradict each other: one of them has missed a part of the failures");
+        answer_.degrade(Standing::not_trusted);
+      }
+  }
+  static bool lie_apart(const Interval& a, const Interval& b) { return a.low > b.high || b.low > a.high; }
+
+  StudyRun& run_;
+  LimitFunction limit_;
+  const ReliabilitySettings& settings_;
+  SamplingTarget target_;
+  DesignPoints points_;
+  std::vector<Estimate> estimates_;
+  Answer answer_;
+};
+
+std::string list_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
+  check_random(loaded, false, problems);
+  const auto& s = settings_of<ReliabilitySettings>(loaded.study);
+  if (loaded.study.limit_states.empty())
+    problems.push_back({loaded.study.where, "a study of the kind 'reliability' needs a [[limit_state]]"});
+  if (s.methods.empty()) problems.push_back({s.where, "'methods' is empty; there are " + list_text(k_methods)});
+  for (const std::string& method : s.methods)
+    if (std::find(k_methods.begin(), k_methods.end(), method) == k_methods.end())
+      problems.push_back(
+          {s.where, "there is no method '" + method + "'" + did_you_mean(method, k_methods) + "; there are " + list_text(k_methods)});
+  std::vector<std::string> names;
+  for (const LimitState& l : loaded.study.limit_states) names.push_back(l.name);
+  for (const std::string& name : s.limit_states)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      problems.push_back({s.where, "there is no limit state '" + name + "'" + did_you_mean(name, names)});
+}
+
+Answer run_reliability(StudyRun& run) { return Reliability(run).answer(); }
+
+Drawn reliability_drawn(const ShownSettings& settings) {
+  return is_only(settings, "methods", "monte_carlo") ? Drawn::independently : Drawn::otherwise;
+}
+
+} // namespace
+
+StudyKind reliability_kind() {
+  StudyKind kind;
+  kind.name = "reliability";
+  kind.doc = "how likely failure is, by sampling and by design points";
+  kind.fields = reliability_fields();
+  kind.holds<ReliabilitySettings>();
+  kind.shown = {"methods", "limit_states", "combination", "cov", "confidence"};
+  kind.draws_jointly = true;
+  kind.parts = {{"probability", "probability", UnitOf::none, 4},
+                {"beta", "beta", UnitOf::none, 5},
+                {"importance", "importance of "},
+                {"factor", "factor"}}; // of a probability by theory to one by sampling
+  kind.points = {{"form", "design point"}};
+  kind.check = check_reliability;
+  kind.run = run_reliability;
+  kind.drawn = reliability_drawn;
+  return kind;
+}
+
+} // namespace steplap::study

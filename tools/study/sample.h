@@ -1,0 +1,15 @@
+// The kind "sample": samples drawn from the distributions, what the responses are like.
+#pragma once
+
+#include "tools/study/study_kind.h"
+
+namespace steplap::study {
+
+struct SampleSettings : KindSettings {
+  std::string design = "monte_carlo"; ///< monte_carlo, latin_hypercube, sobol, halton
+  long samples = 1000;
+};
+
+[[nodiscard]] StudyKind sample_kind();
+
+} // namespace steplap::study

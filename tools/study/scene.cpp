@@ -1,0 +1,401 @@
+#include "tools/study/scene.h"
+
+#include "mbd/base/event_kind.h"
+#include "mbd/base/name_pattern.h"
+#include "mbd/model/completion.h"
+#include "mbd/model/model_path.h"
+#include "mbd/rest/start.h"
+#include "mbd/system/instance.h"
+#include "mbd/trust/judge.h"
+#include "run/report.h"
+#include "tools/study/history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace steplap::study {
+
+/// Which ends of a channel's range anybody asks for. `low_below`, where `low` is not asked for: of lows that are less. Of channels
+/// that a response looks at together the outermost end counts alone: they race for it.
+struct AskedEnds {
+  bool low = false, high = false;
+  double low_below = -std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> low_races, high_races; ///< in the runner's count
+  void add(const AskedEnds& more) {
+    low = low || more.low;
+    high = high || more.high;
+    low_below = std::max(low_below, more.low_below);
+    low_races.insert(low_races.end(), more.low_races.begin(), more.low_races.end());
+    high_races.insert(high_races.end(), more.high_races.begin(), more.high_races.end());
+  }
+};
+
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+bool needs_samples(const Response& r) { return r.what == "mean" || r.what == "path"; }
+
+// The outermost of all channels that match.
+Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
+  const bool is_low = r.what.ends_with("lowest"), is_largest = r.what.ends_with("largest");
+  Extreme best;
+  for (const ChannelRange& range : ranges) {
+    if (!matches_pattern(range.channel->name, r.channel)) continue;
+    Extreme e = is_low ? range.low : is_largest ? range.largest() : range.high;
+    if (is_largest) e.value = std::abs(e.value);
+    if (std::isnan(e.value)) return {};
+    if (std::isnan(best.value) || (is_low ? e.value < best.value : e.value > best.value)) best = e;
+  }
+  return best;
+}
+
+// Is the outermost one met beside a singular position of joints, where reactions go with one over the distance? How near a run comes is
+// chance, and one run alone does not tell how far it is off.
+bool is_singular(const Response& r, const std::vector<ChannelRange>& ranges) {
+  const Extreme extreme = extreme_of(r, ranges);
+  return std::any_of(ranges.begin(), ranges.end(), [&](const ChannelRange& range) {
+    return matches_pattern(range.channel->name, r.channel) &&
+           ((range.is_low_singular && std::abs(range.low.value) == std::abs(extreme.value)) ||
+            (range.is_high_singular && std::abs(range.high.value) == std::abs(extreme.value)));
+  });
+}
+
+bool is_extreme(const Response& r) { return r.what.find("est") != std::string::npos; }
+
+const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>& ranges) {
+  for (const ChannelRange& range : ranges)
+    if (matches_pattern(range.channel->name, r.channel)) return &range;
+  return nullptr;
+}
+
+// Over the samples written: of curves between them nothing is known here.
+double along(const Response& r, const Trajectory& trajectory) {
+  const auto& channels = trajectory.channels();
+  const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
+  if (found == channels.end() || trajectory.size() < 2) return k_nan;
+  const auto column = static_cast<std::size_t>(found - channels.begin());
+  double sum = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const double before = trajectory.value(i - 1, column), after = trajectory.value(i, column);
+    sum += r.what == "path" ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
+  }
+  return r.what == "path" ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
+}
+
+double of_events(const Response& r, const std::vector<Event>& events) {
+  const EventKinds kinds = event_kinds_matching(r.event);
+  long count = 0;
+  for (const Event& event : events) {
+    if (!kinds.test(static_cast<std::size_t>(event.kind))) continue;
+    if (!r.element.empty() && !matches_pattern(event.element, r.element)) continue;
+    if (r.what == "time_of_first") return event.t;
+    ++count;
+  }
+  return r.what == "count" ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
+}
+
+double value_of(const Response& r, const RunResult& result, const Judgement& judgement) {
+  if (r.what == "verdict") return static_cast<double>(judgement.verdict);
+  if (r.what == "count" || r.what == "time_of_first") return of_events(r, result.events);
+  if (needs_samples(r)) return along(r, *result.trajectory);
+  if (r.what == "final" || r.what == "initial") {
+    const ChannelRange* range = range_of(r, result.ranges);
+    return !range ? k_nan : r.what == "final" ? range->final : range->first;
+  }
+  const Extreme e = extreme_of(r, result.ranges);
+  return r.what.starts_with("time_of") && !std::isnan(e.value) ? e.t : e.value;
+}
+
+/// How far the channels of a response have come in a run.
+struct Race {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+};
+
+using Races = std::vector<std::shared_ptr<Race>>; // channels of a run refer to them
+
+// Bounds of a value that costs much rule out the ends that nobody asks for: of a channel in a race, those that another one's is
+// beyond even if they go on as they went since they were asked for last.
+class AskedBounds {
+public:
+  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const Races& races)
+      : bounds_(std::move(bounds)), ends_(ends) {
+    for (const std::size_t race : ends.low_races) low_races_.push_back(races[race]);
+    for (const std::size_t race : ends.high_races) high_races_.push_back(races[race]);
+  }
+
+  ValueBounds operator()(const Snapshot& s) {
+    constexpr double k_never = 1e300; // no extreme is beyond it
+    const ValueBounds b = bounds_(s);
+    if (s.t >= t_) { // else it is a look back, between two ends of a stretch
+      reach_ = {widened(reach_.low, b.low - last_.low), widened(reach_.high, b.high - last_.high)};
+      last_ = b;
+      t_ = s.t;
+    }
+    const double down = b.low - reach_.low, up = b.high + reach_.high;
+    double low_below = ends_.low_below, high_above = std::numeric_limits<double>::infinity();
+    for (const auto& race : low_races_) low_below = std::max(low_below, race->lowest);
+    for (const auto& race : high_races_) high_above = std::min(high_above, race->highest);
+    return {ends_.low || !(down > low_below) ? b.low : k_never, ends_.high || !(up < high_above) ? b.high : -k_never};
+  }
+
+private:
+  // By how much a bound changes from one end of a stretch to the next, at least half of what it did: where it turns, ends are alike.
+  static double widened(double reach, double change) {
+    return std::isfinite(change) ? std::max(std::abs(change), 0.5 * reach) : 0.5 * reach;
+  }
+
+  std::function<ValueBounds(const Snapshot&)> bounds_;
+  AskedEnds ends_;
+  Races low_races_, high_races_;
+  ValueBounds last_, reach_;
+  double t_ = -std::numeric_limits<double>::infinity();
+};
+
+void leave_out_others(Channel& channel, const AskedEnds& ends, const Races& races) {
+  if (channel.bounds && !(ends.high && ends.low)) channel.bounds = AskedBounds(std::move(channel.bounds), ends, races);
+  const auto note = [&](const std::vector<std::size_t>& of, const auto& noted) {
+    for (const std::size_t race : of)
+      channel.value = [value = std::move(channel.value), noted, own = races[race]](const Snapshot& s) { return noted(*own, value(s)); };
+  };
+  note(ends.low_races, [](Race& race, double value) { return race.lowest = std::min(race.lowest, value), value; });
+  note(ends.high_races, [](Race& race, double value) { return race.highest = std::max(race.highest, value), value; });
+}
+
+// A run is not trusted where a joint has less margin than it needs: beyond 1 its value tells nothing of that.
+AskedEnds ends_of_trust(const std::string& channel) {
+  AskedEnds ends;
+  if (channel.ends_with(".margin")) ends.low_below = 1.0;
+  else ends.low = ends.high = true;
+  return ends;
+}
+
+void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
+  if (outcome.status != SampleStatus::ok) return; // the first reason is told
+  outcome.status = status;
+  outcome.reason = reason;
+}
+
+} // namespace
+
+const char* name_of(SampleStatus status) {
+  static constexpr const char* k_names[] = {"ok", "stopped", "untrusted", "gave up", "impossible", "not a number"};
+  return k_names[static_cast<int>(status)];
+}
+
+Model model_with(const LoadedStudy& loaded, const StudyModel& model, const double* values) {
+  Model changed = model.given;
+  for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
+    const Variable& v = loaded.study.variables[i];
+    if (!is_set_in(v, model)) continue;
+    for (const std::string& path : v.paths) set_value(changed, path, v.is_factor ? values[i] * number_of(model.given, path) : values[i]);
+  }
+  const std::size_t variant = loaded.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded.study.variables.size() - 1]);
+  if (variant > 0) loaded.variants[variant - 1].apply(changed);
+  return changed;
+}
+
+// What is the same in all runs of a model. A quarter of a run's time would go into extremes of channels that nobody
+// asks for: only those asked for are made, and those that tell whether a run is to be trusted.
+struct Scene::Runner {
+  /// Number `variable` of the study is set at a path, times what the model has there or as it is.
+  struct Setting {
+    std::size_t variable;
+    double factor;
+  };
+  const StudyModel& model;
+  bool is_judged = false;                    ///< a response is the verdict, for which criteria may look at any channel
+  std::vector<std::string> channels;         ///< names
+  std::map<std::string, AskedEnds> extremes; ///< of these, those whose extremes are asked for
+  std::size_t races = 0;
+  std::vector<std::string> sampled; ///< patterns
+  Sampling sampling;                ///< for histories
+  std::vector<Setting> settings;
+  std::vector<double> numbers; ///< for the settings
+  std::unique_ptr<Variants> variants;
+
+  Runner(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
+    for (const Response& r : loaded.study.responses)
+      if (r.model == model.name && r.expression.empty()) ask(r);
+    for (const History& h : loaded.study.histories)
+      if (h.model == model.name) channels.push_back(h.channel), sampled.push_back(h.channel);
+    std::vector<std::string> paths;
+    for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
+      const Variable& v = loaded.study.variables[i];
+      if (!is_set_in(v, model)) continue;
+      for (const std::string& path : v.paths) {
+        settings.push_back({i, v.is_factor ? number_of(model.given, path) : 1.0});
+        paths.push_back(path);
+      }
+    }
+    for (const std::string& name : channels_of_trust(completed(model.given))) {
+      channels.push_back(name);
+      extremes[name].add(ends_of_trust(name));
+    }
+    numbers.resize(settings.size());
+    variants = std::make_unique<Variants>(model.given, std::move(paths), wanted());
+  }
+
+  [[nodiscard]] const std::vector<std::string>* wanted() const { return is_judged ? nullptr : &channels; }
+
+private:
+  void ask(const Response& r) {
+    is_judged = is_judged || r.what == "verdict";
+    if (needs_samples(r)) sampled.push_back(r.channel);
+    const bool is_largest = r.what.ends_with("largest");
+    const bool is_low = r.what.ends_with("lowest"), is_high = r.what.ends_with("highest");
+    const auto asked = channels_of(r, *model.system);
+    AskedEnds ends;
+    ends.low = is_largest || (is_low && asked.size() < 2);
+    ends.high = is_largest || (is_high && asked.size() < 2);
+    if (asked.size() > 1 && is_low) ends.low_races.push_back(races++);
+    if (asked.size() > 1 && is_high) ends.high_races.push_back(races++);
+    for (const Channel* c : asked) {
+      channels.push_back(c->name);
+      if (is_extreme(r)) extremes[c->name].add(ends);
+    }
+  }
+};
+
+Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
+  std::vector<std::string> names = loaded.variable_names();
+  const Study& study = loaded.study;
+  for (std::size_t i = 0; i < study.responses.size(); ++i) {
+    const Response& r = study.responses[i];
+    if (!r.expression.empty()) expressions_.emplace_back(i, Expression(r.expression, names, r.where));
+    names.push_back(r.name);
+  }
+  for (std::size_t i = 0; i < study.limit_states.size(); ++i) {
+    const LimitState& l = study.limit_states[i];
+    expressions_.emplace_back(study.responses.size() + i, Expression(l.expression, names, l.where));
+    names.push_back(l.name);
+  }
+  values_.resize(names.size());
+  for (const auto& model : loaded.models) runners_.push_back(std::make_unique<Runner>(loaded, *model));
+}
+
+Scene::~Scene() = default;
+
+// The channels of histories at their times, in their places among all.
+void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outcome) const {
+  std::size_t place = 0;
+  for (const History& h : loaded_.study.histories) {
+    if (h.model == runner.model.name) compare_times(h, runner.sampling, *result.trajectory, &outcome.curve[place]);
+    place += h.t.size();
+  }
+}
+
+void Scene::look(const Runner& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome) {
+  if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
+  if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
+  const RunStatistics& s = result.statistics;
+  if (s.energy_scale > 0.0) outcome.error = std::max(outcome.error, s.energy_residual / s.energy_scale);
+  for (std::size_t i = 0; i < loaded_.study.responses.size(); ++i) {
+    const Response& r = loaded_.study.responses[i];
+    if (!r.expression.empty() || r.model != runner.model.name) continue;
+    outcome.numbers[i] = value_of(r, result, judgement);
+    if (is_extreme(r) && is_singular(r, result.ranges))
+      worsen(outcome, SampleStatus::untrusted,
+             "'" + r.name + "' was met beside a singular position of the joints, where reactions may be of any size");
+  }
+  if (!loaded_.study.histories.empty()) compare(runner, result, outcome);
+}
+
+void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
+  Races races;
+  for (std::size_t i = 0; i < runner.races; ++i) races.push_back(std::make_shared<Race>());
+  for (Channel& c : system.channels) {
+    const auto asked = runner.extremes.find(c.name);
+    c.has_extremes = c.has_extremes && asked != runner.extremes.end();
+    if (c.has_extremes) leave_out_others(c, asked->second, races);
+  }
+  SimulationOptions options = options_of(whole);
+  options.channels = runner.sampled;
+  options.has_extremes = true;
+  if (runner.sampling.step > 0.0) options.output_step = runner.sampling.step;
+  else if (runner.sampled.empty()) options.output_step = 0.0;
+  Simulation simulation(system, start_of(whole, system), std::move(options));
+  std::string failure;
+  try {
+    simulation.run();
+  } catch (const NumericalFailure& error) {
+    failure = error.what();
+  }
+  const RunResult result = std::move(simulation).result();
+  outcome.evaluations += static_cast<double>(result.statistics.evaluations);
+  if (failure.empty()) look(runner, judge(whole, system, result, ""), result, outcome);
+  else worsen(outcome, SampleStatus::gave_up, failure);
+}
+
+// A verdict is that of the command line, with all that weighs on it there: findings, and errors by finer runs where these are cheap.
+void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
+  if (!whole.output.channels.empty())
+    whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
+  if (runner.sampling.step > 0.0) whole.output.step = runner.sampling.step;
+  const Report report = judged_run(load_completed(std::move(whole), std::move(system), runner.model.path));
+  const RunResult& result = report.run.result;
+  outcome.evaluations += static_cast<double>(result.statistics.evaluations);
+  if (report.estimate.errors) outcome.evaluations += static_cast<double>(report.estimate.errors->cost.evaluations);
+  if (report.run.failure) worsen(outcome, SampleStatus::gave_up, report.run.failure->text);
+  else look(runner, report.judgement, result, outcome);
+}
+
+void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
+  try {
+    const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
+    std::unique_ptr<System> system;
+    std::optional<Model> changed; // the variants' own model does where nothing of it is changed
+    if (variant == 0) {
+      for (std::size_t i = 0; i < runner.settings.size(); ++i)
+        runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];
+      system = runner.variants->make(runner.numbers);
+      if (runner.is_judged) changed = runner.variants->model();
+    } else {
+      changed = completed(model_with(loaded_, runner.model, values));
+      system = compile(*changed, runner.wanted());
+    }
+    if (runner.is_judged) run_judged(runner, std::move(*changed), std::move(system), outcome);
+    else run_system(runner, changed ? *changed : runner.variants->model(), *system, outcome);
+  } catch (const NumericalFailure& error) {
+    worsen(outcome, SampleStatus::gave_up, error.what());
+  } catch (const ModelError& error) {
+    worsen(outcome, SampleStatus::impossible, error.diagnostics().empty() ? error.what() : error.diagnostics().front().message);
+  } catch (const std::exception& error) {
+    worsen(outcome, SampleStatus::gave_up, std::string("internal error: ") + error.what());
+  }
+}
+
+bool Scene::is_derived(const std::vector<double>& values, const Outcome& outcome) {
+  std::copy(values.begin(), values.end(), values_.begin());
+  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(values.size()));
+  const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  bool is_whole = true;
+  for (std::size_t i = loaded_.study.responses.size(); i < outcome.numbers.size(); ++i)
+    is_whole = is_whole && !std::isnan(outcome.numbers[i]);
+  return outcome.curve.size() == loaded_.curve_size() && (outcome.status != SampleStatus::ok || is_whole) &&
+         std::all_of(expressions_.begin(), expressions_.end(),
+                     [&](const auto& of) { return is_same(of.second(values_.data()), outcome.numbers[of.first]); });
+}
+
+void Scene::run(const double* values, Outcome& outcome) {
+  const std::size_t variables = loaded_.study.variables.size(), numbers = loaded_.number_count();
+  outcome.status = SampleStatus::ok;
+  outcome.reason.clear();
+  outcome.numbers.assign(numbers, k_nan);
+  outcome.curve.assign(loaded_.curve_size(), k_nan);
+  outcome.error = outcome.evaluations = outcome.cpu_seconds = 0.0;
+  const bool has_models = !runners_.empty();
+  const double begin = has_models ? thread_cpu_seconds() : 0.0;
+  for (const auto& runner : runners_) run_model(*runner, values, outcome);
+  std::copy(values, values + variables, values_.begin());
+  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(variables));
+  for (const auto& [place, expression] : expressions_) values_[variables + place] = outcome.numbers[place] = expression(values_.data());
+  for (std::size_t i = loaded_.study.responses.size(); i < numbers; ++i)
+    if (std::isnan(outcome.numbers[i]))
+      worsen(outcome, SampleStatus::not_a_number, "limit state '" + loaded_.number_names()[i] + "' has no value");
+  if (has_models) outcome.cpu_seconds = thread_cpu_seconds() - begin;
+}
+
+} // namespace steplap::study

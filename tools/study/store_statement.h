@@ -1,0 +1,30 @@
+// A prepared statement of a store's database that cannot leak; included by what implements the store only.
+#pragma once
+
+#include "tools/study/store.h"
+
+namespace steplap::study {
+
+struct Store::Statement {
+  Statement(Store& store, const std::string& sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  void bind(int i, double x);
+  void bind(int i, long n);
+  void bind(int i, const std::string& text);
+  void bind(int i, const std::vector<double>& numbers);
+  void take(int i, std::vector<double>& numbers) const;
+  bool step();
+  void once();
+  // Of the type that was written, or nothing: SQLite would make a number of a text.
+  [[nodiscard]] double number(int i) const;
+  [[nodiscard]] long integer(int i) const;
+  [[nodiscard]] std::string text(int i) const;
+
+  Store& store_;
+  sqlite3_stmt* statement = nullptr;
+};
+
+} // namespace steplap::study

@@ -1,0 +1,19 @@
+// What a kind of study works with.
+#pragma once
+
+#include "tools/study/evaluator.h"
+#include "tools/study/finding.h"
+#include "tools/study/law.h"
+#include "tools/study/study_reader.h"
+
+namespace steplap::study {
+
+struct StudyRun {
+  const LoadedStudy& loaded;
+  const JointLaw& law;
+  Evaluator& evaluator;
+
+  [[nodiscard]] const Study& study() const { return loaded.study; }
+};
+
+} // namespace steplap::study
