@@ -5,7 +5,7 @@
 // differ in the last bit. Here are additions, products, quotients and square roots of doubles only,
 // each of which IEEE 754 defines to the bit; compiled without contraction. Everything that enters a
 // result calls these instead of <cmath> (sqrt, abs, floor, fmod, remainder and the like are exact and
-// stay): tests/tools/test_same_bits.cpp looks for others, tests/mbd/test_portable_math.cpp compares
+// stay): tests/tools/steplap/test_same_bits.cpp looks for others, tests/mbd/test_portable_math.cpp compares
 // with 113-bit arithmetic.
 //
 // Errors are in units in the last place of the result, rounding of the result (0.5) included; below

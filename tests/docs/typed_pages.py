@@ -37,7 +37,7 @@ LEFT_OUT = {
     "mpirun ": "it takes as many processors",
     "srun ": "it needs a cluster",
     "xdg-open ": "it opens a window",
-    "steplap explore ": "it serves a page until somebody ends it; tests/browser/explore_test.py does",
+    "steplap explore ": "it serves a page until somebody ends it; tests/tools/pages/explore_test.py does",
 }
 NEEDS = {"steplap plot": "gnuplot"}
 

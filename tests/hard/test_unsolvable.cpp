@@ -3,7 +3,7 @@
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/accuracy_study.h"
-#include "tests/tools/workbench.h"
+#include "tests/tools/steplap/workbench.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>

@@ -3,7 +3,7 @@
 #include "tests/random/transmissions.h"
 #include "tests/sanitized.h"
 #include "tests/scales/alike.h"
-#include "tests/tools/workbench.h"
+#include "tests/tools/steplap/workbench.h"
 
 #include <doctest/doctest.h>
 

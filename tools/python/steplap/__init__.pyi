@@ -1,4 +1,4 @@
-# What the module offers, for editors and type checkers: held to the module itself by tests/python/test_stubs.py.
+# What the module offers, for editors and type checkers: held to the module itself by tests/tools/python/test_stubs.py.
 # Docstrings stand in the module; here are types, shapes and units.
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal

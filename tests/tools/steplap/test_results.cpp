@@ -1,0 +1,52 @@
+// The library behind the command line, as other tools use it.
+#include "run/prominence.h"
+#include "run/result_files.h"
+#include "tests/tools/steplap/workbench.h"
+#include "tools/steplap/command.h"
+
+#include <doctest/doctest.h>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+TEST_CASE("summary: extremes, slides and events of the paper's run") {
+  RunOptions options;
+  options.estimating = Estimating::never;
+  const Report summary = judged_run(load_model(STEPLAP_MODELS "/paper/no_interference.toml"), options);
+  CHECK_FALSE(summary.run.failure);
+  REQUIRE(summary.find("bottom arresting.force"));
+  // Extremes of the same run sampled every microsecond.
+  CHECK(summary.find("bottom arresting.force")->low.value == doctest::Approx(-193529.2594).epsilon(1e-7));
+  CHECK(summary.find("tank bottom.friction")->high.value == doctest::Approx(259957.8428).epsilon(1e-7));
+  CHECK(summary.find("tank bottom.slide")->largest().value == doctest::Approx(0.791365887e-3).epsilon(1e-6));
+  CHECK(summary.find("active part.theta")->low.value == doctest::Approx(-1.54498655e-3).epsilon(1e-6));
+  CHECK(summary.find("nothing") == nullptr);
+  CHECK(summary.event_counts.at("slips forward") == 1);
+  CHECK(summary.event_counts.at("slips backward") == 2);
+  CHECK(summary.event_counts.at("opens") == 4); // rear block, rear foot, front foot twice
+  CHECK(summary.relative_energy_residual < 1e-8);
+  CHECK(is_reaction(*summary.find("rear foot.force")->channel));
+  CHECK_FALSE(is_reaction(*summary.find("tank bottom.capacity")->channel));
+  CHECK_FALSE(is_reaction(*summary.find("rear foot.gap")->channel));
+  CHECK(is_slide(*summary.find("tank bottom.slide")->channel));
+}
+
+TEST_CASE("names in CSV headers are quoted where they must be") {
+  const Workbench bench;
+  std::string text = k_oscillator;
+  text.replace(text.find("\"spring\""), 8, "'front, \"left\"'");
+  const Run run = run_model(load_model(bench.write("a.toml", text)));
+  CHECK(has(trajectory_csv(*run.result.trajectory), ",\"front, \"\"left\"\".force [N]\""));
+  CHECK(events_csv({{0.25, "a,b", EventKind::opens}}) == "t [s],element,event\n0.25,\"a,b\",opens\n");
+}
+
+TEST_CASE("results are written as a whole or not at all") {
+  const Workbench bench;
+  const std::string folder = bench.at("deep/er/run");
+  write_results(folder, {{"summary.json", "1"}, {"events.csv", "2"}}, false);
+  CHECK(bench.content("deep/er") == std::set<std::string>{"run", "run/summary.json", "run/events.csv"});
+  CHECK_THROWS_AS(write_results(folder, {{"summary.json", "3"}}, false), ResultsInTheWay);
+  CHECK(text_of(folder + "/summary.json") == "1");
+  write_results(folder, {{"partial_summary.json", "4"}}, true);
+  CHECK(bench.content("deep/er") == std::set<std::string>{"run", "run/partial_summary.json"});
+}

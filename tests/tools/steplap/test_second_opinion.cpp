@@ -1,0 +1,138 @@
+// steplap simulate --require-hold: a second method is asked before a verdict may hold.
+#include "tests/tools/steplap/workbench.h"
+
+#include <doctest/doctest.h>
+
+using namespace steplap::testing;
+
+namespace {
+
+// Of lines to and fro between 100 and 60 N, 2.5 ms each.
+std::string pressing() {
+  std::string text = "t,N\n";
+  for (int i = 0; i <= 160; ++i) text += std::to_string(2.5e-3 * i) + (i % 2 == 0 ? ",-100\n" : ",-60\n");
+  return text;
+}
+
+// A block on two stiff feet, of friction 0.4 at rest, that is pulled by 24.1 N and pressed on by that record: it slides where the
+// press is below 60.25 N. Beside it something moves, so that errors have a range.
+const std::string k_pressed_block = R"(gravity = [0.0, 0.0]
+[simulation]
+end = 0.4
+step = 0.02
+initial = "equilibrium"
+[output]
+step = 0.01
+[[body]]
+name = "block"
+mass = 10.0
+inertia = 1.0
+[[body]]
+name = "walker"
+mass = 1.0
+inertia = 1.0
+velocity = [1.0, 0.0]
+[[element]]
+kind = "prismatic"
+name = "path"
+a = "walker"
+[[element]]
+kind = "unilateral_contact"
+name = "left foot"
+a = { body = "block", at = [-1.0, 0.0] }
+b = "ground"
+normal = [0.0, 1.0]
+stiffness = 1e9
+damping = 1e6
+[[element]]
+kind = "unilateral_contact"
+name = "right foot"
+a = { body = "block", at = [1.0, 0.0] }
+b = "ground"
+normal = [0.0, 1.0]
+stiffness = 1e9
+damping = 1e6
+[[element]]
+kind = "coulomb_stick"
+name = "grip"
+contacts = ["left foot", "right foot"]
+static_friction = 0.4
+kinetic_friction = 0.1
+[[signal]]
+name = "press"
+kind = "record"
+file = "press.csv"
+[[signal]]
+name = "pull"
+kind = "constant"
+value = 24.1
+[[element]]
+kind = "load"
+name = "presser"
+at = "block"
+force_y = "press"
+force_x = "pull"
+[[acceptance]]
+name = "grips"
+event = "slips*"
+consequence = "reject"
+)";
+
+// A force on friction that holds 40 N. Beside it something moves, so that errors have a range.
+std::string shaken_block(const std::string& shake) {
+  return "[simulation]\nend = 0.4\nstep = 0.02\n[output]\nstep = 0.01\n"
+         "[[body]]\nname = \"block\"\nmass = 10.0\ninertia = 1.0\n[[body]]\nname = \"walker\"\nmass = 1.0\ninertia = 1.0\nvelocity = [1.0, "
+         "0.0]\n"
+         "[[element]]\nkind = \"prismatic\"\nname = \"path\"\na = \"walker\"\n[[element]]\nkind = \"prismatic\"\nname = \"road\"\na = "
+         "\"block\"\n"
+         "[[element]]\nkind = \"joint_friction\"\nname = \"grip\"\na = \"block\"\ncoordinate = \"x\"\nholds = 40.0\ndrags = 10.0\n"
+         "[[signal]]\nname = \"shake\"\n" +
+         shake +
+         "[[element]]\nkind = \"load\"\nname = \"shaker\"\nat = \"block\"\nforce_x = \"shake\"\n"
+         "[[acceptance]]\nname = \"grips\"\nevent = \"slips*\"\nconsequence = \"reject\"\n";
+}
+const std::string k_below = "kind = \"harmonics\"\namplitudes = [30.0]\nfrequencies = [200.0]\nphases = [\"-90 deg\"]\n";
+
+} // namespace
+
+TEST_CASE("a method that is blind in all its runs is contradicted by another one") {
+  Workbench bench;
+  // Time stepping takes the mean of a force from one corner of the record to the next, and in its finer runs of halves, quarters and
+  // eighths of that: 62.5 N at least, which hold 25 N. What a stiff foot presses by it sees at the ends of its steps alone.
+  bench.write("press.csv", pressing());
+  const std::string model = bench.write("pressed.toml", k_pressed_block);
+  const std::vector<std::string> blind = {"simulate", model, "-o", bench.at("out"), "--force", "--integrator", "moreau"};
+  CHECK(has(steplap_does(blind).out, "HOLD  "));
+  std::vector<std::string> strict = blind;
+  strict.push_back("--require-hold");
+  const Outcome outcome = steplap_does(strict);
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.out, "not to be trusted: a second method disagrees beyond both errors: moreau and dop853"));
+  const std::string summary = text_of(bench.at("out/pressed/summary.json"));
+  CHECK(has(summary, "\"agrees\": false"));
+  CHECK(has(summary, "\"verdict\": \"open\""));
+  strict[6] = "auto"; // which sees that it slips
+  CHECK(steplap_does(strict).code == 5);
+}
+
+TEST_CASE("what holds by all methods holds, and it is said who was asked") {
+  Workbench bench;
+  const std::string model = bench.write("shaken.toml", shaken_block(k_below));
+  for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4", "moreau"}) {
+    CAPTURE(std::string(method));
+    std::vector<std::string> command = {"simulate", model, "-o", bench.at("out"), "--force", "--integrator", method, "--require-hold"};
+    if (method == std::string("rk4")) command.insert(command.end(), {"--step", "1e-4"});
+    const Outcome outcome = steplap_does(command);
+    CHECK(outcome.code == 0);
+    CHECK(has(text_of(bench.at("out/shaken/summary.json")),
+              method == std::string("moreau") ? "A second method, dop853, agrees." : "A second method, moreau, agrees."));
+    CHECK(has(text_of(bench.at("out/shaken/summary.json")), "\"agrees\": true"));
+  }
+}
+
+TEST_CASE("without --require-hold nobody else is asked") {
+  Workbench bench;
+  const Outcome outcome = steplap_does({"simulate", bench.write("shaken.toml", shaken_block(k_below)), "-o", bench.at("out")});
+  CHECK_FALSE(has(outcome.out, "Second opinion"));
+  CHECK_FALSE(has(text_of(bench.at("out/shaken/summary.json")), "second_opinion"));
+}

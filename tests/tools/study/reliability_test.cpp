@@ -1,0 +1,401 @@
+// Limit states without dynamics whose probability is known exactly: closed forms, or quadrature in double precision.
+#include "tests/tools/study/known_cases.h"
+#include "tests/tools/study/study_bench.h"
+#include "tools/study/law.h"
+
+#include <map>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+// Intervals of 99.9 %: of the thirty of them one misses in one of thirty seeds; the seed is fixed.
+TEST_CASE("sampling: the interval covers the exact probability") {
+  for (const KnownCase& c : known_cases()) {
+    StudyBench bench;
+    const Outcome outcome = bench.run(text_of_case(c, c.methods, "cov = 0.1\nsamples = 40000\nconfidence = 0.999\n"));
+    CAPTURE(std::string(c.name));
+    CAPTURE(outcome.err);
+    REQUIRE((outcome.code == 0 || outcome.code == 5));
+    for (const std::string& method : c.methods) {
+      const study::Finding f = bench.find(method, "probability");
+      CAPTURE(method);
+      CHECK(f.low <= c.probability);
+      CHECK(f.high >= c.probability);
+      const double most = method == "subset" ? 20.0 : 5.0; // and says something: of four repetitions little is known at 99.9 %
+      CHECK(f.low > c.probability / most);
+      CHECK(f.high < most * c.probability);
+    }
+  }
+}
+
+TEST_CASE("FORM finds the nearest design point") {
+  for (const KnownCase& c : known_cases()) {
+    if (c.form_beta == 0.0) continue;
+    StudyBench bench;
+    (void)bench.run(text_of_case(c, {"form"}, ""));
+    CAPTURE(std::string(c.name));
+    // Asked for in studies.md: 1e-4.
+    CHECK(bench.find("form", "beta", "g").value == doctest::Approx(c.form_beta).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("FORM and SORM of three correlated variables are those that pystra's tests give") {
+  // 3.7347; Breitung 3.8537, Hohenbichler and Rackwitz 3.8582: to the digits published.
+  StudyBench bench;
+  const KnownCase c{"3RV",
+                    {"distribution = \"lognormal\"\nmean = 500\nstandard_deviation = 100\n", normal(2000, 400),
+                     "distribution = \"uniform\"\nmean = 5\nstandard_deviation = 0.5\n"},
+                    "1.7 - x2/(1000*x3) - (x1/(200*x3))^2",
+                    0.0,
+                    0.0,
+                    {}};
+  std::string text = text_of_case(c, {"form", "sorm"}, "");
+  for (const auto& [pair, rho] : std::map<std::string, double>{{"\"x1\", \"x2\"", 0.3}, {"\"x1\", \"x3\"", 0.2}, {"\"x2\", \"x3\"", 0.2}})
+    text += "[[correlation]]\nbetween = [" + pair + "]\nrho = " + std::to_string(rho) + "\n";
+  const Outcome outcome = bench.run(text);
+  CAPTURE(outcome.err);
+  CHECK(std::abs(bench.find("form", "beta", "g").value - 3.7347) < 1e-4);
+  CHECK(std::abs(bench.find("sorm", "beta (Breitung)").value - 3.8537) < 4e-4);
+  CHECK(std::abs(bench.find("sorm", "beta (Hohenbichler)").value - 3.8582) < 4e-4);
+}
+
+TEST_CASE("traps of FORM are told") {
+  const std::vector<KnownCase> all = known_cases();
+  const auto called = [&](const std::string& name) {
+    return *std::find_if(all.begin(), all.end(), [&](const KnownCase& c) { return c.name == name; });
+  };
+  SUBCASE("two design points of one distance: each is reported, and first order is off") {
+    StudyBench bench;
+    (void)bench.run(text_of_case(called("four branches"), {"form"}, "confidence = 0.99\n"));
+    CHECK(bench.find("form", "beta", "design point 1").value == doctest::Approx(3.0).epsilon(1e-4));
+    CHECK(bench.find("form", "beta", "design point 2").value == doctest::Approx(3.0).epsilon(1e-4));
+    CHECK(has(bench.find("form", "probability").status, "off: importance_sampling"));
+  }
+  SUBCASE("a curved surface in twenty dimensions: first order is off by a factor of fifty") {
+    StudyBench bench;
+    (void)bench.run(text_of_case(called("RP54"), {"form"}, ""));
+    CHECK(bench.find("form", "probability").value > 30.0 * 9.9e-4);
+    CHECK(has(bench.find("form", "probability").status, "off"));
+  }
+  SUBCASE("a limit state that jumps has no point where it is zero") {
+    StudyBench bench;
+    (void)bench.run(text_of_case(called("RP77"), {"form"}, ""));
+    CHECK(has(bench.find("form", "beta", "g").status, "not on the limit state"));
+  }
+  SUBCASE("started at the wrong branch only, a sample that fails elsewhere leads to the nearer one") {
+    StudyBench bench;
+    const KnownCase c{"", {normal(0, 1), normal(0, 1)}, "x1 > 1 ? 2.2 - x1 + 0*x2 : 3 + x1", 0.0, 0.0, {}};
+    (void)bench.run(text_of_case(c, {"form"}, "starts = 1\n"));
+    CHECK(bench.find("form", "beta", "g").value == doctest::Approx(2.2).epsilon(1e-4));
+    CHECK(bench.find("form", "beta", "design point 2").value == doctest::Approx(3.0).epsilon(1e-4));
+    CHECK(has(bench.find("form", "beta", "design point 2").status, "another design point beats it"));
+  }
+  SUBCASE("nothing fails") {
+    StudyBench bench;
+    const Outcome outcome = bench.run(text_of_case({"", {normal(0, 1)}, "1 + x1^2", 0.0, 0.0, {}}, {"monte_carlo"}, "samples = 3000\n"));
+    CHECK(outcome.code == 5);
+    const study::Finding f = bench.find("monte_carlo", "probability");
+    CHECK(has(f.status, "only a bound is known"));
+    CHECK(f.high == doctest::Approx(1.0 - std::pow(0.025, 1.0 / 3000.0)).epsilon(1e-9));
+  }
+}
+
+// |x1 x2| > 12.5 has four design points; searches from two starts find one of them. Sampling around that one alone gave
+// three quarters of the probability or less, with an interval that did not reach the exact one.
+TEST_CASE("sampling finds the design points that searches have missed") {
+  for (const int seed : {1, 2, 3}) {
+    StudyBench bench;
+    KnownCase c{"RP111", {normal(0, 1), normal(0, 1)}, "12.5 - abs(x1*x2)", 8.035e-7, 5.0, {}};
+    (void)bench.run("seed = " + std::to_string(seed) + "\n" +
+                    text_of_case(c, {"form", "importance_sampling"}, "starts = 2\nconfidence = 0.99\n"));
+    const study::Finding f = bench.find("importance_sampling", "probability");
+    CAPTURE(seed);
+    CHECK(f.low <= c.probability);
+    CHECK(f.high >= c.probability);
+    CHECK(f.high - f.low < 0.4 * c.probability);
+    for (int k = 1; k <= 4; ++k)
+      CHECK(bench.find("form", "beta", "design point " + std::to_string(k)).value == doctest::Approx(5.0).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("a system of limit states: any of them, and all of them") {
+  // Independent normal variables: 1 − Φ(1.5)Φ(2), and Φ(−1.5)Φ(−2)
+  const double either = 1.0 - study::normal_cdf(1.5) * study::normal_cdf(2.0), both = study::normal_cdf(-1.5) * study::normal_cdf(-2.0);
+  for (const auto& [combination, exact] : std::map<std::string, double>{{"any", either}, {"all", both}}) {
+    StudyBench bench;
+    std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [\"importance_sampling\", "
+                       "\"directional\"]\nconfidence = 0.999\ncombination = \"" +
+                       combination + "\"\n";
+    text += "[[variable]]\nname = \"x1\"\n" + normal(0, 1) + "[[variable]]\nname = \"x2\"\n" + normal(0, 1);
+    text += "[[limit_state]]\nname = \"first\"\nexpression = \"1.5 - x1\"\n[[limit_state]]\nname = "
+            "\"second\"\nexpression = \"2 - x2\"\n";
+    const Outcome outcome = bench.run(text);
+    CAPTURE(outcome.err);
+    CAPTURE(combination);
+    for (const char* method : {"importance_sampling", "directional"}) {
+      CHECK(bench.find(method, "probability").low <= exact);
+      CHECK(bench.find(method, "probability").high >= exact);
+    }
+  }
+}
+
+// g has no value where x1 > 2: one in 44 samples, which count as both by default.
+TEST_CASE("samples without a result are bounded, counted, or end the study, and are never dropped") {
+  const auto text = [](const std::string& failed) {
+    return "kind = \"reliability\"\nfailed = \"" + failed +
+           "\"\n[reliability]\nmethods = [\"monte_carlo\"]\nsamples = 20000\ncov = 0.001\nconfidence = "
+           "0.999\n[[variable]]\nname = \"x1\"\n" +
+           normal(0, 1) + "[[limit_state]]\nname = \"g\"\nexpression = \"sqrt(2 - x1) - 1\"\n"; // fails for 1 < x1 < 2
+  };
+  const double least = study::normal_cdf(2.0) - study::normal_cdf(1.0), most = study::normal_cdf(-1.0);
+  const auto covers = [](const study::Finding& f, double exact) { return f.low <= exact && exact <= f.high; };
+  {
+    StudyBench bench;
+    const Outcome outcome = bench.run(text("bounds"));
+    CHECK(covers(bench.find("monte_carlo", "probability, runs without result as safe"), least));
+    CHECK(covers(bench.find("monte_carlo", "probability, runs without result as unsafe"), most));
+    CHECK(has(outcome.out, "not a number, first sample"));
+    CHECK(has(outcome.out, "limit state 'g' has no value"));
+  }
+  {
+    StudyBench bench;
+    (void)bench.run(text("unsafe"));
+    CHECK(covers(bench.find("monte_carlo", "probability"), most));
+  }
+  {
+    StudyBench bench;
+    (void)bench.run(text("safe"));
+    CHECK(covers(bench.find("monte_carlo", "probability"), least));
+  }
+  {
+    StudyBench bench;
+    const Outcome outcome = bench.run(text("stop"));
+    CHECK(outcome.code == 4);
+    CHECK(has(outcome.err, "not a number"));
+  }
+}
+
+// By rays and by levels as well: beyond x1 = 2 a ray is safe or fails, but nearer to the origin it says what it finds.
+TEST_CASE("rays and levels know what lies before runs without a result") {
+  const double least = study::normal_cdf(2.0) - study::normal_cdf(1.0), most = study::normal_cdf(-1.0);
+  const auto text = [](const std::string& failed) {
+    return "kind = \"reliability\"\nfailed = \"" + failed +
+           "\"\n[reliability]\nmethods = [\"directional\", \"subset\"]\nsamples = 40000\ncov = 0.02\nconfidence = "
+           "0.999\n"
+           "[[variable]]\nname = \"x1\"\n" +
+           normal(0, 1) + "[[variable]]\nname = \"x2\"\n" + normal(0, 1) +
+           "[[limit_state]]\nname = \"g\"\nexpression = \"sqrt(2 - x1) - 1 + 0*x2\"\n"; // fails for 1 < x1 < 2
+  };
+  const auto check = [](const study::Finding& f, double exact) {
+    CAPTURE(f.method);
+    CAPTURE(f.quantity);
+    CHECK(f.low <= exact);
+    CHECK(f.high >= exact);
+    CHECK(f.high - f.low < 0.4 * exact); // and says something
+  };
+  for (const char* method : {"directional", "subset"}) {
+    StudyBench both, safe, unsafe;
+    (void)both.run(text("bounds"));
+    const study::Finding low = both.find(method, "probability, runs without result as safe"),
+                         high = both.find(method, "probability, runs without result as unsafe");
+    check(low, least);
+    check(high, most);
+    CHECK(low.value < high.value); // of the same samples
+    (void)safe.run(text("safe"));
+    check(safe.find(method, "probability"), least);
+    (void)unsafe.run(text("unsafe"));
+    check(unsafe.find(method, "probability"), most);
+  }
+}
+
+// One in series with two in parallel: 1 − (1 − p1)(1 − p2 p3). The nearest failure is where both of the pair fail, a
+// corner at which no search by gradients arrives: that it does not is said.
+TEST_CASE("a system in series and in parallel") {
+  const double p1 = study::normal_cdf(-2.8), p2 = study::normal_cdf(-1.8), p3 = study::normal_cdf(-1.5);
+  const double exact = 1.0 - (1.0 - p1) * (1.0 - p2 * p3);
+  std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"importance_sampling\", \"directional\"]\n"
+                     "confidence = 0.999\n";
+  for (const char* name : {"x1", "x2", "x3"}) text += "[[variable]]\nname = \"" + std::string(name) + "\"\n" + normal(0, 1);
+  text += "[[response]]\nname = \"second\"\nexpression = \"1.8 - x2\"\n[[response]]\nname = \"third\"\nexpression = "
+          "\"1.5 - x3\"\n"
+          "[[limit_state]]\nname = \"first\"\nexpression = \"2.8 - x1\"\n"
+          "[[limit_state]]\nname = \"pair\"\nexpression = \"max(second, third)\"\n";
+  StudyBench bench;
+  const Outcome outcome = bench.run(text);
+  CAPTURE(outcome.err);
+  for (const char* method : {"importance_sampling", "directional"}) {
+    CAPTURE(method);
+    CHECK(bench.find(method, "probability").low <= exact);
+    CHECK(bench.find(method, "probability").high >= exact);
+  }
+  CHECK(has(bench.find("form", "probability").status, "another design point beats it"));
+}
+
+// Of ranks: the normal variables behind them have 2 sin(π ρ/6). ln a − ln b is normal.
+TEST_CASE("a copula of ranks: the load beats the resistance") {
+  const double za = std::sqrt(std::log1p(0.0625)), zb = std::sqrt(std::log1p(0.16)), rho = 2.0 * std::sin(std::acos(-1.0) * -0.4 / 6.0);
+  const double beta = (std::log(3.0) - 0.5 * za * za + 0.5 * zb * zb) / std::sqrt(za * za + zb * zb - 2.0 * rho * za * zb);
+  std::string text = "kind = \"reliability\"\n[reliability]\nmethods = [\"form\"]\n";
+  text += "[[variable]]\nname = \"a\"\ndistribution = \"lognormal\"\nmean = 3\ncov = 0.25\n";
+  text += "[[variable]]\nname = \"b\"\ndistribution = \"lognormal\"\nmean = 1\ncov = 0.4\n";
+  text += "[[correlation]]\nbetween = [\"a\", \"b\"]\nrho = -0.4\nof = \"ranks\"\n";
+  text += "[[limit_state]]\nname = \"g\"\nexpression = \"ln(a) - ln(b)\"\n";
+  StudyBench bench;
+  REQUIRE(bench.run(text).code == 0);
+  CHECK(bench.find("form", "beta", "g").value == doctest::Approx(beta).epsilon(1e-9)); // a plane: FORM is exact
+}
+
+namespace {
+
+// Standard normal variables; what follows [reliability] in `settings`.
+std::string standard_study(int variables, const std::string& g, const std::string& settings) {
+  const KnownCase c{"", std::vector<std::string>(static_cast<std::size_t>(variables), normal(0, 1)), g.c_str(), 0.0, 0.0, {}};
+  std::string text = "kind = \"reliability\"\n[reliability]\n" + settings;
+  return text + text_of_case(c, {}, "").substr(text_of_case(c, {}, "").find("[[variable]]"));
+}
+
+bool holds(const study::Finding& f, double exact) { return f.low <= exact && exact <= f.high; }
+
+} // namespace
+
+// A limit state that knows few values has no level between: what a tenth of the samples have is what nine tenths have.
+TEST_CASE("subset simulation of limit states that know few values") {
+  struct Few {
+    const char* g;
+    double exact;
+  };
+  const double b = 3.5 / std::sqrt(2.0);
+  const Few cases[] = {{"x1 + x2 > 3.5 ? -1 : 1", study::normal_cdf(-b)},
+                       {"x1 + x2 > 3.5 ? -1 : x1 + x2 > 1 ? 1 : 2", study::normal_cdf(-b)}, // a third value between
+                       {"x1 + x2 > 3.5 ? -1 : max(1, 3 - x1 - x2)", study::normal_cdf(-b)}, // a slope that ends on a plain
+                       {"x1 + x2 > 3.5 ? -1 : 0", study::normal_cdf(-b)},                   // zero is not negative
+                       {"floor3", 0.0},                                                     // levels one by one, below
+                       {"x1 + x2 > 8 ? -1 : 1", study::normal_cdf(-8.0 / std::sqrt(2.0))},  // nothing is met
+                       {"x1 + x2 > -3.5 ? -1 : 1", study::normal_cdf(b)}};
+  for (const Few& few : cases) {
+    const bool is_stairs = std::string(few.g) == "floor3";
+    const std::string g = is_stairs ? "4 - rint(x1 + x2) + 0*x1" : few.g;
+    const double exact = is_stairs ? study::normal_cdf(-4.5 / std::sqrt(2.0)) : few.exact; // rint beyond 4.5 is 5
+    CAPTURE(g);
+    int held = 0, honest = 0;
+    constexpr int k_seeds = 3;
+    for (int seed = 1; seed <= k_seeds; ++seed) {
+      StudyBench bench;
+      const Outcome outcome = bench.run("seed = " + std::to_string(seed) + "\n" +
+                                        standard_study(2, g, "methods = [\"subset\"]\ncov = 0.1\nconfidence = 0.999\n"));
+      const study::Finding f = bench.find("subset", "probability");
+      held += holds(f, exact);
+      honest += outcome.code == 4 || outcome.code == 5 || (f.value > exact / 2.0 && f.value < exact * 2.0);
+    }
+    CHECK(held == k_seeds);
+    CHECK(honest == k_seeds);
+  }
+}
+
+// Bands of random place, width and direction, thinner than the strata of a ray, some of them beside runs that have no
+// value: 16 looks at fixed radii met a fifth of them.
+TEST_CASE("directional simulation does not miss thin bands of failures") {
+  int held = 0, all = 0;
+  for (int k = 0; k < 15; ++k) {
+    const double place = 0.5 + 0.15 * k, half = 0.02 + 0.01 * (k % 5), angle = 0.3 * k;
+    const double exact = study::normal_cdf(place + half) - study::normal_cdf(place - half);
+    const std::string along = "(" + std::to_string(std::cos(angle)) + "*x1 + " + std::to_string(std::sin(angle)) + "*x2)";
+    const std::string band = "abs(" + along + " - " + std::to_string(place) + ") - " + std::to_string(half);
+    const bool has_hole = k % 3 == 2, is_jump = k % 3 == 1;
+    // Beyond the band there is no value: with failed = "safe" the band alone fails.
+    const std::string g = has_hole  ? "sqrt(" + std::to_string(place + half) + " - " + along + ") > 0 ? " + band + " : 1"
+                          : is_jump ? band + " < 0 ? -1 : 1"
+                                    : band;
+    StudyBench bench;
+    (void)bench.run("failed = \"safe\"\nseed = " + std::to_string(k + 1) + "\n" +
+                    standard_study(2, g, "methods = [\"directional\"]\ncov = 0.1\nsamples = 60000\nconfidence = 0.99\n"));
+    const study::Finding f = bench.find("directional", "probability");
+    CAPTURE(g);
+    CAPTURE(exact);
+    CAPTURE(f.low);
+    CAPTURE(f.high);
+    held += holds(f, exact);
+    CHECK(f.value > 0.5 * exact);
+    CHECK(f.value < 2.0 * exact);
+    ++all;
+  }
+  CHECK(held >= all - 2); // of 15 intervals of 99 % three miss in one of 2400 cases
+}
+
+TEST_CASE("no estimate lies beyond one, and where failing is the rule holding is what is found") {
+  for (const double b : {-3.0, -1.88, -1.0, 0.0, 1.0}) {
+    const double exact = study::normal_cdf(-b);
+    StudyBench bench;
+    (void)bench.run(standard_study(2, std::to_string(b) + " - (x1 - x2)/sqrt(2)",
+                                   "methods = [\"monte_carlo\", \"importance_sampling\", \"directional\", "
+                                   "\"subset\"]\nconfidence = 0.999\n"));
+    for (const char* method : {"monte_carlo", "importance_sampling", "directional", "subset"}) {
+      const study::Finding f = bench.find(method, "probability");
+      CAPTURE(b);
+      CAPTURE(std::string(method));
+      CHECK(f.value <= 1.0);
+      CHECK(f.high <= 1.0);
+      CHECK(holds(f, exact));
+      // The rarer one of both is known to what was asked for: 4 standard deviations of 5 %, and more with levels.
+      const double rare = std::min(exact, 1.0 - exact);
+      if (std::string(method) != "subset" && f.status.empty()) CHECK(f.high - f.low < 0.4 * rare);
+    }
+  }
+}
+
+// A plane, for which first order is exact: each "off" is a false alarm. Of 40 studies one in a hundred may say so.
+TEST_CASE("first order is called off where it is, with the factor, and not where it is exact") {
+  int alarms = 0;
+  for (int seed = 1; seed <= 40; ++seed) {
+    StudyBench bench;
+    (void)bench.run("seed = " + std::to_string(seed) + "\n" +
+                    standard_study(2, "2 - (x1 + x2)/sqrt(2)",
+                                   "methods = [\"form\", \"sorm\", \"importance_sampling\", \"directional\"]\ncov = 0.2\n"));
+    alarms += has(bench.find("form", "probability", "g").status, "off");
+    const study::Finding factor = bench.find("form", "factor to importance_sampling");
+    CHECK(factor.low < factor.value);
+    CHECK(factor.high > factor.value);
+  }
+  CHECK(alarms <= 3); // four or more of 40: once in 1500 cases at one in a hundred
+  StudyBench bench;   // curved towards the origin: P = 1 − E[Φ(2.5 − 0.2 t²)], twice of first order
+  (void)bench.run(standard_study(2, "2.5 - (x1 + x2)/sqrt(2) - 0.1*(x1 - x2)^2", "methods = [\"form\"]\n"));
+  const std::string status = bench.find("form", "probability", "g").status;
+  CHECK(has(status, "first order is off: importance_sampling gives"));
+  CHECK(has(status, "times"));
+  const study::Finding factor = bench.find("form", "factor to importance_sampling");
+  CHECK(factor.high < 0.9);
+}
+
+// A plane at a distance of four, 3.2e-5, and an island of radius 0.05 that has six times as much, 1.3e-4: importance sampling about the
+// plane's design point sees hardly anything of the island, sampling sees it, and first order knows the nearest point alone.
+TEST_CASE("methods that contradict each other: none of them is believed") {
+  StudyBench bench;
+  const Outcome outcome = bench.run(
+      "seed = 1\n" + standard_study(2, "min(4 - x1, sqrt((x1 + 1.5)^2 + (x2 + 1.5)^2) - 0.05)",
+                                    "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\nsamples = 60000\ncov = 0.1\n"));
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.out, "monte_carlo and importance_sampling contradict each other: one of them has missed a part of the failures"));
+  CHECK(has(outcome.out, "not to be trusted"));
+  CHECK(has(bench.find("form", "probability", "g").status, "first order is off"));
+  // Where they agree nothing of the kind is said.
+  StudyBench plain;
+  const Outcome agreed = plain.run(
+      "seed = 1\n" + standard_study(2, "2 - x1 + 0*x2", "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\ncov = 0.2\n"));
+  CHECK(!has(agreed.out, "contradict"));
+  CHECK(agreed.code != 4);
+}
+
+TEST_CASE("searches for design points take fewer samples than sampling does, and no more than they are given") {
+  for (const KnownCase& c : known_cases()) {
+    if (c.form_beta == 0.0) continue;
+    StudyBench bench;
+    (void)bench.run(text_of_case(c, {"form"}, ""));
+    const long dimension = static_cast<long>(c.variables.size());
+    CAPTURE(std::string(c.name));
+    // The budget, one step more, and what searches from stray failures take.
+    CHECK(bench.find("form", "beta", "g").samples <= 450 + 75 * dimension);
+  }
+  StudyBench bench;
+  (void)bench.run(standard_study(2, "12.5 - abs(x1*x2)", "methods = [\"form\"]\nsearch_samples = 60\n"));
+  CHECK(bench.find("form", "beta", "g").samples < 600);
+}
