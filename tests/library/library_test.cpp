@@ -52,7 +52,7 @@ bool install_and_build() {
   fs::remove_all(k_programs);
   const std::string cmake = STEPLAP_CMAKE;
   output_of(cmake + " --install " STEPLAP_BUILD " --prefix " + k_prefix);
-  output_of(cmake + " -S " STEPLAP_SOURCE "/examples -B " + k_programs + " -G '" STEPLAP_GENERATOR "' -DCMAKE_PREFIX_PATH=" + k_prefix +
+  output_of(cmake + " -S " STEPLAP_SOURCE "/docs/examples -B " + k_programs + " -G '" STEPLAP_GENERATOR "' -DCMAKE_PREFIX_PATH=" + k_prefix +
             " -DCMAKE_CXX_COMPILER=" STEPLAP_COMPILER " -DCMAKE_CXX_COMPILER_LAUNCHER=" STEPLAP_LAUNCHER
             " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON '-DCMAKE_CXX_FLAGS=" +
             k_warnings + "'");
