@@ -3,11 +3,11 @@
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
-# One name for all rooms up to run/. Whoever links it gets no options of ours, no warnings, and of other makers'
-# headers Eigen's alone, whose vectors our own types are made of. With BUILD_SHARED_LIBS it is one shared library that shows
-# steplap's names and no other's (steplap.map); else the rooms' archives.
-set(rooms base tape mbd io patch_exact patch elements machinery step_lap catalog recorder transformer run)
-list(TRANSFORM rooms PREPEND steplap_ OUTPUT_VARIABLE archives)
+# One name for all libraries up to run/. A program that links it gets no compile options and no warnings of ours, and needs no other
+# headers than Eigen's, which our types are made of. With BUILD_SHARED_LIBS it is one shared library that exports only steplap's
+# names (steplap.map); otherwise the archives.
+set(parts base tape mbd io patch_exact patch elements machinery step_lap catalog recorder transformer run)
+list(TRANSFORM parts PREPEND steplap_ OUTPUT_VARIABLE archives)
 add_library(steplap_library INTERFACE)
 add_library(steplap::steplap ALIAS steplap_library)
 target_compile_features(steplap_library INTERFACE cxx_std_20)
@@ -27,8 +27,8 @@ if(BUILD_SHARED_LIBS)
 else()
   target_link_libraries(steplap_library INTERFACE steplap_run)
   set(libraries ${archives} steplap_library)
-  foreach(room ${rooms})
-    set_target_properties(steplap_${room} PROPERTIES EXPORT_NAME ${room})
+  foreach(part ${parts})
+    set_target_properties(steplap_${part} PROPERTIES EXPORT_NAME ${part})
   endforeach()
   list(REVERSE archives)
   list(TRANSFORM archives PREPEND -l)
@@ -40,15 +40,24 @@ else()
   endif()
 endif()
 
-# Headers include each other as "mbd/…", users write <steplap/mbd/…>.
+# Programs write <steplap/model.h>; the headers behind it include each other as "mbd/…".
 install(TARGETS ${libraries} EXPORT steplap COMPONENT development
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
-  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
-install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development
-  FILES_MATCHING PATTERN "*.h"
-  PATTERN recorder EXCLUDE PATTERN decision EXCLUDE # for the program alone
-  PATTERN ordered_json.h EXCLUDE PATTERN summary.h EXCLUDE) # include another maker's
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${CMAKE_INSTALL_INCLUDEDIR}/steplap/internal)
+include(cmake/public_headers.cmake)
+get_property(public_headers GLOBAL PROPERTY STEPLAP_PUBLIC_HEADERS)
+get_property(public_sources GLOBAL PROPERTY STEPLAP_PUBLIC_SOURCES)
+install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development)
+install(CODE "
+  set(STEPLAP_FUNCTIONS_ONLY ON)
+  include(\"${PROJECT_SOURCE_DIR}/cmake/public_headers.cmake\")
+  steplap_included_headers(headers \"${PROJECT_SOURCE_DIR}\" ${public_sources})
+  foreach(header IN LISTS headers)
+    cmake_path(GET header PARENT_PATH folder)
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/steplap/internal/\${folder}\"
+      TYPE FILE FILES \"${PROJECT_SOURCE_DIR}/\${header}\")
+  endforeach()" COMPONENT development)
 configure_file(cmake/version.h.in version.h @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development)
 file(RELATIVE_PATH steplap_pc_up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /) # wherever it is installed or moved to

@@ -1,12 +1,11 @@
 // How far does the block slide on the vehicle that brakes, if the deck holds better or worse? One model, many values,
 // on all processors:
 //   friction_study braked_block.toml
-#include <steplap/mbd/io/reader.h>
-#include <steplap/mbd/model/completion.h>
-#include <steplap/mbd/rest/start.h>
-#include <steplap/mbd/simulation/simulation.h>
-#include <steplap/mbd/system/instance.h>
-#include <steplap/transformer/catalog.h>
+#include <steplap/catalog.h>
+#include <steplap/model.h>
+#include <steplap/model_file.h>
+#include <steplap/simulate.h>
+#include <steplap/system.h>
 
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
 // A model run, its errors estimated and judged as `steplap simulate` does it, with the same files in the end:
 //   judged_run braked_block.toml out/braked_block [simulation.end=0.5 …]
-#include <steplap/run/report.h>
+#include <steplap/judged_run.h>
 
 #include <cmath>
 #include <cstdio>

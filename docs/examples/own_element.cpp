@@ -1,10 +1,9 @@
 // A kind of element that steplap does not have, used in a model file and judged with the verdict: an orifice damper.
 //   own_element own_element.toml
-#include <steplap/mbd/acceptance/criteria.h>
-#include <steplap/mbd/acceptance/element_judgement.h>
-#include <steplap/mbd/system/law_group.h>
-#include <steplap/run/report.h>
-#include <steplap/transformer/catalog.h>
+#include <steplap/catalog.h>
+#include <steplap/judged_run.h>
+#include <steplap/own_element.h>
+#include <steplap/verdict.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,9 +1,8 @@
 // Runs a model file as the program `steplap` does, and tells what happened and between which values everything stayed:
 //   run_file braked_block.toml [simulation.end=0.5 …]
-#include <steplap/mbd/io/reader.h>
-#include <steplap/mbd/rest/start.h>
-#include <steplap/mbd/simulation/simulation.h>
-#include <steplap/transformer/catalog.h>
+#include <steplap/catalog.h>
+#include <steplap/model_file.h>
+#include <steplap/simulate.h>
 
 #include <cstdio>
 

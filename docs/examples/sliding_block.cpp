@@ -1,12 +1,9 @@
 // A block on two feet is pushed along the floor, slides, and sticks: a model made in C++.
 //
 // By hand: it sticks after v/(μg) = 0.8495 s, having slid v²/(2μg) = 1.0618 m.
-#include <steplap/elements/coulomb_stick.h>
-#include <steplap/elements/unilateral_contact.h>
-#include <steplap/mbd/model/completion.h>
-#include <steplap/mbd/model/model_building.h>
-#include <steplap/mbd/rest/start.h>
-#include <steplap/mbd/simulation/simulation.h>
+#include <steplap/elements.h>
+#include <steplap/model.h>
+#include <steplap/simulate.h>
 
 #include <cstdio>
 #include <string>

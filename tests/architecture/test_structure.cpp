@@ -1,5 +1,5 @@
-// docs/design/structure.md says where things are. Each `path` in it exists, each `function()` occurs in a file that is named in the same
-// line, and rooms are as large as it says.
+// Compares docs/design/structure.md with the sources: each `path` exists, each `function()` occurs in a file named in the same line, and
+// folders are about as large as stated.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -67,10 +67,10 @@ std::string problem_of(const std::string& line, int& paths, int& functions) {
   return problem;
 }
 
-// Lines of a room's own sources, rooms inside it left out.
-long lines_in(const fs::path& room) {
+// Lines of a folder's own sources, without its subfolders.
+long lines_in(const fs::path& folder) {
   long lines = 0;
-  for (const auto& entry : fs::directory_iterator(room)) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".cpp" && ending != ".h" && ending != ".js" && ending != ".css" && ending != ".html") continue;
     const std::string text = text_of(entry.path());
@@ -105,10 +105,10 @@ TEST_CASE("a wrong name is noticed") {
   CHECK(problem_of("`mbd/trust/jury.cpp`", paths, functions) == "mbd/trust/jury.cpp does not exist; ");
 }
 
-// A room may grow by a quarter before its row has to be written anew: the numbers are there to tell large rooms from small ones.
-TEST_CASE("rooms are about as large as docs/design/structure.md says") {
+// A folder may grow by a quarter before its row has to be updated: the numbers only distinguish large folders from small ones.
+TEST_CASE("folders are about as large as docs/design/structure.md says") {
   std::ifstream page(k_source / "docs/design/structure.md");
-  int rooms = 0;
+  int folders = 0;
   for (std::string line; std::getline(page, line);) {
     const std::vector<std::string> quoted = quoted_in(line);
     const std::size_t last = line.find_last_of('|'),
@@ -116,9 +116,9 @@ TEST_CASE("rooms are about as large as docs/design/structure.md says") {
     if (!line.starts_with("| `") || before == std::string::npos || quoted.empty() || !quoted.front().ends_with('/')) continue;
     const long said = std::atol(line.substr(before + 1).c_str());
     if (said == 0) continue;
-    ++rooms;
+    ++folders;
     const double share = static_cast<double>(lines_in(k_source / quoted.front())) / static_cast<double>(said);
     CHECK_MESSAGE((share > 0.8 && share < 1.25), quoted.front() << " has " << lines_in(k_source / quoted.front()) << " lines");
   }
-  CHECK(rooms > 20);
+  CHECK(folders > 20);
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -52,7 +53,8 @@ bool install_and_build() {
   fs::remove_all(k_programs);
   const std::string cmake = STEPLAP_CMAKE;
   output_of(cmake + " --install " STEPLAP_BUILD " --prefix " + k_prefix);
-  output_of(cmake + " -S " STEPLAP_SOURCE "/docs/examples -B " + k_programs + " -G '" STEPLAP_GENERATOR "' -DCMAKE_PREFIX_PATH=" + k_prefix +
+  output_of(cmake + " -S " STEPLAP_SOURCE "/docs/examples -B " + k_programs +
+            " -G '" STEPLAP_GENERATOR "' -DCMAKE_PREFIX_PATH=" + k_prefix +
             " -DCMAKE_CXX_COMPILER=" STEPLAP_COMPILER " -DCMAKE_CXX_COMPILER_LAUNCHER=" STEPLAP_LAUNCHER
             " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON '-DCMAKE_CXX_FLAGS=" +
             k_warnings + "'");
@@ -190,6 +192,39 @@ TEST_CASE("the installed library: a judged run is that of the program, byte for 
   CHECK(models > 65);
 }
 
+// Names of the headers that are installed as <steplap/NAME>.
+std::set<std::string> public_headers() {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(k_prefix + "/include/steplap"))
+    if (entry.is_regular_file()) names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST_CASE("the installed library: the examples include only public headers, which compile together") {
+  REQUIRE(is_installed());
+  const std::set<std::string> names = public_headers();
+  CHECK(names.size() == 12); // cmake/public_headers.cmake, and version.h
+  const std::string start = "#include <steplap/";
+  int includes = 0;
+  for (const auto& entry : fs::directory_iterator(STEPLAP_SOURCE "/docs/examples")) {
+    std::istringstream lines(text_of(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with(start)) continue;
+      ++includes;
+      CHECK_MESSAGE(names.contains(line.substr(start.size(), line.find('>') - start.size())), entry.path() << ": " << line);
+    }
+  }
+  CHECK(includes >= 15);
+
+  const std::string all = k_programs + "/all_headers.cpp";
+  std::ofstream source(all);
+  for (const std::string& name : names) source << start << name << ">\n";
+  source.close();
+  const std::string folders =
+      " -isystem " + k_prefix + "/include -isystem " + k_prefix + "/include/steplap/internal -isystem " STEPLAP_EIGEN " ";
+  output_of(STEPLAP_COMPILER " -std=c++20 -fsyntax-only " + k_warnings + folders + all);
+}
+
 TEST_CASE("the installed library: users get no options of ours, and no headers but ours and Eigen's") {
   REQUIRE(is_installed());
   std::string commands = text_of(k_programs + "/compile_commands.json");
@@ -207,5 +242,5 @@ TEST_CASE("the installed library: users get no options of ours, and no headers b
     CHECK_MESSAGE((word.starts_with(k_prefix + "/") || word.ends_with("/eigen3")), word);
     ++folders;
   }
-  CHECK(folders >= 5 * 3); // ours, as <steplap/mbd/…> and "mbd/…", and Eigen's, for each program
+  CHECK(folders >= 5 * 3); // for each program ours, ours for "mbd/…", and Eigen's
 }
