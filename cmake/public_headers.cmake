@@ -3,6 +3,8 @@
 # <steplap/internal/…>, and may change in any version. docs/how-to/use_from_cpp.md has the same table for users.
 # install.cmake and tests/architecture/test_public_headers.cpp read this file.
 
+cmake_policy(VERSION 3.25) # of the functions, also when they are read by an installation
+
 # steplap_public_header(NAME "purpose" HEADER ...): <steplap/NAME> includes each HEADER of the source tree.
 function(steplap_public_header name purpose)
   set(text "// ${purpose}\n#pragma once\n")

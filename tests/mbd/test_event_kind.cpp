@@ -151,7 +151,8 @@ TEST_CASE("no code reads the words of an event") {
       const std::string extension = entry.path().extension(), path = entry.path().string();
       const bool is_script = extension == ".js", is_code = extension == ".cpp" || extension == ".h";
       const bool is_of_another_program = path.find("bench/peers") != std::string::npos; // that steplap is compared with
-      if (!(is_script || is_code) || is_of_another_program || entry.path().filename() == "event_kind.cpp") continue;
+      const bool is_key = path.find("tools/assess/") != std::string::npos; // "slips" is a key of its files: the number of slips
+      if (!(is_script || is_code) || is_of_another_program || is_key || entry.path().filename() == "event_kind.cpp") continue;
       ++files;
       std::ifstream in(entry.path());
       std::string line;
