@@ -68,7 +68,7 @@ References references_of(const Model& model) {
       found.signals.insert(name);
       if (const std::size_t point = name.rfind('.'); point != std::string::npos) found.markers.insert(name.substr(0, point));
     }
-  for (const TableEntry& entry : model.tables) // of other rooms: where a recorder sits
+  for (const TableEntry& entry : model.tables) // where a recorder sits
     for (const Field& field : entry.kind->fields.fields())
       if (field.type == FieldType::marker) found.markers.insert(std::get<std::string>(field.get(entry.table.get())));
   for (const Marker& marker : model.markers)

@@ -257,7 +257,7 @@ struct Model {
   std::vector<DefinedChannel> channels; ///< [[channel]]
   std::vector<Plot> plots;              ///< [[plot]]
   std::vector<Criterion> criteria;      ///< [[acceptance]]
-  std::vector<TableEntry> tables;       ///< of other rooms, as given: complete() adds what they stand for
+  std::vector<TableEntry> tables;       ///< such as [[core]], as given; complete() adds what they stand for
   Parameters parameters;                ///< [parameters], and the fields that follow from them
   bool is_completed = false;            ///< by complete(): until then what its tables stand for is missing
 
