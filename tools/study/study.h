@@ -6,6 +6,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/model/fields.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,14 +45,39 @@ struct Correlation {
 };
 
 /// [[response]]: a number made of a run.
+/// What a response takes of a run.
+enum class Measure : std::uint8_t {
+  expression, ///< of variables and other responses, not of a run
+  highest,
+  lowest,
+  largest_magnitude, ///< extreme of channels
+  final_value,
+  initial_value, ///< at an end of the run
+  mean,
+  path, ///< over the samples that are written
+  event_count,
+  first_event, ///< number of events, time of the first
+  verdict      ///< 0 hold, 1 open, 2 inspect, 3 reject
+};
+
+/// Is it the extreme of channels?
+[[nodiscard]] constexpr bool is_extreme(Measure m) {
+  return m == Measure::highest || m == Measure::lowest || m == Measure::largest_magnitude;
+}
+/// Does it need the samples that a run writes?
+[[nodiscard]] constexpr bool needs_samples(Measure m) { return m == Measure::mean || m == Measure::path; }
+
+/// [[response]]: a number that each run gives.
 struct Response {
   std::string name;
-  std::string model;               ///< name of the model it is taken from; needed where there are several
-  std::string channel;             ///< pattern with * and ?
-  std::string what;                ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
-  std::string event, element;      ///< patterns: events counted or timed
-  std::optional<double> otherwise; ///< the time of an event that never happens; infinity if not given
-  std::string expression;          ///< of variables and of the responses before it
+  std::string model;                     ///< name of the model it is taken from; needed where there are several
+  std::string channel;                   ///< pattern with * and ?
+  std::string what;                      ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
+  Measure measure = Measure::expression; ///< `what` as a value
+  bool takes_time = false;               ///< of an extreme: its time, s, instead of its value
+  std::string event, element;            ///< patterns: events counted or timed
+  std::optional<double> otherwise;       ///< the time of an event that never happens; infinity if not given
+  std::string expression;                ///< of variables and of the responses before it
   std::string unit;
   Location where;
 };
