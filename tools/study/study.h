@@ -44,20 +44,19 @@ struct Correlation {
   Location where;
 };
 
-/// [[response]]: a number made of a run.
 /// What a response takes of a run.
 enum class Measure : std::uint8_t {
-  expression, ///< of variables and other responses, not of a run
-  highest,
-  lowest,
-  largest_magnitude, ///< extreme of channels
-  final_value,
-  initial_value, ///< at an end of the run
-  mean,
-  path, ///< over the samples that are written
-  event_count,
-  first_event, ///< number of events, time of the first
-  verdict      ///< 0 hold, 1 open, 2 inspect, 3 reject
+  expression,        ///< nothing: it is made of variables and other responses
+  highest,           ///< largest value of channels
+  lowest,            ///< least value of channels
+  largest_magnitude, ///< largest absolute value of channels
+  final_value,       ///< of a channel, at the end
+  initial_value,     ///< of a channel, at the start
+  mean,              ///< of a channel, over the samples written
+  path,              ///< sum of a channel's absolute changes over the samples written
+  event_count,       ///< number of events
+  first_event,       ///< time of the first event, s
+  verdict            ///< 0 hold, 1 open, 2 inspect, 3 reject
 };
 
 /// Is it the extreme of channels?
