@@ -1,10 +1,11 @@
-// All kinds of elements and signals: the one list that a new kind is added to.
+// The list of all kinds of elements and signals. A new kind needs a line here.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
+/// All kinds that are not special to transformers. Constant, made at first use.
 [[nodiscard]] const Catalogue& element_catalog();
 
 } // namespace steplap

@@ -1,8 +1,20 @@
-// Normal laws of unilateral contacts for LawGroup. Modes: open, pressed, released (closed, force zero).
+// Normal force laws of unilateral contacts, for LawGroup (mbd/system/law_group.h, which defines the interface of a law).
 //
-// A spring whose damper holds back is left behind by what it pressed, δ = −c δ̇/k deep: released is what is certain to be that
-// deep, by the law and as measured. With less, down to no damping at all, the contact opens where its force ends, and
-// whatever rounding and the joints' residuals leave of the gap there is no time in which it is released.
+// With `value` the measured distance, the gap is δ = value − offset, m: δ > 0 open, δ < 0 closed. `rate` is δ̇, m/s, positive while the
+// bodies separate. The force f, N, acts on body a along ∂δ/∂q; f > 0 is compression.
+//
+//   KelvinVoigtContact   f = max(0, −kδ − cδ̇)             default; the force never pulls
+//   LiteralContact       f = −kδ − cδ̇                     as in the paper; f < 0 is possible just before opening
+//   HuntCrossleyContact  f = max(0, k|δ|ⁿ (1 − αδ̇))       damping proportional to the elastic force
+//
+// each for δ < 0; f = 0 for δ ≥ 0. Every law dissipates (elastic_force − f) δ̇. Source: docs/explanation/physics.md, section 2.
+//
+// Modes: open (δ ≥ 0), pressed (δ < 0, f > 0), released (δ < 0, f = 0: the bodies separate faster than the damped spring recovers).
+// Within a mode the force is smooth, also a little beyond the mode's limit, where the stages of a step may lie before the event is
+// located. A max() in a formula is therefore not evaluated; the change from pressed to released or open replaces it.
+//
+// Each law has k_watches event functions, the arguments `watch` and `watch_rate` of watch(), the latter NaN where no cheap formula
+// exists. S is double, a dual number or Traced. `rounding` is the absolute rounding error of `value`, m (mbd/system/rounding.h).
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -12,12 +24,17 @@
 
 namespace steplap {
 
-/// f = max(0, −kδ − cδ̇) while δ < 0: the damper never pulls.
+/// f = max(0, −kδ − cδ̇) for δ < 0.
+///
+/// The force becomes zero while the penetration −δ = c δ̇/k is left. Mode `released` is entered only if this penetration, computed and
+/// measured, exceeds the rounding of δ. Otherwise, and always for c = 0, pressed changes directly to open. The modes therefore depend
+/// continuously on c as c → 0.
 struct KelvinVoigtContact {
   static constexpr int k_watches = 2;
   static constexpr bool k_is_contact = true;
-  double k = 0.0, c = 0.0, offset = 0.0;
+  double k = 0.0, c = 0.0, offset = 0.0; ///< N/m, N s/m, m
 
+  /// −kδ − cδ̇, the force without the max().
   template <class S> [[nodiscard]] S raw(const S& value, const S& rate) const { return S(-k) * (value - S(offset)) - S(c) * rate; }
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? raw(value, rate) : S(0);
@@ -33,6 +50,7 @@ struct KelvinVoigtContact {
     if (value - offset >= 0.0) return k_contact_open;
     return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
   }
+  /// open: δ. pressed: −kδ − cδ̇. released: −δ, at which it opens, and kδ + cδ̇, at which the force returns.
   template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
     const S gap = value - offset;
     if (mode == k_contact_open) {
@@ -49,8 +67,8 @@ struct KelvinVoigtContact {
       watch[1] = -raw(value, rate);
     }
   }
-  // What closes presses: where it does, rounding leaves a gap of either sign, and a force of −kδ − cδ̇ of either, if nothing damps.
-  // `rounding`: of the value.
+  /// Mode after event function `slot` has become negative. A closing contact is pressed if δ̇ ≤ 0, whatever the sign of −kδ − cδ̇: δ is
+  /// zero up to rounding there, so for c = 0 the sign of the force is rounding too.
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
     const bool is_closed = is_surely_closed(value, rounding);
     if (mode == k_contact_open) {
@@ -60,6 +78,7 @@ struct KelvinVoigtContact {
     if (mode == k_contact_pressed) return is_closed && c * rate > k * rounding ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }
+  /// True only for −δ of a contact that has just been released. Every other event function starts at zero up to rounding.
   [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
     return mode == k_contact_released && slot == 0 && is_surely_closed(value, rounding);
   }
@@ -71,11 +90,11 @@ struct KelvinVoigtContact {
   }
 };
 
-/// f = −kδ − cδ̇ while δ < 0, as the paper writes it: the damper may pull just before opening.
+/// f = −kδ − cδ̇ for δ < 0, the paper's law (2), (4). The damper may pull before the contact opens, so there is no mode `released`.
 struct LiteralContact {
   static constexpr int k_watches = 1;
   static constexpr bool k_is_contact = true;
-  double k = 0.0, c = 0.0, offset = 0.0;
+  double k = 0.0, c = 0.0, offset = 0.0; ///< N/m, N s/m, m
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? S(-k) * (value - S(offset)) - S(c) * rate : S(0);
@@ -88,6 +107,7 @@ struct LiteralContact {
     return 0.5 * k * closed * closed;
   }
   [[nodiscard]] UnitMode mode_at(double value, double) const { return value - offset < 0.0 ? k_contact_pressed : k_contact_open; }
+  /// open: δ. pressed: −δ.
   template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     watch[0] = sign * (value - offset);
@@ -99,15 +119,15 @@ struct LiteralContact {
   static EventKind transition(UnitMode, UnitMode to) { return to == k_contact_open ? EventKind::opens : EventKind::closes; }
 };
 
-/// f = k|δ|ⁿ (1 − α δ̇), never below zero (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440).
+/// f = max(0, k|δ|ⁿ (1 − αδ̇)) for δ < 0 (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440).
 ///
-/// While the mode says pressed, k|δ|ⁿ goes on beyond δ = 0 with its sign changed, as a line does: stages of a step
-/// that is too long may be thrown out of the contact, on either side of something round, and where they felt nothing
-/// the step's error would be seen as zero.
+/// In mode pressed |δ|ⁿ is continued to δ > 0 as the odd function −δⁿ. The stages of a step that is too long may leave the contact,
+/// past either side of a round body. If they all had zero force there, the error estimate of the step would be zero, and the step
+/// would be accepted.
 struct HuntCrossleyContact {
   static constexpr int k_watches = 2;
   static constexpr bool k_is_contact = true;
-  double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0;
+  double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0; ///< k in N/mⁿ, n, α in s/m, m
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     if (mode != k_contact_pressed) return S(0);
@@ -121,6 +141,7 @@ struct HuntCrossleyContact {
     if (value - offset >= 0.0) return k_contact_open;
     return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
   }
+  /// open: δ. pressed: −δ and 1 − αδ̇. released: −δ and αδ̇ − 1.
   void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     watch[0] = sign * (value - offset);
@@ -135,6 +156,7 @@ struct HuntCrossleyContact {
   static EventKind transition(UnitMode from, UnitMode to) { return KelvinVoigtContact::transition(from, to); }
 
 private:
+  /// depthⁿ, continued as an odd function.
   template <class S> [[nodiscard]] S power(const S& depth) const {
     using portable::pow;
     if (exponent == 1.0) return depth;

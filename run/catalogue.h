@@ -1,4 +1,4 @@
-// Everything a model file may use, unless a program brings a catalogue of its own: the kinds of all rooms below this one.
+// Everything a model file may use, unless a program brings a catalogue of its own: all kinds of elements and tables.
 #pragma once
 
 #include "mbd/model/model.h"

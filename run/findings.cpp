@@ -68,7 +68,7 @@ References references_of(const Model& model) {
       found.signals.insert(name);
       if (const std::size_t point = name.rfind('.'); point != std::string::npos) found.markers.insert(name.substr(0, point));
     }
-  for (const TableEntry& entry : model.tables) // of other rooms: where a recorder sits
+  for (const TableEntry& entry : model.tables) // where a recorder sits
     for (const Field& field : entry.kind->fields.fields())
       if (field.type == FieldType::marker) found.markers.insert(std::get<std::string>(field.get(entry.table.get())));
   for (const Marker& marker : model.markers)
@@ -275,6 +275,13 @@ bool is_made_by_table(const Model& model, const std::string& name) {
                      [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
 }
 
+void warn_of_renamed_keys(const Model& model, Findings& findings) {
+  for (const RenamedKey& key : model.renamed_keys)
+    warn(findings, "renamed_key",
+         "'" + key.earlier + "' of " + key.subject + " is now called '" + key.name + "': the next minor version refuses the earlier name",
+         key.where);
+}
+
 void warn_of_unused(const Model& model, Findings& findings) {
   const References used = references_of(model);
   for (const SignalEntry& entry : model.signals)
@@ -374,6 +381,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   const Model& model = loaded.model;
   Findings findings;
   append(findings, start_findings(loaded));
+  warn_of_renamed_keys(model, findings);
   warn_of_unused(model, findings);
   const SimulationSettings& s = model.simulation;
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))

@@ -1,10 +1,11 @@
-// All that a model of a power transformer may contain: the elements' kinds and the tables of this room.
+// The kinds of element_catalog(), and the tables that only transformers have, such as [[core]].
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
+/// The catalogue that the command line uses. Constant, made at first use.
 [[nodiscard]] const Catalogue& transformer_catalog();
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// What goes wrong, said once and clearly: errors in a model (all of them together, each with its place), failures of a
-// computation (with time, element and advice), files that cannot be used. Nothing else is thrown on purpose.
+// Exceptions of the library. A ModelError carries all errors of a model, each with its place in the file. A NumericalFailure ends a
+// computation. A FileError names a file that cannot be used. The library throws std::invalid_argument for wrong arguments, and nothing else.
 #pragma once
 
 #include <cstddef>
@@ -11,27 +11,31 @@
 
 namespace steplap {
 
-/// A place in a model file; line and column count from 1, 0 = unknown (for example a model built in code).
+/// A place in a model file. 0 means unknown, for example in a model built in C++.
 struct Location {
-  std::string file;
-  int line = 0;
-  int column = 0;
+  std::string file; ///< path as the user gave it
+  int line = 0;     ///< from 1
+  int column = 0;   ///< from 1
 };
 
+/// One error of a model.
 struct Diagnostic {
-  Location where;
+  Location where;      ///< of the value that is wrong
   std::string message; ///< cause and remedy in one or two sentences, names in 'quotes'
 
   /// "file:line:column: error: message"
   [[nodiscard]] std::string text() const;
 };
 
-/// The model cannot be used as it stands. Exit code 3.
+/// The model cannot be used. The command line exits with code 3.
 class ModelError : public std::exception {
 public:
+  /// All errors of a model, in the order in which they are shown.
   explicit ModelError(std::vector<Diagnostic> diagnostics);
+  /// A single error.
   ModelError(const Location& where, std::string message);
 
+  /// The errors, at least one.
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
 
@@ -40,20 +44,24 @@ private:
   std::string text_;
 };
 
-/// A computation could not be finished: the message carries time, element and advice. Exit code 4.
+/// A computation could not be finished. The message names time, element and remedy. The command line exits with code 4.
 class NumericalFailure : public std::runtime_error {
 public:
+  /// The message in whole sentences.
   using std::runtime_error::runtime_error;
 };
 
-/// A file that cannot be written, or that is not what it should be; the message names it, the cause and what to do. Exit code 2.
+/// A file cannot be written, or is not of the expected kind. The message names the file, the cause and the remedy. The command line exits
+/// with code 2.
 class FileError : public std::runtime_error {
 public:
-  /// `line` counts from 1, 0: the file as a whole.
+  /// `line` counts from 1; 0 means the file as a whole.
   FileError(std::string path, const std::string& message, std::size_t line = 0)
       : std::runtime_error(message), path_(std::move(path)), line_(line) {}
 
+  /// The file as it was named.
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// The line, from 1; 0 means the file as a whole.
   [[nodiscard]] std::size_t line() const { return line_; }
 
 private:
@@ -61,7 +69,7 @@ private:
   std::size_t line_ = 0;
 };
 
-/// The nearest of `known` to `word` by edit distance, or "" if none is near enough to be meant.
+/// The name in `known` with the least edit distance to `word`; "" if all are too far to be meant.
 [[nodiscard]] std::string nearest_name(const std::string& word, const std::vector<std::string>& known);
 
 /// " (did you mean 'x'?)" or "".

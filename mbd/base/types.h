@@ -1,4 +1,4 @@
-// Small vocabulary shared by all rooms: planar vectors and their products.
+// Planar vectors and their products.
 //
 // Frame: x forward (direction of travel), y up, angles counter-clockwise. SI units and radians.
 #pragma once
@@ -9,11 +9,11 @@
 
 namespace steplap {
 
-using Vec2 = Eigen::Vector2d;
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
-using VecX = Eigen::VectorXd;
-using MatX = Eigen::MatrixXd;
+using Vec2 = Eigen::Vector2d; ///< a point, m, or a force, N
+using Vec3 = Eigen::Vector3d; ///< a pose (x, y, θ), m and rad, or a wrench (Fx, Fy, M), N and N m
+using Mat3 = Eigen::Matrix3d; ///< maps poses, twists or wrenches
+using VecX = Eigen::VectorXd; ///< any length
+using MatX = Eigen::MatrixXd; ///< any size
 
 inline constexpr int k_ground = 0; ///< index of the ground among the bodies of a compiled system
 

@@ -1,17 +1,23 @@
-// Finds the first event inside a step: where a watch value falls below zero.
+// Event location: finds the first event inside a step that an integrator has made.
 //
-// A step is passed only if every watch value is known to stay positive on the whole of it (docs/explanation/theory.md, "Events"):
-//   far      its least value at the ends and stages is more than half its largest: it cannot have reached zero
-//            in between unless it varies faster than stages resolve, which no step lets it (watch_nodes.h);
-//   certain  the bound of watch_nodes.h keeps it positive between stages;
-//   looked   else it is interpolated on dense output by a polynomial, the part of the step divided until the
-//            polynomial, held against the value where it was not known before, is exact enough to tell (event_survey.cpp).
-// A change of sign that is certain to be the only one is closed in on at once. The root is closed in on to rounding; all
-// values that are negative on the far side of the bracket fire together. A step that takes more parts than there may be
-// ends where it has been looked through, with nothing fired.
+// The elements provide event functions g_i(t), in the code "watch values", one per slot. A mode is valid while its event functions
+// are ≥ 0 (roles.h). An event is a change of some g_i from ≥ 0 to < 0. Position in the step is θ = (t − t0)/h, 0 ≤ θ ≤ 1.
 //
-// A value that belongs to a unit or friction whose mode has just changed is *fresh*: it starts at zero
-// up to rounding and is not believed negative until it has been positive.
+// Sign changes at the ends of the step are not sufficient: g_i can be negative between two positive ends. A step is therefore
+// accepted without event only if every g_i is shown to be positive on all of it. Three tests are applied in turn, from cheap to
+// expensive (docs/explanation/theory.md, "Events"):
+//   1. far      (event_finder.cpp) The least value at ends and stages exceeds half the largest.
+//   2. certain  (watch_nodes.h)    The chord between neighbouring samples, less a bound ½ M (x − x_j)(x_{j+1} − x) with M ≥ |g″|,
+//                                  is positive.
+//   3. survey   (event_survey.cpp) g_i is interpolated on the dense output by polynomials with an error bound. The step is
+//                                  subdivided until each part is shown to be positive or contains a sign change.
+// A sign change gives a bracket. The root in it is located to rounding (event_closing.cpp). All functions that are negative at the
+// end of the final bracket fire together.
+//
+// An event function is armed if a negative value counts as an event. A function is fresh if its element has just changed mode: it
+// starts at zero with an error of either sign, so it is armed only after it has been positive once.
+//
+// If the survey needs more parts than allowed, the step ends where the search has arrived, without an event.
 #pragma once
 
 #include "mbd/base/part_polynomial.h"
@@ -26,51 +32,60 @@ namespace steplap {
 
 class EventFinder {
 public:
+  /// `max_dimension`: largest dimension of the packed state in any mode. Keeps a reference to `system`.
   EventFinder(const System& system, int max_dimension);
 
-  /// True if the step just made by `integrator` contains an event; then theta(), state() and fired()
-  /// tell which: none, if it only has to end there. `fresh[slot]` as above.
+  /// Searches the step that `integrator` has just made. `dynamics` must be in the modes of that step. `fresh` has one flag per slot
+  /// (EventHandler::fresh()). Returns true if the step has to end early, or at an event; theta(), state() and fired() are valid
+  /// until the next call. fired() is empty if the step only has to end early. Evaluates `dynamics` on the dense output.
   bool find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
 
-  /// find() has found nothing, for the step does not bear to be looked into: it has to be made again.
+  /// True if the last find() returned false because the integrator has withdrawn the step: its dense output was not accurate enough
+  /// to be searched. The caller must make the step again.
   [[nodiscard]] bool is_step_withdrawn() const { return is_step_withdrawn_; }
 
-  [[nodiscard]] double theta() const { return theta_; }
-  [[nodiscard]] const std::vector<double>& state() const { return y_; }
-  [[nodiscard]] const std::vector<int>& fired() const { return fired_; }
+  [[nodiscard]] double theta() const { return theta_; }                  ///< θ at which the step ends
+  [[nodiscard]] const std::vector<double>& state() const { return y_; }  ///< packed state there, from dense output, not projected
+  [[nodiscard]] const std::vector<int>& fired() const { return fired_; } ///< slots that have become negative, ascending
 
 private:
+  /// Result of tests 1 and 2. none: no event. at_end: only functions with one simple root, negative at the end of the step.
+  /// inside: some function has to be surveyed.
   enum class Suspicion { none, at_end, inside };
+  /// found: low_ and high_ enclose the root. at_once: the event is at high_.theta, without root finding.
   enum class Bracket { none, found, at_once };
+  /// Sample of all event functions.
   struct Look {
     double theta = 0.0;
-    std::vector<double> watch, rate; ///< rate: per unit of theta, NaN where it is not known
+    std::vector<double> watch, rate; ///< g_i and dg_i/dθ; the derivative is NaN if the element does not provide it
   };
-  /// A part of the step, interpolated.
+  /// Interval of the step that is to be surveyed. `slot`, `error` and `stalled` describe the function that caused the last split.
   struct Part {
     double begin = 0.0, end = 1.0;
-    int slot = -1;      ///< whose polynomial was not exact enough in the part that this one is a piece of
-    double error = 0.0; ///< of it there
-    int stalled = 0;    ///< generations in which dividing has not made it more exact
+    int slot = -1;
+    double error = 0.0; ///< its interpolation error on the parent interval
+    int stalled = 0;    ///< number of successive splits that did not reduce this error
   };
-  /// Where a value may be below zero between places known to be positive.
+  /// Reason to split a part: function `slot` may be negative near `place`.
   struct Unclear {
-    double place = -1.0; ///< in the part, 0 … 1; −1: nowhere
+    double place = -1.0; ///< relative position in the part, 0 … 1; −1: no reason
     int slot = -1;
     double error = 0.0;
     int stalled = 0;
   };
-  /// A value that ends and stages do not make certain, in the part of the step being looked through.
+  /// Interpolant of one event function on the present part.
   struct Near {
     int slot = -1;
     int stalled = 0;
-    std::size_t from = 0, to = 0; ///< places between which it has to be positive for the part to be passed
-    bool has_fired = false;       ///< it falls below zero behind the last of these
+    std::size_t from = 0, to = 0; ///< nodes between which it has to be positive
+    bool has_fired = false;       ///< the function is negative at node to + 1
     PartPolynomial polynomial;
   };
 
+  /// Applies tests 1 and 2; fills near_ with the slots that pass neither.
   [[nodiscard]] Suspicion suspicion(Integrator& integrator, const Dynamics& dynamics, const std::vector<char>& fresh);
   [[nodiscard]] bool is_merged(const Dynamics& dynamics, int slot);
+  /// Uses the whole step as the bracket; for Suspicion::at_end.
   Bracket bracket_whole(const Integrator& integrator);
   // --- event_survey.cpp
   Bracket survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
@@ -91,12 +106,14 @@ private:
   [[nodiscard]] double first_secant() const;
   [[nodiscard]] bool is_root_just_before(const Look& beyond, double reach) const;
 
+  /// Evaluates all event functions at `theta` on the dense output.
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
+  /// Takes the event functions that the integrator has stored at the start or the end (`is_last`) of the step.
   static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
-  /// From zero or above to below.
+  /// Puts the armed slots with low ≥ 0 and high < 0 into fired_. Returns true if there are any.
   [[nodiscard]] bool crosses(const Look& low, const Look& high);
-  /// The same for what velocities are known to: from the slack below zero or above to below that, or below zero at the
-  /// step's end. What crosses zero within the slack is neither lost nor found twice.
+  /// As crosses(), but with the tolerance slack_ instead of zero, and with zero for `high` at the end of the step. A step therefore
+  /// never ends with a negative value, and an excursion within the tolerance is neither lost nor reported twice.
   [[nodiscard]] bool falls(const Look& low, const Look& high);
   [[nodiscard]] Bracket bracket_of_fall();
   [[nodiscard]] bool is_any_merged_near(const Integrator& integrator, const Dynamics& dynamics) const;
@@ -107,35 +124,35 @@ private:
   double theta_ = 0.0;
   bool is_step_withdrawn_ = false;
   std::vector<double> y_, dy_;
-  Look low_, high_, middle_; ///< the bracket's ends, and a place between them
+  Look low_, high_, middle_; ///< ends of the bracket and a sample in between
   static constexpr std::size_t k_most_known = 7;
-  std::array<Look, k_most_known> known_; ///< the last ones, from which the next place is estimated
+  std::array<Look, k_most_known> known_; ///< last samples, in a ring; the root is estimated from them
   std::size_t known_count_ = 0;
   RootEstimate estimate_;
-  /// Of the root being closed in on, in parts of the step.
+  /// State of the root iteration, in units of θ.
   struct Aim {
-    double reach = 0.0;      ///< to either side of the root, where the bracket is to end
-    double root = 0.0;       ///< as last estimated
-    double distance = 1.0;   ///< of the last two estimates
-    double expected = 1.0;   ///< error of the last one
-    int looks = 0;           ///< estimates so far
-    bool is_settled = false; ///< the root is as exact as it can be
+    double reach = 0.0;      ///< half-width of the final bracket around the root
+    double root = 0.0;       ///< last estimate
+    double distance = 1.0;   ///< difference of the last two estimates
+    double expected = 1.0;   ///< predicted error of the last estimate
+    int looks = 0;           ///< number of estimates
+    bool is_settled = false; ///< the estimate is as accurate as rounding allows
   };
   Aim aim_;
   static constexpr std::size_t k_places = PartPolynomial::k_order + 1;
-  std::array<Look, k_places> place_; ///< of the part of the step being looked through
-  /// Per slot: a dip that is not deeper and comes up again within the step is none. Of rates of slip and of what ForceGroup's
-  /// watch_kind() says, that to which velocities or places are known; 0 of all else.
+  std::array<Look, k_places> place_; ///< samples at the interpolation nodes of the present part
+  /// Tolerance below zero, per slot. A dip that is no deeper and recovers within the step is no event. Accuracy of velocities for
+  /// slip rates, as given by ForceGroup::watch_kind() for units, zero for all others.
   std::vector<double> slack_;
-  std::vector<int> place_slots_, rate_slots_; ///< of units
-  std::vector<char> is_of_joint_;             ///< per slot: of friction over an area
-  std::vector<int> near_;                     ///< slots that ends and stages do not make certain
-  std::vector<char> merged_;                  ///< slots of joints that are merged, once somebody has asked in this step
-  bool are_merged_known_ = false;
-  std::vector<Near> curves_;               ///< of those among near_ that are looked at in the part
-  std::vector<Part> parts_;                ///< still to be looked through, the first one last
-  bool is_merged_near_ = false;            ///< some joint that is merged may give way in the step
-  std::vector<char> armed_, armed_before_; ///< believed when negative
+  std::vector<int> place_slots_, rate_slots_; ///< slots of units with WatchKind::place and WatchKind::rate
+  std::vector<char> is_of_joint_;             ///< per slot: belongs to friction of dimension 3
+  std::vector<int> near_;                     ///< slots to be surveyed
+  std::vector<char> merged_;                  ///< per slot: belongs to a merged joint; filled at the first use in a step
+  bool are_merged_known_ = false;             ///< merged_ is valid for this step
+  std::vector<Near> curves_;                  ///< interpolants of the functions in near_ on the present part
+  std::vector<Part> parts_;                   ///< stack of parts still to be surveyed; the earliest is on top
+  bool is_merged_near_ = false;               ///< a merged joint may slip in this step, so every sample evaluates merged joints
+  std::vector<char> armed_, armed_before_;    ///< per slot: armed; the same at the start of the present part
   std::vector<int> fired_, fired_before_;
 };
 

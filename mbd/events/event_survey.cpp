@@ -1,12 +1,17 @@
-// EventFinder: what watch values do inside a step that its ends and stages do not make certain.
+// EventFinder: survey of the event functions that ends and stages of a step do not show to be positive.
 //
-// Part by part from the step's start, values at seven Chebyshev–Lobatto places of dense output are interpolated
-// (mbd/base/part_polynomial.h). A part is passed if every value is above zero between those places by more than the
-// polynomial may be off, and if one more look, where the value that is nearest to zero is least, finds no value further from
-// its polynomial than that. Else the part is divided: where the polynomial is least, so that the bottom of a dip becomes an
-// end of both halves, or where it was off. A value that is negative at a place makes the bracket of an event, if it
-// passes zero once for certain from the place before, and nothing else does. What dips below zero for less than k_shortest of
-// a step, and only by rounding, is no event. That this misses nothing is argued in docs/explanation/theory.md, "Events".
+// Each function g is interpolated on the dense output at the seven Chebyshev–Lobatto nodes of an interval, a part of the step. The
+// error of the interpolant p is assumed to be |g − p| ≤ E, with E from its last two Chebyshev coefficients
+// (mbd/base/part_polynomial.h). Starting with the whole step, the earliest part is treated as follows:
+//   accept   if p and E show that every g is positive between the nodes, and one sample at a further point confirms |g − p| ≤ E;
+//   bracket  if some g is negative at a node, has exactly one root since the node before, and all other g are positive up to the
+//            end of the bracket;
+//   split    otherwise, at the minimum of p or where |g − p| > E. The bottom of a dip becomes a node of both halves: g is sampled
+//            there, and E of the halves is much smaller.
+// The recursion ends at parts of length k_shortest, where only rounding is left.
+//
+// The bounds are derived in docs/explanation/theory.md, "Why no dip is missed". "Negative" means below −slack_ for functions that
+// have a tolerance.
 #include "mbd/events/event_finder.h"
 
 #include <algorithm>
@@ -19,26 +24,32 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-9;                       // part of a step that is not divided
-constexpr double k_margin_of_cut = 0.1;                   // of a part: not nearer to its ends;
-constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3; // … where the error is a larger share of the values than this
-constexpr double k_stalled = 0.9;                         // of the error of the part before: no more exact
-constexpr int k_most_stalled = 4;                         // generations in a row
-constexpr int k_most_parts = 400;                         // of one step
-// Of the step: nearer to its start nobody believes what was not positive there (dense output does not know so small
-// changes); what has not become positive at all is decided anew here.
+constexpr double k_shortest = 1e-9; // in θ: shorter parts are not split
+// Smallest distance of a split from the ends of a part, relative to its length, so that both halves become shorter. If E exceeds the
+// share k_rough of the largest value, the minimum of p is not reliable and the split is nearer to the middle.
+constexpr double k_margin_of_cut = 0.1;
+constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3;
+// A split has stalled if E is still above this share of the parent's E. Halving divides E by 32 for a smooth function and by 2 at
+// a kink. After k_most_stalled such splits in a row E is rounding or a jump, and only the samples count.
+constexpr double k_stalled = 0.9;
+constexpr int k_most_stalled = 4;
+constexpr int k_most_parts = 400; // limit of the work in one step
+// θ from which on a function that is fresh or starts negative can be armed, because dense output does not resolve smaller changes.
+// A function that never becomes positive is reported here.
 constexpr double k_at_once = 1e-4;
-constexpr double k_off_places = 0.25; // of a gap between places: a check is not made nearer to these, where nothing can be off
-// Beside what a polynomial is off by at one place it may be off by so many times that at others: between the first two
-// places it reaches about a quarter of what it does in the middle.
+constexpr double k_off_places = 0.25; // smallest distance of a check point from a node, in gaps between nodes: g = p at the nodes
+// Factor from the deviation |g − p| at the check point to the new E: between the first two nodes the deviation reaches only about a
+// quarter of that in the middle of a part.
 constexpr double k_elsewhere = 4.0;
-constexpr double k_far = 0.25; // of the size of a value that is clear: it is not checked
+constexpr double k_far = 0.25; // a function whose minimum is above this share of its largest value needs no check
 
 } // namespace
 
-// Where the tangents at two neighbouring places, falling at one and rising at the next, meet below zero: the bottom of
-// what is convex between them, as the gap to anything round that is flown past, may be as low. −1: nowhere, or rates
-// are not known.
+// Finds two neighbouring nodes, up to `last`, between which a convex function may be negative although both samples are positive.
+// The gap to a round body that is passed is such a function. With values w0, w1 and slopes s0 < 0 < s1, and the nodes `gap` apart,
+// a convex function lies above both tangents. They meet at x from the first node:
+//   w0 + s0 x = w1 + s1 (x − gap)   ⇒   x = (w1 − w0 − s1 gap)/(s0 − s1).
+// Returns the position of x in the part, 0 … 1, if the tangents are below zero there; −1 otherwise, or if slopes are unknown.
 double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
   const double begin = place_[0].theta, width = place_[k_places - 1].theta - begin;
   for (std::size_t k = 0; k < last; ++k) {
@@ -52,9 +63,10 @@ double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
   return -1.0;
 }
 
-// The polynomials of the near values in the part whose places are looked at, and between which of them each has to be
-// positive: up to `last`, or where some value has been seen below zero behind that, one place more. What is fresh is not
-// believed before it has been positive, nor what is negative at the part's begin.
+// Fits an interpolant to each function in near_ and stores it in curves_, with the nodes from … to between which the function has
+// to be positive. `last` is the last node before the first sign change. A function that fired ends there; all others are checked
+// up to the next node, the end of the bracket. A function that is not armed, or is negative at the start of the part, is checked
+// only from its first positive node on. Functions that are identically zero, or whose splits have stalled, are left out.
 void EventFinder::fit_near(const Part& part, std::size_t last) {
   curves_.clear();
   for (const int slot : near_) {
@@ -69,17 +81,16 @@ void EventFinder::fit_near(const Part& part, std::size_t last) {
     PartPolynomial::Values values;
     for (std::size_t k = 0; k < k_places; ++k) values[k] = place_[k].watch[slot];
     near.polynomial.fit(values);
-    if (near.polynomial.largest() == 0.0) continue; // what touches and does not move: zero is not below zero, however fine one looks
-    // What dividing does not make more exact is rounding (a contact that touches without being pressed), or a jump: its
-    // values at the places are all there is to know. Errors at a kink fall with the width, those of what is smooth much
-    // faster.
+    if (near.polynomial.largest() == 0.0) continue; // bodies that touch and do not move: zero is not negative
+    // Only the function that caused the split can stall: an error that does not fall is rounding, as of an unloaded contact, or a jump.
     const bool is_stalled = slot == part.slot && near.polynomial.error() > k_stalled * part.error;
     near.stalled = is_stalled ? part.stalled + 1 : 0;
     if (near.stalled < k_most_stalled) curves_.push_back(near);
   }
 }
 
-// The gap between places in which the value may be below zero, or pass it more than once; −1: none.
+// Returns the index of the first gap between nodes in which the function may be negative or, in the bracket, may have more than one
+// root; −1 if there is none. Zero is replaced by −slack_.
 int EventFinder::doubtful_gap(const Near& near) const {
   const double floor = -slack_[near.slot];
   const int gap = near.polynomial.doubtful_gap(floor, near.from, near.to);
@@ -87,26 +98,29 @@ int EventFinder::doubtful_gap(const Near& near) const {
   return static_cast<int>(near.to);
 }
 
+// Requests a split of the part at `place`, moved away from the ends of the part if necessary.
 EventFinder::Unclear EventFinder::unclear_at(const Near& near, double place) const {
   const PartPolynomial& p = near.polynomial;
   const double margin = p.error() > k_rough * p.largest() ? k_margin_if_rough : k_margin_of_cut;
   return {std::clamp(place, margin, 1.0 - margin), near.slot, p.error(), near.stalled};
 }
 
-// Where in the part some near value may be below zero between the places.
+// Returns the position at which the part has to be split because some function may be negative between nodes, by its tangents or by
+// its interpolant. Returns nothing (slot −1) if all interpolants are positive. `last` as in fit_near().
 EventFinder::Unclear EventFinder::unclear_place(std::size_t last) const {
   for (const Near& near : curves_) {
     if (const double x = tangents_meet_below(near.slot, last); x >= 0.0) return {x, near.slot, 0.0, 0};
     const int gap = doubtful_gap(near);
     if (gap < 0) continue;
-    const auto k = static_cast<std::size_t>(gap); // a bottom may lie at its end
+    const auto k = static_cast<std::size_t>(gap); // the minimum may lie just outside this gap, so the neighbours are searched too
     return unclear_at(near, near.polynomial.lowest(k > 0 ? k - 1 : 0, std::min(k + 2, k_places - 1)));
   }
   return {};
 }
 
-// Where the value that comes nearest to zero, as a share of its size, is least between the places; −1: there is none, or all are
-// so far away that the polynomial would have to be off by as much as the value itself.
+// Chooses the check point of a part: the minimum of the interpolant that comes nearest to zero relative to its largest value.
+// Returns its position in the part, off the nodes; −1 if no function comes nearer than k_far, because then only an error of the
+// size of the function itself could make it negative.
 double EventFinder::place_to_check() const {
   const Near* nearest = nullptr;
   double least = 0.0;
@@ -127,9 +141,10 @@ double EventFinder::place_to_check() const {
   return std::clamp(x, begin + k_off_places * width, begin + (1.0 - k_off_places) * width);
 }
 
-// All near values are clear by their polynomials: are they what these say at a place where nobody has looked? Where one is
-// not, and may be below zero if the polynomial is off by so much, the part has to be divided; there, where one, near or not, is
-// below zero before the first place that has one.
+// Checks the interpolants, all positive so far, by one sample at x = place_to_check(). Returns a split at x in two cases:
+//   - an armed function, interpolated or not, is negative at x although x lies before the first sign change at a node;
+//   - an interpolant deviates from the sample by more than E, and with E enlarged accordingly it may be negative.
+// Returns nothing (slot −1) otherwise.
 EventFinder::Unclear EventFinder::belied_place(Integrator& integrator, Dynamics& dynamics, const Part& part, std::size_t last) {
   const double x = place_to_check();
   if (x < 0.0) return {};
@@ -146,7 +161,8 @@ EventFinder::Unclear EventFinder::belied_place(Integrator& integrator, Dynamics&
   return {};
 }
 
-// All places of the part beyond its begin; the one up to which nothing has been seen below zero.
+// Samples all event functions at the nodes 1 … 6 of the part, and arms those that are positive. Returns the last node before the
+// first sign change of an armed function, or the last node of the part if there is none.
 std::size_t EventFinder::look_at_places(Integrator& integrator, Dynamics& dynamics, const Part& part) {
   const double width = part.end - part.begin;
   std::size_t last = k_places - 1;
@@ -164,14 +180,16 @@ std::size_t EventFinder::look_at_places(Integrator& integrator, Dynamics& dynami
   return last;
 }
 
+// Arms the functions that are positive at θ. Closer to the start than k_at_once the sign is not reliable.
 void EventFinder::arm_positive(double theta, const std::vector<double>& watch) {
   if (theta < k_at_once) return;
   for (int i = 0; i < slots_; ++i)
     if (watch[i] > 0.0) armed_[i] = 1;
 }
 
-// A look ahead of which what is fresh is not believed. What is, and is not far from zero between the step's start and that
-// look, has to be looked at in between.
+// Creates the initial part, the whole step. If some function is not yet armed, the survey starts at k_at_once, where a sample arms
+// the functions that are positive. The short interval before it becomes a part of its own if an armed function is negative at
+// k_at_once or not far from zero (test 1 of event_finder.h) between the two ends. Moves low_ to the start of the first part.
 void EventFinder::begin_parts(Integrator& integrator, Dynamics& dynamics, bool is_any_unarmed) {
   parts_.clear();
   parts_.push_back({});
@@ -190,7 +208,9 @@ void EventFinder::begin_parts(Integrator& integrator, Dynamics& dynamics, bool i
   std::swap(low_, high_);
 }
 
-// low_ is at the part's begin. True with a bracket in low_ and high_; else low_ is at its end, or the part has been divided.
+// Treats one part; low_ must be the sample at its start. Returns true if it contains an event: the bracket is in low_ and high_, and
+// the functions that change sign are in fired_. Returns false if the part is accepted, with low_ at its end, or split, with both
+// halves on the stack, low_ unchanged and the functions armed in it disarmed again.
 bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const Part& part) {
   const double width = part.end - part.begin;
   place_[0] = low_;
@@ -218,6 +238,7 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
   return false;
 }
 
+// Surveys the whole step. Returns the first bracket; `none` if every function is positive on all of the step.
 EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
   look_at_end(integrator, false, low_);
   bool is_any_unarmed = false;
@@ -226,8 +247,8 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
     is_any_unarmed = is_any_unarmed || !armed_[i];
   }
   begin_parts(integrator, dynamics, is_any_unarmed);
-  // Values that were never positive up to low_: the mode chosen is not the one the motion takes. The event is at once; the handler
-  // decides anew a hair later. No step ends with a value below zero, nor does one that another event cuts.
+  // A function that is negative and has not been positive up to low_ shows that the mode chosen at the last event is wrong. An event
+  // at θ = k_at_once makes EventHandler choose again. It has priority over a later bracket, so no step ends with a negative value.
   const auto every_slot = std::views::iota(0, slots_);
   const auto was_never_positive = [this](int slot) {
     return low_.theta < 1.0 ? armed_[slot] == 0 && low_.watch[slot] < -slack_[slot] : low_.watch[slot] < 0.0;
@@ -235,7 +256,7 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
   for (int parts = 0; !parts_.empty(); ++parts) {
     const Part part = parts_.back();
     parts_.pop_back();
-    if (parts >= k_most_parts && part.begin > 0.0) { // the step ends where it has been looked through
+    if (parts >= k_most_parts && part.begin > 0.0) { // too much work: the step ends at low_, up to which no event was found
       fired_.clear();
       high_ = low_;
       return Bracket::at_once;
@@ -253,7 +274,8 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
   return Bracket::at_once;
 }
 
-// Of a value that lies within the slack below zero where the bracket begins, that is the event.
+// Classifies the bracket low_, high_. A function in fired_ that is between −slack_ and zero at low_ has passed zero before it. The
+// event is then at low_, and fired_ keeps only such functions. Otherwise the bracket is ready for root finding.
 EventFinder::Bracket EventFinder::bracket_of_fall() {
   const auto is_above = [this](int slot) { return low_.watch[slot] >= 0.0; };
   if (std::all_of(fired_.begin(), fired_.end(), is_above)) return Bracket::found;

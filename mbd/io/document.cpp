@@ -198,6 +198,7 @@ public:
     loader.document_.sources = document.sources;
     Node root = loader.load_layer(std::move(text), file);
     document.problems.insert(document.problems.end(), loader.document_.problems.begin(), loader.document_.problems.end());
+    for (const std::string& name : loader.document_.files_without_format) add_once(document.files_without_format, name);
     return root;
   }
 
@@ -208,12 +209,36 @@ private:
     chain_.push_back(id);
     names_.push_back(file);
     Node over = parse_toml(source.text, &source.file);
+    take_format(over, source.file);
     Node base;
     base.file = &source.file;
     if (const Node* extends = over.find("extends")) base = load_base(*extends, file);
     over.erase("extends");
     Merger(document_.problems).merge_root(base, over);
     return base;
+  }
+
+  // `format` is a property of the file, not of the model: a file and the file that it extends may be of different formats.
+  void take_format(Node& root, const std::string& file) {
+    if (const Node* format = root.find("format")) check_format(*format);
+    else add_once(document_.files_without_format, file);
+    root.erase("format");
+  }
+
+  void check_format(const Node& format) {
+    const std::string known = std::to_string(k_file_format);
+    const long* const given = format.type == Node::Type::integer ? std::get_if<long>(&format.scalar) : nullptr;
+    if (given && *given == k_file_format) return;
+    std::string message = "'format' must be " + known + ", the version of the file format";
+    if (!given) message += std::string(", got ") + format.type_name();
+    else if (*given > k_file_format)
+      message = "'format' is " + std::to_string(*given) + ", and this version of steplap reads format " + known +
+                ": use a later version of steplap";
+    document_.problems.push_back({format.where(), message});
+  }
+
+  static void add_once(std::vector<std::string>& names, const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
 
   Node load_base(const Node& extends, const std::string& file) {

@@ -14,6 +14,9 @@
 
 namespace steplap {
 
+/// The version of the format of model files, as `format = 1` at the top of a file states it. Each file has its own.
+inline constexpr long k_file_format = 1;
+
 struct Document {
   struct Source {
     std::string file;
@@ -37,7 +40,8 @@ struct Document {
   std::vector<Diagnostic> problems;            ///< found while merging, to be reported with the rest
   std::vector<Part> parts;                     ///< each after that in which it is
   std::vector<PartPlace> part_places;
-  bool is_repeated = false; ///< some of its entries are repetitions
+  std::vector<std::string> files_without_format; ///< each once
+  bool is_repeated = false;                      ///< some of its entries are repetitions
 };
 
 /// Throws ModelError if a file cannot be read or is not TOML, or if `extends` goes round in

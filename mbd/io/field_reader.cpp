@@ -5,6 +5,7 @@
 #include "mbd/io/standalone_text.h"
 #include "mbd/io/units.h"
 #include "mbd/model/field_units.h"
+#include "mbd/model/model.h"
 #include "mbd/model/validate.h"
 
 #include <algorithm>
@@ -191,13 +192,28 @@ GivenField read_field(const Node& child, const FieldTable& fields, const Field& 
   return {&field, &child, true};
 }
 
+// The field that had the key's name earlier; nullptr if there is none, or if its present name is given as well, which is an error.
+const Field* renamed_field(const Node& table, const Node& child, const FieldTable& fields, const TableReading& reading,
+                           std::vector<Diagnostic>& problems) {
+  const Field* const field = fields.find_earlier(child.key);
+  if (!field || std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) != reading.known_keys.end()) return nullptr;
+  if (table.find(field->name)) {
+    problems.push_back({child.where_key(), "'" + child.key + "' of " + reading.subject + " is the earlier name of '" + field->name +
+                                               "', which is given as well: leave '" + child.key + "' out"});
+    return nullptr;
+  }
+  if (reading.renamed) reading.renamed->push_back({child.where_key(), child.key, field->name, reading.subject});
+  return field;
+}
+
 // A key that stands there misspelt is not reported a second time as missing.
 void report_missing(const Node& table, const FieldTable& fields, const TableReading& reading, const std::vector<std::string>& misspelt,
                     std::vector<GivenField>& given, std::vector<Diagnostic>& problems) {
   for (const Field& field : fields.fields()) {
     const bool is_misspelt = std::find(misspelt.begin(), misspelt.end(), field.name) != misspelt.end();
     const bool is_excused = reading.is_excused && reading.is_excused(field);
-    if (table.find(field.name) || (!is_misspelt && (!field.is_required || is_excused))) continue;
+    const bool is_given = table.find(field.name) || (!field.earlier_name.empty() && table.find(field.earlier_name));
+    if (is_given || (!is_misspelt && (!field.is_required || is_excused))) continue;
     given.push_back({&field, nullptr, false});
     if (!is_misspelt) problems.push_back({table.where(), missing_field_message(field, reading.subject)});
   }
@@ -236,9 +252,11 @@ std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields,
   std::vector<std::pair<const Node*, const Field*>> later; // whose units others give
   for (const Node& child : table.children) {
     const Field* field = fields.find(child.key);
+    if (!field) field = renamed_field(table, child, fields, reading, problems);
     if (field && hangs_on_others(*field)) later.emplace_back(&child, field);
     else if (field) given.push_back(read_field(child, fields, *field, object, reading, problems));
-    else if (std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) == reading.known_keys.end())
+    else if (!fields.find_earlier(child.key) &&
+             std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) == reading.known_keys.end())
       misspelt.push_back(report_unknown(child, fields, reading, problems));
   }
   for (const auto& [child, field] : later) given.push_back(read_field(*child, fields, *field, object, reading, problems));

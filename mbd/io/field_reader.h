@@ -10,6 +10,7 @@
 namespace steplap {
 
 class ParametersReader;
+struct RenamedKey;
 
 /// A field as a file gives it; without a node it is required, but missing.
 struct GivenField {
@@ -24,7 +25,8 @@ struct TableReading {
   std::function<bool(const Field&)> is_excused; ///< required fields that may be missing all the same
   /// Makes a marker of an inline table { body, point | at, angle } and returns its name.
   std::function<std::string(const Node& table, const Field& field)> add_marker;
-  ParametersReader* parameters = nullptr; ///< gives formulas their values; null where there are none
+  ParametersReader* parameters = nullptr;     ///< gives formulas their values; null where there are none
+  std::vector<RenamedKey>* renamed = nullptr; ///< takes keys with earlier names; null: such keys are read without a word
 };
 
 /// Sets the members of `object` that `table` gives; returns what it found. Problems are appended.

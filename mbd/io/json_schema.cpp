@@ -1,6 +1,7 @@
 #include "mbd/io/json_schema.h"
 
 #include "mbd/io/described.h"
+#include "mbd/io/document.h"
 #include "mbd/io/repetition.h"
 #include "mbd/model/field_units.h"
 
@@ -197,6 +198,7 @@ Json entries_of_kinds(const std::string& role, const Json& definitions) {
 std::string json_schema(const Catalogue& catalogue) {
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "steplap model"}};
   Json properties = Json::object(), definitions = Json::object();
+  properties["format"] = {{"const", k_file_format}, {"description", "version of the format of this file"}};
   properties["extends"] = {{"type", "string"}, {"description", "model file that this one is laid over"}};
   properties["parameters"] = parameters_schema();
   for (const Described& kind : describe(catalogue)) {

@@ -85,6 +85,8 @@ public:
     read_tables();
     check_signal_units();
     model_.parameters = parameters_->parameters(document_.root, model_);
+    model_.files_without_format = document_.files_without_format;
+    model_.renamed_keys = std::move(renamed_);
     Model as_given = model_;
     complete_model();
     finish();
@@ -124,6 +126,7 @@ private:
   Model model_;
   std::vector<Diagnostic> problems_;
   std::optional<ParametersReader> parameters_;
+  std::vector<RenamedKey> renamed_;
   std::vector<std::vector<GivenField>> given_[7]; // by section and index
   std::vector<TableSource> tables_;               // of model_.tables
   // Entries of unknown kind: said once, references to them are not errors of their own.
@@ -134,6 +137,7 @@ TableReading Reader::reading(std::string subject, std::string owner) {
   TableReading result;
   result.subject = std::move(subject);
   result.parameters = &*parameters_;
+  result.renamed = &renamed_;
   result.add_marker = [this, owner = std::move(owner)](const Node& table, const Field& field) {
     return add_inline_marker(table, field, owner);
   };

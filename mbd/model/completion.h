@@ -1,5 +1,5 @@
 // What a model leaves to be found from its other entries, put in: bodies' places by joints, markers that stand for
-// bodies, whatever tables of other rooms stand for.
+// bodies, whatever tables of other folders stand for.
 //
 // A model as given, by a file or by code, may say where a body is by the angle of a joint, call a body where a marker is
 // wanted, or describe a core by its dimensions. Whoever wants other values sets them in the model as given and completes

@@ -47,6 +47,7 @@ using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vect
 /// One field of a kind of thing: what a file may give, and where in the struct it goes.
 struct Field {
   std::string name;                   ///< as written in a model file
+  std::string earlier_name;           ///< accepted with a warning until the next minor version; "" if the field was never renamed
   FieldType type = FieldType::number; ///< what it holds
   std::string unit;                   ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless; "N m|N": by other fields (field_units.h)
   std::string unit2;                  ///< second unit of a list of points
@@ -76,6 +77,8 @@ public:
   }
   /// One line for the reference and for messages.
   FieldBuilder& doc(std::string text) { return assign(field_->doc, std::move(text)); }
+  /// The name that the field had in the last minor version. Files may still use it, with a warning.
+  FieldBuilder& renamed_from(std::string earlier) { return assign(field_->earlier_name, std::move(earlier)); }
   /// A file has to give it.
   FieldBuilder& required() { return assign(field_->is_required, true); }
   /// A run is judged by it, from its start to its end, and nothing moves by it.
@@ -117,6 +120,8 @@ public:
   [[nodiscard]] const std::vector<Field>& fields() const { return fields_; }
   /// Nullptr if there is none of that name.
   [[nodiscard]] const Field* find(const std::string& name) const;
+  /// The field that had this name earlier; nullptr if there is none.
+  [[nodiscard]] const Field* find_earlier(const std::string& name) const;
   /// Of all fields, in that order.
   [[nodiscard]] std::vector<std::string> names() const;
 

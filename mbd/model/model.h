@@ -245,21 +245,31 @@ struct TableEntry {
   ~TableEntry() = default;
 };
 
+/// A key that a model file gives by its earlier name.
+struct RenamedKey {
+  Location where;      ///< of the key
+  std::string earlier; ///< as in the file
+  std::string name;    ///< its present name
+  std::string subject; ///< what has the key: "spring_damper 'rear block'"
+};
+
 /// A value: a copy shares nothing with it. As given by a file or by code, until completed() makes a completed model of it.
 struct Model {
-  ModelHeader header;                   ///< title, source, gravity
-  SimulationSettings simulation;        ///< [simulation]
-  OutputSettings output;                ///< [output]
-  std::vector<Body> bodies;             ///< [[body]], in the order of the file
-  std::vector<Marker> markers;          ///< [[marker]], and those that references to bodies made
-  std::vector<SignalEntry> signals;     ///< [[signal]]
-  std::vector<ElementEntry> elements;   ///< [[element]]
-  std::vector<DefinedChannel> channels; ///< [[channel]]
-  std::vector<Plot> plots;              ///< [[plot]]
-  std::vector<Criterion> criteria;      ///< [[acceptance]]
-  std::vector<TableEntry> tables;       ///< of other rooms, as given: complete() adds what they stand for
-  Parameters parameters;                ///< [parameters], and the fields that follow from them
-  bool is_completed = false;            ///< by complete(): until then what its tables stand for is missing
+  ModelHeader header;                            ///< title, source, gravity
+  SimulationSettings simulation;                 ///< [simulation]
+  OutputSettings output;                         ///< [output]
+  std::vector<Body> bodies;                      ///< [[body]], in the order of the file
+  std::vector<Marker> markers;                   ///< [[marker]], and those that references to bodies made
+  std::vector<SignalEntry> signals;              ///< [[signal]]
+  std::vector<ElementEntry> elements;            ///< [[element]]
+  std::vector<DefinedChannel> channels;          ///< [[channel]]
+  std::vector<Plot> plots;                       ///< [[plot]]
+  std::vector<Criterion> criteria;               ///< [[acceptance]]
+  std::vector<TableEntry> tables;                ///< such as [[core]], as given; complete() adds what they stand for
+  Parameters parameters;                         ///< [parameters], and the fields that follow from them
+  std::vector<std::string> files_without_format; ///< files of the model that do not say `format = 1`
+  std::vector<RenamedKey> renamed_keys;          ///< keys that its files give by earlier names
+  bool is_completed = false;                     ///< by complete(): until then what its tables stand for is missing
 
   /// Nullptr if there is none of that name.
   [[nodiscard]] const Body* find_body(const std::string& name) const;

@@ -6,7 +6,7 @@
 //   gravity.1, body.tank.position.0           a component of a point, an item of a list
 //   element.spring.force_table.2.1            of a list of points
 //   parameters.wall                           a parameter, and with it all that follows from it
-// Entries are bodies, markers, signals, elements and the tables of other rooms ([[core]]). Values are in SI.
+// Entries are bodies, markers, signals, elements and other tables ([[core]]). Values are in SI.
 #pragma once
 
 #include "mbd/model/model.h"

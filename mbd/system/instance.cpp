@@ -44,7 +44,7 @@ std::unique_ptr<System> instantiate(const Model& given, const ModelValues& value
 }
 
 // Which parts of completion (completion.h) read the field? Markers get places from bodies' centres of gravity, bodies from joints,
-// elements from the tables of other rooms, which look at bodies and at what is completed before them; validation compares
+// elements from tables such as [[core]], which look at bodies and at what is completed before them; validation compares
 // the settings of a run with each other.
 Variants::Redone Variants::redone_for(const std::string& path) const {
   const auto if_any_table = [&](bool TableKind::*reads) {

@@ -382,3 +382,74 @@ TEST_CASE("letters beyond ASCII are told from blanks wherever they stand") {
       CHECK_THROWS_AS((void)parse_model(text, "a.toml", small_catalogue()), ModelError);
   }
 }
+
+namespace {
+
+// A kind whose key "rate" was renamed to "stiffness".
+struct Strut : Element {
+  std::string a;
+  double stiffness = 0.0;
+};
+
+const Catalogue& catalogue_with_renamed_key() {
+  static const ElementKind kind = [] {
+    ElementKind k;
+    k.name = "strut";
+    k.holds<Strut>();
+    k.fields.add("a", &Strut::a).as(FieldType::marker).required();
+    k.fields.add("stiffness", &Strut::stiffness).in("N/m").positive().required().renamed_from("rate");
+    return k;
+  }();
+  static const Catalogue catalogue{{&kind}, {}, {}};
+  return catalogue;
+}
+
+std::string strut_model(const std::string& keys) {
+  return "[[body]]\nname = \"mass\"\nmass = 1\ninertia = 1\n[[element]]\nkind = \"strut\"\nname = \"prop\"\na = \"mass\"\n" + keys;
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    (void)parse_model(text, "m.toml", catalogue_with_renamed_key());
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("each file of a model states its format") {
+  const Folder folder;
+  folder.write("base.toml", k_plain);
+  const std::string top = folder.write("top.toml", "format = 1\nextends = \"base.toml\"\n");
+  const Model model = read_model(top, small_catalogue());
+  REQUIRE(model.files_without_format.size() == 1);
+  CHECK(std::filesystem::path(model.files_without_format[0]).filename() == "base.toml");
+  folder.write("base.toml", "format = 1\n" + k_plain);
+  CHECK(read_model(top, small_catalogue()).files_without_format.empty());
+
+  CHECK(error_of("format = 2\n" + strut_model("stiffness = 5\n")) ==
+        "m.toml:1:10: error: 'format' is 2, and this version of steplap reads format 1: use a later version of steplap");
+  for (const char* wrong : {"0", "-1", "1.0", "\"1\"", "true", "[1]"})
+    CHECK_MESSAGE(error_of("format = " + std::string(wrong) + "\n" + strut_model("stiffness = 5\n"))
+                      .starts_with("m.toml:1:10: error: 'format' must be 1, the version of the file format"),
+                  wrong);
+}
+
+TEST_CASE("a key may be given by its earlier name, and the model remembers where") {
+  const Model model = parse_model(strut_model("rate = \"5 kN/m\"\n"), "m.toml", catalogue_with_renamed_key());
+  CHECK(static_cast<const Strut&>(*model.elements[0].element).stiffness == 5000.0);
+  REQUIRE(model.renamed_keys.size() == 1);
+  const RenamedKey& key = model.renamed_keys[0];
+  CHECK(key.earlier == "rate");
+  CHECK(key.name == "stiffness");
+  CHECK(key.subject == "strut 'prop'");
+  CHECK(key.where.line == 9);
+  CHECK(key.where.column == 1);
+  CHECK(parse_model(strut_model("stiffness = 5\n"), "m.toml", catalogue_with_renamed_key()).renamed_keys.empty());
+
+  CHECK(error_of(strut_model("rate = 5\nstiffness = 6\n")) ==
+        "m.toml:9:1: error: 'rate' of strut 'prop' is the earlier name of 'stiffness', which is given as well: leave 'rate' out");
+  CHECK(error_of(strut_model("")).find("stiffness") != std::string::npos);
+}

@@ -91,6 +91,8 @@ bool makes(const std::string& text, const std::string& file, const Model& wanted
   }
 }
 
+const std::string k_format_line = "format = " + std::to_string(k_file_format) + "\n";
+
 } // namespace
 
 std::string text_of_changes(const ExploredModel& model, const ExploredValues& values) {
@@ -103,11 +105,12 @@ std::string text_of_changes(const ExploredModel& model, const ExploredValues& va
   changes.children.push_back(text_node("extends", file.filename().string()));
   bool is_whole = true;
   for (const std::string& assignment : all) is_whole = take_over(whole, path_in(assignment), changes) && is_whole;
-  const std::string text = "# Saved by steplap explore: what was changed of " + file.filename().string() + ".\n" + write_toml(changes);
+  const std::string text =
+      "# Saved by steplap explore: what was changed of " + file.filename().string() + ".\n" + k_format_line + write_toml(changes);
   const Model wanted = read_given_model(model.path(), program_catalogue(), all);
   if (is_whole && makes(text, (file.parent_path() / "changes.toml").string(), wanted)) return text;
   return "# Saved by steplap explore. What was changed lies in parts of " + file.filename().string() +
-         ", where a file that extends it does not reach:\n# this one stands alone.\n" + alone;
+         ", where a file that extends it does not reach:\n# this one stands alone.\n" + k_format_line + alone;
 }
 
 std::string save_changes(const ExploredModel& model, const ExploredValues& values, const std::string& name) {

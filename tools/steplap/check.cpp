@@ -3,6 +3,8 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/formula/unit_dimension.h"
+#include "mbd/io/atomic_file.h"
+#include "mbd/io/read_input.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/validate.h"
 #include "mbd/rest/assembly.h"
@@ -13,6 +15,7 @@
 #include "run/run.h"
 #include "run/start_contacts.h"
 #include "tools/steplap/cross.h"
+#include "tools/steplap/model_update.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -36,6 +39,7 @@ struct CheckOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   bool is_crossed = false;
+  bool is_updated = false; ///< the files are rewritten
   std::optional<std::string> cpu_limit;
   std::optional<std::string> parameter; ///< whose uses are asked for
 };
@@ -260,7 +264,42 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
     out << (finding.level == FindingLevel::warning ? "  warning: " : "  note: ") << text_with_place(finding) << "\n";
 }
 
+// A note, once for all models.
+void note_missing_format(std::ostream& out, const std::vector<std::shared_ptr<const LoadedModel>>& models) {
+  std::vector<std::string> files;
+  for (const auto& loaded : models)
+    for (const std::string& file : loaded->model.files_without_format)
+      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  if (files.empty()) return;
+  out << "  note: " << shown_input(files.front());
+  if (files.size() > 1) out << " and " << counted(files.size() - 1, "other file", "other files");
+  out << (files.size() > 1 ? " do" : " does") << " not say `format = 1`, which later versions of steplap ask for: check --update adds it\n";
+}
+
+ExitCode update_files(const CheckOptions& options, Console& console) {
+  if (!options.overrides.empty()) throw UsageError("--update rewrites a file as it is, so --set has no place here: leave --set out");
+  for (const std::string& path : options.models)
+    if (is_standard_input(path)) throw UsageError("--update rewrites a file, and the standard input is none: name the file");
+  for (const auto& loaded : load_models(options.models)) {
+    const ModelUpdate update = updated(read_input(loaded->path, {}), loaded->path, loaded->model);
+    if (update.adds_format || update.renamed_keys > 0) write_file(loaded->path, update.text, IfExists::replace);
+    console.out << loaded->path << ": ";
+    if (update.adds_format) console.out << "format = 1 added";
+    if (update.renamed_keys > 0)
+      console.out << (update.adds_format ? ", " : "") << counted(update.renamed_keys, "key", "keys") << " renamed";
+    if (!update.adds_format && update.renamed_keys == 0) console.out << "up to date";
+    console.out << "\n";
+    for (const std::string& file : loaded->model.files_without_format)
+      if (file != loaded->path) console.out << "  note: " << file << ", which it uses, does not say `format = 1`: update it as well\n";
+    if (update.left_keys > 0)
+      console.out << "  note: " << counted(update.left_keys, "key", "keys")
+                  << " with an earlier name in other files: update these as well\n";
+  }
+  return ExitCode::done;
+}
+
 ExitCode check(const CheckOptions& options, Console& console) {
+  if (options.is_updated) return update_files(options, console);
   const double cpu_limit = cpu_limit_of(options);
   const auto models = load_models(options.models, options.overrides);
   if (options.is_crossed) return cross_check_models(models, cpu_limit, console);
@@ -270,6 +309,7 @@ ExitCode check(const CheckOptions& options, Console& console) {
   }
   if (console.verbosity == Verbosity::quiet) return ExitCode::done;
   for (const auto& loaded : models) print_model(console.out, *loaded);
+  note_missing_format(console.out, models);
   return ExitCode::done;
 }
 
@@ -283,6 +323,7 @@ Command check_command() {
   command.examples = R"(  steplap check my.toml
   steplap check models/paper/*.toml
   steplap check --cross my.toml
+--update adds `format = 1` and gives renamed keys their present names; comments and layout stay.
 Without --cross nothing is run. With it each model is run by explicit, implicit and time stepping methods, each at
 two or three settings, and what they differ by is compared with their own error estimates: exit code 4 if anything
 disagrees beyond these.
@@ -290,6 +331,7 @@ disagrees beyond these.
   command.options = {{"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"--uses", &o->parameter, "NAME", "show all that follows from this parameter, instead of the counts"},
+                     {"--update", &o->is_updated, "", "rewrite the files for this version of steplap"},
                      {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},
                      {"--cpu-limit", &o->cpu_limit, "S",
                       "with --cross: CPU time of all runs together, s; each method may take an even part of what is left (default: 60)"}};

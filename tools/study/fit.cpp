@@ -412,7 +412,7 @@ void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
     problems.push_back({study.histories.front().where, std::to_string(loaded.curve_size()) + " measured values are too few for " +
                                                            std::to_string(fitted) + " parameters"});
   for (const Response& r : study.responses)
-    if (r.what == "mean" || r.what == "path")
+    if (needs_samples(r.measure))
       problems.push_back({r.where, "response '" + r.name + "': a fit samples runs at the measured times, not every output.step, which '" +
                                        r.what + "' is of"});
 }

@@ -119,7 +119,7 @@ void check_needs(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   if (loaded.models.size() != 1) problems.push_back({study.where, "a study of the kind 'needs' takes one model"});
   if (study.responses.empty()) problems.push_back({study.where, "a study of the kind 'needs' needs a [[response]]"});
   for (const Response& r : study.responses)
-    if (r.what == "verdict") problems.push_back({r.where, "a verdict is no response here: variants drop the model's criteria"});
+    if (r.measure == Measure::verdict) problems.push_back({r.where, "a verdict is no response here: variants drop the model's criteria"});
 }
 
 Answer run_needs(StudyRun& run) {

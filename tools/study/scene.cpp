@@ -36,11 +36,9 @@ namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-bool needs_samples(const Response& r) { return r.what == "mean" || r.what == "path"; }
-
 // The outermost of all channels that match.
 Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
-  const bool is_low = r.what.ends_with("lowest"), is_largest = r.what.ends_with("largest");
+  const bool is_low = r.measure == Measure::lowest, is_largest = r.measure == Measure::largest_magnitude;
   Extreme best;
   for (const ChannelRange& range : ranges) {
     if (!matches_pattern(range.channel->name, r.channel)) continue;
@@ -63,8 +61,6 @@ bool is_singular(const Response& r, const std::vector<ChannelRange>& ranges) {
   });
 }
 
-bool is_extreme(const Response& r) { return r.what.find("est") != std::string::npos; }
-
 const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   for (const ChannelRange& range : ranges)
     if (matches_pattern(range.channel->name, r.channel)) return &range;
@@ -80,9 +76,9 @@ double along(const Response& r, const Trajectory& trajectory) {
   double sum = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const double before = trajectory.value(i - 1, column), after = trajectory.value(i, column);
-    sum += r.what == "path" ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
+    sum += r.measure == Measure::path ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
   }
-  return r.what == "path" ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
+  return r.measure == Measure::path ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
 }
 
 double of_events(const Response& r, const std::vector<Event>& events) {
@@ -91,22 +87,22 @@ double of_events(const Response& r, const std::vector<Event>& events) {
   for (const Event& event : events) {
     if (!kinds.test(static_cast<std::size_t>(event.kind))) continue;
     if (!r.element.empty() && !matches_pattern(event.element, r.element)) continue;
-    if (r.what == "time_of_first") return event.t;
+    if (r.measure == Measure::first_event) return event.t;
     ++count;
   }
-  return r.what == "count" ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
+  return r.measure == Measure::event_count ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
 }
 
 double value_of(const Response& r, const RunResult& result, const Judgement& judgement) {
-  if (r.what == "verdict") return static_cast<double>(judgement.verdict);
-  if (r.what == "count" || r.what == "time_of_first") return of_events(r, result.events);
-  if (needs_samples(r)) return along(r, *result.trajectory);
-  if (r.what == "final" || r.what == "initial") {
+  if (r.measure == Measure::verdict) return static_cast<double>(judgement.verdict);
+  if (r.measure == Measure::event_count || r.measure == Measure::first_event) return of_events(r, result.events);
+  if (needs_samples(r.measure)) return along(r, *result.trajectory);
+  if (r.measure == Measure::final_value || r.measure == Measure::initial_value) {
     const ChannelRange* range = range_of(r, result.ranges);
-    return !range ? k_nan : r.what == "final" ? range->final : range->first;
+    return !range ? k_nan : r.measure == Measure::final_value ? range->final : range->first;
   }
   const Extreme e = extreme_of(r, result.ranges);
-  return r.what.starts_with("time_of") && !std::isnan(e.value) ? e.t : e.value;
+  return r.takes_time && !std::isnan(e.value) ? e.t : e.value;
 }
 
 /// How far the channels of a response have come in a run.
@@ -242,10 +238,10 @@ struct Scene::Runner {
 
 private:
   void ask(const Response& r) {
-    is_judged = is_judged || r.what == "verdict";
-    if (needs_samples(r)) sampled.push_back(r.channel);
-    const bool is_largest = r.what.ends_with("largest");
-    const bool is_low = r.what.ends_with("lowest"), is_high = r.what.ends_with("highest");
+    is_judged = is_judged || r.measure == Measure::verdict;
+    if (needs_samples(r.measure)) sampled.push_back(r.channel);
+    const bool is_largest = r.measure == Measure::largest_magnitude;
+    const bool is_low = r.measure == Measure::lowest, is_high = r.measure == Measure::highest;
     const auto asked = channels_of(r, *model.system);
     AskedEnds ends;
     ends.low = is_largest || (is_low && asked.size() < 2);
@@ -254,7 +250,7 @@ private:
     if (asked.size() > 1 && is_high) ends.high_races.push_back(races++);
     for (const Channel* c : asked) {
       channels.push_back(c->name);
-      if (is_extreme(r)) extremes[c->name].add(ends);
+      if (is_extreme(r.measure)) extremes[c->name].add(ends);
     }
   }
 };
@@ -296,7 +292,7 @@ void Scene::look(const Runner& runner, const Judgement& judgement, const RunResu
     const Response& r = loaded_.study.responses[i];
     if (!r.expression.empty() || r.model != runner.model.name) continue;
     outcome.numbers[i] = value_of(r, result, judgement);
-    if (is_extreme(r) && is_singular(r, result.ranges))
+    if (is_extreme(r.measure) && is_singular(r, result.ranges))
       worsen(outcome, SampleStatus::untrusted,
              "'" + r.name + "' was met beside a singular position of the joints, where reactions may be of any size");
   }

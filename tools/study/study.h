@@ -6,6 +6,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/model/fields.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,15 +44,39 @@ struct Correlation {
   Location where;
 };
 
-/// [[response]]: a number made of a run.
+/// What a response takes of a run.
+enum class Measure : std::uint8_t {
+  expression,        ///< nothing: it is made of variables and other responses
+  highest,           ///< largest value of channels
+  lowest,            ///< least value of channels
+  largest_magnitude, ///< largest absolute value of channels
+  final_value,       ///< of a channel, at the end
+  initial_value,     ///< of a channel, at the start
+  mean,              ///< of a channel, over the samples written
+  path,              ///< sum of a channel's absolute changes over the samples written
+  event_count,       ///< number of events
+  first_event,       ///< time of the first event, s
+  verdict            ///< 0 hold, 1 open, 2 inspect, 3 reject
+};
+
+/// Is it the extreme of channels?
+[[nodiscard]] constexpr bool is_extreme(Measure m) {
+  return m == Measure::highest || m == Measure::lowest || m == Measure::largest_magnitude;
+}
+/// Does it need the samples that a run writes?
+[[nodiscard]] constexpr bool needs_samples(Measure m) { return m == Measure::mean || m == Measure::path; }
+
+/// [[response]]: a number that each run gives.
 struct Response {
   std::string name;
-  std::string model;               ///< name of the model it is taken from; needed where there are several
-  std::string channel;             ///< pattern with * and ?
-  std::string what;                ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
-  std::string event, element;      ///< patterns: events counted or timed
-  std::optional<double> otherwise; ///< the time of an event that never happens; infinity if not given
-  std::string expression;          ///< of variables and of the responses before it
+  std::string model;                     ///< name of the model it is taken from; needed where there are several
+  std::string channel;                   ///< pattern with * and ?
+  std::string what;                      ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
+  Measure measure = Measure::expression; ///< `what` as a value
+  bool takes_time = false;               ///< of an extreme: its time, s, instead of its value
+  std::string event, element;            ///< patterns: events counted or timed
+  std::optional<double> otherwise;       ///< the time of an event that never happens; infinity if not given
+  std::string expression;                ///< of variables and of the responses before it
   std::string unit;
   Location where;
 };

@@ -270,6 +270,26 @@ private:
     study_.responses.push_back(std::move(r));
   }
 
+  // `what` is one of the field's choices: the reader of fields has refused others, and then measure stays as it is.
+  static void set_measure(Response& r) {
+    static const std::map<std::string, Measure> measures = {{"highest", Measure::highest},
+                                                            {"lowest", Measure::lowest},
+                                                            {"largest", Measure::largest_magnitude},
+                                                            {"final", Measure::final_value},
+                                                            {"initial", Measure::initial_value},
+                                                            {"mean", Measure::mean},
+                                                            {"path", Measure::path},
+                                                            {"count", Measure::event_count},
+                                                            {"time_of_first", Measure::first_event},
+                                                            {"time_of_highest", Measure::highest},
+                                                            {"time_of_lowest", Measure::lowest},
+                                                            {"time_of_largest", Measure::largest_magnitude},
+                                                            {"verdict", Measure::verdict}};
+    const auto found = measures.find(r.what);
+    if (found != measures.end()) r.measure = found->second;
+    r.takes_time = is_extreme(r.measure) && r.what.starts_with("time_of_");
+  }
+
   void check_response(const Node& entry, Response& r) {
     const std::string subject = "response '" + r.name + "'";
     if (!r.expression.empty()) {
@@ -280,17 +300,18 @@ private:
     }
     if (models_.empty()) return add(r.where, subject + ": the study has no model; give 'expression'");
     if (r.what.empty()) return add(r.where, subject + " needs 'what', or 'expression'");
+    set_measure(r);
     if (r.model.empty() && models_.size() > 1)
       return add(r.where, subject + ": say which 'model' it is taken from: " + list_text(model_names()));
     const StudyModel* model = r.model.empty() ? models_.front().get() : find_model(r.model);
     if (!model) return add(entry.find("model")->where(), "there is no model '" + r.model + "'" + did_you_mean(r.model, model_names()));
     r.model = model->name;
-    const bool is_of_events = r.what == "count" || r.what == "time_of_first", is_verdict = r.what == "verdict";
+    const bool is_of_events = r.measure == Measure::event_count || r.measure == Measure::first_event;
     if (!is_of_events)
       for (const char* key : {"event", "element", "otherwise"})
         if (const Node* node = entry.find(key)) add(node->where_key(), "'" + std::string(key) + "' of " + subject + " is for events only");
     if (is_of_events) return check_events(entry, r, *model);
-    if (is_verdict) {
+    if (r.measure == Measure::verdict) {
       if (const Node* node = entry.find("channel")) add(node->where_key(), subject + ": a verdict is of the whole run, not of a channel");
       return;
     }
@@ -299,7 +320,7 @@ private:
 
   void check_events(const Node& entry, Response& r, const StudyModel& model) {
     const std::string subject = "response '" + r.name + "'";
-    if (r.what == "time_of_first") r.unit = "s";
+    if (r.measure == Measure::first_event) r.unit = "s";
     if (r.event.empty()) return add(r.where, subject + " needs 'event'");
     if (event_kinds_matching(r.event).none()) {
       std::vector<std::string> words;
@@ -312,7 +333,8 @@ private:
     if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches_pattern(name, r.element); }))
       add(entry.find("element")->where(),
           "no element of model '" + model.name + "' matches '" + r.element + "'" + did_you_mean(r.element, names));
-    if (r.what == "count" && entry.find("otherwise")) add(entry.find("otherwise")->where_key(), "'otherwise' is for 'time_of_first'");
+    if (r.measure == Measure::event_count && entry.find("otherwise"))
+      add(entry.find("otherwise")->where_key(), "'otherwise' is for 'time_of_first'");
   }
 
   static bool is_on_request(const Response& r, const StudyModel& model) {
@@ -342,11 +364,10 @@ private:
       if (c->unit != found.front()->unit)
         return add(where,
                    "'" + found.front()->name + "' and '" + c->name + "' are of different units: the outermost of both means nothing");
-    const bool is_extreme = r.what.find("est") != std::string::npos;
     for (const Channel* c : found)
-      if (is_extreme && !c->has_extremes) return add(where, "'" + c->name + "' passes through infinity: it has no extremes");
-    if (!is_extreme && found.size() > 1) return add(where, subject + ": '" + r.what + "' is of one channel, and several match");
-    r.unit = r.what.starts_with("time_of") ? "s" : found.front()->unit;
+      if (is_extreme(r.measure) && !c->has_extremes) return add(where, "'" + c->name + "' passes through infinity: it has no extremes");
+    if (!is_extreme(r.measure) && found.size() > 1) return add(where, subject + ": '" + r.what + "' is of one channel, and several match");
+    r.unit = r.takes_time ? "s" : found.front()->unit;
   }
 
   void read_limit_state(const Node& entry) {

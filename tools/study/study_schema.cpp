@@ -1,3 +1,4 @@
+#include "mbd/io/document.h"
 #include "mbd/io/json_schema.h"
 #include "tools/study/kinds.h"
 #include "tools/study/study.h"
@@ -56,6 +57,7 @@ std::string study_schema() {
     if (table.name.empty()) {
       properties = properties_of(table.fields);
       properties["kind"] = {{"enum", kind_names()}, {"description", "what is asked"}};
+      properties["format"] = {{"const", k_file_format}, {"description", "version of the format of this file"}};
       properties["extends"] = {{"type", "string"}, {"description", "study file that this one is laid over"}};
       continue;
     }
