@@ -299,6 +299,9 @@ const TableKind& action_kind() {
     f.add("once", &T::once).doc("it happens once each time that it is armed; false: each time that its condition comes true");
     f.add("armed", &T::armed).doc("from the start; false: from where another action arms it");
     f.add("meaning", &T::meaning).doc("what it is, for lists and reports");
+    f.add("reason", &T::reason)
+        .doc("why loads that it cuts off, by stop, release or set, are meant to end there: \"the car has stopped\"; without it the verdict "
+             "is open");
     k.holds<T>();
     k.reads_masses = k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) {

@@ -13,9 +13,11 @@
 #include "mbd/rest/freedom.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/balance.h"
+#include "run/acted_loads.h"
 #include "run/action_findings.h"
 #include "run/edges.h"
 #include "run/far_joints.h"
+#include "run/open_end.h"
 #include "run/plausible_scene.h"
 #include "run/quantity_text.h"
 #include "run/seams.h"
@@ -360,6 +362,15 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
   return findings;
 }
 
+std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
+  if (result.ranges.empty()) return {}; // extremes were not looked for
+  Findings findings = loads_not_acted(loaded, result, judgement);
+  append(findings, growing_criteria(loaded, result, judgement));
+  append(findings, bodies_that_fall(loaded, result));
+  append(findings, open_at_end(loaded, result));
+  return findings;
+}
+
 Finding balance_finding(const LoadedModel& loaded, const Balance& balance) {
   const char* const along[] = {"along x", "along y", "in its angle"};
   Finding finding;
@@ -396,6 +407,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   append(findings, stepped_feet(loaded));
   append(findings, doubled_corners(loaded));
   append(findings, implausible_findings(loaded));
+  append(findings, loads_beyond_end(loaded));
   warn_of_shared_reactions(*loaded.system, findings);
   const Trajectory written(*loaded.system, model.output.channels);
   if (written.channels().empty())

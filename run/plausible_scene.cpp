@@ -3,7 +3,6 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/record_signal.h"
-#include "mbd/model/load_signals.h"
 #include "mbd/model/signal_network.h"
 #include "run/loaded_model.h"
 
@@ -54,21 +53,6 @@ bool is_part(const Model& model, const std::string& name) {
     const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());
     return std::find(parts.begin(), parts.end(), name) != parts.end();
   });
-}
-
-// Roads and the sea grow from nothing, within a time that hangs on the speed or the period: a run that ends before has not seen them.
-void find_growing(const Model& model, SignalNetwork& network, std::vector<Finding>& findings) {
-  const double end = model.simulation.end;
-  for (const SignalEntry& entry : model.signals) {
-    const std::string& name = entry.definition->name;
-    if ((entry.kind != &road_kind() && entry.kind != &sea_kind()) || (!is_used(model, name) && !is_part(model, name))) continue;
-    const Signal* const signal = network.build(name);
-    if (!signal || signal->breakpoints().size() < 2 || signal->breakpoints()[0] >= end || signal->breakpoints()[1] <= end) continue;
-    findings.push_back(warning("load_still_grows",
-                               "signal '" + name + "' has its full size from t = " + rounded_text(signal->breakpoints()[1]) +
-                                   " s on, but the run ends at " + number_text(end) + " s: it is not judged under the whole load",
-                               entry.definition->where));
-  }
 }
 
 // Of a record whose rows come evenly, and few of which are missing, where the first of them are: s, from and to. A step is missing where it is half as
@@ -127,7 +111,6 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   const double end = model.simulation.end;
   std::vector<Finding> findings;
   SignalNetwork network(model);
-  find_growing(model, network, findings);
   find_gaps(model, network, findings);
   bool has_load = false;
   const SignalEntry* silent = nullptr;
@@ -142,12 +125,8 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
     if (!silent) silent = &entry;
     const std::vector<double>& breaks = signal->breakpoints();
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
-    if (next != breaks.end() && *next >= end)
-      findings.push_back(warning("load_behind_end",
-                                 "signal '" + name + "' begins at t = " + number_text(*next) + " s, but the run ends at " +
-                                     number_text(end) + " s: it does nothing",
-                                 entry.definition->where));
-    else // of no consequence if something else loads the machine, which joints tell themselves
+    const bool begins_later = next != breaks.end() && *next >= end; // acted_loads.h tells that
+    if (!begins_later) // of no consequence if something else loads the machine, which joints tell themselves
       findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
                                  entry.definition->where));
   }

@@ -1,4 +1,4 @@
-// Is a scene one that somebody meant? Loads that begin behind the end of the run or are nothing throughout; places, speeds, masses
+// Is a scene one that somebody meant? Loads that are nothing throughout; places, speeds, masses
 // and inertias so far beyond each other that rounding of the large ones is the size of the small ones.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace steplap {
 
-/// Signals that begin after the end of the run or are zero throughout, one finding each.
+/// Signals that are zero throughout the run, and records with gaps, one finding each. Those that the run's end cuts off: acted_loads.h.
 [[nodiscard]] std::vector<Finding> implausible_loads(const LoadedModel& loaded);
 /// Places, speeds, masses and inertias that are too far apart for the digits of a number, one finding each.
 [[nodiscard]] std::vector<Finding> implausible_sizes(const LoadedModel& loaded);

@@ -85,6 +85,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   const RunStatistics& s = result.statistics;
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
   report.judgement = judge(loaded.model, *loaded.system, result, report.run.failure ? report.run.failure->text : "");
+  if (!report.run.failure)
+    for (const Finding& finding : findings_at_end(loaded, result, report.judgement)) add_finding(report, finding, options);
   report.joints = assess_joints(loaded.model, result);
   for (const Finding& finding : report.findings) {
     if (finding.code == "contact_too_deep") distrust(report.judgement, text_with_place(finding));

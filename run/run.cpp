@@ -1,6 +1,7 @@
 #include "run/run.h"
 
 #include "mbd/base/number_text.h"
+#include "run/acted_loads.h"
 #include "run/with_settings.h"
 
 #include <stdexcept>
@@ -31,6 +32,7 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
     if (options.progress) options.progress(t);
     if (!is_over) stop_if_asked(options, t);
   };
+  simulation_asked.has_growth = options.has_extremes && has_endless_loads(loaded->model);
   Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));
   Run run;
   try {

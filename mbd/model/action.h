@@ -19,6 +19,7 @@ struct Action : TableObject {
   bool once = true;               ///< else each time that the condition comes true
   bool armed = true;              ///< from the start; else from where another action arms it
   std::string meaning;            ///< for people; may be empty
+  std::string reason;             ///< why loads that it cuts off are meant to end there; empty: they have not acted
 };
 
 /// What one step does.

@@ -184,6 +184,11 @@ void ExtremeFinder::finish(const Snapshot& snapshot) {
   }
 }
 
+void ExtremeFinder::finish_rates(const Snapshot& snapshot, double before) {
+  for (std::size_t c = 0; c < count_; ++c)
+    if (!is_mode(*ranges_[c].channel)) ranges_[c].final_rate = (ranges_[c].final - ranges_[c].channel->value(snapshot)) / before;
+}
+
 // --- along the steps --------------------------------------------------------------------------------------------
 
 // The beginning of one of several steps of a stretch.

@@ -42,6 +42,7 @@ struct ChannelRange {
   Extreme low, high;                ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
   double first = 0.0;               ///< at the start
   double final = 0.0;               ///< at the end
+  double final_rate = std::numeric_limits<double>::quiet_NaN(); ///< per s, at the end; not-a-number: unknown
   /// Extremes are located to within this; smaller ones were not looked for. Infinite: they may be anywhere beyond.
   double resolution = 0.0;
   /// By how much they go beyond what was met where each slip was known to go its way; not-a-number: nothing was.
@@ -70,6 +71,8 @@ public:
   void end_at(double t, Integrator& integrator, Dynamics& dynamics);
   /// The end of the run.
   void finish(const Snapshot& snapshot);
+  /// Behind finish(): the same motion `before` seconds earlier, from which the rates at the end follow.
+  void finish_rates(const Snapshot& snapshot, double before);
 
   /// Of every channel, in the system's order; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }

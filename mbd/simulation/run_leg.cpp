@@ -151,6 +151,7 @@ void RunLeg::restart(bool is_evaluated) {
   }
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()), *integrator_, dynamics_);
+  if (extremes_ && options_.has_growth) keep_growth(state_.t, false);
   is_between_events_ = true;
 }
 
@@ -393,6 +394,23 @@ void RunLeg::look_for_extremes(long evaluations, bool is_last) {
   if (!extremes_) return;
   const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
   extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
+  if (options_.has_growth) keep_growth(integrator_->t1(), false);
+}
+
+// Times that are kept are spread evenly over what has been run: where they are too many, every other one is dropped.
+void RunLeg::keep_growth(double t, bool is_last) {
+  constexpr std::size_t k_most = 128;
+  constexpr double k_finest = 1e-4; // of the whole run: it may be ended early
+  std::vector<ExtremesSoFar>& kept = record_->growth;
+  if (record_->growth_step == 0.0) record_->growth_step = k_finest * options_.end;
+  if (!is_last && !kept.empty() && t < kept.back().t + record_->growth_step) return;
+  kept.push_back({t, {}});
+  for (const ChannelRange& range : extremes_->ranges()) kept.back().range.emplace_back(range.low.value, range.high.value);
+  if (kept.size() < k_most) return;
+  record_->growth_step *= 2.0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < kept.size(); i += 2) kept[count++] = std::move(kept[i]);
+  kept.resize(count);
 }
 
 // False at the end.
@@ -494,8 +512,19 @@ void RunLeg::end_run() {
 // At y_.
 void RunLeg::finish_extremes() {
   if (!extremes_) return;
-  dynamics_.rates(integrator_->t0(), y_.data(), dy_.data());
+  const double t = integrator_->t0();
+  dynamics_.rates(t, y_.data(), dy_.data());
   extremes_->finish(dynamics_.snapshot(dy_.data()));
+  if (options_.has_growth) keep_growth(t, true);
+  // A straight line backwards: within a ten-millionth of the run velocities change by too little to matter for a rate, and places of the
+  // size of the scene are still known to a millionth of what they change by.
+  constexpr double k_before = 1e-7;
+  const double before = k_before * options_.end;
+  for (int i = 0; i < dynamics_.dimension(); ++i) y_[static_cast<std::size_t>(i)] -= before * dy_[static_cast<std::size_t>(i)];
+  const long evaluations = dynamics_.evaluations();
+  dynamics_.rates(t - before, y_.data(), dy_.data());
+  evaluations_behind_end_ += dynamics_.evaluations() - evaluations;
+  extremes_->finish_rates(dynamics_.snapshot(dy_.data()), before);
 }
 
 // Bodies have the impulse of what a step of time stepping passes over, but no force or acceleration shows it.
@@ -538,7 +567,7 @@ RunStatistics RunLeg::statistics() const {
   RunStatistics s = statistics_;
   s.steps += integrator_->steps();
   s.rejections = integrator_->rejections();
-  s.evaluations = dynamics_.evaluations();
+  s.evaluations = dynamics_.evaluations() - evaluations_behind_end_;
   s.coded_stages = dynamics_.coded_stages();
   s.max_position_residual = integrator_->max_position_residual();
   s.max_velocity_residual = integrator_->max_velocity_residual();

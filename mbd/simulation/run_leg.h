@@ -61,6 +61,7 @@ public:
 private:
   void make_parts(const PowerLedger* before, const std::vector<double>& unhurt); // memory before the blows of the start
   void finish_extremes();
+  void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
   [[nodiscard]] bool begin_advance();
   [[nodiscard]] bool conclude_try();
@@ -113,9 +114,10 @@ private:
   double limit_ = 0.0;             ///< up to which signals are read: the last breakpoint set, or the end
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
-  long kinks_ = 0;         ///< of characteristics, which long tables have many of: max_events leaves them out
-  long next_look_ = 0;     ///< steps at which the pace is looked at
-  double last_look_ = 0.0; ///< t at the last look
+  long kinks_ = 0;                  ///< of characteristics, which long tables have many of: max_events leaves them out
+  long next_look_ = 0;              ///< steps at which the pace is looked at
+  double last_look_ = 0.0;          ///< t at the last look
+  long evaluations_behind_end_ = 0; ///< for rates at the end: no part of the motion
   RunStatistics statistics_;
 };
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -25,6 +26,7 @@ struct SimulationOptions {
   double output_step = 0.0;                         ///< s; 0: no samples
   std::vector<std::string> channels;                ///< patterns of those sampled; empty: all
   bool has_extremes = false;                        ///< look for the extremes of all channels, sampled or not
+  bool has_growth = false;                          ///< keep how these have grown (RunResult::growth); needs has_extremes
   double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
   long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;                         ///< beyond which the run is given up
@@ -51,10 +53,17 @@ struct RunStatistics {
   double cpu_seconds = 0.0;           ///< of this thread, samples included
 };
 
+/// Extremes as they were at some time of a run, of what went before.
+struct ExtremesSoFar {
+  double t = 0.0;                               ///< s
+  std::vector<std::pair<double, double>> range; ///< per channel: least and largest value; not-a-number: none yet
+};
+
 /// What a run leaves behind. Channels in it belong to the system, which has to outlive it.
 struct RunResult {
   std::unique_ptr<Trajectory> trajectory; ///< the samples; never nullptr
   std::vector<ChannelRange> ranges;       ///< of every channel of the system, if they were asked for
+  std::vector<ExtremesSoFar> growth;      ///< of these, at some tens of times spread over the run, if that was asked for
   std::vector<Event> events;              ///< ascending in time
   RunStatistics statistics;               ///< what it took, and how exact it was
   State final_state;                      ///< at the end, or where the run stopped
@@ -66,6 +75,8 @@ struct RunResult {
 struct RunRecord {
   std::unique_ptr<Trajectory> trajectory; ///< never nullptr
   std::vector<Event> events;              ///< ascending in time
+  std::vector<ExtremesSoFar> growth;      ///< ascending in time; extremes of a leg count from its beginning
+  double growth_step = 0.0;               ///< s, least between two of them; 0: none was kept yet
   long samples = 0;                       ///< taken so far
 };
 

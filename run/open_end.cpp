@@ -1,0 +1,212 @@
+#include "run/open_end.h"
+
+#include "elements/formula_force.h"
+#include "elements/load.h"
+#include "mbd/base/name_pattern.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/formula/formula.h"
+#include "mbd/model/action.h"
+#include "mbd/model/formula_fields.h"
+#include "mbd/model/signal_network.h"
+#include "run/limited_channels.h"
+#include "run/quantity_text.h"
+#include "run/range_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+constexpr std::size_t k_most_names = 8;
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  const std::size_t shown = std::min(names.size(), k_most_names);
+  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "'" : i + 1 == names.size() ? " and '" : ", '") + names[i] + "'";
+  return shown < names.size() ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
+}
+
+// Does a criterion look at what has this name, a body or an element?
+bool is_asked(const Model& model, const RunResult& result, const std::string& name) {
+  return std::any_of(model.criteria.begin(), model.criteria.end(), [&](const Criterion& criterion) {
+    if (!criterion.event.empty()) return criterion.element.empty() || matches_pattern(name, criterion.element);
+    return std::any_of(result.ranges.begin(), result.ranges.end(), [&](const ChannelRange& range) {
+      return range.channel->name.starts_with(name + ".") && matches_pattern(range.channel->name, criterion.channel);
+    });
+  });
+}
+
+// The word of a code, as "slips" of 2 in "0 free, 1 sticks, 2 slips".
+std::string word_of(const std::string& codes, double value) {
+  std::istringstream list(codes);
+  for (std::string entry; std::getline(list, entry, ',');) {
+    std::istringstream words(entry);
+    double code = 0.0;
+    std::string word;
+    if (words >> code >> word && code == value) return word;
+  }
+  return "";
+}
+
+// A contact has a gap and a force.
+const ChannelRange* force_of_contact(const RangeIndex& ranges, const std::string& element) {
+  return ranges.find(element + ".gap") ? ranges.find(element + ".force") : nullptr;
+}
+
+} // namespace
+
+std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
+  constexpr double k_still_worst = 1e-6; // of the range: extremes are located to within that
+  const double length = result.final_state.t;
+  std::vector<Finding> findings;
+  std::unordered_set<std::string> known;
+  for (const LimitedChannel& limited : limited_channels(loaded.model, result, judgement)) {
+    const ChannelRange& range = result.ranges[limited.channel];
+    const double slack = k_still_worst * (range.high.value - range.low.value), rate = range.final_rate;
+    const double then = range.final + rate * length;
+    const bool rises = rate > 0.0 && range.final >= range.high.value - slack && then >= limited.largest;
+    const bool falls = rate < 0.0 && range.final <= range.low.value + slack && then <= limited.least;
+    if ((!rises && !falls) || !known.insert(limited.criterion).second) continue;
+    const std::string& unit = range.channel->unit;
+    const double limit = rises ? limited.largest : limited.least;
+    const auto criterion = std::find_if(loaded.model.criteria.begin(), loaded.model.criteria.end(),
+                                        [&](const Criterion& c) { return c.name == limited.criterion; });
+    findings.push_back({"criterion_still_grows", FindingLevel::warning,
+                        "'" + limited.criterion + "' is met so far, but when the run ends '" + range.channel->name + "' is at " +
+                            quantity_text(range.final, unit) + " and still " + (rises ? "rises" : "falls") +
+                            ": at its present rate it reaches the limit of " + quantity_text(limit, unit) + " after " +
+                            rounded_text((limit - range.final) / rate, 3) + " s more. Let the run go on until it comes to rest",
+                        criterion == loaded.model.criteria.end() ? Location{} : criterion->where});
+  }
+  return findings;
+}
+
+std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& result) {
+  const Model& model = loaded.model;
+  if (model.criteria.empty()) return {}; // nothing is asked of anything
+  const RangeIndex ranges(result.ranges);
+  std::vector<std::string> slip, are_open;
+  for (const ElementEntry& entry : model.elements) {
+    const std::string& name = entry.element->name;
+    const ChannelRange* const mode = ranges.find(name + ".mode");
+    const std::string word = mode ? word_of(mode->channel->codes, mode->final) : "";
+    const bool slips = word == "slips" || word == "slides";
+    const ChannelRange* const force = force_of_contact(ranges, name);
+    const bool has_opened = force && force->first > 0.0 && !(force->final > 0.0);
+    if ((!slips && !has_opened) || entry.kind->judge || is_asked(model, result, name)) continue;
+    (slips ? slip : are_open).push_back(name);
+  }
+  if (slip.empty() && are_open.empty()) return {};
+  std::string text = "when the run ends ";
+  if (!slip.empty()) text += list_of(slip) + (slip.size() == 1 ? " slips" : " slip");
+  if (!slip.empty() && !are_open.empty()) text += " and ";
+  if (!are_open.empty()) text += list_of(are_open) + (are_open.size() == 1 ? " is open" : " are open");
+  return {{"open_at_end",
+           FindingLevel::note,
+           text + ", and no criterion asks for " + (slip.size() + are_open.size() == 1 ? "it" : "them"),
+           {}}};
+}
+
+namespace {
+
+// Bodies that elements connect, and what criteria, forces and drives name.
+class Carriers {
+public:
+  // `asks`: what criteria name is carried, too. To find that out takes long, and is needed where something is not carried otherwise.
+  Carriers(const Model& model, const RunResult& result, bool asks) : model_(model), result_(result), asks_(asks) {
+    for (const Body& body : model.bodies)
+      if (!body.fixed) place_[body.name] = static_cast<int>(parent_.size()), parent_.push_back(static_cast<int>(parent_.size()));
+    for (const Marker& marker : model.markers) place_.try_emplace(marker.name, of(marker.body));
+    const RangeIndex ranges(result.ranges);
+    for (const ElementEntry& entry : model.elements) add(entry, ranges);
+    if (!asks) return;
+    for (const Body& body : model.bodies)
+      if (is_asked(model, result, body.name)) join(of(body.name), 0);
+    for (const DefinedChannel& channel : model.channels)
+      if (std::any_of(model.criteria.begin(), model.criteria.end(),
+                      [&](const Criterion& c) { return c.event.empty() && matches_pattern(channel.name, c.channel); })) {
+        const Formula formula(channel.expression, "", {});
+        for (const std::string& name : formula.names()) join_named(name);
+      }
+  }
+
+  bool is_carried(const Body& body) { return body.fixed || root(of(body.name)) == root(0); }
+
+private:
+  [[nodiscard]] int of(const std::string& name) const { // 0: the ground, and what never moves
+    const auto found = place_.find(name);
+    return found == place_.end() ? 0 : found->second;
+  }
+  int root(int i) {
+    while (parent_[static_cast<std::size_t>(i)] != i)
+      i = parent_[static_cast<std::size_t>(i)] = parent_[static_cast<std::size_t>(parent_[static_cast<std::size_t>(i)])];
+    return i;
+  }
+  void join(int a, int b) { parent_[static_cast<std::size_t>(root(a))] = root(b); }
+
+  // "body.x"
+  void join_named(const std::string& channel) {
+    const std::size_t point = channel.rfind('.');
+    if (point != std::string::npos) join(of(channel.substr(0, point)), 0);
+  }
+
+  void add(const ElementEntry& entry, const RangeIndex& ranges) {
+    const Element& element = *entry.element;
+    if (dynamic_cast<const Action*>(&element)) return;
+    for (const std::string& name : names_in_formulas(entry)) join_named(name);
+    if (const ChannelRange* const force = force_of_contact(ranges, element.name);
+        force && force->low.value == 0.0 && force->high.value == 0.0)
+      return; // it never closed
+    std::vector<int> bodies;
+    for (const Field& field : entry.kind->fields.fields()) {
+      if (field.type == FieldType::marker || field.type == FieldType::body)
+        bodies.push_back(of(std::get<std::string>(field.get(&element))));
+      if (field.type != FieldType::texts || field.name != "over") continue;
+      const auto over = std::get<std::vector<std::string>>(field.get(&element));
+      for (const std::string& marker : over) bodies.push_back(of(marker));
+    }
+    const bool is_force = dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element);
+    const bool is_drive = !parts_of(entry.kind->fields, &element).empty();
+    if (is_force || is_drive || (asks_ && is_asked(model_, result_, element.name))) bodies.push_back(0);
+    for (const int body : bodies) join(body, bodies.front());
+  }
+
+  const Model& model_;
+  const RunResult& result_;
+  bool asks_;
+  std::unordered_map<std::string, int> place_; ///< by body and marker
+  std::vector<int> parent_{0};                 ///< of a forest: each tree is what hangs together
+};
+
+} // namespace
+
+std::vector<Finding> bodies_that_fall(const LoadedModel& loaded, const RunResult& result) {
+  const Model& model = loaded.model;
+  if (model.header.gravity == Vec2::Zero()) return {};
+  const auto carries_all = [&](Carriers carriers) {
+    return std::all_of(model.bodies.begin(), model.bodies.end(), [&](const Body& body) { return carriers.is_carried(body); });
+  };
+  if (carries_all({model, result, false})) return {};
+  Carriers carriers(model, result, true);
+  const RangeIndex ranges(result.ranges);
+  std::vector<Finding> findings;
+  for (const Body& body : model.bodies) {
+    if (carriers.is_carried(body)) continue;
+    const ChannelRange *const x = ranges.find(body.name + ".x"), *const y = ranges.find(body.name + ".y");
+    const double way = x && y ? std::hypot(x->final - x->first, y->final - y->first) : 0.0;
+    findings.push_back(
+        {"nothing_carries", FindingLevel::warning,
+         "nothing carries body '" + body.name + "', which moves by " + quantity_text(way, "m") +
+             ": no element that touches it leads to the ground, and no criterion, force or drive names it. Give it a support, "
+             "or ask for what it should do",
+         body.where});
+  }
+  return findings;
+}
+
+} // namespace steplap
