@@ -29,6 +29,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -372,12 +373,14 @@ std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult&
 }
 
 Finding balance_finding(const LoadedModel& loaded, const Balance& balance) {
-  const char* const along[] = {"along x", "along y", "in its angle"};
+  const double tenfold = std::numbers::ln10 / balance.rate;
+  const double degrees = balance.direction * 180.0 / std::numbers::pi;
+  const std::string way = balance.coordinate == 2 ? "turns" : "moves at " + rounded_text(std::round(degrees) + 0.0, 3) + "° to the x axis";
   Finding finding;
   finding.code = "balances";
-  finding.text = "'" + balance.body + "' stays where it is " + along[balance.coordinate] +
-                 " only because nothing disturbs it: a nudge at the start has grown " + rounded_text(k_grown_nudge) + " times by " +
-                 rounded_text(balance.t, 3) + " s. Nothing real is so exact: give it what it has, a slant, an offset, a load from the side";
+  finding.text = "'" + balance.body + "' stays where it is only because nothing disturbs it: from t = " + rounded_text(balance.t, 3) +
+                 " s on it " + way + " when it is nudged, ten times further every " + rounded_text(tenfold, 3) +
+                 " s. Nothing real is so exact: give it what it has, a slant, an offset, a load from the side";
   for (const Body& body : loaded.model.bodies)
     if (body.name == balance.body) finding.where = body.where;
   return finding;

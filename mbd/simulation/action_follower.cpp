@@ -213,6 +213,12 @@ void ActionFollower::change_over(std::unique_ptr<RunLeg>& leg, const Arrangement
   }
 }
 
+std::shared_ptr<const System> ActionFollower::made_system(const RunLeg& leg) const {
+  for (const auto& [arrangement, each] : arranged_)
+    if (each.system == &leg.system()) return each.made;
+  return nullptr;
+}
+
 RunStatistics ActionFollower::add_statistics(const RunStatistics& last) const {
   RunStatistics sum = last;
   for (auto leg = statistics_.rbegin(); leg != statistics_.rend(); ++leg) sum = sum_of(*leg, sum);

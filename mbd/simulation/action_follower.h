@@ -24,6 +24,10 @@ public:
   void act(std::unique_ptr<RunLeg>& leg);
   /// Of the action that has ended the run; empty: none has.
   [[nodiscard]] const std::string& ended_by() const { return ended_by_; }
+  /// Legs that are closed.
+  [[nodiscard]] std::size_t past_legs() const { return statistics_.size(); }
+  /// The system of `leg`, if it was made for what actions have changed; null: it is the one that the run began in.
+  [[nodiscard]] std::shared_ptr<const System> made_system(const RunLeg& leg) const;
   /// Of the legs that are closed.
   [[nodiscard]] RunStatistics add_statistics(const RunStatistics& last) const;
   /// Of all legs, `last` the ranges of the one that the run ended in.
@@ -39,7 +43,7 @@ private:
     auto operator<=>(const Arrangement&) const = default;
   };
   struct Arranged {
-    std::unique_ptr<System> made; ///< null of the first
+    std::shared_ptr<System> made; ///< null of the first
     const System* system = nullptr;
     std::vector<char> acts; ///< with what hangs on others
   };

@@ -563,6 +563,27 @@ State RunLeg::current_state() const {
   return state;
 }
 
+void RunLeg::read_state(State& into) const {
+  into = state_; // of the same size
+  dynamics_.unpack(integrator_->t0(), integrator_->y0(), into);
+}
+
+// Layouts are made anew, since bodies that are merged in them are where they were. What is displaced along the constraints meets them to
+// the square of the displacement.
+void RunLeg::displace(const std::vector<double>& by) {
+  state_ = current_state();
+  for (std::size_t i = 0; i < by.size(); ++i) state_.q[i] += by[i];
+  dynamics_.forget_layouts();
+  dynamics_.use_coordinates(Coordinates::absolute);
+  dynamics_.set_state(state_);
+  dynamics_.pack(state_, y_.data());
+  dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
+  dynamics_.unpack(state_.t, y_.data(), state_);
+  dynamics_.use_coordinates(chosen_coordinates());
+  restart();
+  energy_.start(dynamics_, state_.t, integrator_->y0(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
+}
+
 RunStatistics RunLeg::statistics() const {
   RunStatistics s = statistics_;
   s.steps += integrator_->steps();

@@ -48,6 +48,10 @@ public:
   [[nodiscard]] const State& state() const { return state_; }    ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
+  /// The same without making a new state: `into` is one of this leg's system.
+  void read_state(State& into) const;
+  /// Goes on with the bodies displaced by `by` (Simulation::displace).
+  void displace(const std::vector<double>& by);
   [[nodiscard]] RunRecord& record() const { return *record_; } ///< of the whole run so far
   /// Not empty if an element ended the run before its time ("'front joint' came apart").
   [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }

@@ -15,6 +15,8 @@
 
 namespace steplap {
 
+struct LegMotion;
+
 /// How a run is made. What is wrong with it is thrown as std::invalid_argument when the run begins.
 struct SimulationOptions {
   double end = 1.0;                                 ///< s
@@ -27,6 +29,7 @@ struct SimulationOptions {
   std::vector<std::string> channels;                ///< patterns of those sampled; empty: all
   bool has_extremes = false;                        ///< look for the extremes of all channels, sampled or not
   bool has_growth = false;                          ///< keep how these have grown (RunResult::growth); needs has_extremes
+  bool notes_motion = false;                        ///< keep RunResult::legs. Changes no other result
   double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
   long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;                         ///< beyond which the run is given up
@@ -69,6 +72,8 @@ struct RunResult {
   State final_state;                      ///< at the end, or where the run stopped
   std::string stop_reason;                ///< empty if it ran to its end; else which element ended it, and why
   std::string ended_by;                   ///< name of the action that ended it as the model says; empty: none
+  /// How each leg of the run moved (leg_motion.h); null if that was not asked for.
+  std::shared_ptr<const std::vector<LegMotion>> legs;
 };
 
 /// What all parts of a run add to.

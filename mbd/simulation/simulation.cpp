@@ -1,6 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
 #include "mbd/simulation/action_follower.h"
+#include "mbd/simulation/leg_motion.h"
 
 #include <ctime>
 #include <utility>
@@ -31,11 +32,14 @@ SimulationOptions options_of(const Model& model) {
 
 Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
     : cpu_start_(thread_cpu_seconds()), system_(system) {
+  if (options.notes_motion) motion_ = std::make_unique<MotionNotes>();
   if (action_group(system)) actions_ = std::make_unique<ActionFollower>(system);
   leg_ = std::make_unique<RunLeg>(system, initial, std::move(options), actions_ ? &actions_->triggers() : nullptr);
-  if (!actions_) return;
-  leg_->look_for_actions(0);
-  if (leg_->is_interrupted()) actions_->act(leg_);
+  if (actions_) {
+    leg_->look_for_actions(0);
+    if (leg_->is_interrupted()) actions_->act(leg_);
+  }
+  if (motion_) note_leg();
 }
 
 Simulation::~Simulation() = default;
@@ -47,10 +51,23 @@ void Simulation::run() {
 bool Simulation::advance() {
   if (actions_ && !actions_->ended_by().empty()) return false;
   const bool goes_on = leg_->advance();
+  if (motion_ && (motion_->wants_step() || !goes_on)) {
+    leg_->read_state(motion_->scratch());
+    motion_->note(motion_->scratch());
+  }
   if (!leg_->is_interrupted()) return goes_on;
+  const std::size_t legs = past_legs();
   actions_->act(leg_);
+  if (motion_ && past_legs() > legs) note_leg();
   return actions_->ended_by().empty() && !leg_->is_over();
 }
+
+void Simulation::note_leg() {
+  motion_->begin_leg(actions_ ? actions_->made_system(*leg_) : nullptr, leg_->system(), past_legs(), leg_->current_state());
+}
+
+void Simulation::displace(const std::vector<double>& by) { leg_->displace(by); }
+std::size_t Simulation::past_legs() const { return actions_ ? actions_->past_legs() : 0; }
 
 const State& Simulation::state() const { return leg_->state(); }
 State Simulation::current_state() const { return leg_->current_state(); }
@@ -78,6 +95,7 @@ RunResult Simulation::result() && {
   result.growth = std::move(leg_->record().growth);
   result.stop_reason = leg_->stop_reason();
   if (actions_) result.ended_by = actions_->ended_by();
+  if (motion_) result.legs = std::make_shared<const std::vector<LegMotion>>(std::move(*motion_).legs());
   return result;
 }
 

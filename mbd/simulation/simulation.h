@@ -13,6 +13,7 @@
 namespace steplap {
 
 class ActionFollower;
+class MotionNotes;
 class RunLeg;
 
 /// The options a model asks for.
@@ -35,6 +36,11 @@ public:
   [[nodiscard]] const State& state() const; ///< at the last event or the end; as the leg has it that the run is in
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
+  /// Goes on with the bodies displaced by `by`: (x, y, θ) of each, the ground included, along the constraints as far as a motion as small
+  /// as that feels it. Modes and friction stay as they are.
+  void displace(const std::vector<double>& by);
+  /// Legs that ended before the present one.
+  [[nodiscard]] std::size_t past_legs() const;
   /// So far, ascending in time.
   [[nodiscard]] const std::vector<Event>& events() const;
   /// The samples so far.
@@ -47,10 +53,13 @@ public:
   [[nodiscard]] RunResult result() &&;
 
 private:
+  void note_leg();
+
   double cpu_start_;
   const System& system_;
   std::unique_ptr<ActionFollower> actions_; ///< null if the model has none
   std::unique_ptr<RunLeg> leg_;             ///< never nullptr
+  std::unique_ptr<MotionNotes> motion_;     ///< null if nobody asked for it
 };
 
 /// Compiled, started (from equilibrium if `model` says so) and run to the end.

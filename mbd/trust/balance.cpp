@@ -1,91 +1,211 @@
 #include "mbd/trust/balance.h"
 
+#include "mbd/base/counter_random.h"
+#include "mbd/base/fingerprint.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/portable_math.h"
+#include "mbd/trust/frozen_growth.h"
 #include "mbd/trust/global_error.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <unordered_map>
+#include <numbers>
 #include <vector>
 
 namespace steplap {
 
 namespace {
 
-constexpr double k_nudge = 1e-9;                    // of a body's size
-constexpr double k_above_rounding = 1e4;            // at least so many roundings of its place
-constexpr double k_still = 0.1;                     // of a nudge: in axes that are turned, what stays where it is does so to rounding
-constexpr double k_least_part = 1e-3;               // of a nudge: joints that leave less of it hold the coordinate
-constexpr double k_begun = 2.0, k_half_way = 100.0; // times a nudge
+constexpr double k_nudge = 1e-9;           // of a body's size
+constexpr double k_above_rounding = 1e4;   // at least so many roundings of its place
+constexpr double k_least_part = 1e-3;      // of a nudge: joints that leave less of it hold the body
+constexpr double k_least_fastest = 0.3;    // of the nudge: its part along what grows fastest
+constexpr double k_least_share = 0.5;      // of the mean rate that counts: slower instants count as 0
+constexpr double k_visible_exponent = 0.2; // a growth of 2 %, which is far above the rounding of a nudge
+constexpr double k_confirmed = 0.5;        // of the exponent: instants are few, and what grows turns while it grows
 // From 1 to 100 and from there to 1e4 an exponential takes as long, a body that falls or slides off ten times as long, one that
 // drifts evenly a hundred times.
+constexpr double k_begun = 2.0, k_half_way = 100.0;
 constexpr double k_slower = 5.0;
+// A direction that a leg moves in at last was not moved by rounding unless the exponent up to there is that large: rounding of 1e-12
+// grows to k_moved by it. Earlier than in this share of the leg what falls is seen to fall.
+constexpr double k_by_rounding = 12.0, k_early = 0.05;
+// Coordinates up to which the stiffness is analysed, by dense algebra; its cost at an instant grows with the cube.
+constexpr int k_most_coordinates = 300;
+constexpr double k_dense_work = 3e8; // cubes of coordinates, over all instants of a leg
+constexpr int k_most_instants = 32;
+constexpr std::size_t k_most_stretches = 32; // between breakpoints of loads that are told apart
 
-// One of a body's coordinates, measured as a way of the body: an angle by its radius of gyration.
-struct StillCoordinate {
-  std::size_t coordinate; // in State::q
-  double place, arm;      // m or rad; m per unit of the coordinate
-  double nudge;           // m, of its body
+// Exponent of the fastest growth of a leg as its stiffness has it.
+struct Course {
+  double exponent = 0.0; ///< ∫ rate dt
+  double rate = 0.0;     ///< the largest, 1/s
+  VecX shape;            ///< of that one
 };
 
-// Spread over 1/2 to 1 of either sign, so that no motion of several coordinates together is without its part.
-double weight_of(std::size_t i) {
-  constexpr double k_golden = 0.6180339887498949;
-  const double u = std::fmod(static_cast<double>(i + 1) * k_golden, 1.0);
-  return u < 0.5 ? 0.5 + u : -u;
+// Instants at which a leg is looked at, each for a share of its duration.
+struct Instant {
+  State state;
+  double duration; ///< s
+};
+
+// Nothing moves, but loads may change. Instants lie in the middle of equal parts of the stretches between breakpoints.
+std::vector<Instant> instants_at_rest(const System& system, const LegMotion& leg, int count) {
+  std::vector<double> edges = {leg.begin.t};
+  for (const double t : system.breakpoints)
+    if (t > edges.back() && t < leg.end) edges.push_back(t);
+  edges.push_back(leg.end);
+  if (edges.size() > k_most_stretches + 1) edges = {leg.begin.t, leg.end};
+  const int parts = std::max(1, count / static_cast<int>(edges.size() - 1));
+  std::vector<Instant> instants;
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+    for (int part = 0; part < parts; ++part) {
+      const double length = (edges[i + 1] - edges[i]) / parts;
+      instants.push_back({leg.begin, length});
+      instants.back().state.t = edges[i] + (part + 0.5) * length;
+    }
+  return instants;
 }
 
-// Those of bodies that move at all: of others each channel is one number.
-std::vector<StillCoordinate> still_coordinates(const System& system, const RunResult& run) {
-  std::unordered_map<std::string_view, const ChannelRange*> ranges;
-  for (const ChannelRange& range : run.ranges) ranges.emplace(range.channel->name, &range);
-  std::vector<StillCoordinate> still;
+// The states that were kept, each up to half-way to its neighbours.
+std::vector<Instant> instants_in_motion(const LegMotion& leg, int count) {
+  std::vector<const State*> states = {&leg.begin};
+  const std::size_t stride = std::max<std::size_t>(1, leg.states.size() / static_cast<std::size_t>(std::max(count, 1)));
+  for (std::size_t i = 0; i < leg.states.size(); i += stride) states.push_back(&leg.states[i]);
+  std::vector<Instant> instants;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const double from = i == 0 ? leg.begin.t : 0.5 * (states[i - 1]->t + states[i]->t);
+    const double to = i + 1 == states.size() ? leg.end : 0.5 * (states[i]->t + states[i + 1]->t);
+    if (to > from) instants.push_back({*states[i], to - from});
+  }
+  return instants;
+}
+
+Course course_of(FrozenLeg& frozen, const std::vector<Instant>& instants, double least) {
+  Course course;
+  for (const Instant& instant : instants) {
+    const FrozenGrowth growth = frozen.growth_at(instant.state, least);
+    course.exponent += growth.rate * instant.duration;
+    if (!(growth.rate > course.rate)) continue;
+    course.rate = growth.rate;
+    course.shape = growth.shape;
+  }
+  return course;
+}
+
+// Sizes of nudges, m, per body but the ground.
+std::vector<double> nudges_of(const System& system, const State& begin) {
+  std::vector<double> nudges;
   for (std::size_t body = 1; body < system.bodies.size(); ++body) {
     const BodyData& b = system.bodies[body];
-    if (!(b.mass > 0.0)) continue;
-    const double radius = std::sqrt(b.inertia / b.mass);
-    if (!(radius > 0.0)) continue;
-    std::array<const ChannelRange*, 3> range{};
-    double far = 0.0;
-    for (const std::size_t k : {0, 1, 2}) {
-      constexpr std::array<const char*, 3> k_names = {".x", ".y", ".theta"};
-      const auto found = ranges.find(b.name + k_names[k]);
-      if (found == ranges.end()) continue;
-      range[k] = found->second;
-      if (k < 2) far = std::max({far, std::abs(range[k]->low.value), std::abs(range[k]->high.value)});
-    }
-    const double nudge = std::max(k_nudge * radius, k_above_rounding * std::numeric_limits<double>::epsilon() * far);
-    for (const std::size_t k : {0, 1, 2}) {
-      const double arm = k < 2 ? 1.0 : radius;
-      if (range[k] && (range[k]->high.value - range[k]->low.value) * arm <= k_still * nudge)
-        still.push_back({3 * body + k, range[k]->low.value, arm, nudge});
-    }
+    const double radius = b.mass > 0.0 ? std::sqrt(b.inertia / b.mass) : 0.0;
+    const double far = std::max(std::abs(begin.q[3 * body]), std::abs(begin.q[3 * body + 1]));
+    nudges.push_back(std::max(k_nudge * radius, k_above_rounding * std::numeric_limits<double>::epsilon() * far));
   }
-  return still;
+  return nudges;
 }
 
-// How far each body is from where it stays, in m; coordinates of one body stand side by side.
-std::vector<double> ways_of(const std::vector<StillCoordinate>& still, const State& state) {
-  std::vector<double> ways(still.size(), 0.0);
-  for (std::size_t i = 0, first = 0; i < still.size(); ++i) {
-    if (still[i].coordinate / 3 != still[first].coordinate / 3) first = i;
-    ways[first] = portable::hypot(ways[first], (state.q[still[i].coordinate] - still[i].place) * still[i].arm);
+// How far each body is displaced, m: an angle counts by the radius of gyration. `weighted`: W δ.
+std::vector<double> ways_of(const System& system, const VecX& weighted) {
+  std::vector<double> ways;
+  for (std::size_t body = 1; body < system.bodies.size(); ++body) {
+    const auto first = static_cast<Eigen::Index>(3 * body - 3);
+    ways.push_back(weighted.segment<3>(first).norm() / std::sqrt(system.bodies[body].mass));
   }
   return ways;
 }
 
-// Of the body whose coordinates begin at `first`, the one that has gone furthest.
-const StillCoordinate& furthest(const std::vector<StillCoordinate>& still, std::size_t first, const State& state) {
-  const auto way = [&state](const StillCoordinate& s) { return std::abs(state.q[s.coordinate] - s.place) * s.arm; };
-  std::size_t most = first;
-  for (std::size_t i = first; i < still.size() && still[i].coordinate / 3 == still[first].coordinate / 3; ++i)
-    if (way(still[i]) > way(still[most])) most = i;
-  return still[most];
+// The largest displacement against the size of a nudge of its body.
+double largest_share(const std::vector<double>& ways, const std::vector<double>& nudges) {
+  double share = 0.0;
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    if (nudges[i] > 0.0) share = std::max(share, ways[i] / nudges[i]);
+  return share;
 }
+
+// Pseudo-random, the same whenever the same machine is asked: between half a nudge and a whole one of either sign, so that no
+// motion of several coordinates together is without its part.
+VecX random_nudge(const System& system, std::size_t leg, const std::vector<double>& nudges) {
+  Fingerprint machine;
+  for (const BodyData& body : system.bodies) {
+    machine.add(std::string_view(body.name));
+    for (const double number : {body.mass, body.inertia, body.pose[0], body.pose[1], body.pose[2]}) machine.add(number);
+  }
+  for (const auto& name : system.element_names) machine.add(std::string_view(name));
+  VecX weighted(static_cast<Eigen::Index>(3 * nudges.size()));
+  for (Eigen::Index i = 0; i < weighted.size(); ++i) {
+    const double u = counter_uniform(machine.value(), 0, leg, static_cast<std::uint32_t>(i));
+    const auto body = static_cast<std::size_t>(i) / 3;
+    weighted[i] = (u < 0.5 ? 0.5 + u : -u) * nudges[body] * std::sqrt(system.bodies[body + 1].mass);
+  }
+  return weighted;
+}
+
+VecX beyond(const MotionSpan& moved, const VecX& weighted) {
+  std::vector<double> parts(weighted.begin(), weighted.end());
+  moved.remove(parts);
+  return Eigen::Map<const VecX>(parts.data(), weighted.size());
+}
+
+// The evaluations of all nudged runs together are bounded by what was granted.
+class NudgedRun {
+public:
+  NudgedRun(const System& system, const State& initial, const SimulationOptions& options, double most_evaluations, const LegMotion& leg)
+      : simulation_(system, initial, options), progress_(options.progress), most_evaluations_(most_evaluations), leg_(leg) {}
+
+  // Up to the start of the leg. False: the run has ended before.
+  bool reach_leg() {
+    while (simulation_.past_legs() < leg_.past_legs)
+      if (!step()) return false;
+    now_ = before_ = simulation_.current_state();
+    return simulation_.past_legs() == leg_.past_legs;
+  }
+  void displace(const std::vector<double>& by) {
+    simulation_.displace(by);
+    now_ = before_ = simulation_.current_state();
+  }
+  // False where the leg is over.
+  bool advance() {
+    if (is_over_) return false;
+    before_ = std::move(now_);
+    is_over_ = !step();
+    now_ = simulation_.current_state();
+    is_over_ = is_over_ || simulation_.past_legs() != leg_.past_legs;
+    return true;
+  }
+  [[nodiscard]] const State& now() const { return now_; }
+  [[nodiscard]] double evaluations() const { return static_cast<double>(simulation_.statistics().evaluations); }
+  // Poses at t within the last step, by the cubic through the places and velocities at its ends.
+  [[nodiscard]] std::vector<double> pose_at(double t) const {
+    const double h = now_.t - before_.t;
+    if (!(h > 0.0) || t >= now_.t) return now_.q;
+    const double s = (t - before_.t) / h, r = 1.0 - s;
+    std::vector<double> q(now_.q.size());
+    for (std::size_t i = 0; i < q.size(); ++i)
+      q[i] = r * r * (1.0 + 2.0 * s) * before_.q[i] + s * s * (1.0 + 2.0 * r) * now_.q[i] + h * s * r * (r * before_.v[i] - s * now_.v[i]);
+    return q;
+  }
+
+private:
+  bool step() {
+    const bool goes_on = simulation_.advance();
+    const double t = simulation_.state().t;
+    if (progress_) progress_(t); // throws where it is to stop
+    if (evaluations() > most_evaluations_)
+      throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
+                            " s of a run from nudged poses");
+    return goes_on;
+  }
+
+  Simulation simulation_;
+  std::function<void(double)> progress_;
+  double most_evaluations_;
+  const LegMotion& leg_;
+  State before_, now_;
+  bool is_over_ = false;
+};
 
 // What a way has grown to, and when it passed the marks.
 struct Growth {
@@ -105,67 +225,246 @@ bool goes_off(Growth& g, double way, double t0, double t1) {
   if (g.now <= k_begun) g.t_begun = t1;
   else if (before <= k_begun) g.t_begun = passed(k_begun, t0, before, t1, g.now);
   if (before <= k_half_way && g.now > k_half_way) g.t_half_way = passed(k_half_way, t0, before, t1, g.now);
-  if (!(before <= k_grown_nudge && g.now > k_grown_nudge)) return false;
-  const double t_far = passed(k_grown_nudge, t0, before, t1, g.now);
+  if (!(before <= k_far_grown_nudge && g.now > k_far_grown_nudge)) return false;
+  const double t_far = passed(k_far_grown_nudge, t0, before, t1, g.now);
   return t_far - g.t_half_way <= k_slower * (g.t_half_way - g.t_begun);
 }
 
-// The evaluations of a run are bounded by what was granted.
-class NudgedRun {
-public:
-  NudgedRun(const System& system, const State& initial, const SimulationOptions& options, double most_evaluations)
-      : simulation_(system, initial, options), progress_(options.progress), most_evaluations_(most_evaluations) {}
+// What has grown from rest to `grown` times by an exponential has done so as cosh.
+double exponent_of(double grown) { return std::numbers::ln10 * portable::log10(grown + std::sqrt((grown - 1.0) * (grown + 1.0))); }
 
-  [[nodiscard]] State state() const { return simulation_.current_state(); }
-  bool advance() {
-    if (!simulation_.advance()) return false;
-    if (progress_) progress_(state().t); // throws where it is to stop
-    if (const auto made = static_cast<double>(simulation_.statistics().evaluations); made > most_evaluations_)
-      throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(state().t) +
-                            " s of a run from nudged poses");
-    return true;
+// One leg of a run, asked by nudges.
+class NudgedLeg {
+public:
+  NudgedLeg(const System& system, const State& initial, const SimulationOptions& options, const LegMotion& leg, double most_evaluations)
+      : system_(system), initial_(initial), options_(options), leg_(leg), most_evaluations_(most_evaluations),
+        nudges_(nudges_of(system, leg.begin)) {
+    options_.has_extremes = options_.notes_motion = false;
+    options_.output_step = 0.0;
+    options_.end = std::min(options_.end, leg.end);
+  }
+
+  // Along the free directions, with a part along `shape`, if that is not empty.
+  void choose_nudge(const FrozenLeg* frozen, const VecX& shape) {
+    nudge_ = random_nudge(system_, leg_.past_legs, nudges_);
+    nudge_ = frozen ? frozen->along_directions(nudge_) : beyond(leg_.moved, nudge_);
+    const double share = largest_share(ways_of(system_, nudge_), nudges_);
+    if (share > 0.0) nudge_ /= std::max(share, 1.0);
+    if (shape.size() > 0) {
+      const VecX fastest = shape / largest_share(ways_of(system_, shape), nudges_);
+      const double part = shape.dot(nudge_) / shape.dot(fastest);
+      if (std::abs(part) < k_least_fastest) nudge_ += (std::copysign(k_least_fastest, part) - part) * fastest;
+    }
+  }
+
+  // Does half the difference of the run from the nudge and that from its mirror image grow along `shape` as `course` says?
+  bool confirms(const Course& course) {
+    NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
+    if (!plus.reach_leg() || !minus.reach_leg()) return false;
+    displace(plus, 1.0);
+    displace(minus, -1.0);
+    const double from = std::abs(course.shape.dot(difference(plus, minus)));
+    if (!(from > k_least_part * std::abs(course.shape.dot(nudge_)))) return false;
+    double grown = 1.0;
+    while (plus.advance()) {
+      while (minus.now().t < plus.now().t && minus.advance()) {}
+      if (plus.evaluations() + minus.evaluations() > most_evaluations_)
+        throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(plus.now().t) +
+                              " s of two runs from nudged poses");
+      grown = std::max(grown, std::abs(course.shape.dot(difference(plus, minus))) / from);
+      if (grown > k_grown_nudge) return true;
+    }
+    return exponent_of(grown) > k_confirmed * course.exponent;
+  }
+
+  // Where the stiffness says nothing: the body that goes off exponentially, by its index, and its displacement.
+  std::optional<std::pair<double, VecX>> goes_off_otherwise() {
+    NudgedRun run = nudged(1.0);
+    if (!run.reach_leg()) return {};
+    displace(run, 1.0);
+    const auto ways_now = [&] { return ways_of(system_, beyond(leg_.moved, displacement(run.now().q))); };
+    const std::vector<double> begin = ways_now();
+    std::vector<Growth> growth(begin.size());
+    for (std::size_t i = 0; i < begin.size(); ++i) {
+      growth[i].from = std::max(begin[i], nudges_[i]);
+      growth[i].now = begin[i] / growth[i].from;
+      growth[i].t_begun = leg_.begin.t;
+    }
+    if (!(largest_share(begin, nudges_) > k_least_part)) return {};
+    for (double t = leg_.begin.t; run.advance();) {
+      const std::vector<double> ways = ways_now();
+      for (std::size_t i = 0; i < ways.size(); ++i)
+        if (goes_off(growth[i], ways[i], t, run.now().t))
+          return std::pair{run.now().t, VecX(beyond(leg_.moved, displacement(run.now().q)))};
+      t = run.now().t;
+    }
+    return {};
   }
 
 private:
-  Simulation simulation_;
-  std::function<void(double)> progress_;
+  [[nodiscard]] std::vector<double> by(double sign) const {
+    std::vector<double> all(3, 0.0);
+    for (Eigen::Index i = 0; i < nudge_.size(); ++i)
+      all.push_back(leg_.moved.weights()[static_cast<std::size_t>(i)] > 0.0
+                        ? sign * nudge_[i] / leg_.moved.weights()[static_cast<std::size_t>(i)]
+                        : 0.0);
+    return all;
+  }
+  // The first leg begins at nudged poses, so that contacts and friction find their modes there.
+  [[nodiscard]] NudgedRun nudged(double sign) const {
+    State start = initial_;
+    if (leg_.past_legs == 0) {
+      const std::vector<double> all = by(sign);
+      for (std::size_t i = 0; i < all.size(); ++i) start.q[i] += all[i];
+    }
+    return {system_, start, options_, most_evaluations_, leg_};
+  }
+  void displace(NudgedRun& run, double sign) const {
+    if (leg_.past_legs > 0) run.displace(by(sign));
+  }
+  // W (q − q of the leg's start)
+  [[nodiscard]] VecX displacement(const std::vector<double>& q) const {
+    VecX weighted(nudge_.size());
+    for (Eigen::Index i = 0; i < weighted.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      weighted[i] = leg_.moved.weights()[at] * (q[at + 3] - leg_.begin.q[at + 3]);
+    }
+    return weighted;
+  }
+  [[nodiscard]] VecX difference(const NudgedRun& plus, const NudgedRun& minus) const {
+    const std::vector<double>& a = plus.now().q;
+    const std::vector<double> b = minus.pose_at(plus.now().t);
+    VecX weighted(nudge_.size());
+    for (Eigen::Index i = 0; i < weighted.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      weighted[i] = 0.5 * leg_.moved.weights()[at] * (a[at + 3] - b[at + 3]);
+    }
+    return weighted;
+  }
+
+  const System& system_;
+  const State& initial_;
+  SimulationOptions options_;
+  const LegMotion& leg_;
   double most_evaluations_;
+  std::vector<double> nudges_; ///< m, per body but the ground
+  VecX nudge_;                 ///< W δ
 };
+
+// The body that `shape` displaces most against its size, and how.
+Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape, double rate) {
+  const std::vector<double> ways = ways_of(system, shape), nudges = nudges_of(system, leg.begin);
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    if (ways[i] * nudges[most] > ways[most] * nudges[i]) most = i;
+  const auto first = static_cast<Eigen::Index>(3 * most);
+  const double x = shape[first], y = shape[first + 1], turned = shape[first + 2];
+  Balance found{system.bodies[most + 1].name, 0, 0.0, leg.begin.t, rate};
+  if (std::abs(turned) > portable::hypot(x, y)) found.coordinate = 2;
+  else found.direction = x < 0.0 || (x == 0.0 && y < 0.0) ? portable::atan2(-y, -x) : portable::atan2(y, x);
+  return found;
+}
+
+// Nothing but what actions do.
+bool is_without_events(const RunResult& run, const LegMotion& leg) {
+  return std::none_of(run.events.begin(), run.events.end(), [&](const Event& event) {
+    return event.t >= leg.begin.t && event.t <= leg.end && event.kind != EventKind::happens && !is_kink(event.kind);
+  });
+}
+
+// A leg, and what it is asked with.
+struct AskedLeg {
+  const System& system; ///< of the run
+  const State& initial; ///< of the run
+  const SimulationOptions& options;
+  const RunResult& run;
+  double most_evaluations;
+
+  [[nodiscard]] const System& own_system(const LegMotion& leg) const { return leg.system ? *leg.system : system; }
+  // Instants that dense algebra is done at in a reasonable time.
+  [[nodiscard]] int instants() const {
+    const double coordinates = 3.0 * (system.body_count() - 1);
+    return static_cast<int>(
+        std::clamp(k_dense_work / (coordinates * coordinates * coordinates), 4.0, static_cast<double>(k_most_instants)));
+  }
+  [[nodiscard]] bool has_dense_algebra() const { return 3 * (system.body_count() - 1) <= k_most_coordinates; }
+  [[nodiscard]] static bool has_moved_everywhere(const LegMotion& leg) {
+    return leg.moved.directions().size() >= leg.moved.weights().size();
+  }
+  [[nodiscard]] bool is_at_rest(const LegMotion& leg) const { return leg.moved.directions().empty() && own_system(leg).inner_count() == 0; }
+  [[nodiscard]] std::optional<Balance> by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const;
+  [[nodiscard]] std::optional<Balance> by_nudge(FrozenLeg* frozen, const LegMotion& leg) const;
+  [[nodiscard]] std::optional<Balance> until_it_fell(const LegMotion& leg) const;
+  [[nodiscard]] std::optional<Balance> of(const LegMotion& leg) const;
+};
+
+// `least_exponent`: over the whole leg.
+std::optional<Balance> AskedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
+  const double duration = leg.end - leg.begin.t, least = least_exponent / duration;
+  const std::vector<Instant> looks =
+      is_at_rest(leg) ? instants_at_rest(own_system(leg), leg, instants()) : instants_in_motion(leg, instants());
+  const Course course = course_of(frozen, looks, k_least_share * least);
+  if (!(course.exponent > least_exponent)) return {};
+  NudgedLeg nudged(system, initial, options, leg, most_evaluations);
+  nudged.choose_nudge(&frozen, course.shape);
+  if (course.exponent >= k_visible_exponent && !nudged.confirms(course)) return {};
+  return balance_by(system, leg, course.shape, course.exponent / duration);
+}
+
+std::optional<Balance> AskedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& leg) const {
+  NudgedLeg nudged(system, initial, options, leg, most_evaluations);
+  nudged.choose_nudge(frozen, {});
+  const auto gone = nudged.goes_off_otherwise();
+  if (!gone) return {};
+  return balance_by(system, leg, gone->second, exponent_of(k_far_grown_nudge) / (gone->first - leg.begin.t));
+}
+
+// Rounding grows, too: what balances for long leaves in the end. Each part of the leg up to where a direction was first moved is a
+// leg in which that direction was not.
+std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
+  const double duration = leg.end - leg.begin.t;
+  double last = -std::numeric_limits<double>::infinity();
+  for (const double t : leg.moved.since()) {
+    if (t == last || t - leg.begin.t < k_early * duration) continue;
+    last = t;
+    LegMotion part{leg.system, leg.past_legs, leg.begin, t, {}, leg.moved.before(t)};
+    for (const State& state : leg.states)
+      if (state.t < t) part.states.push_back(state);
+    FrozenLeg frozen(own_system(leg), part);
+    if (frozen.directions() == 0) continue;
+    const State& middle = part.states.empty() ? part.begin : part.states[part.states.size() / 2];
+    if (!(frozen.growth_at(middle, k_by_rounding / (t - leg.begin.t)).rate > 0.0)) continue;
+    if (auto found = by_stiffness(frozen, part, k_by_rounding)) return found;
+  }
+  return {};
+}
+
+std::optional<Balance> AskedLeg::of(const LegMotion& leg) const {
+  const double duration = leg.end - leg.begin.t;
+  if (!(duration > 0.0) || leg.moved.weights().empty()) return {};
+  if (!has_dense_algebra()) {
+    if (has_moved_everywhere(leg)) return {};
+    return by_nudge(nullptr, leg);
+  }
+  if (!has_moved_everywhere(leg)) {
+    FrozenLeg frozen(own_system(leg), leg);
+    if (frozen.directions() > 0) {
+      if (auto found = by_stiffness(frozen, leg, k_exponent * std::min(duration, 1.0))) return found;
+      if (!is_at_rest(leg) && is_without_events(run, leg))
+        if (auto found = by_nudge(&frozen, leg)) return found;
+    }
+  }
+  return until_it_fell(leg);
+}
 
 } // namespace
 
 std::optional<Balance> balance_of(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
                                   double most_evaluations) {
-  const std::vector<StillCoordinate> still = still_coordinates(system, run);
-  if (still.empty()) return {};
-  State nudged = initial;
-  for (std::size_t i = 0; i < still.size(); ++i) nudged.q[still[i].coordinate] += weight_of(i) * still[i].nudge / still[i].arm;
-  SimulationOptions plain = options;
-  plain.has_extremes = false;
-  plain.output_step = 0.0;
-  plain.end = std::min(options.end, run.final_state.t);
-  if (!(plain.end > initial.t)) return {};
-  NudgedRun again(system, nudged, plain, most_evaluations);
-  std::vector<Growth> growth(still.size());
-  const std::vector<double> begin = ways_of(still, again.state());
-  bool is_free = false;
-  for (std::size_t i = 0; i < still.size(); ++i) {
-    growth[i].from = std::max(begin[i], still[i].nudge);
-    growth[i].now = begin[i] / growth[i].from;
-    growth[i].t_begun = initial.t;
-    is_free = is_free || begin[i] > k_least_part * still[i].nudge;
-  }
-  if (!is_free) return {};
-  for (double t = initial.t; again.advance();) {
-    const State state = again.state();
-    const std::vector<double> ways = ways_of(still, state);
-    for (std::size_t i = 0; i < still.size(); ++i)
-      if (goes_off(growth[i], ways[i], t, state.t)) {
-        const std::size_t at = furthest(still, i, state).coordinate;
-        return Balance{system.bodies[at / 3].name, static_cast<int>(at % 3), state.t};
-      }
-    t = state.t;
-  }
+  if (!run.legs) return {};
+  const AskedLeg asked{system, initial, options, run, most_evaluations};
+  for (const LegMotion& leg : *run.legs)
+    if (auto found = asked.of(leg)) return found;
   return {};
 }
 
