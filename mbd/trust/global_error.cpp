@@ -281,8 +281,7 @@ void keep_worst(RunDifference& worst, const RunDifference& other, double factor)
 
 // --- by references
 
-// What the reference itself may be wrong by: from the other run, whose samples are few and which has no extremes; of a channel the
-// largest of all that.
+// What the reference itself may be wrong by: from the other run, which may have few samples and no extremes.
 void add_own_errors(const System& system, const ReferenceRuns& pair, const EventMatch& match, GlobalErrorEstimate& estimate) {
   GlobalErrorEstimate own;
   own.channels.resize(system.channels.size());
@@ -298,9 +297,12 @@ void add_own_errors(const System& system, const ReferenceRuns& pair, const Event
   }
   for (std::size_t c = 0; c < estimate.channels.size(); ++c) {
     ChannelError& error = estimate.channels[c];
-    const double largest = own.channels[c].largest();
-    for (double* value : {&error.low, &error.high, &error.final, &error.curve}) *value += largest;
-    for (double* value : {&error.t_low, &error.t_high, &error.first_above_one}) *value += std::max(time, own.channels[c].first_above_one);
+    const ChannelError& o = own.channels[c];
+    error.low += larger_error(o.low, o.curve);
+    error.high += larger_error(o.high, o.curve);
+    error.final += larger_error(o.final, o.curve);
+    error.curve += o.curve;
+    for (double* value : {&error.t_low, &error.t_high, &error.first_above_one}) *value += time;
   }
   estimate.dissipated += own.dissipated;
   estimate.work += own.work;
@@ -308,8 +310,8 @@ void add_own_errors(const System& system, const ReferenceRuns& pair, const Event
 }
 
 std::string tolerances_of(const ReferenceRuns& pair) {
-  return pair.options.integrator + " at tolerances of " + number_text(pair.coarse_options.settings.tolerance) + " and " +
-         number_text(pair.options.settings.tolerance);
+  return pair.options.integrator + " at tolerances of " + rounded_text(pair.coarse_options.settings.tolerance) + " and " +
+         rounded_text(pair.options.settings.tolerance);
 }
 
 // What happened before the two references part is known: times of events, and when a number passed 1. An extreme is one of the whole run.
