@@ -13,6 +13,10 @@ namespace {
 // A part takes some 40 to 300 ns, where much slides more.
 constexpr double k_little = 1e7; // parts evaluated
 constexpr double k_most = 3.0;   // times that: finer runs that turn out to need more are given up
+// Adaptive references of a run with many short steps may be cheap all the same. They are tried where they are granted so many evaluations
+// at least, and no more work than the run itself took.
+constexpr double k_least_references = 5000.0;
+constexpr double k_nudged = 1.5; // times the run: one from a nudged pose, which a verdict needs however dear the run was
 
 Estimate none(EstimateStatus status, std::string reason) { return {status, std::move(reason), {}, {}}; }
 
@@ -25,23 +29,32 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   const SimulationOptions as_run = simulation_options(loaded, options);
   const RunStatistics& statistics = run.result.statistics;
   double most_evaluations = std::numeric_limits<double>::infinity();
+  std::optional<Estimate> too_dear; // what is answered if references do not do either
   if (options.estimating == Estimating::cheap) {
     const double times = times_of_finer_runs(*loaded.system, as_run), parts = parts_evaluated(*loaded.system, statistics);
-    if (!(times * parts < k_little))
-      return {EstimateStatus::too_dear, "would take long; ask for it explicitly", times * statistics.cpu_seconds, {}};
-    most_evaluations = std::floor(k_most * k_little * static_cast<double>(statistics.evaluations) / std::max(parts, 1.0));
+    const double evaluations_a_part = static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
+    most_evaluations = std::floor(k_most * k_little * evaluations_a_part);
+    if (!(times * parts < k_little)) {
+      too_dear = none(EstimateStatus::too_dear, "would take long; ask for it explicitly");
+      too_dear->cost = times * statistics.cpu_seconds;
+      most_evaluations = std::floor(std::min(k_little, parts) * evaluations_a_part);
+      if (!is_measured_by_references(*loaded.system, as_run.integrator) || most_evaluations < k_least_references)
+        return *std::move(too_dear);
+    }
   }
   try {
     const State initial = options.start ? *options.start : initial_state_of(loaded);
     GlobalErrorEstimate errors = estimate_global_error(*loaded.system, initial, as_run, run.result, is_main_event, most_evaluations);
     Estimate estimate{EstimateStatus::known, "", {}, std::move(errors)};
     try {
-      estimate.balance = balance_of(*loaded.system, initial, as_run, run.result, most_evaluations);
+      const double as_dear_as_the_run = k_nudged * static_cast<double>(statistics.evaluations);
+      estimate.balance = balance_of(*loaded.system, initial, as_run, run.result, std::max(most_evaluations, as_dear_as_the_run));
     } catch (const NumericalFailure& failure) { // the errors are known all the same
       estimate.balance_unknown = failure.what();
     }
     return estimate;
   } catch (const EstimateTooDear& stopped) {
+    if (too_dear) return *std::move(too_dear);
     return none(EstimateStatus::too_dear, std::string(stopped.what()) + "; ask for it explicitly");
   } catch (const NumericalFailure& failure) {
     return none(EstimateStatus::failed, std::string("the finer run failed: ") + failure.what());

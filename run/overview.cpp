@@ -194,7 +194,9 @@ Trust trust_by_errors(const Report& report) {
   add_part(parts, "times", time_error, "s");
   add_part(parts, "forces", largest_error(report, "N"), "N");
   add_part(parts, "places", largest_error(report, "m"), "m");
-  Trust trust{TrustLevel::good, estimate.finer.size() > 1 ? "Errors are estimated by finer runs" : "Errors are estimated by a finer run"};
+  Trust trust{TrustLevel::good, !estimate.references.empty() ? "Errors are estimated by adaptive runs"
+                                : estimate.finer.size() > 1  ? "Errors are estimated by finer runs"
+                                                             : "Errors are estimated by a finer run"};
   trust.text += parts.empty() ? "." : ": " + parts + ".";
   const double worst = estimate.error.of(ErrorKind::position).value;
   const WorstError& reaction = estimate.error.of(ErrorKind::reaction);

@@ -1,9 +1,11 @@
 #include "mbd/trust/global_error.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
 #include "mbd/system/formula_channel.h"
 #include "mbd/trust/event_match.h"
+#include "mbd/trust/reference_runs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +24,9 @@ constexpr double k_finer_cost = 3.0;  // of a hundredth of the tolerance: order 
 constexpr double k_rounding = 1e-14;  // of a channel's largest value, and of times
 constexpr double k_first_order = 0.5; // what half the step leaves
 constexpr double k_safety = 1.5;
-constexpr long k_steps_between_looks = 64; // at the evaluations made
-constexpr double k_most_left = 0.9;        // of the error, by a finer run: its difference is the rest, a tenth of the error
-constexpr double k_stepping_safety = 3.0;  // where nothing is located
+constexpr double k_most_left = 0.9;       // of the error, by a finer run: its difference is the rest, a tenth of the error
+constexpr double k_stepping_safety = 3.0; // where nothing is located
+constexpr double k_little = 1e7;          // parts evaluated that references may take in any case
 // Of an extreme beside a singular position (within 1e-5 rad): a force that goes with one over the distance is larger by far than
 // away from it, and runs that come to other distances do not agree on it.
 constexpr double k_disagreed = 0.01, k_grown = 1e3;
@@ -70,11 +72,16 @@ bool may_jump(const Channel& channel) { return channel.unit != "m" && channel.un
 // One finer run against the run whose error is wanted.
 class Comparison {
 public:
-  Comparison(const System& system, const RunResult& run, const RunResult& fine, double factor)
-      : system_(system), run_(run), fine_(fine), match_(match_events(run.events, fine.events)), factor_(factor) {}
+  /// `run` has every `stride`-th of the samples of `fine`.
+  Comparison(const System& system, const RunResult& run, const RunResult& fine, double factor, std::size_t stride = 1)
+      : system_(system), run_(run), fine_(fine), match_(match_events(run.events, fine.events)), factor_(factor), stride_(stride) {}
 
+  [[nodiscard]] const EventMatch& match() const { return match_; }
+
+  /// The errors of `run`.
   void add_to(GlobalErrorEstimate& estimate) const {
-    for (std::size_t c = 0; c < run_.ranges.size(); ++c) add_range(c, estimate.channels[c]);
+    const std::size_t ranges = std::min(run_.ranges.size(), fine_.ranges.size());
+    for (std::size_t c = 0; c < ranges; ++c) add_range(c, estimate.channels[c]);
     add_curves(estimate.channels);
     add_events(estimate.event_times);
     keep_larger(estimate.dissipated, factor_ * difference(run_.statistics.dissipated, fine_.statistics.dissipated));
@@ -97,13 +104,13 @@ private:
   void add_curves(std::vector<ChannelError>& errors) const {
     const Trajectory &mine = *run_.trajectory, &fine = *fine_.trajectory;
     const auto& channels = mine.channels();
-    const std::size_t rows = std::min(mine.size(), fine.size());
+    const RowPairs rows(mine, fine, stride_);
     const BetweenEvents between(match_, run_.events, fine_.events);
     std::vector<char> jumps(channels.size());
     std::transform(channels.begin(), channels.end(), jumps.begin(), [](const Channel* channel) { return may_jump(*channel); });
     std::vector<double> worst(channels.size(), 0.0);
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::span<const double> a = mine.row(row), b = fine.row(row);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const std::span<const double> a = mine.row(row), b = fine.row(rows.theirs(row));
       const bool is_jump = between.holds(a[0]);
       for (std::size_t c = 0; c < channels.size(); ++c)
         if (!jumps[c] || !is_jump) worst[c] = larger_error(worst[c], difference(*channels[c], a[c + 1], b[c + 1]));
@@ -125,6 +132,7 @@ private:
   const RunResult &run_, &fine_;
   EventMatch match_;
   double factor_;
+  std::size_t stride_;
 };
 
 double spread_of(const ChannelRange& range) { return range.high.value - range.low.value; }
@@ -271,22 +279,94 @@ void keep_worst(RunDifference& worst, const RunDifference& other, double factor)
   worst.compared_until = other.compared_until;
 }
 
-void add_cost(RunStatistics& sum, const RunStatistics& run) {
-  sum.steps += run.steps;
-  sum.evaluations += run.evaluations;
-  sum.cpu_seconds += run.cpu_seconds;
+// --- by references
+
+// What the reference itself may be wrong by: from the other run, which may have few samples and no extremes.
+void add_own_errors(const System& system, const ReferenceRuns& pair, const EventMatch& match, GlobalErrorEstimate& estimate) {
+  GlobalErrorEstimate own;
+  own.channels.resize(system.channels.size());
+  own.event_times.resize(pair.coarse.events.size());
+  const Comparison comparison(system, pair.coarse, pair.reference, pair.factor, pair.stride);
+  comparison.add_to(own);
+  std::vector<double> of_event(pair.reference.events.size(), k_unknown_error);
+  for (const EventPair& same : comparison.match().pairs) of_event[same.reference] = own.event_times[same.mine];
+  double time = 0.0; // of events that both have
+  for (const EventPair& same : match.pairs) {
+    estimate.event_times[same.mine] += of_event[same.reference];
+    if (std::isfinite(of_event[same.reference])) time = std::max(time, of_event[same.reference]);
+  }
+  for (std::size_t c = 0; c < estimate.channels.size(); ++c) {
+    ChannelError& error = estimate.channels[c];
+    const ChannelError& o = own.channels[c];
+    error.low += larger_error(o.low, o.curve);
+    error.high += larger_error(o.high, o.curve);
+    error.final += larger_error(o.final, o.curve);
+    error.curve += o.curve;
+    for (double* value : {&error.t_low, &error.t_high, &error.first_above_one}) *value += time;
+  }
+  estimate.dissipated += own.dissipated;
+  estimate.work += own.work;
+  for (std::size_t k = 0; k < k_error_kinds; ++k) estimate.error.worst[k].value += pair.own.worst[k].value;
 }
 
-// Within what is left of the evaluations, for which a computer may be fast or slow.
-RunResult simulate_within(const System& system, const State& initial, const SimulationOptions& options, const RunStatistics& spent,
-                          double most_evaluations) {
-  Simulation simulation(system, initial, options);
-  for (long steps = 0; simulation.advance(); ++steps)
-    if (steps % k_steps_between_looks == 0 &&
-        static_cast<double>(spent.evaluations + simulation.statistics().evaluations) > most_evaluations)
-      throw EstimateTooDear("given up after " + number_text(most_evaluations) +
-                            " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
-  return std::move(simulation).result();
+std::string tolerances_of(const ReferenceRuns& pair) {
+  return pair.options.integrator + " at tolerances of " + rounded_text(pair.coarse_options.settings.tolerance) + " and " +
+         rounded_text(pair.options.settings.tolerance);
+}
+
+// What happened before the two references part is known: times of events, and when a number passed 1. An extreme is one of the whole run.
+void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, GlobalErrorEstimate& estimate) {
+  const std::vector<ChannelError> channels = estimate.channels;
+  const std::vector<double> times = estimate.event_times;
+  forget(run, estimate);
+  for (std::size_t c = 0; c < run.ranges.size(); ++c)
+    if (const std::optional<double>& first = run.ranges[c].first_above_one; first && *first < t)
+      estimate.channels[c].first_above_one = channels[c].first_above_one;
+  for (std::size_t i = 0; i < run.events.size(); ++i)
+    if (run.events[i].t < t) estimate.event_times[i] = times[i];
+  estimate.unknown_because = "two runs by " + tolerances_of(pair) + " part at t = " + rounded_text(t, 4) +
+                             " s, so that the motion from there on depends on the last digits, and no run tells it";
+}
+
+// Errors of `run` by a reference. False: there is none.
+bool measure_by_references(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
+                           const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
+  const double parts = parts_evaluated(system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));
+  const double most =
+      std::max(times_of_finer_runs(system, options) * static_cast<double>(run.statistics.evaluations), k_little / std::max(parts, 1.0));
+  std::optional<ReferenceRuns> pair = reference_runs(system, initial, options, run, is_counted, most, budget);
+  if (!pair) return false;
+  estimate.finer = {pair->coarse_options, pair->options};
+  const Comparison comparison(system, run, pair->reference, k_safety);
+  comparison.add_to(estimate);
+  keep_worst(estimate.error, pair->of_run, k_safety);
+  add_own_errors(system, *pair, comparison.match(), estimate);
+  estimate.finest = std::move(pair->reference);
+  add_floors(system, run, estimate);
+  if (pair->parted_at) forget_from(*pair->parted_at, run, *pair, estimate);
+  else estimate.references = tolerances_of(*pair);
+  return true;
+}
+
+// --- by the same method
+
+void compare_with_finer_runs(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
+                             const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
+  estimate.finer = finer_options(system, options);
+  bool has_storm = run.statistics.storms > 0, is_any_finer = false;
+  for (const SimulationOptions& finer : estimate.finer) {
+    RunResult fine = budget.simulate(system, initial, finer);
+    has_storm = has_storm || fine.statistics.storms > 0;
+    const double factor = factor_for(options, run.statistics, finer, fine.statistics, has_storm);
+    if (!std::isnan(factor)) {
+      is_any_finer = true;
+      Comparison(system, run, fine, factor).add_to(estimate);
+      keep_worst(estimate.error, compare_runs(system, run, fine, is_counted), factor);
+    }
+    estimate.finest = std::move(fine);
+  }
+  if (is_any_finer) add_floors(system, run, estimate);
+  else forget(run, estimate);
 }
 
 } // namespace
@@ -304,6 +384,10 @@ bool is_adaptive(const System& system, const std::string& integrator) {
   IntegratorSettings settings;
   settings.step = 1e-3; // any: it makes no step
   return make_integrator(integrator, dynamics, settings)->is_adaptive();
+}
+
+bool is_measured_by_references(const System& system, const std::string& integrator) {
+  return !method(integrator).is_time_stepping && !is_adaptive(system, integrator);
 }
 
 std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options) {
@@ -337,22 +421,11 @@ GlobalErrorEstimate estimate_global_error(const System& system, const State& ini
   GlobalErrorEstimate estimate;
   estimate.channels.resize(system.channels.size());
   estimate.event_times.resize(run.events.size());
-  estimate.finer = finer_options(system, options);
-  bool has_storm = run.statistics.storms > 0, is_any_finer = false;
-  for (const SimulationOptions& finer : estimate.finer) {
-    RunResult fine = simulate_within(system, initial, finer, estimate.cost, most_evaluations);
-    has_storm = has_storm || fine.statistics.storms > 0;
-    const double factor = factor_for(options, run.statistics, finer, fine.statistics, has_storm);
-    if (!std::isnan(factor)) {
-      is_any_finer = true;
-      Comparison(system, run, fine, factor).add_to(estimate);
-      keep_worst(estimate.error, compare_runs(system, run, fine, is_counted), factor);
-    }
-    add_cost(estimate.cost, fine.statistics);
-    estimate.finest = std::move(fine);
-  }
-  if (is_any_finer) add_floors(system, run, estimate);
-  else forget(run, estimate);
+  EvaluationBudget budget(most_evaluations);
+  const bool has_references = is_measured_by_references(system, options.integrator) && run.statistics.storms == 0 &&
+                              measure_by_references(system, initial, options, run, is_counted, budget, estimate);
+  if (!has_references) compare_with_finer_runs(system, initial, options, run, is_counted, budget, estimate);
+  estimate.cost = budget.spent();
   note_unmatched(estimate, run, is_counted);
   estimate.finest.trajectory.reset();
   return estimate;

@@ -133,21 +133,23 @@ double difference(double a, double b) {
   return std::abs(a - b);
 }
 
+double scale_of(const Compared& c, const Scales& scales) { return std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm); }
+
 // Of every channel the largest error and when; row after row, for they may be on disk.
 std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, const Trajectory& mine,
-                                                                      const Trajectory& theirs, std::size_t rows,
+                                                                      const Trajectory& theirs, const RowPairs& rows,
                                                                       const BetweenEvents& between) {
   const Scales scales = scales_of(channels), sizes = sizes_of(channels);
   std::vector<std::pair<const Compared*, WorstError>> list;
   std::vector<double> scale, rounding; // rounding: of a channel that does nothing else; 0 of all others
   for (const Compared& c : channels) {
     list.push_back({&c, {}});
-    scale.push_back(std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm));
+    scale.push_back(scale_of(c, scales));
     const double least = k_rounding * sizes.at(c.kind) / c.arm;
     rounding.push_back(c.range() <= least ? least : 0.0);
   }
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::span<const double> a = mine.row(row), b = theirs.row(row);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::span<const double> a = mine.row(row), b = theirs.row(rows.theirs(row));
     const bool is_jump = between.holds(b[0]);
     for (std::size_t i = 0; i < list.size(); ++i) {
       const Compared& c = *list[i].first;
@@ -178,12 +180,20 @@ double RunDifference::largest() const {
   return value;
 }
 
-RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference, const EventFilter& is_counted) {
+RowPairs::RowPairs(const Trajectory& mine, const Trajectory& theirs, std::size_t stride)
+    : stride_(stride), size_(mine.size()), last_(theirs.size() > 0 ? theirs.size() - 1 : 0) {
+  if (theirs.size() == 0) size_ = 0;
+  // The end of a run is sampled wherever it falls; a run that ended earlier than the other has no partner for later rows.
+  else if (size_ > 0) size_ = std::min(size_, (last_ + stride - 1) / stride + 1);
+}
+
+RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference, const EventFilter& is_counted,
+                           std::size_t stride) {
   RunDifference d;
   const Trajectory& mine = *run.trajectory;
   const Trajectory& theirs = *reference.trajectory;
-  const std::size_t rows = std::min(mine.size(), theirs.size());
-  if (rows > 0) d.compared_until = theirs.time(rows - 1);
+  const RowPairs rows(mine, theirs, stride);
+  if (rows.size() > 0) d.compared_until = theirs.time(rows.theirs(rows.size() - 1));
   const EventMatch match = match_events(run.events, reference.events);
   const auto counted = [&](const std::vector<std::size_t>& places, const std::vector<Event>& events) {
     return std::count_if(places.begin(), places.end(), [&](std::size_t i) { return !is_counted || is_counted(events[i]); });
@@ -201,6 +211,24 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
                std::abs(mine_event.t - event.t) / (duration > 0.0 ? duration : 1.0), "'" + event.element + "' " + event.words(), event.t);
   }
   return d;
+}
+
+std::optional<double> parts_at(const System& system, const RunResult& run, const RunResult& reference, std::size_t stride, double share) {
+  const Trajectory &mine = *run.trajectory, &theirs = *reference.trajectory;
+  const RowPairs rows(mine, theirs, stride);
+  const EventMatch match = match_events(run.events, reference.events);
+  const BetweenEvents between(match, run.events, reference.events);
+  const std::vector<Compared> channels = compared_channels(system, reference);
+  const Scales scales = scales_of(channels);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::span<const double> a = mine.row(row), b = theirs.row(rows.theirs(row));
+    const bool is_jump = between.holds(b[0]);
+    for (const Compared& c : channels) {
+      if (c.kind == ErrorKind::reaction || (c.kind == ErrorKind::velocity && is_jump)) continue;
+      if (!(difference(a[c.column + 1], b[c.column + 1]) <= share * scale_of(c, scales))) return b[0];
+    }
+  }
+  return {};
 }
 
 } // namespace steplap

@@ -14,8 +14,10 @@
 
 #include "mbd/simulation/simulation.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,8 +47,29 @@ struct RunDifference {
 /// Which events count as such in event times and their number; empty: all.
 using EventFilter = std::function<bool(const Event& event)>;
 
-/// Both runs are of `system`, with the same channels, sampled at the same times.
+/// Pairs the rows of two runs of which one may have been sampled more sparsely: each row of `mine` belongs to every `stride`-th of
+/// `theirs`; the last rows, at the ends of both runs, belong together.
+class RowPairs {
+public:
+  /// Both trajectories have to outlive it.
+  RowPairs(const Trajectory& mine, const Trajectory& theirs, std::size_t stride);
+
+  /// How many pairs there are.
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// The row of `theirs` that belongs to a row of `mine`.
+  [[nodiscard]] std::size_t theirs(std::size_t mine) const { return std::min(mine * stride_, last_); }
+
+private:
+  std::size_t stride_, size_, last_; ///< last_: row of `theirs`
+};
+
+/// Both runs are of `system`, with the same channels; `run` was sampled at every `stride`-th of the times of `reference`.
 [[nodiscard]] RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference,
-                                         const EventFilter& is_counted = {});
+                                         const EventFilter& is_counted = {}, std::size_t stride = 1);
+
+/// The first sample, s, at which a position or velocity differs by more than `share` of its range, as compare_runs() scales it; empty:
+/// none does. Velocities are left out between an event and its partner.
+[[nodiscard]] std::optional<double> parts_at(const System& system, const RunResult& run, const RunResult& reference, std::size_t stride,
+                                             double share);
 
 } // namespace steplap

@@ -24,6 +24,7 @@ std::optional<double> event_error(const std::string& element, double t, const Ru
 
 namespace {
 
+constexpr const char* k_smaller_step = "try a smaller step, or the integrator auto";
 constexpr double k_most_trusted_error = 0.1; // of the range of positions, and of a slid distance
 // Slid distances that tolerances leave: of the largest range of displacements, and of the bodies' size, a thousandth of
 // which errors are absolute to (Integrator).
@@ -120,15 +121,18 @@ bool changes_verdict(const std::string& element, const Judgement& judgement, con
   return false;
 }
 
-// A run and its finer run that tell different stories: which of them is right is not known.
+// A run and its finer run that tell different stories: which of them is right is not known, unless two references agree.
 std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer, const System& system, const RunResult& run,
-                              const RunResult& finest) {
-  for (const LoneSlip& slip : lone_slips(run, finest)) {
-    if (!changes_verdict(slip.element, judgement, finer) && !changes_slide(slip.element, system, run, finest)) continue;
+                              const GlobalErrorEstimate& estimate) {
+  for (const LoneSlip& slip : lone_slips(run, estimate.finest)) {
+    if (!changes_verdict(slip.element, judgement, finer) && !changes_slide(slip.element, system, run, estimate.finest)) continue;
     char t[32];
     std::snprintf(t, sizeof t, "%.6g", slip.t);
-    return "'" + slip.element + "' slips at t = " + t + " s " +
-           (slip.is_mine ? "here but not in a finer run" : "in a finer run but not here") + ": try a smaller step or tolerance";
+    const std::string what = "'" + slip.element + "' slips at t = " + t + " s ";
+    if (!estimate.references.empty())
+      return what + (slip.is_mine ? "here but not in runs by " : "in runs by ") + estimate.references +
+             (slip.is_mine ? "" : " but not here") + ", which agree: the fixed steps are wrong; " + k_smaller_step;
+    return what + (slip.is_mine ? "here but not in a finer run" : "in a finer run but not here") + ": try a smaller step or tolerance";
   }
   return "";
 }
@@ -157,7 +161,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
       if (c.name == mine.name && c.text == mine.text) return &c;
     return nullptr;
   };
-  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate.finest); // before doubts change outcomes
+  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate); // before doubts change outcomes
   for (std::size_t i = 0; i < judgement.criteria.size(); ++i) {
     CriterionResult& c = judgement.criteria[i];
     set_errors(c, system, run, estimate);
@@ -171,6 +175,9 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
   if (!estimate.unknown_because.empty()) return leave_open(judgement, estimate.unknown_because);
   const WorstError& worst = estimate.error.of(ErrorKind::position);
   if (worst.value <= k_most_trusted_error) return;
+  if (!estimate.references.empty() && !std::isnan(worst.value))
+    return distrust(judgement, "two runs by " + estimate.references + " agree, and this one is off by " + share_text(worst.value) +
+                                   " in '" + worst.where + "': the fixed steps are wrong; " + k_smaller_step);
   distrust(judgement, "the estimated error of '" + worst.where + "' is " + share_text(worst.value) + ": try a smaller step or tolerance");
 }
 

@@ -36,6 +36,7 @@ void look_at(Honesty& h, const std::string& where, double value, double truth, d
   const double error = std::abs(value - truth) - truth_known_to;
   if (error <= 0.0) return;
   const double ratio = estimate > 0.0 ? error / estimate : std::numeric_limits<double>::infinity();
+  h.tightness.push_back(1.0 / ratio);
   if (ratio > 1.0) ++h.too_small;
   if (std::isnan(error) || ratio > h.worst) {
     h.worst = std::isnan(error) ? std::numeric_limits<double>::infinity() : ratio;

@@ -20,6 +20,7 @@ struct Honesty {
   double error = 0.0, estimate = 0.0;         ///< of the worst
   double most_range = 0.0;                    ///< of the worst: estimate over the channel's range, or the duration
   long count = 0, unknown = 0, too_small = 0; ///< numbers looked at; those whose error is unknown; worst > 1
+  std::vector<double> tightness = {};         ///< estimate over error, of all numbers whose error is known not to be zero
 };
 
 struct Judged {

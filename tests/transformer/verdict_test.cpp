@@ -320,3 +320,41 @@ TEST_CASE("coordinates whose rounding is a motion are not to be trusted, a fast 
   CHECK(judged_swing("velocity = [0, 1e12]").distrust.find("positions of 1e+12 m are known to") == 0);
   CHECK(judged_swing("velocity = [0, 1e6]").distrust.empty());
 }
+
+// x = 0.1 cos 10 t: in 10 s steps of 0.1 s lose (ωh)⁶/144 of the energy a step and turn by (ωh)⁵/120 too little, 0.8 rad in all.
+TEST_CASE("fixed steps that differ from two adaptive runs which agree are called wrong; fine ones are not") {
+  const auto distrust_at = [](const char* step) {
+    const Model model = parse_model(R"(
+gravity = [0, 0]
+[simulation]
+end = 10
+integrator = "rk4"
+[output]
+step = 0.05
+[[body]]
+name = "mass"
+mass = 1.0
+inertia = 1.0
+position = [0.1, 0.0]
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = "mass"
+axis = [1.0, 0.0]
+preload = -10.0
+stiffness = 100.0
+)",
+                                    "a.toml", transformer_catalog(), {std::string("simulation.step=") + step});
+    const auto system = compile(model);
+    const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+    Judgement judgement = judge(model, *system, result, "");
+    judgement.distrust.clear(); // of its energy
+    weigh_errors(judgement, model, *system, result, estimate_global_error(*system, system->initial_state(), options_of(model), result));
+    return judgement.distrust;
+  };
+  const std::string coarse = distrust_at("0.1");
+  CAPTURE(coarse);
+  CHECK(coarse.find("two runs by auto at tolerances of 1e-09 and 1e-11 agree, and this one is off by ") == 0);
+  CHECK(coarse.find("in 'mass.x': the fixed steps are wrong") != std::string::npos);
+  CHECK(distrust_at("1e-3").empty());
+}

@@ -305,12 +305,11 @@ void print_judgement(std::ostream& out, const TabledRun& run) {
     print_second_opinion(out, run.summary.at("second_opinion"), number_at(run.summary.at("final_state"), "t"));
 }
 
-// "rk4, step 5e-05 s and 2.5e-05 s"
-std::string finer_text(const Json& finer, double step_asked) {
-  std::string text = text_at(finer.back(), "integrator"), before = ", step ";
-  if (number_at(finer.back(), "step") == step_asked) return text + ", tolerance " + rounded_text(number_at(finer.back(), "tolerance"));
+// "rk4, step 5e-05 s and 2.5e-05 s"; "auto, tolerance 1e-09 and 1e-11"
+std::string finer_text(const Json& finer, bool has_steps) {
+  std::string text = text_at(finer.back(), "integrator"), before = has_steps ? ", step " : ", tolerance ";
   for (const Json& options : finer) {
-    text += before + number_text(number_at(options, "step")) + " s";
+    text += before + (has_steps ? number_text(number_at(options, "step")) + " s" : rounded_text(number_at(options, "tolerance")));
     before = " and ";
   }
   return text;
@@ -329,9 +328,13 @@ void print_global_error(std::ostream& out, const TabledRun& run) {
     out << "\nGlobal error: unknown; " << text_at(estimate, "unknown_because") << "\n";
     return;
   }
-  const double step_asked = number_at(estimate.at("run"), "step");
-  out << "\nGlobal error, estimated from " << (finer.size() > 1 ? "finer runs (" : "a finer run (") << finer_text(finer, step_asked)
-      << "); of each channel's range\n";
+  const bool is_by_references = estimate.contains("references");
+  const bool has_steps = !is_by_references && number_at(finer.back(), "step") != number_at(estimate.at("run"), "step");
+  out << "\nGlobal error, estimated from "
+      << (is_by_references   ? "two adaptive runs ("
+          : finer.size() > 1 ? "finer runs ("
+                             : "a finer run (")
+      << finer_text(finer, has_steps) << "); of each channel's range\n";
   TextTable table({Align::left, Align::right, Align::left});
   double largest = 0.0;
   for (std::size_t k = 0; k < k_error_kinds; ++k) {
@@ -345,7 +348,7 @@ void print_global_error(std::ostream& out, const TabledRun& run) {
   }
   out << table;
   const double times_tolerance = largest / number_at(estimate.at("run"), "tolerance");
-  if (number_at(finer.back(), "step") == step_asked && times_tolerance > 1.0)
+  if (!is_by_references && !has_steps && times_tolerance > 1.0)
     out << "  the largest is " << small_text(times_tolerance) << " times the tolerance, which is meant for each step\n";
   if (const auto unmatched = estimate.at("unmatched_events").get<std::size_t>(); unmatched > 0)
     out << "  " << counted(unmatched, "event is", "events are") << " in one of the runs only: the run is not converged there\n";

@@ -87,7 +87,10 @@ TEST_CASE("simulate --estimate-error tells the global error, on the screen and i
   CHECK(has(text_of(bench.at("out/a/summary.json")), "\"global_error\""));
   const Outcome fixed =
       steplap_does({"simulate", "-v", model, "-o", bench.at("fixed"), "--estimate-error", "--integrator", "rk4", "--step", "1e-3"});
-  CHECK(has(fixed.out, "estimated from finer runs (rk4, step 5e-04 s and 0.00025 s)"));
+  CHECK(has(fixed.out, "estimated from two adaptive runs (auto, tolerance 1e-09 and 1e-11)"));
+  const Outcome stepped =
+      steplap_does({"simulate", "-v", model, "-o", bench.at("stepped"), "--estimate-error", "--integrator", "moreau", "--step", "1e-3"});
+  CHECK(has(stepped.out, "estimated from finer runs (moreau, step 5e-04 s and 0.00025 s)"));
   const Outcome plain = steplap_does({"simulate", "-v", model, "-o", bench.at("plain"), "--no-estimate"});
   CHECK_FALSE(has(plain.out, "Global error"));
   CHECK_FALSE(has(plain.out, "±"));
@@ -160,14 +163,16 @@ at_most = 1e4
 
 TEST_CASE("an estimate of much work is left out by count, not by the clock, and it is said what it would take") {
   const Workbench bench;
-  // A body and an element, four evaluations a step, six times as many steps for the estimate: 48 parts a step, 1e7 of them
-  // from 208 334 steps on, however fast or slow the computer is.
+  // A body and an element, one to four evaluations a step, six times as many steps for the estimate: 12 to 48 parts a step, less
+  // than 1e7 for 50 000 steps, more for a million, however fast or slow the computer is.
   const std::string model = bench.write("a.toml", k_oscillator);
-  const auto with = [&](const std::string& folder, const std::string& end) {
-    return steplap_does({"simulate", "-v", model, "-o", bench.at(folder), "--integrator", "rk4", "--step", "1e-6", "--end", end});
+  const auto with = [&](const std::string& folder, const std::string& method, const std::string& end) {
+    return steplap_does({"simulate", "-v", model, "-o", bench.at(folder), "--integrator", method, "--step", "1e-6", "--end", end});
   };
-  CHECK(has(with("in", "0.05").out, "estimated from finer runs (rk4, step 5e-07 s"));
-  const Outcome slow = with("out", "0.2085");
+  CHECK(has(with("in", "moreau", "0.05").out, "estimated from finer runs (moreau, step 5e-07 s"));
+  // References of fixed steps do not become dearer by shorter steps.
+  CHECK(has(with("short", "rk4", "0.25").out, "estimated from two adaptive runs (auto, tolerance "));
+  const Outcome slow = with("out", "moreau", "1");
   CHECK(slow.code == 0);
   CHECK(has(slow.out, "error not estimated: would take about "));
   CHECK(has(slow.out, "ask with --estimate-error"));

@@ -1,0 +1,125 @@
+#include "mbd/trust/reference_runs.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/trust/global_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+constexpr const char* k_method = "auto";
+// Errors of rk4 at usual steps are 1e-9 to 1e-4 of a range, those of a run some ten to a hundred times its tolerance. A reference at 1e-11
+// costs little more than one at 1e-8, since samples and extremes are most of its cost; below 1e-13 rounding makes the steps.
+constexpr double k_first_tolerance = 1e-9, k_tightening = 0.01;
+constexpr double k_most_tolerance_of_last = 1e-12;
+constexpr int k_division = 2;
+constexpr double k_most_own_error = 1.0 / 3.0; // of what the run differs by
+constexpr double k_safety = 1.5;               // no error follows the tolerance exactly
+constexpr double k_parted = 0.01;              // of a range: a millionfold of the larger tolerance and more
+constexpr double k_fewest_rows = 100.0;        // of the coarse run: half periods that count are longer
+constexpr long k_steps_between_looks = 64;     // at the evaluations made
+
+// Samples of the coarse run: a share of those of the reference. Where there are few of these, or not of all channels, extremes tell.
+SimulationOptions thinned_out(SimulationOptions coarse, const System& system, const RunResult& run, std::size_t stride) {
+  coarse.output_step *= static_cast<double>(stride);
+  const bool has_all = run.trajectory->channels().size() == system.channels.size();
+  coarse.has_extremes = !has_all || static_cast<double>(run.trajectory->size()) < k_fewest_rows;
+  return coarse;
+}
+
+bool is_stepped(const RunResult& run) { return run.statistics.storms > 0; }
+
+// Is the own error small beside what the run differs by, wherever both are known?
+bool is_fine_enough(const RunDifference& own, const RunDifference& of_run) {
+  for (std::size_t k = 0; k < k_error_kinds; ++k)
+    if (!std::isnan(of_run.worst[k].value) && !(own.worst[k].value <= k_most_own_error * of_run.worst[k].value)) return false;
+  return true;
+}
+
+// One run of the ladder of tolerances.
+struct Rung {
+  SimulationOptions options;
+  RunResult run;
+};
+
+// What `coarse` and `fine` together tell of the own error of `fine`.
+ReferenceRuns pair_of(const Rung& coarse, const Rung& fine, std::size_t stride, const System& system, const EventFilter& is_counted) {
+  ReferenceRuns pair;
+  pair.stride = stride;
+  pair.own = compare_runs(system, coarse.run, fine.run, is_counted, stride);
+  const bool has_same_events = pair.own.unmatched_events == 0;
+  pair.factor = has_same_events ? k_safety * k_tightening / (1.0 - k_tightening) : 1.0;
+  for (WorstError& worst : pair.own.worst) worst.value *= pair.factor;
+  pair.parted_at = parts_at(system, coarse.run, fine.run, stride, k_parted);
+  return pair;
+}
+
+} // namespace
+
+RunResult EvaluationBudget::simulate(const System& system, const State& initial, const SimulationOptions& options, double most_of_run) {
+  const double most = std::min(most_of_run, left());
+  Simulation simulation(system, initial, options);
+  const auto count = [&](const RunStatistics& run) {
+    spent_.steps += run.steps;
+    spent_.evaluations += run.evaluations;
+    spent_.cpu_seconds += run.cpu_seconds;
+  };
+  try {
+    for (long steps = 0; simulation.advance(); ++steps)
+      if (steps % k_steps_between_looks == 0 && static_cast<double>(simulation.statistics().evaluations) > most)
+        throw EstimateTooDear("given up after " + number_text(std::min(most_of_run, most_)) +
+                              " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
+  } catch (const NumericalFailure&) {
+    count(simulation.statistics());
+    throw;
+  }
+  RunResult result = std::move(simulation).result();
+  count(result.statistics);
+  return result;
+}
+
+std::optional<ReferenceRuns> reference_runs(const System& system, const State& initial, const SimulationOptions& options,
+                                            const RunResult& run, const EventFilter& is_counted, double most_evaluations,
+                                            EvaluationBudget& budget) {
+  const auto spent_before = static_cast<double>(budget.spent().evaluations);
+  const auto left = [&] { return most_evaluations - (static_cast<double>(budget.spent().evaluations) - spent_before); };
+  std::size_t stride = std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(run.trajectory->size()) / k_fewest_rows));
+  SimulationOptions next = options;
+  next.integrator = k_method;
+  next.settings.step = 0.0; // the first step is the method's choice: from a very short one both would grow alike
+  next.settings.tolerance = k_first_tolerance;
+  Rung coarse{thinned_out(next, system, run, stride), {}}, fine;
+  std::optional<ReferenceRuns> best;
+  try { // the next run may fail or be too dear: then what the ones before tell is all there is
+    coarse.run = budget.simulate(system, initial, coarse.options, left());
+    for (;;) {
+      // What else cuts steps is divided, too: both would take the same ones, and their difference would be zero.
+      next.settings.division *= k_division;
+      next.settings.tolerance *= k_tightening;
+      Rung finer{next, budget.simulate(system, initial, next, left())};
+      const RunResult& before = best ? fine.run : coarse.run;
+      if (is_stepped(before) || is_stepped(finer.run) || finer.run.statistics.steps <= before.statistics.steps) break;
+      if (best) {
+        coarse = std::move(fine);
+        stride = 1;
+      }
+      fine = std::move(finer);
+      best = pair_of(coarse, fine, stride, system, is_counted);
+      best->of_run = compare_runs(system, run, fine.run, is_counted);
+      const bool is_known = !best->parted_at && is_fine_enough(best->own, best->of_run);
+      if (is_known || next.settings.tolerance < k_most_tolerance_of_last) break;
+    }
+  } catch (const NumericalFailure&) {}
+  if (!best) return {};
+  best->coarse_options = std::move(coarse.options);
+  best->options = std::move(fine.options);
+  best->coarse = std::move(coarse.run);
+  best->reference = std::move(fine.run);
+  return best;
+}
+
+} // namespace steplap
