@@ -145,6 +145,7 @@ private:
   [[nodiscard]] bool is_tried() const;
   void note_tried();
   void find_overloads(const Evaluation& e);
+  [[nodiscard]] bool is_held_by_others(const FrictionPart& part);
 
   const System& system_;
   Linearization linearization_;

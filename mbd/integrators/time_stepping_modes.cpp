@@ -8,7 +8,8 @@
 //   3. Friction with the kinetic coefficient that is at rest and within its static set gets its static coefficient back.
 //   4. Of all that slides with its static coefficient, the one that is most overloaded gets its kinetic coefficient, together
 //      with all that equal it. The overload is what it would need to hold while everything that may stick holds, relative to what
-//      it can bear: under loads that grow in proportion this one begins to slide first.
+//      it can bear: under loads that grow in proportion this one begins to slide first. Where others that may stick hold it in any
+//      case, as two frictions on one body do, it slides only together with them: then all that slides gets its kinetic coefficient.
 // Each element is given back its static coefficient once in a step at most, and no set of coefficients is tried twice: from the set on
 // that would be, the elements with kinetic coefficients only become more. So there are at most about twice as many rounds as elements.
 #include "mbd/integrators/time_stepping.h"
@@ -27,6 +28,8 @@ constexpr double k_changes_in_tie = 10.0;
 // Where not all can hold (friction between parts that drives move apart) the loads are those of springs of the same stiffness relative
 // to the mobilities. Rounding makes errors of 1e-10 of them.
 constexpr double k_soft = 1e-6;
+// Of the velocities that add up to a row's: this is rest. They are solved to 1e-6 at worst.
+constexpr double k_rest_by_others = 1e-6;
 
 } // namespace
 
@@ -97,10 +100,18 @@ bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
   const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.is_inside; };
   if (std::none_of(parts_.begin(), parts_.end(), slides)) return false;
   find_overloads(e);
-  double most = 0.0;
+  double most = -1.0;
+  std::size_t top = 0;
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (slides(parts_[p])) most = std::max(most, overload_[p]);
+    if (slides(parts_[p]) && overload_[p] > most) {
+      most = overload_[p];
+      top = p;
+    }
   const double tie = std::max(k_tie, k_changes_in_tie * change);
+  if (std::count_if(parts_.begin(), parts_.end(), slides) > 1 && is_held_by_others(parts_[top])) {
+    for (FrictionPart& part : parts_) part.is_kinetic = part.is_kinetic || slides(part);
+    return true;
+  }
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     FrictionPart& part = parts_[p];
     // Rounding may leave one just inside its set that equals one just outside. Where elements share a load that they need not have, one may
@@ -132,6 +143,27 @@ void TimeStepping::find_overloads(const Evaluation& e) {
     overload_[p] = std::isnan(share) ? std::numeric_limits<double>::infinity() : share;
     row += part.dimension;
   }
+}
+
+// Is it at rest where all others with static coefficients hold? Then it cannot slide by itself, and how they share the load is not unique.
+bool TimeStepping::is_held_by_others(const FrictionPart& part) {
+  held_.clear();
+  for (const FrictionPart& other : parts_)
+    for (int i = 0; &other != &part && other.is_loaded && !other.is_kinetic && !other.is_driven && i < other.dimension; ++i)
+      held_.push_back(other.first + i);
+  if (part.is_driven || held_.empty() || !hold_rows()) return false;
+  for (int i = 0; i < part.dimension; ++i) {
+    const double* const row = &compliance_[static_cast<std::size_t>(part.first + i) * rows_];
+    double velocity = rate_[part.first + i], size = std::abs(velocity);
+    const auto add = [&](double part_of_it) {
+      velocity += part_of_it;
+      size += std::abs(part_of_it);
+    };
+    for (int j = 0; j < rows_; ++j) add(row[j] * wrench_[j]);
+    for (std::size_t j = 0; j < held_.size(); ++j) add(row[held_[j]] * (together_[j] - wrench_[held_[j]]));
+    if (std::abs(velocity) > k_rest_by_others * size) return false;
+  }
+  return true;
 }
 
 void TimeStepping::note_tried() {
