@@ -61,12 +61,15 @@ public:
 private:
   struct FrictionPart {
     int friction = 0, first = 0, dimension = 0; ///< first: among the rows of all parts
-    bool is_kinetic = false;
-    bool is_driven = false;                  ///< some direction that joints and drives alone decide
-    Mat3 mobility = Mat3::Zero();            ///< of such a part: its own block, exact zeros along those directions
-    Mat3 free = Mat3::Identity();            ///< projector along the others
-    double noise = 0.0;                      ///< velocity along those directions that counts as rest
-    double bound = 0.0, kinetic_share = 1.0; ///< of one dimension: what it bears at bound_at_, and sliding, of that
+    bool has_slid = false;                      ///< at the end of the step before
+    bool is_kinetic = false;                    ///< its set is that of the kinetic coefficient
+    bool is_returned = false;                   ///< was given back its static coefficient in this step
+    bool is_loaded = false;                     ///< it can bear something
+    bool is_driven = false;                     ///< some direction that joints and drives alone decide
+    Mat3 mobility = Mat3::Zero();               ///< of such a part: its own block, exact zeros along those directions
+    Mat3 free = Mat3::Identity();               ///< projector along the others
+    double noise = 0.0;                         ///< velocity along those directions that counts as rest
+    double bound = 0.0, kinetic_share = 1.0;    ///< of one dimension: what it bears at bound_at_, and sliding, of that
     FrictionBlock block;
   };
   /// Gradient of a friction row in the coordinates of the clusters of its two sides.
@@ -115,7 +118,7 @@ private:
   void respond(Dynamics& dynamics, double h);
   void find_driven(FrictionPart& part, double h);
   void free_rates(Dynamics& dynamics, double tolerance);
-  [[nodiscard]] Trouble balance_friction(Dynamics& dynamics, bool keeps_kinetic);
+  [[nodiscard]] Trouble settle_wrenches(Dynamics& dynamics, double& change);
   [[nodiscard]] double sweep(Dynamics& dynamics, int& worst);
   [[nodiscard]] FrictionBlock solve_part(const Evaluation& e, const FrictionPart& part) const;
   [[nodiscard]] FrictionBlock solve_coupled(const FrictionPart& part, double a, double b) const;
@@ -126,9 +129,23 @@ private:
   [[nodiscard]] double size_of(const FrictionPart& part, const double* wrench) const;
   [[nodiscard]] double largest_size(const Evaluation& e) const;
   void hold_together();
+  [[nodiscard]] bool hold_rows();
+  [[nodiscard]] bool factor_held(double proximal);
+  [[nodiscard]] double solve_held(int steps);
   void stretch(const Evaluation& e);
   [[nodiscard]] bool bears(const Evaluation& e, double share) const;
   void stop_at_rest(double change);
+  // time_stepping_modes.cpp
+  [[nodiscard]] bool slid_before(int f) const;
+  [[nodiscard]] Trouble balance_friction(Dynamics& dynamics, bool keeps_kinetic);
+  [[nodiscard]] bool turns_round(const FrictionPart& part) const;
+  [[nodiscard]] bool return_turned();
+  void return_stopped(const Evaluation& e);
+  [[nodiscard]] bool give_kinetic(const Evaluation& e, double change);
+  [[nodiscard]] bool is_tried() const;
+  void note_tried();
+  void find_overloads(const Evaluation& e);
+  [[nodiscard]] bool is_held_by_others(const FrictionPart& part);
 
   const System& system_;
   Linearization linearization_;
@@ -149,7 +166,9 @@ private:
       last_;                                ///< per row: now, before the last repetition, before the last sweep
   bool is_coupled_ = false;                 ///< bounds as functions of the wrenches
   std::vector<double> bound_at_, bound_by_; ///< per row: the wrench there; rows × rows: ∂bound/∂wrench
-  std::vector<int> held_;                   ///< scratch of hold_together
+  std::vector<int> held_;                   ///< rows of factor_held() and solve_held()
+  std::vector<char> tried_;                 ///< per set of modes tried and part: was it kinetic?
+  std::vector<double> overload_;            ///< per part: share of its static set that it would need to hold
   std::vector<double> matrix_, together_, rest_;
   std::vector<Sticking> sticking_, sticking_now_;               ///< per friction element: of the part before, of the part made
   std::vector<std::array<double, k_glances>> glance_usage_;     ///< per friction element

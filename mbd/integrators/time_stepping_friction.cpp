@@ -44,7 +44,8 @@ constexpr double k_rest_of_others = 1e-7, k_changes_at_rest = 10.0;
 // less by this factor, so many times.
 constexpr double k_probe = 1e-2, k_shorter = 1e-2;
 constexpr int k_probes = 6;
-constexpr double k_held = 1e-6; // what is left of the free velocities, relatively, where holding is possible
+constexpr int k_sets_expected = 8; // of modes that a step tries: memory for them
+constexpr double k_held = 1e-6;    // what is left of the free velocities, relatively, where holding is possible
 
 } // namespace
 
@@ -72,6 +73,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
       if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], dynamics.motion().data()).value;
     FrictionPart part;
     part.friction = f;
+    part.has_slid = slid_before(f);
     part.first = rows_;
     part.dimension = element.dimension();
     parts_.push_back(part);
@@ -112,6 +114,8 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
   matrix_.reserve(rows * rows); // of hold_together, which may be asked for the first time late
   for (auto* v : {&together_, &rest_}) v->reserve(rows);
   held_.reserve(rows);
+  overload_.reserve(parts_.size());
+  tried_.reserve(k_sets_expected * parts_.size());
   response_.resize(rows * n2);
   compliance_.assign(rows * rows, 0.0);
   rate_.assign(rows, 0.0);
@@ -249,15 +253,15 @@ FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, do
   double bound = part.bound - by[row] * bound_at_[row], slope = by[row];
   for (int j = 0; j < rows_; ++j)
     if (j != part.first) bound += by[j] * (wrench_[j] - bound_at_[j]);
+  if (part.is_kinetic) {
+    bound *= part.kinetic_share;
+    slope *= part.kinetic_share;
+  }
   FrictionBlock block;
   const double held = a > 0.0 ? -b / a : 0.0;
   block.is_inside = a > 0.0 && std::abs(held) <= bound + slope * held;
   block.wrench[0] = held;
   if (block.is_inside) return block;
-  if (part.is_kinetic) {
-    bound *= part.kinetic_share;
-    slope *= part.kinetic_share;
-  }
   double least = std::numeric_limits<double>::infinity();
   for (const double sign : {1.0, -1.0}) { // of the rate
     const double against = 1.0 + sign * slope;
@@ -344,7 +348,8 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   for (FrictionPart& part : parts_) {
     FrictionBlock block;
     block.is_inside = false;
-    if (system_.frictions[part.friction].friction->is_loaded(e, e.friction[part.friction])) block = solve_part(e, part);
+    part.is_loaded = system_.frictions[part.friction].friction->is_loaded(e, e.friction[part.friction]);
+    if (part.is_loaded) block = solve_part(e, part);
     double* const wrench = &wrench_[part.first];
     double before[3] = {0, 0, 0};
     std::copy(wrench, wrench + part.dimension, before);
@@ -367,22 +372,37 @@ void TimeStepping::hold_together() {
   held_.clear();
   for (const FrictionPart& part : parts_)
     for (int i = 0; part.block.is_inside && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
+  if (held_.empty() || !hold_rows()) return;
+  for (std::size_t i = 0; i < held_.size(); ++i) wrench_[held_[i]] = together_[i];
+}
+
+// The wrenches together_ that bring the rows held_ to rest, the least where many do. False where none can.
+bool TimeStepping::hold_rows() { return factor_held(k_proximal) && solve_held(k_proximal_steps) <= k_held; }
+
+// L Lᵀ of the symmetric part of the compliance of the rows held_, its diagonal raised by the share `proximal`. False if it is not
+// positive definite.
+bool TimeStepping::factor_held(double proximal) {
   const std::size_t n = held_.size();
-  if (n == 0) return;
   const auto c = [&](std::size_t i, std::size_t j) { return compliance_[static_cast<std::size_t>(held_[i]) * rows_ + held_[j]]; };
   matrix_.resize(n * n);
-  for (std::size_t i = 0; i < n; ++i) { // L Lᵀ of the problem's symmetric part, its diagonal raised
+  for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      double sum = i == j ? c(i, i) * (1.0 + k_proximal) : 0.5 * (c(i, j) + c(j, i));
+      double sum = i == j ? c(i, i) * (1.0 + proximal) : 0.5 * (c(i, j) + c(j, i));
       for (std::size_t k = 0; k < j; ++k) sum -= matrix_[i * n + k] * matrix_[j * n + k];
-      if (i == j && !(sum > 0.0)) return;
+      if (i == j && !(sum > 0.0)) return false;
       matrix_[i * n + j] = i == j ? std::sqrt(sum) : sum / matrix_[j * n + j];
     }
   }
+  return true;
+}
+
+// The wrenches together_ by so many proximal iterations with the factors of factor_held(), all others as they are. Returns the share of the rows' velocity without them that is left.
+double TimeStepping::solve_held(int steps) {
+  const std::size_t n = held_.size();
   together_.assign(n, 0.0);
   rest_.resize(n);
   double wanted = 0.0, left = 0.0;
-  for (int step = 0; step <= k_proximal_steps; ++step) {
+  for (int step = 0; step <= steps; ++step) {
     left = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       const double* const row = &compliance_[static_cast<std::size_t>(held_[i]) * rows_];
@@ -390,10 +410,10 @@ void TimeStepping::hold_together() {
       for (int j = 0; j < rows_; ++j) sum -= row[j] * wrench_[j];
       for (std::size_t j = 0; j < n; ++j) sum -= row[held_[j]] * (together_[j] - wrench_[held_[j]]);
       rest_[i] = sum;
-      left = std::max(left, std::abs(sum) / std::sqrt(c(i, i)));
+      left = std::max(left, std::abs(sum) / std::sqrt(row[held_[i]]));
     }
     if (step == 0) wanted = left;
-    if (step == k_proximal_steps) break;
+    if (step == steps) break;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t k = 0; k < i; ++k) rest_[i] -= matrix_[i * n + k] * rest_[k];
       rest_[i] /= matrix_[i * n + i];
@@ -404,8 +424,7 @@ void TimeStepping::hold_together() {
       together_[i] += rest_[i];
     }
   }
-  if (!(left <= k_held * wanted)) return;
-  for (std::size_t i = 0; i < n; ++i) wrench_[held_[i]] = together_[i];
+  return wanted > 0.0 ? left / wanted : 0.0;
 }
 
 // Do all elements bear the wrenches before the last sweep and `share` of what it changed?
@@ -478,26 +497,17 @@ void TimeStepping::stop_at_rest(double change) {
   }
 }
 
-// Block Gauss–Seidel: each element's wrench for the others' as they are; those that slip get their
-// kinetic coefficients and stay with them. Each round but the last makes one element more slip:
-// there are no more than elements.
-TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
-  for (FrictionPart& part : parts_) part.is_kinetic = part.is_kinetic && keeps_kinetic;
-  for (bool is_changed = true; is_changed;) {
-    double change = 0.0;
-    int worst = 0;
-    for (int i = 0; i < k_max_sweeps; ++i) {
-      change = sweep(dynamics, worst);
-      if (change <= k_settled) break;
-      if (i < k_joint_sweeps) hold_together();
-      else if (!is_coupled_ && i % k_sweeps_between == 0) stretch(dynamics.evaluation());
-    }
-    if (!(change <= k_tolerated)) return {"friction", system_.frictions[worst].element, change, " of its force in the last of 2000 sweeps"};
-    stop_at_rest(change);
-    is_changed = false;
-    for (FrictionPart& part : parts_)
-      if (!part.block.is_inside && !part.is_kinetic) part.is_kinetic = is_changed = true;
+// Block Gauss–Seidel: each element's wrench for the others' as they are, with static or kinetic coefficients as they are.
+TimeStepping::Trouble TimeStepping::settle_wrenches(Dynamics& dynamics, double& change) {
+  int worst = 0;
+  for (int i = 0; i < k_max_sweeps; ++i) {
+    change = sweep(dynamics, worst);
+    if (change <= k_settled) break;
+    if (i < k_joint_sweeps) hold_together();
+    else if (!is_coupled_ && i % k_sweeps_between == 0) stretch(dynamics.evaluation());
   }
+  if (!(change <= k_tolerated)) return {"friction", system_.frictions[worst].element, change, " of its force in the last of 2000 sweeps"};
+  stop_at_rest(change);
   return {};
 }
 

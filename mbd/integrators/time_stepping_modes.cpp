@@ -1,0 +1,183 @@
+// Static or kinetic coefficient: which of the two each friction element has in a time step.
+//
+// Kinetic friction below static makes the problem of a step non-convex, and nothing in it marks the onset of a slip. Friction that
+// slid at the end of the last step goes on with its kinetic coefficient, as it does in truth; otherwise its static force, which it
+// has not, would load its neighbours. All other friction begins with its static coefficient. Then, until nothing changes:
+//   1. The convex problem is solved for the coefficients as they are.
+//   2. Friction that would slide the other way than before has passed through rest: it gets its static coefficient back.
+//   3. Friction with the kinetic coefficient that is at rest and within its static set gets its static coefficient back.
+//   4. Of all that slides with its static coefficient, the one that is most overloaded gets its kinetic coefficient, together
+//      with all that equal it. The overload is what it would need to hold while everything that may stick holds, relative to what
+//      it can bear: under loads that grow in proportion this one begins to slide first. Where others that may stick hold it in any
+//      case, as two frictions on one body do, it slides only together with them: then all that slides gets its kinetic coefficient.
+// Each element is given back its static coefficient once in a step at most, and no set of coefficients is tried twice: from the set on
+// that would be, the elements with kinetic coefficients only become more. So there are at most about twice as many rounds as elements.
+#include "mbd/integrators/time_stepping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_tie = 1e-9; // of overloads that are equal: far above the rounding of identical elements
+// Wrenches are known to the last change of the sweeps; overloads that differ by no more than this many times that are equal, too.
+constexpr double k_changes_in_tie = 10.0;
+// Where not all can hold (friction between parts that drives move apart) the loads are those of springs of the same stiffness relative
+// to the mobilities. Rounding makes errors of 1e-10 of them.
+constexpr double k_soft = 1e-6;
+// Of the velocities that add up to a row's: this is rest. They are solved to 1e-6 at worst.
+constexpr double k_rest_by_others = 1e-6;
+
+} // namespace
+
+// Where time stands still a step begins at rest, whatever the last one came to.
+bool TimeStepping::slid_before(int f) const { return start_.friction[f].phase == FrictionPhase::slip && std::isnan(held_time_); }
+
+// `keeps_kinetic`: goes on with the coefficients of the last call, of which more become kinetic.
+TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
+  const Evaluation& e = dynamics.evaluation();
+  for (FrictionPart& part : parts_) {
+    part.is_kinetic = keeps_kinetic ? part.is_kinetic : part.has_slid;
+    part.is_returned = false;
+  }
+  tried_.clear();
+  bool only_grows = keeps_kinetic;
+  for (;;) {
+    double change = 0.0;
+    if (const Trouble trouble = settle_wrenches(dynamics, change); trouble.what) return trouble;
+    note_tried();
+    bool is_changed = false;
+    if (!only_grows) {
+      is_changed = return_turned();
+      if (!is_changed) return_stopped(e);
+    }
+    if (!is_changed) is_changed = give_kinetic(e, change);
+    if (!is_changed) return {};
+    if (only_grows || !is_tried()) continue;
+    only_grows = true;
+    const char* const last = &tried_[tried_.size() - parts_.size()];
+    for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p].is_kinetic = last[p] != 0;
+    if (!give_kinetic(e, change)) return {};
+  }
+}
+
+// Slides the other way than at the end of the last step. In three dimensions a slip swings round without a rest; there the present
+// friction would push along the former slip.
+bool TimeStepping::turns_round(const FrictionPart& part) const {
+  if (!part.has_slid || !part.is_kinetic || !part.is_loaded || part.block.is_inside) return false;
+  const FrictionState& before = start_.friction[part.friction];
+  if (part.dimension == 1) return before.sign * part.block.direction[0] < 0.0;
+  double power = 0.0;
+  for (int i = 0; i < part.dimension; ++i) power += wrench_[part.first + i] * before.direction[i];
+  return power > 0.0;
+}
+
+bool TimeStepping::return_turned() {
+  bool is_any = false;
+  for (FrictionPart& part : parts_) {
+    if (part.is_returned || !turns_round(part)) continue;
+    part.is_kinetic = false;
+    part.is_returned = is_any = true;
+  }
+  return is_any;
+}
+
+// The wrenches are those of the static sets, too: no new balance is needed for that.
+void TimeStepping::return_stopped(const Evaluation& e) {
+  for (FrictionPart& part : parts_) {
+    if (!part.is_kinetic || part.is_returned || !part.is_loaded || !part.block.is_inside) continue;
+    part.is_kinetic = false;
+    if (solve_part(e, part).is_inside) part.is_returned = true;
+    else part.is_kinetic = true; // a viscous part makes its kinetic set the larger one
+  }
+}
+
+// False if nothing slides with its static coefficient.
+bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
+  const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.is_inside; };
+  if (std::none_of(parts_.begin(), parts_.end(), slides)) return false;
+  find_overloads(e);
+  double most = -1.0;
+  std::size_t top = 0;
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    if (slides(parts_[p]) && overload_[p] > most) {
+      most = overload_[p];
+      top = p;
+    }
+  const double tie = std::max(k_tie, k_changes_in_tie * change);
+  if (std::count_if(parts_.begin(), parts_.end(), slides) > 1 && is_held_by_others(parts_[top])) {
+    for (FrictionPart& part : parts_) part.is_kinetic = part.is_kinetic || slides(part);
+    return true;
+  }
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    FrictionPart& part = parts_[p];
+    // Rounding may leave one just inside its set that equals one just outside. Where elements share a load that they need not have, one may
+    // hold with an overload beyond one: others bear the rest.
+    const bool equals_by_rounding = part.is_loaded && !part.is_kinetic && most <= 1.0 + tie && std::abs(overload_[p] - most) <= tie;
+    if ((slides(part) && overload_[p] >= most * (1.0 - tie)) || equals_by_rounding) part.is_kinetic = true;
+  }
+  return true;
+}
+
+// Infinite where drives decide the motion, or nothing can be borne: such friction slides for certain.
+void TimeStepping::find_overloads(const Evaluation& e) {
+  overload_.assign(parts_.size(), 0.0);
+  held_.clear();
+  for (const FrictionPart& part : parts_)
+    for (int i = 0; part.is_loaded && !part.is_kinetic && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
+  together_.assign(held_.size(), 0.0);
+  if (!held_.empty() && !hold_rows() && factor_held(k_soft)) (void)solve_held(1);
+  std::size_t row = 0;
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const FrictionPart& part = parts_[p];
+    if (!part.is_loaded || part.is_kinetic) continue;
+    if (part.is_driven) {
+      if (!part.block.is_inside) overload_[p] = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    double normal[3];
+    const double share = system_.frictions[part.friction].friction->gauge(e, e.friction[part.friction], &together_[row], normal);
+    overload_[p] = std::isnan(share) ? std::numeric_limits<double>::infinity() : share;
+    row += part.dimension;
+  }
+}
+
+// Is it at rest where all others with static coefficients hold? Then it cannot slide by itself, and how they share the load is not unique.
+bool TimeStepping::is_held_by_others(const FrictionPart& part) {
+  held_.clear();
+  for (const FrictionPart& other : parts_)
+    for (int i = 0; &other != &part && other.is_loaded && !other.is_kinetic && !other.is_driven && i < other.dimension; ++i)
+      held_.push_back(other.first + i);
+  if (part.is_driven || held_.empty() || !hold_rows()) return false;
+  for (int i = 0; i < part.dimension; ++i) {
+    const double* const row = &compliance_[static_cast<std::size_t>(part.first + i) * rows_];
+    double velocity = rate_[part.first + i], size = std::abs(velocity);
+    const auto add = [&](double part_of_it) {
+      velocity += part_of_it;
+      size += std::abs(part_of_it);
+    };
+    for (int j = 0; j < rows_; ++j) add(row[j] * wrench_[j]);
+    for (std::size_t j = 0; j < held_.size(); ++j) add(row[held_[j]] * (together_[j] - wrench_[held_[j]]));
+    if (std::abs(velocity) > k_rest_by_others * size) return false;
+  }
+  return true;
+}
+
+void TimeStepping::note_tried() {
+  for (const FrictionPart& part : parts_) tried_.push_back(part.is_kinetic ? 1 : 0);
+}
+
+bool TimeStepping::is_tried() const {
+  const std::size_t n = parts_.size();
+  for (std::size_t first = 0; first + n <= tried_.size(); first += n) {
+    std::size_t p = 0;
+    while (p < n && (tried_[first + p] != 0) == parts_[p].is_kinetic) ++p;
+    if (p == n) return true;
+  }
+  return false;
+}
+
+} // namespace steplap
