@@ -20,6 +20,8 @@ constexpr double k_projection_tolerance = 1e-12; // m, rad
 // Rows that rest together one way only, as nearly parallel ones do (two feet of a box that is not quite level), take
 // what is left of one's slip from the motion many times over. More than this is no rest.
 constexpr double k_most_taken = 1e3;
+// Of what friction bears either way, by which it has to be inside to hold for certain: a thousand times what wrenches are known to.
+constexpr double k_inside = 1e-9;
 
 // What holds of one dimension: fills in f(row, its measure).
 template <class F> void for_each_held(const System& system, const State& state, const std::vector<Motion<double>>& motion, const F& f) {
@@ -47,6 +49,40 @@ bool is_slight(const System& system, const State& before, const State& after) {
     taken = std::max({taken, point_speed(motion[row.a], m.lever_a, m.couple), point_speed(motion[row.b], m.lever_b, m.couple)});
   });
   return taken <= k_most_taken * left;
+}
+
+// Several elements have reached what they bear at one instant, and all were let go. Where some of them do slide, what the kinetic
+// coefficient takes from their force may relieve the others: these have no rate to begin with, and hold as `before`. One that is not
+// inside its static bound then is let go for good, so that no set of modes is tried twice.
+void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& modes, const std::vector<FrictionState>& before, State& state) {
+  std::vector<int> begun, relieved;
+  const LoadSharing* const sharing = dynamics.sharing();
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const bool is_let_go = before[f].phase == FrictionPhase::stick && state.friction[f].phase == FrictionPhase::slip;
+    const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // a group is let go as a whole
+    if (is_let_go && is_alone && system.frictions[f].friction->dimension() == 1 && !one_sided_row(*system.frictions[f].friction))
+      begun.push_back(static_cast<int>(f));
+  }
+  if (begun.size() < 2) return;
+  modes.evaluate(state);
+  for (const int f : begun) {
+    double rate = 0.0, acceleration = 0.0, rounding = 0.0;
+    dynamics.slip_motion(f, modes.rates(), &rate, &acceleration, &rounding);
+    if (!(state.friction[f].sign * acceleration > rounding)) relieved.push_back(f);
+  }
+  if (relieved.size() == begun.size()) return; // with no kinetic coefficient below the static one all begin without acceleration
+  const std::vector<FrictionState> released = state.friction;
+  while (!relieved.empty()) {
+    state.friction = released;
+    for (const int f : relieved) state.friction[f] = before[f];
+    modes.evaluate(state);
+    const auto is_overloaded = [&](int f) {
+      const double* const watch = &dynamics.watch()[system.frictions[f].watch];
+      return !(std::min(watch[0], watch[1]) > k_inside * std::max(watch[0], watch[1]));
+    };
+    if (std::erase_if(relieved, is_overloaded) == 0) return;
+  }
+  state.friction = released;
 }
 
 } // namespace
@@ -499,6 +535,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   bool is_contact_changed = switch_units(state, fired, events);
   if (follow_jumps(state, watch_before, events)) is_contact_changed = true;
   const Fired found = fire(state, fired);
+  if (fired.size() > 1) hold_relieved(system_, dynamics_, modes_, before_, state);
   if (!fired.empty()) modes_.forget_evaluation();
   if (found.is_any_tight && strike(state, Blow::ropes, events)) is_contact_changed = true;
   bool is_settled = false; // in the modes that it has

@@ -350,12 +350,12 @@ TEST_CASE("storms: a criterion by event is judged by what happens inside") {
 
 // A limb with 1 m/s on sheets that drag it with 0.2 mN, over at 1.002 s: the run ends there, as it does without a storm.
 TEST_CASE("storms: a joint that comes apart ends the run") {
-  const std::string limb =
-      body("limb", "mass = 1.0; inertia = 1.0; velocity = [1.0, 0.0]") +
-      element("step_lap_joint", "joint", "limb = 'limb'; active_part = 'ground'") +
-      element("step_lap_interface", "sheets",
-              "joint = 'joint'; yoke = [[-1e3, -1e3], [0.902, -1e3], [0.902, 1e3], [-1e3, 1e3]]; limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], "
-              "[-0.1, 0.05]]; pressure = 0.1; static_friction = 0.1");
+  const std::string limb = body("limb", "mass = 1.0; inertia = 1.0; velocity = [1.0, 0.0]") +
+                           element("step_lap_joint", "joint", "limb = 'limb'; active_part = 'ground'") +
+                           element("step_lap_interface", "sheets",
+                                   "joint = 'joint'; yoke = [[-1e3, -1e3], [0.902, -1e3], [0.902, 1e3], [-1e3, 1e3]]; limb = [[-0.1, "
+                                   "-0.05], [0.1, -0.05], [0.1, 0.05], "
+                                   "[-0.1, 0.05]]; pressure = 0.1; static_friction = 0.1");
   std::unique_ptr<System> system;
   const RunResult run = run_of(limb + bead(1.0, false), "auto", system);
   REQUIRE(run.statistics.storms == 1);
