@@ -67,7 +67,8 @@ struct StopsLaw {
   }
   static EventKind transition(UnitMode from, UnitMode to) {
     if (to == k_between) return EventKind::leaves_stop;
-    if (from == k_between) return is_upper(to) ? EventKind::reaches_upper_stop : EventKind::reaches_lower_stop;
+    if (from == k_between || is_upper(from) != is_upper(to))
+      return is_upper(to) ? EventKind::reaches_upper_stop : EventKind::reaches_lower_stop;
     return KelvinVoigtContact::transition(contact_mode(from), contact_mode(to));
   }
 };

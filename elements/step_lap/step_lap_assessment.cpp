@@ -72,7 +72,7 @@ void read_load(const RunResult& result, const Model& model, const StepLapJoint& 
   }
 }
 
-// Where time stepping goes over a storm, a joint that it lets go has no event.
+// The mode at the ends of steps counts as well as events do: a slip of either is one.
 void read_modes(const RunResult& result, JointAssessment& a) {
   const ChannelRange* mode = find_range(result, a.joint + ".mode");
   const double slip = static_cast<double>(FrictionPhase::slip);

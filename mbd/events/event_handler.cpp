@@ -20,6 +20,8 @@ constexpr double k_projection_tolerance = 1e-12; // m, rad
 // Rows that rest together one way only, as nearly parallel ones do (two feet of a box that is not quite level), take
 // what is left of one's slip from the motion many times over. More than this is no rest.
 constexpr double k_most_taken = 1e3;
+// Of what friction bears either way, by which it has to be inside to hold for certain: a thousand times what wrenches are known to.
+constexpr double k_inside = 1e-9;
 
 // What holds of one dimension: fills in f(row, its measure).
 template <class F> void for_each_held(const System& system, const State& state, const std::vector<Motion<double>>& motion, const F& f) {
@@ -47,6 +49,40 @@ bool is_slight(const System& system, const State& before, const State& after) {
     taken = std::max({taken, point_speed(motion[row.a], m.lever_a, m.couple), point_speed(motion[row.b], m.lever_b, m.couple)});
   });
   return taken <= k_most_taken * left;
+}
+
+// Several elements have reached what they bear at one instant, and all were let go. Where some of them do slide, what the kinetic
+// coefficient takes from their force may relieve the others: these have no rate to begin with, and hold as `before`. One that is not
+// inside its static bound then is let go for good, so that no set of modes is tried twice.
+void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& modes, const std::vector<FrictionState>& before, State& state) {
+  std::vector<int> begun, relieved;
+  const LoadSharing* const sharing = dynamics.sharing();
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const bool is_let_go = before[f].phase == FrictionPhase::stick && state.friction[f].phase == FrictionPhase::slip;
+    const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // a group is let go as a whole
+    if (is_let_go && is_alone && system.frictions[f].friction->dimension() == 1 && !one_sided_row(*system.frictions[f].friction))
+      begun.push_back(static_cast<int>(f));
+  }
+  if (begun.size() < 2) return;
+  modes.evaluate(state);
+  for (const int f : begun) {
+    double rate = 0.0, acceleration = 0.0, rounding = 0.0;
+    dynamics.slip_motion(f, modes.rates(), &rate, &acceleration, &rounding);
+    if (!(state.friction[f].sign * acceleration > rounding)) relieved.push_back(f);
+  }
+  if (relieved.size() == begun.size()) return; // with no kinetic coefficient below the static one all begin without acceleration
+  const std::vector<FrictionState> released = state.friction;
+  while (!relieved.empty()) {
+    state.friction = released;
+    for (const int f : relieved) state.friction[f] = before[f];
+    modes.evaluate(state);
+    const auto is_overloaded = [&](int f) {
+      const double* const watch = &dynamics.watch()[system.frictions[f].watch];
+      return !(std::min(watch[0], watch[1]) > k_inside * std::max(watch[0], watch[1]));
+    };
+    if (std::erase_if(relieved, is_overloaded) == 0) return;
+  }
+  state.friction = released;
 }
 
 } // namespace
@@ -153,13 +189,18 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std
     is_any = true;
     for (int w = 0; w < unit.watch_count; ++w)
       fresh_[unit.watch + w] = !unit.group->is_surely_positive(unit.index, to, w, dynamics_.evaluation());
-    const EventKind kind = unit.group->transition(from, to);
-    if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
-    const EventKind slide = sliding_of(*unit.group, to); // it closes, and slides from there
-    if (!is_slip(kind) && slide != EventKind::none && slide != sliding_of(*unit.group, from))
-      events.push_back({state.t, system_.element_names[unit.element], slide});
+    list_unit_change(u, from, to, state.t, events);
   }
   return is_any;
+}
+
+void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t, std::vector<Event>& events) const {
+  const Unit& unit = system_.units[u];
+  const EventKind kind = unit.group->transition(from, to);
+  if (kind != EventKind::none) events.push_back({t, system_.element_names[unit.element], kind});
+  const EventKind slide = sliding_of(*unit.group, to); // it closes, and slides from there
+  if (!is_slip(kind) && slide != EventKind::none && slide != sliding_of(*unit.group, from))
+    events.push_back({t, system_.element_names[unit.element], slide});
 }
 
 void EventHandler::fire_friction(State& state, int f, int slot) {
@@ -305,34 +346,43 @@ void watch_apart(const System& system, const State& state, std::vector<double>& 
 
 } // namespace
 
+// True if anything but a rope's tension has changed of friction f.
+bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old, const std::vector<double>& memory_before,
+                                        const State& state, std::vector<Event>& events) {
+  const FrictionState& now = state.friction[f];
+  const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
+  if (old.phase == now.phase && old.foot == now.foot && is_same_slip) return false;
+  const FrictionUnit& unit = system_.frictions[f];
+  const std::string& name = system_.element_names[unit.element];
+  if (old.foot != now.foot && now.phase != FrictionPhase::apart) events.push_back({state.t, name, unit.friction->place_change(old, now)});
+  if (old.phase == now.phase && is_same_slip) return true;
+  EventKind kind = EventKind::none;
+  switch (now.phase) {
+  case FrictionPhase::free: kind = EventKind::loses_normal_force; break;
+  case FrictionPhase::stick: kind = EventKind::sticks; break;
+  case FrictionPhase::slip: kind = slip_kind(f, old, now); break;
+  case FrictionPhase::apart: kind = EventKind::comes_apart; break;
+  }
+  events.push_back({state.t, name, kind, kind == EventKind::sticks ? blow_text(system_, f, memory_before, state) : std::string()});
+  if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart()) stop_reason_ = "'" + name + "' came apart";
+  return true;
+}
+
 void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
                                  std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
-    const FrictionState& old = before[f];
-    const FrictionState& now = state.friction[f];
-    if (const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction)) {
+    const FrictionState &old = before[f], &now = state.friction[f];
+    const FrictionUnit& unit = system_.frictions[f];
+    if (const OneSidedRow* const rope = one_sided_row(*unit.friction)) {
       const std::size_t known = events.size();
       note_rope(system_, {rope, f}, old.phase, memory_before, state, events);
-      for (int w = 0; w < k_friction_watches && events.size() > known; ++w) fresh_[system_.frictions[f].watch + w] = 1;
+      for (int w = 0; w < k_friction_watches && events.size() > known; ++w) fresh_[unit.watch + w] = 1;
       continue;
     }
-    const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
-    if (old.phase == now.phase && old.foot == now.foot && is_same_slip) continue;
-    const FrictionUnit& unit = system_.frictions[f];
+    if (!list_friction_change(f, old, memory_before, state, events)) continue;
     for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
-    const std::string& name = system_.element_names[unit.element];
-    if (old.foot != now.foot && now.phase != FrictionPhase::apart) events.push_back({state.t, name, unit.friction->place_change(old, now)});
-    if (old.phase == now.phase && is_same_slip) continue;
-    EventKind kind = EventKind::none;
-    switch (now.phase) {
-    case FrictionPhase::free: kind = EventKind::loses_normal_force; break;
-    case FrictionPhase::stick: kind = EventKind::sticks; break;
-    case FrictionPhase::slip: kind = slip_kind(f, old, now); break;
-    case FrictionPhase::apart: kind = EventKind::comes_apart; break;
-    }
-    events.push_back({state.t, name, kind, kind == EventKind::sticks ? blow_text(system_, f, memory_before, state) : std::string()});
-    if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart()) stop_reason_ = "'" + name + "' came apart";
-    if (!unit.friction->is_rigid()) continue;
+    const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
+    if ((old.phase == now.phase && is_same_slip) || !unit.friction->is_rigid()) continue;
     dynamics_.forget_layouts();
     modes_.forget_evaluation();
   }
@@ -347,13 +397,20 @@ void EventHandler::settle_phases(State& state) {
 }
 
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
-  for (std::size_t u = 0; u < system_.units.size(); ++u) {
-    const Unit& unit = system_.units[u];
-    if (before.mode[u] == state.mode[u]) continue;
-    const EventKind kind = unit.group->transition(before.mode[u], state.mode[u]);
-    if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
-  }
-  // What sticks at both ends may have slipped in a part of the step.
+  list_changes_within(before, state, events);
+  note_friction(before.friction, before.memory, state, events);
+  clear_fresh();
+}
+
+void EventHandler::list_changes(const State& before, const State& state, std::vector<Event>& events) {
+  list_changes_within(before, state, events);
+  for (std::size_t f = 0; f < state.friction.size(); ++f) (void)list_friction_change(f, before.friction[f], before.memory, state, events);
+}
+
+// Changes of units, and of friction that sticks in both states but may have slipped in between.
+void EventHandler::list_changes_within(const State& before, const State& state, std::vector<Event>& events) const {
+  for (std::size_t u = 0; u < system_.units.size(); ++u)
+    if (before.mode[u] != state.mode[u]) list_unit_change(static_cast<int>(u), before.mode[u], state.mode[u], state.t, events);
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before.friction[f], &now = state.friction[f];
     if (old.phase != FrictionPhase::stick || now.phase != FrictionPhase::stick) continue;
@@ -362,8 +419,6 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
     events.push_back({state.t, name, slip_kind(f, old, now)});
     events.push_back({state.t, name, EventKind::sticks});
   }
-  note_friction(before.friction, before.memory, state, events);
-  clear_fresh();
 }
 
 void EventHandler::fail_on_pulley(const State& state, int f) const {
@@ -480,6 +535,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   bool is_contact_changed = switch_units(state, fired, events);
   if (follow_jumps(state, watch_before, events)) is_contact_changed = true;
   const Fired found = fire(state, fired);
+  if (fired.size() > 1) hold_relieved(system_, dynamics_, modes_, before_, state);
   if (!fired.empty()) modes_.forget_evaluation();
   if (found.is_any_tight && strike(state, Blow::ropes, events)) is_contact_changed = true;
   bool is_settled = false; // in the modes that it has

@@ -15,7 +15,8 @@ struct Event {
   double t = 0.0;
   std::string element;
   EventKind kind = EventKind::none;
-  std::string detail = {}; ///< for people, behind the words of the kind: mostly nothing
+  std::string detail = {};     ///< for people, behind the words of the kind: mostly nothing
+  double located_within = 0.0; ///< s: it happened at most so long before t; 0 of events that were closed in on
 
   /// As it is written, never compared: "slips forward".
   [[nodiscard]] std::string words() const;
@@ -45,6 +46,9 @@ public:
   void settle_phases(State& state);
   /// Notes what has changed between two states, for a method that decides modes and phases itself.
   void note_changes(const State& before, const State& state, std::vector<Event>& events);
+  /// Appends the events that lead from one state to the other, in a system without inextensible ropes, and changes nothing else but
+  /// stop_reason().
+  void list_changes(const State& before, const State& state, std::vector<Event>& events);
 
   /// Slots whose unit or friction changed in the last handle(), for EventFinder.
   [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
@@ -69,6 +73,10 @@ private:
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
+  void list_changes_within(const State& before, const State& state, std::vector<Event>& events) const;
+  void list_unit_change(int u, UnitMode from, UnitMode to, double t, std::vector<Event>& events) const;
+  [[nodiscard]] bool list_friction_change(std::size_t f, const FrictionState& old, const std::vector<double>& memory_before,
+                                          const State& state, std::vector<Event>& events);
   void note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
                      std::vector<Event>& events);
   void forget_moved_layouts(const State& state);

@@ -76,7 +76,7 @@ void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   dynamics.unpack(t1, y1_.data(), state);
 }
 
-void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tolerance) {
+void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tolerance, const PartObserver& observe) {
   residual_ = {};
   if (is_rounding(state.t, t1)) return drift(dynamics, state, t1);
   longest_ = std::max(longest_, t1 - state.t);
@@ -103,6 +103,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
     }
     if (!trouble.what) {
       std::swap(sticking_, sticking_now_);
+      if (observe) observe(start_, state);
       if (halvings > 0 && !is_last) {
         part = 2.0 * h;
         --halvings;

@@ -37,6 +37,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace steplap {
@@ -45,11 +46,14 @@ class TimeStepping {
 public:
   explicit TimeStepping(const System& system);
 
+  /// Called at the end of each part that a step is made of, with the states at its ends.
+  using PartObserver = std::function<void(const State& before, const State& after)>;
+
   /// Advances `state` by h to its time t1 = t + h, with contact modes, friction phases, anchors,
   /// and the two integrals of power. `dynamics` is left with `state` set. Locks and rows are met to
   /// `tolerance`. A step whose length is rounding decides nothing. Throws NumericalFailure, `state`
   /// then being that before the part of the step that cannot be made.
-  void step(Dynamics& dynamics, State& state, double t1, double tolerance);
+  void step(Dynamics& dynamics, State& state, double t1, double tolerance, const PartObserver& observe = {});
 
   /// Time stands still (settling.h): in steps that follow loads, drives and clamping pressures are those of `t`, whatever the step's times.
   void hold_time(double t) { held_time_ = t; }

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 namespace steplap {
@@ -24,10 +23,6 @@ namespace {
 // limit means that modes chase each other without the motion getting anywhere.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
-// Windows of storms, of the time in which bodies fall, √(L/g) (1 ms for L = 1 m), and of the run, of which it is a thousandth:
-// an element may have 50 events in each of them, 50 000 in a run, and is followed from one to the next.
-constexpr double k_storm_window = 1e-3 * std::numbers::pi;
-constexpr double k_storm_windows = 2.0; // that time stepping goes over
 constexpr long k_steps_between_looks = 1L << 16;
 // By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
 // capacities and finds events to rounding; what is a thousand times that is neither.
@@ -35,9 +30,6 @@ constexpr double k_held_beyond = 1e-6;
 // Kinks of tables are no sign of anything wrong, and cost little; but a list of more than a million is read by nobody.
 constexpr long k_least_kinks = 1000000;
 constexpr long k_kinks_per_event = 10;
-// rad, of a harmonic of a load or drive in a step whose error nothing controls: of the fourth order it then takes half a wave
-// to 1e-5.
-constexpr double k_turn_of_fixed_steps = 0.4;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
 } // namespace
@@ -316,76 +308,10 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
   const auto first_new = record_->events.begin() + static_cast<std::ptrdiff_t>(known);
   if (first_new != record_->events.end() && std::all_of(first_new, record_->events.end(), is_at_kink))
     guard_against_kinks(++kinks_, options_.max_events, t, std::string(record_->events.back().element));
-  if (method(options_.integrator).may_step_over_storms && !actions_ && system_.inner_count() == 0 && !first_one_sided_row(system_) &&
-      handler_.stop_reason().empty()) {
-    const double window = storm_window();
-    for (std::size_t i = known; i < record_->events.size(); ++i) {
-      if (is_kink(record_->events[i].kind) || !storm_.note(t, record_->events[i].element, window)) continue;
-      const double step = options_.storm_step * window;
-      const double end = std::min(next_motion_limit(), t + k_storm_windows * window);
-      if (end - t > step) return step_through_storm(std::string(record_->events[i].element), end);
-    }
-  }
+  if (pass_storm(t, known)) return;
   if (!fired.empty()) guard_against_chatter(t, fired);
   if (is_action_due(known)) return;
   restart(handler_.is_evaluated());
-}
-
-// An element's events are a storm where they crowd within the time in which everything else changes: bodies that fall, the
-// run as a whole, and the fastest wave of a load or drive, of which 50 events are no part.
-double RunLeg::storm_window() const {
-  const SceneUnits& scale = system_.scale;
-  const double window = k_storm_window / std::max(scale.rate, std::numbers::pi / scale.duration);
-  const double fastest = system_.fastest_at(state_.t);
-  return fastest > 0.0 ? std::min(window, 2.0 * std::numbers::pi / fastest) : window;
-}
-
-// An element whose events crowd is not followed from one to the next: time stepping goes over an interval,
-// in which modes change where they will, and the usual methods go on from its end.
-void RunLeg::step_through_storm(const std::string& element, double end) {
-  if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
-  is_between_events_ = false;
-  ++statistics_.storms;
-  const double begin = state_.t;
-  record_->events.push_back({begin, element, EventKind::storm, "for " + rounded_text(1e3 * (end - begin)) + " ms"});
-  dynamics_.use_coordinates(Coordinates::absolute);
-  dynamics_.set_time_limit(end);
-  const double step = options_.storm_step * storm_window();
-  const long parts = stepping_->extra_parts();
-  const int division = options_.settings.division;
-  double whole = 0.0, t_whole = begin; // the step that is divided, s, and its end
-  int part = division;
-  while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts) {
-    const double due = static_cast<double>(record_->samples) * options_.output_step;
-    if (part == division) { // cut by a sample as a step of its length would be
-      part = 0;
-      t_whole = std::min({end, state_.t + division * step, next_limit_of_steps(division * step)});
-      if (const double fastest = system_.fastest_at(0.5 * (state_.t + t_whole)); fastest > 0.0)
-        t_whole = std::min(t_whole, state_.t + k_turn_of_fixed_steps / fastest);
-      if (options_.output_step > 0.0 && due > state_.t && due <= t_whole) t_whole = due;
-      whole = t_whole - state_.t;
-    }
-    ++part;
-    const double t1 = part == division ? t_whole : t_whole - (division - part) * whole / division;
-    const bool is_sample = options_.output_step > 0.0 && due == t1;
-    note_passed(state_.t, t1);
-    stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
-    ++statistics_.steps;
-    if (!is_sample && !extremes_ && !ledger_) continue;
-    dynamics_.pack(state_, y_.data());
-    if (extremes_ || ledger_) dynamics_.rates(t1, y_.data(), dy_.data());
-    if (ledger_) ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
-    if (extremes_) extremes_->begin(t1, dynamics_.snapshot(dy_.data()));
-    if (is_sample) record_sample(t1);
-  }
-  dynamics_.use_coordinates(chosen_coordinates());
-  handler_.settle_phases(state_);
-  record_->events.push_back({state_.t, element, EventKind::storm_over});
-  storm_.clear();
-  events_at_once_ = 0;
-  dynamics_.set_time_limit(next_limit());
-  restart();
-  energy_.note(dynamics_, state_.t, y_.data()); // steps of the first order have no bound of their own
 }
 
 // `evaluations`: as many as there were when the step was made; none since means that `dynamics_` is at its end. (A method

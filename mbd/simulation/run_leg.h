@@ -80,7 +80,9 @@ private:
   void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before);
   void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
+  [[nodiscard]] bool pass_storm(double t, std::size_t known);
   void step_through_storm(const std::string& element, double end);
+  void note_stepped(const State& before, const State& after, double located_within);
   void note_passed(double t0, double t1);
   [[nodiscard]] std::string owner_of(int slot) const;
   void guard_against_chatter(double t, const std::vector<int>& fired);
@@ -94,6 +96,10 @@ private:
   [[nodiscard]] double storm_window() const;
   [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();
+
+  // rad, of a harmonic of a load or drive in a step whose error nothing controls: of the fourth order it then takes half a wave
+  // to 1e-5.
+  static constexpr double k_turn_of_fixed_steps = 0.4;
 
   const System& system_;
   SimulationOptions options_;

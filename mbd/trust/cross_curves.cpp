@@ -109,27 +109,30 @@ bool is_at_rest(const System& system, const std::vector<const RunResult*>& runs)
 }
 
 using Key = std::tuple<std::string, EventKind, bool>; // the last: at the start?
-using Times = std::map<Key, std::vector<double>>;
+struct EventTime {
+  double t = 0.0, within = 0.0; // s: Event::located_within
+};
+using Times = std::map<Key, std::vector<EventTime>>;
 
 Times times_of(const RunResult& run) {
   Times times;
-  for (const Event& event : run.events) times[{event.element, event.kind, event.is_at_start()}].push_back(event.t);
+  for (const Event& event : run.events) times[{event.element, event.kind, event.is_at_start()}].push_back({event.t, event.located_within});
   return times;
 }
 
-double nearest(const std::vector<double>& times, double t) {
-  double best = INFINITY;
-  for (const double other : times)
-    if (std::abs(other - t) < std::abs(best - t)) best = other;
+EventTime nearest(const std::vector<EventTime>& times, double t) {
+  EventTime best{INFINITY};
+  for (const EventTime& other : times)
+    if (std::abs(other.t - t) < std::abs(best.t - t)) best = other;
   return best;
 }
 
 // What an event lies away from its like in another run; infinite where it has none of its own.
-double shift_of(double t, const std::vector<double>& times, const Times& other, const Key& key) {
+double shift_of(double t, const std::vector<EventTime>& times, const Times& other, const Key& key) {
   const auto found = other.find(key);
   if (found == other.end()) return INFINITY;
-  const double partner = nearest(found->second, t);
-  return nearest(times, partner) == t ? std::abs(partner - t) : INFINITY;
+  const EventTime partner = nearest(found->second, t);
+  return nearest(times, partner.t).t == t ? std::abs(partner.t - t) + partner.within : INFINITY;
 }
 
 } // namespace
@@ -231,8 +234,9 @@ void MethodCurves::estimate_events(const EventFilter& is_counted) {
   for (const Event& event : levels_.back()->events) of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
     const auto& [element, kind, is_at_start] = key;
-    const double within = is_at_start ? 0.0 : 2.0 * step_; // where it begins every run knows
-    for (const double t : times) {
+    const double of_steps = is_at_start ? 0.0 : 2.0 * step_; // where it begins every run knows
+    for (const auto& [t, located_within] : times) {
+      const double within = of_steps + located_within;
       TimedEvent event{element, kind, is_at_start, t, within, INFINITY, INFINITY, !is_counted || is_counted({t, element, kind})};
       for (const Times& other : coarser) event.shift = std::max(event.shift, within + shift_of(t, times, other, key));
       bool is_itself = true;

@@ -105,7 +105,8 @@ std::vector<double> times_to_neighbours(const std::vector<Event>& events) {
 void part_strangers(const std::vector<Event>& mine, const std::vector<Event>& reference, EventMatch& match) {
   const std::vector<double> my_times = times_to_neighbours(mine), their_times = times_to_neighbours(reference);
   const auto is_strange = [&](const EventPair& pair) {
-    const double apart = std::abs(mine[pair.mine].t - reference[pair.reference].t);
+    const Event &my_event = mine[pair.mine], &their_event = reference[pair.reference];
+    const double apart = std::abs(my_event.t - their_event.t) - my_event.located_within - their_event.located_within;
     return apart > k_furthest * std::max(my_times[pair.mine], their_times[pair.reference]);
   };
   for (const EventPair& pair : match.pairs) {

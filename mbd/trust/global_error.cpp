@@ -123,8 +123,10 @@ private:
   }
 
   void add_events(std::vector<double>& times) const {
-    for (const EventPair& pair : match_.pairs)
-      keep_larger(times[pair.mine], factor_ * difference(run_.events[pair.mine].t, fine_.events[pair.reference].t));
+    for (const EventPair& pair : match_.pairs) {
+      const Event &mine = run_.events[pair.mine], &theirs = fine_.events[pair.reference];
+      keep_larger(times[pair.mine], factor_ * difference(mine.t, theirs.t) + theirs.located_within);
+    }
     for (const std::size_t alone : match_.only_mine) times[alone] = k_unknown_error;
   }
 
@@ -238,7 +240,7 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
     error.first_above_one += time;
   }
   for (std::size_t i = 0; i < run.events.size(); ++i)
-    if (!run.events[i].is_at_start()) estimate.event_times[i] += time;
+    if (!run.events[i].is_at_start()) estimate.event_times[i] += time + run.events[i].located_within;
   const RunStatistics& s = run.statistics;
   if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_rounding * std::abs(s.dissipated);
   if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
