@@ -10,8 +10,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_roundings = 64.0; // of a coordinate: below that a displacement is rounding, however small the body
-constexpr long k_quiet_looks = 64;   // without a new direction: then looks become half as frequent
-constexpr long k_most_stride = 16;   // steps between looks: a direction that is moved is hardly ever moved for less
+constexpr long k_quiet_looks = 16;   // without a new direction: then looks become half as frequent
+constexpr long k_most_stride = 32;   // steps between looks: a direction that is moved is hardly ever moved for less
 constexpr std::size_t k_most_states = 16;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
