@@ -35,13 +35,6 @@ double arm_of(const Channel& channel, double size) {
   return channel.unit == "N m" ? 1.0 / size : 1.0;
 }
 
-double size_of(const System& system) {
-  double size = 0.0;
-  for (const BodyData& body : system.bodies)
-    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
-  return size > 0.0 ? size : 1.0;
-}
-
 // Bodies that act on each other without the ground have the same number.
 std::vector<int> mechanisms_of(const System& system) {
   std::vector<int> number(system.bodies.size());
@@ -134,6 +127,13 @@ double shift_of(double t, const std::vector<double>& times, const Times& other, 
 
 } // namespace
 
+double size_of_bodies(const System& system) {
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  return size > 0.0 ? size : 1.0;
+}
+
 std::vector<ComparedChannel> compared_channels(const System& system, const std::vector<const RunResult*>& runs) {
   std::set<std::string> bodies;
   std::map<std::string, int> body_index;
@@ -142,7 +142,7 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
     body_index[system.bodies[b].name] = static_cast<int>(b);
   }
   const std::vector<int> mechanism = mechanisms_of(system);
-  const double size = size_of(system);
+  const double size = size_of_bodies(system);
   std::vector<ComparedChannel> list;
   const std::vector<double>& times = runs.front()->trajectory->times();
   const double duration = times.size() > 1 ? times.back() - times.front() : 1.0;
