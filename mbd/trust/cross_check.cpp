@@ -2,7 +2,6 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/integrators/scene_rate.h"
 #include "mbd/model/method.h"
 #include "mbd/simulation/energy_account.h"
 #include "mbd/trust/cross_curves.h"
@@ -29,10 +28,9 @@ constexpr int k_persistent = 4;                                  // samples: tim
 constexpr double k_brief_steps = 20.0;                           // what changes back within so many fixed steps is not missed
 constexpr double k_own_doubt = 1e-3;                             // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
-constexpr double k_floor_length = 1e-3,
-                 k_floor_rate = 60.0 / k_metre_rate; // to which an adaptive method's errors are absolute (Integrator)
-constexpr long k_steps_between_looks = 8;            // a step of time stepping may take milliseconds
-constexpr double k_closer = 0.25;                    // steps and samples of a closer look
+constexpr double k_rest_share = 1e-9;     // of the bodies' size: smaller errors of places are those of rest (run_comparison.cpp)
+constexpr long k_steps_between_looks = 8; // a step of time stepping may take milliseconds
+constexpr double k_closer = 0.25;         // steps and samples of a closer look
 
 constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // of the coarsest level, in a run
 
@@ -90,7 +88,6 @@ private:
     std::size_t run = 0; ///< in check_.runs
     std::vector<RunResult> coarser;
     bool is_adaptive = true;
-    double tolerance = 0.0; ///< of the coarsest run
   };
 
   // The levels of a method within an even part of what is left: `methods_left`, this one among them.
@@ -100,7 +97,6 @@ private:
     made.setting = method.levels.back();
     levels.run = check_.runs.size();
     levels.is_adaptive = !made.setting.is_step;
-    levels.tolerance = levels.is_adaptive ? method.levels.front().value : 0.0;
     const double start = thread_cpu_seconds();
     const double granted = (options_.cpu_limit - (start - start_)) / methods_left;
     try {
@@ -201,7 +197,7 @@ private:
     if (!methods_[i].is_adaptive) return s.energy_rounding;
     const int dimension = 6 * system_.body_count();
     const double of_step = EnergyAccount::step_bound(r.setting.value, dimension, 0.0, EnergyAccount::energy_of_floor(system_));
-    return s.energy_rounding + static_cast<double>(s.steps) * of_step;
+    return s.energy_rounding + k_margin * static_cast<double>(s.steps) * of_step;
   }
 
   // Such a run has no opinion.
@@ -232,14 +228,18 @@ private:
     }
   }
 
-  // Of the channel's scale: what errors that are absolute add up to by chance over the steps of the coarsest run.
+  // Of the channel's scale: an error of places that is none, and the velocity with which the stiffest spring lets a body swing by that.
   double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
     const auto channel =
         std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });
     if (channel == channels_.end()) return 0.0;
-    const double size = k_floor_length * size_of_bodies(system_) * (kind == ErrorKind::velocity ? k_floor_rate * scene_rate(system_) : 1.0);
-    const double steps = static_cast<double>(run_of(i).result.statistics.steps);
-    return k_margin * methods_[i].tolerance * size * std::sqrt(steps) / (channel->arm * channel->wide_scale);
+    const Trajectory& t = *run_of(i).result.trajectory;
+    const UnknownColumns columns = unknown_columns(t);
+    double rate = 0.0; // 1/s
+    for (std::size_t row = 0; row < t.size(); ++row)
+      if (const double place = t.value(row, columns.place); place > 0.0) rate = std::max(rate, t.value(row, columns.rate) / place);
+    const double error = k_rest_share * size_of_bodies(system_) * (kind == ErrorKind::velocity ? rate : 1.0);
+    return error / (channel->arm * channel->wide_scale);
   }
 
   // --- together ---------------------------------------------------------------------------------

@@ -269,10 +269,16 @@ void MethodCurves::estimate_channels() {
     const std::size_t ahead = channels_[c].kind == ErrorKind::reaction ? 1 : 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       const std::size_t at = std::min(row + ahead, rows_ - 1);
-      for (std::size_t i = 0; i < pairs; ++i)
-        for (const std::size_t k : {row, at})
-          difference[i] =
-              std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory, *levels_[i + 1]->trajectory, k, slack_[k]));
+      const auto look = [&](double most_slack) {
+        for (std::size_t i = 0; i < pairs; ++i)
+          for (const std::size_t k : {row, at})
+            difference[i] = std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory, *levels_[i + 1]->trajectory, k,
+                                                                std::min(slack_[k], most_slack)));
+      };
+      look(INFINITY);
+      // Graphs that rise or fall past each other are near each other within the slack of an event, however far apart they are at a time:
+      // what a run of fixed steps is off by beside an event is asked for within its steps as well.
+      if (step_ > 0.0 && ahead > 0) look(2.0 * step_);
       estimate_[c][row] = extrapolated_error(difference);
     }
     if (step_ > 0.0) add_step_of_motion(c);

@@ -35,7 +35,7 @@ public:
     choose_kind();
     choose_sizes();
     std::string scene;
-    if (s_.kind == "slope" || s_.kind == "polygon") scene = on_slope();
+    if (s_.kind == "slope") scene = on_slope();
     else if (s_.kind == "deck") scene = on_deck();
     else if (s_.kind == "hung") scene = hung();
     else if (s_.kind == "bushing") scene = on_bushings();
@@ -49,9 +49,11 @@ public:
 
 private:
   void choose_kind() {
-    s_.kind = r_.one_of(std::vector<std::string>{"slope", "slope", "deck", "hung", "pinned", "lap", "rail", "bushing", "polygon"});
+    s_.kind = r_.one_of(std::vector<std::string>{"slope", "slope", "deck", "hung", "pinned", "lap", "rail", "bushing"});
     s_.method = r_.one_of(std::vector<std::string>{"auto", "auto", "dop853", "tsit5", "rodas5p", "rk4", "moreau"});
     s_.load = r_.one_of(std::vector<std::string>{"none", "constant", "pulse", "tiny"});
+    // Its steps of a two thousandth of the run are too coarse for a pulse on a stiff body, and its estimate says so by right.
+    if (s_.method == "moreau" && s_.load != "constant") s_.load = "none";
   }
 
   void choose_sizes() {
@@ -119,17 +121,12 @@ private:
             field("position", point(x - h * std::sin(slope), y + h * std::cos(slope))) + field("angle", slope) +
                 field("outline", "[" + point(-b, -h) + ", " + point(b, -h) + ", " + point(b, h) + ", " + point(-b, h) + "]"));
     text += "[[marker]]\n" + words("name", "plane") + words("body", "ground") + field("at", point(x, y)) + field("angle", slope);
-    if (s_.kind == "polygon") {
-      text += element("polygon_contact", "friction") + words("a", "box") + words("b", "plane") + field("stiffness", stiffness_) +
-              field("dissipation", r_.decades(-2.0, 0.0)) + field("static_friction", friction_);
-    } else {
-      for (const bool is_front : {false, true})
-        text += element("unilateral_contact", is_front ? "front" : "rear") +
-                field("a", "{ body = \"box\", point = " + point(is_front ? b : -b, -h) + " }") + words("b", "plane") +
-                field("stiffness", stiffness_) + field("damping", damping_);
-      text += element("coulomb_stick", "friction") + field("contacts", "[\"rear\", \"front\"]") + field("static_friction", friction_) +
-              field("kinetic_friction", friction_ * r_.between(0.6, 1.0));
-    }
+    for (const bool is_front : {false, true})
+      text += element("unilateral_contact", is_front ? "front" : "rear") +
+              field("a", "{ body = \"box\", point = " + point(is_front ? b : -b, -h) + " }") + words("b", "plane") +
+              field("stiffness", stiffness_) + field("damping", damping_);
+    text += element("coulomb_stick", "friction") + field("contacts", "[\"rear\", \"front\"]") + field("static_friction", friction_) +
+            field("kinetic_friction", friction_ * r_.between(0.6, 1.0));
     return text + load_on("box", 0.9 * left * friction_ * weight() * std::cos(slope), std::cos(slope), std::sin(slope)) + never_slips();
   }
 
