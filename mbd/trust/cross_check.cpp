@@ -29,6 +29,7 @@ constexpr double k_brief_steps = 20.0;                           // what changes
 constexpr double k_own_doubt = 1e-3;                             // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
 constexpr double k_rest_share = 1e-9;     // of the bodies' size: smaller errors of places are those of rest (run_comparison.cpp)
+constexpr double k_rest_errors = 0.1;     // the same over the tolerance: a hundred times 1e-3, to which errors are absolute (Integrator)
 constexpr long k_steps_between_looks = 8; // a step of time stepping may take milliseconds
 constexpr double k_closer = 0.25;         // steps and samples of a closer look
 
@@ -88,6 +89,7 @@ private:
     std::size_t run = 0; ///< in check_.runs
     std::vector<RunResult> coarser;
     bool is_adaptive = true;
+    double tolerance = 0.0; ///< of the coarsest run
   };
 
   // The levels of a method within an even part of what is left: `methods_left`, this one among them.
@@ -97,6 +99,7 @@ private:
     made.setting = method.levels.back();
     levels.run = check_.runs.size();
     levels.is_adaptive = !made.setting.is_step;
+    levels.tolerance = levels.is_adaptive ? method.levels.front().value : 0.0;
     const double start = thread_cpu_seconds();
     const double granted = (options_.cpu_limit - (start - start_)) / methods_left;
     try {
@@ -238,7 +241,8 @@ private:
     double rate = 0.0; // 1/s
     for (std::size_t row = 0; row < t.size(); ++row)
       if (const double place = t.value(row, columns.place); place > 0.0) rate = std::max(rate, t.value(row, columns.rate) / place);
-    const double error = k_rest_share * size_of_bodies(system_) * (kind == ErrorKind::velocity ? rate : 1.0);
+    const double share = std::max(k_rest_share, k_rest_errors * methods_[i].tolerance);
+    const double error = share * size_of_bodies(system_) * (kind == ErrorKind::velocity ? rate : 1.0);
     return error / (channel->arm * channel->wide_scale);
   }
 
