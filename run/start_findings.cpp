@@ -2,8 +2,11 @@
 #include "elements/contact_depth.h"
 #include "elements/limit.h"
 #include "elements/unilateral_contact.h"
+#include "mbd/base/decompositions.h"
+#include "mbd/base/name_pattern.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/system/actions.h"
 #include "mbd/system/own_states.h"
 #include "run/findings.h"
 #include "run/places.h"
@@ -201,6 +204,30 @@ private:
                       : length_text(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
   }
 
+  // Drives and joints of the ground say how it moves, whatever acts on it: its inertia acts on nothing but what they bear, which no
+  // criterion limits. An action may let go of it later.
+  [[nodiscard]] bool is_driven(const Body& body) const {
+    const auto named = std::find_if(system_.bodies.begin(), system_.bodies.end(), [&](const BodyData& b) { return b.name == body.name; });
+    if (named == system_.bodies.end() || action_group(system_)) return false;
+    const auto index = static_cast<int>(named - system_.bodies.begin());
+    MatX held(0, 3);
+    for (const RowSpec& row : system_.rows) {
+      const bool is_its_own = (row.a == index && row.b == k_ground) || (row.a == k_ground && row.b == index);
+      if (!is_its_own || row.next) continue;
+      if (is_limited(system_.element_names[static_cast<std::size_t>(row.element)])) return false;
+      held.conservativeResize(held.rows() + 1, Eigen::NoChange);
+      held.row(held.rows() - 1) = balance_.gradient(row).segment<3>(3 * index - 3).transpose();
+    }
+    return PivotedQr(held, k_typed).rank() == 3;
+  }
+  [[nodiscard]] bool is_limited(const std::string& element) const {
+    return std::any_of(loaded_.model.criteria.begin(), loaded_.model.criteria.end(), [&](const Criterion& criterion) {
+      return std::any_of(system_.channels.begin(), system_.channels.end(), [&](const Channel& channel) {
+        return channel.name.starts_with(element + ".") && matches_pattern(channel.name, criterion.channel);
+      });
+    });
+  }
+
   // A plate of the outline's shape, about the body's centre of gravity.
   void look_at_inertia(const Body& body) {
     if (body.fixed || body.outline.size() < 3 || !(body.mass > 0.0)) return;
@@ -216,6 +243,7 @@ private:
     const double plate = body.mass * moment / area, most = body.mass * farthest;
     const bool is_light = body.inertia < k_light * plate;
     if (!is_light && !(body.inertia > k_heavy * most)) return;
+    if (is_driven(body)) return;
     std::string text = "body '" + body.name + "': inertia = " + rounded(body.inertia) +
                        " kg m² does not fit its outline and mass: a plate of that shape and of " + rounded(body.mass) + " kg has " +
                        rounded(plate) + " kg m²" +

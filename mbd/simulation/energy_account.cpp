@@ -1,6 +1,7 @@
 #include "mbd/simulation/energy_account.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/integrators/scene_rate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,8 @@ constexpr double k_most_share = 5e-2;
 // Of scale(): what setting to rest may take at one event, where its tolerance does not let it more. Velocities of rounding
 // are far below, a blow is far above.
 constexpr double k_settled_share = 1e-4;
-// v₀/L, 1/s: velocities below it are known to tol v₀ (Integrator: q₀ = 1e-3 L, at 60/s).
-constexpr double k_floor_rate = 0.06;
+// v₀/L over the scene's own rate: velocities below it are known to tol v₀ (Integrator: q₀ = 1e-3 L, at 60/s for bodies of a metre).
+constexpr double k_floor_rate = 0.06 / k_metre_rate;
 // The balance of a whole run is not asked for more than that of bodies that turn at so much, 1/s: 3.7 T₀ for a body alone.
 // A choice: no run is distrusted for energies that its tolerance takes for none.
 constexpr double k_least_rate = 0.2;
@@ -30,8 +31,22 @@ struct Kinetic {
   double least = 0.0;    ///< of the motion that a whole run's balance is measured against at least
 };
 
-/// `size`: L, the largest radius of gyration, m.
+/// T₀, J, of a body at v₀ = `rate` L along both axes and about its centre.
+double floor_energy(double mass, double inertia, double size, double rate) {
+  return 0.5 * rate * rate * (2.0 * mass * size * size + inertia);
+}
+
+/// L, m: the largest radius of gyration.
+double size_of(const System& system) {
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  return size > 0.0 ? size : 1.0;
+}
+
+/// `size`: L.
 Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
+  const double rate = k_floor_rate * scene_rate(dynamics.system());
   const Layout& layout = dynamics.layout();
   const double* const v = dynamics.cluster_rates(y); // 3 numbers of each cluster
   Kinetic sum;
@@ -39,7 +54,7 @@ Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
     const Cluster& c = layout.clusters[k];
     const double* const u = v + 3 * static_cast<std::ptrdiff_t>(k);
     sum.total += 0.5 * c.mass * (u[0] * u[0] + u[1] * u[1]) + 0.5 * c.inertia * u[2] * u[2];
-    sum.of_floor += 0.5 * k_floor_rate * k_floor_rate * (2.0 * c.mass * size * size + c.inertia);
+    sum.of_floor += floor_energy(c.mass, c.inertia, size, rate);
     sum.least += 0.5 * c.inertia * k_least_rate * k_least_rate;
     sum.mass += c.mass;
     sum.px += c.mass * u[0];
@@ -66,11 +81,15 @@ double EnergyAccount::step_bound(double tolerance, int dimension, double turned_
   return std::sqrt(11.0 * dimension) * tolerance * (3.0 * turned_over + of_floor);
 }
 
+double EnergyAccount::energy_of_floor(const System& system) {
+  const double size = size_of(system), rate = k_floor_rate * scene_rate(system);
+  double sum = 0.0;
+  for (const BodyData& body : system.bodies) sum += floor_energy(body.mass, body.inertia, size, rate);
+  return sum;
+}
+
 void EnergyAccount::start(Dynamics& dynamics, double t, const double* y, double tolerance) {
-  double size = 0.0;
-  for (const BodyData& body : dynamics.system().bodies)
-    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
-  if (size > 0.0) size_ = size;
+  size_ = size_of(dynamics.system());
   const Kinetic kinetic = kinetic_energy(dynamics, y, size_);
   kinetic_start_ = kinetic.total;
   floor_ = kinetic.least;

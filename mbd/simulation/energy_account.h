@@ -40,6 +40,8 @@ public:
   /// its own accuracy"): of a state of `dimension` numbers, `turned_over` up to its end, `of_floor` the energy of the motion
   /// to which tolerances are absolute.
   [[nodiscard]] static double step_bound(double tolerance, int dimension, double turned_over, double of_floor);
+  /// T₀ of all bodies, J: of the motion to which tolerances are absolute.
+  [[nodiscard]] static double energy_of_floor(const System& system);
   /// A step stops the run beyond so many times its bound.
   static const double k_reserve;
 

@@ -3,10 +3,12 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/system/actions.h"
 #include "mbd/system/slight_force.h"
+#include "mbd/trust/known_to.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numeric>
 
 namespace steplap {
@@ -19,13 +21,35 @@ const char* const k_pushes = ".pushes";
 const char* const k_overload = ".overload";
 const char* const k_shares = ".shares";
 const char* const k_unknown = ".unknown";
-constexpr double k_velocity = 1e-12; // m/s: to which constraints are met, and velocities known (Integrator::rate_accuracy)
-constexpr double k_one_line = 1e-9;  // of the bodies' size, rad
+const char* const k_forces = "forces";
+const char* const k_velocities = "velocities";
+const char* const k_places = "places";
+constexpr double k_one_line = 1e-9; // of the bodies' size, rad
 
-double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
+constexpr double k_no_bound = 1e20; // N or N m: what holds whatever it takes, as a one-way clutch does, is seen by what it bears
+
+// W: the most that the friction gives at rates that are known no better than zero, by the largest wrench that it can bear.
+double power_of_rounding(const Snapshot& s, const System& system, std::size_t f, double met) {
   const FrictionUnit& unit = system.frictions[f];
   const FrictionState& state = s.evaluation->friction[f];
-  if (state.phase == FrictionPhase::free || state.phase == FrictionPhase::apart) return 0.0;
+  const RowSpec* rows = unit.friction->rows(state);
+  double power = 0.0;
+  for (int i = 0; i < unit.friction->dimension(); ++i) {
+    const double rate = row_rate_known_to(rows[i], s, met);
+    double along[3] = {0, 0, 0}, most = 0.0;
+    for (const double sign : {1.0, -1.0}) {
+      along[i] = sign;
+      const double bound = unit.friction->never_slips() ? INFINITY : unit.friction->support(*s.evaluation, state, along);
+      most = std::max(most, bound < k_no_bound ? bound : std::abs(s.friction_force[unit.row + i]));
+    }
+    power += most * rate;
+  }
+  return power;
+}
+
+double power_of_friction(const Snapshot& s, const System& system, std::size_t f) {
+  const FrictionUnit& unit = system.frictions[f];
+  const FrictionState& state = s.evaluation->friction[f];
   const int n = unit.friction->dimension();
   const RowSpec* rows = unit.friction->rows(state);
   double rate[3] = {0, 0, 0}, power = 0.0;
@@ -36,10 +60,17 @@ double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
   }
   if (state.phase == FrictionPhase::slip) return power;
   if (unit.friction->never_slips()) return 0.0;
-  constexpr double k_no_bound = 1e20; // N or N m: what holds whatever it takes, as a one-way clutch does, is seen by what it bears
   const double most = unit.friction->support(*s.evaluation, state, rate),
                size = std::max({std::abs(rate[0]), std::abs(rate[1]), std::abs(rate[2])});
   return most > k_no_bound * size ? power : most;
+}
+
+// Powers that are not positive are left as they are: what friction takes is asked for, too (audited_power).
+double pushing_power(const Snapshot& s, const System& system, std::size_t f, double met) {
+  const FrictionPhase phase = s.evaluation->friction[f].phase;
+  if (phase == FrictionPhase::free || phase == FrictionPhase::apart) return 0.0;
+  const double power = power_of_friction(s, system, f);
+  return power > 0.0 ? std::max(0.0, power - power_of_rounding(s, system, f, met)) : power;
 }
 
 double overload_of(const Snapshot& s, const System& system, std::size_t f) {
@@ -64,18 +95,19 @@ bool may_turn(const FrictionUnit& unit) {
   return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips();
 }
 
-double unknown_force(const Snapshot& s, const System& system) {
+// N: what forces change by where the slip of such friction does by `rate`.
+double turned_force(const Snapshot& s, const System& system, double rate) {
   double sum = 0.0;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionUnit& unit = system.frictions[f];
     const FrictionState& state = s.evaluation->friction[f];
     if (!may_turn(unit) || state.phase != FrictionPhase::slip) continue;
-    double rate[3];
-    for (int i = 0; i < 3; ++i) rate[i] = evaluate_row<false>(unit.friction->rows(state)[i], s.motion).rate;
-    const SlipScale scale = unit.friction->slip_scale(*s.evaluation, state, rate);
+    double slip[3];
+    for (int i = 0; i < 3; ++i) slip[i] = evaluate_row<false>(unit.friction->rows(state)[i], s.motion).rate;
+    const SlipScale scale = unit.friction->slip_scale(*s.evaluation, state, slip);
     const double* const wrench = s.friction_force + unit.row;
     const double force = portable::hypot(portable::hypot(wrench[0], wrench[1]), wrench[2] / scale.lever);
-    if (std::isfinite(scale.speed) && scale.speed > 0.0) sum += force * k_velocity / scale.speed;
+    if (std::isfinite(scale.speed) && scale.speed > 0.0) sum += force * rate / scale.speed;
   }
   return sum;
 }
@@ -205,21 +237,34 @@ bool may_pull(const Model& model) {
 
 } // namespace
 
+// They are compared sample by sample, and have no extremes to look for.
+void add_unknown_channels(System& system, double met) {
+  const auto scratch = std::make_shared<std::vector<PairJacobian>>();
+  const System* const self = &system;
+  const auto add = [&system](const char* what, const char* doc, std::function<double(const Snapshot&)> value) {
+    system.channels.push_back({k_prefix + what + k_unknown, "", doc, std::move(value)});
+    system.channels.back().has_extremes = false;
+  };
+  add(k_forces, "what forces change by where places and velocities do by what they are known to, N",
+      [=](const Snapshot& s) { return known_to(*self, s, met, *scratch).force + turned_force(s, *self, met); });
+  add(k_velocities, "what velocities are known to, m/s", [=](const Snapshot& s) { return known_to(*self, s, met, *scratch).rate; });
+  add(k_places, "what places are known to, m", [=](const Snapshot& s) { return places_known_to(*self, s, met); });
+}
+
 void add_audit_channels(System& system, const Model& model) {
   System* self = &system;
+  const double met = model.simulation.projection_tolerance;
   if (ActionGroup* const actions = action_group(system))
     actions->additions.push_back([](System& made) { add_audit_channels(made, *action_group(made)->model); });
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const std::string name = k_prefix + system.element_names[system.frictions[f].element];
     system.channels.push_back(
-        {name + k_pushes, "W", "power that friction gives", [self, f](const Snapshot& s) { return pushing_power(s, *self, f); }});
+        {name + k_pushes, "W", "power that friction gives", [self, f, met](const Snapshot& s) { return pushing_power(s, *self, f, met); }});
     system.channels.push_back({name + k_overload, "", "share of its bound that friction takes, less 1",
                                [self, f](const Snapshot& s) { return overload_of(s, *self, f); }});
   }
   add_shared_channels(system);
-  if (std::any_of(system.frictions.begin(), system.frictions.end(), may_turn))
-    system.channels.push_back({k_prefix + "velocities" + k_unknown, "", "what forces change by where velocities do by rounding, N",
-                               [self](const Snapshot& s) { return unknown_force(s, *self); }});
+  add_unknown_channels(system, met);
   if (may_pull(model)) return;
   system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N",
                              [self](const Snapshot& s) { return largest_pull(s, self->contact_count); }});
@@ -228,11 +273,9 @@ void add_audit_channels(System& system, const Model& model) {
 std::string pushes_channel(const std::string& element) { return k_prefix + element + k_pushes; }
 std::string shares_channel(const std::string& element) { return k_prefix + element + k_shares; }
 
-int unknown_force_column(const Trajectory& trajectory) {
-  const std::vector<const Channel*>& channels = trajectory.channels();
-  const auto found = std::find_if(channels.begin(), channels.end(),
-                                  [](const Channel* c) { return is_audit_channel(*c) && ends_with(c->name, k_unknown); });
-  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+UnknownColumns unknown_columns(const Trajectory& trajectory) {
+  const auto column = [&trajectory](const char* what) { return trajectory.column(k_prefix + what + k_unknown); };
+  return {column(k_forces), column(k_velocities), column(k_places)};
 }
 
 bool is_audit_channel(const Channel& channel) { return channel.name.compare(0, k_prefix.size(), k_prefix) == 0; }
@@ -340,9 +383,10 @@ std::vector<std::vector<int>> free_groups(const Model& model, const System& syst
 namespace {
 
 // Momentum less what gravity has given, and angular momentum about the group's centre of gravity; and the sums
-// of the single bodies' sizes, which are the scale.
+// of the single bodies' sizes, which are the scale. A velocity that all bodies have by rounding is worth `mass` and `moment` of them.
 struct Momentum {
   double x = 0.0, y = 0.0, turn = 0.0, size = 0.0, turn_size = 0.0;
+  double mass = 0.0, moment = 0.0; ///< kg, kg m
 };
 
 Momentum momentum_of(const System& system, const std::vector<int>& group, const Trajectory& t, std::size_t row,
@@ -365,8 +409,10 @@ Momentum momentum_of(const System& system, const std::vector<int>& group, const 
     const double spin = body.inertia * t.value(row, rates[3 * b + 2]);
     sum.turn += body.mass * (rx * uy - ry * ux) + spin;
     sum.turn_size += body.mass * portable::hypot(rx, ry) * portable::hypot(ux, uy) + std::abs(spin);
+    sum.moment += body.mass * portable::hypot(rx, ry) + std::sqrt(body.mass * body.inertia);
     sum.size += body.mass * portable::hypot(t.value(row, rates[3 * b]), t.value(row, rates[3 * b + 1]));
   }
+  sum.mass = mass;
   sum.x -= mass * system.gravity.x() * t.times()[row];
   sum.y -= mass * system.gravity.y() * t.times()[row];
   return sum;
@@ -379,6 +425,7 @@ AuditFinding momentum_change(const System& system, const std::vector<std::vector
   const Trajectory& t = *run.trajectory;
   if (groups.empty() || t.size() < 2) return worst;
   const auto places = columns(system, t, k_place_names), rates = columns(system, t, k_rate_names);
+  const std::size_t rate = unknown_columns(t).rate;
   for (const std::vector<int>& group : groups) {
     const Momentum first = momentum_of(system, group, t, 0, places, rates);
     double size = first.size, turn_size = first.turn_size;
@@ -386,8 +433,10 @@ AuditFinding momentum_change(const System& system, const std::vector<std::vector
       const Momentum now = momentum_of(system, group, t, row, places, rates);
       size = std::max(size, now.size);
       turn_size = std::max(turn_size, now.turn_size);
-      const double change = std::max(size > 0.0 ? portable::hypot(now.x - first.x, now.y - first.y) / size : 0.0,
-                                     turn_size > 0.0 ? std::abs(now.turn - first.turn) / turn_size : 0.0);
+      const double known = t.value(row, rate);
+      const double moved = portable::hypot(now.x - first.x, now.y - first.y) - known * now.mass;
+      const double turned = std::abs(now.turn - first.turn) - known * now.moment;
+      const double change = std::max(size > 0.0 ? moved / size : 0.0, turn_size > 0.0 ? turned / turn_size : 0.0);
       if (!(change <= worst.value)) {
         worst.where = system.bodies[group.front()].name;
         worst.t = t.times()[row];

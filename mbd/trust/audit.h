@@ -2,14 +2,15 @@
 // pull. Added to a system as channels of its own, so that every method is looked at in the same way, from outside.
 //
 //   pushes     W: power of a sliding friction element's wrench, which must not be positive; of a sticking one the
-//              power that its bound would take at the rate it moves with, which must be zero
+//              power that its bound would take at the rate it moves with, which must be zero; both less what its bound
+//              takes at rates that are known no better than zero
 //   overload   share of its bound that the wrench takes, less 1; an unloaded element must bear nothing
 //   pull       N: the largest tension in any contact of the scene
 //   shares     1 where several frictions act on the same two bodies along one line (feet on a floor) and some of them
 //              hold, or slide against each other: then the laws of friction say what they bear together, and not who
 //              bears what of it
-//   unknown    N: what forces change by where velocities do by what rounding and constraints leave of them, 1e-12 m/s: a joint's slip that
-//              has just begun turns by that, and its wrench with it. It bounds nothing, but no method knows forces better
+//   unknown    m, m/s, N: to what places, velocities and forces of the whole scene are known (known_to.h), and what the wrench of a joint's
+//              slip that has just begun turns by with that. It bounds nothing, but no method knows them better
 //
 // With these goes a channel of what such frictions bear together, "shared: one + other", a force like others.
 #pragma once
@@ -29,8 +30,11 @@ void add_audit_channels(System& system, const Model& model);
 [[nodiscard]] std::string pushes_channel(const std::string& element);
 /// Of the channel that tells whether it shares what it bears.
 [[nodiscard]] std::string shares_channel(const std::string& element);
-/// Column of what forces are unknown by; -1: no friction turns with its slip.
-[[nodiscard]] int unknown_force_column(const Trajectory& trajectory);
+/// Columns of what forces, velocities and places are known to.
+struct UnknownColumns {
+  std::size_t force = 0, rate = 0, place = 0;
+};
+[[nodiscard]] UnknownColumns unknown_columns(const Trajectory& trajectory);
 
 struct AuditFinding {
   std::string what;  ///< "friction does positive work"

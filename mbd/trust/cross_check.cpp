@@ -3,6 +3,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
+#include "mbd/simulation/energy_account.h"
 #include "mbd/trust/cross_curves.h"
 
 #include <algorithm>
@@ -27,6 +28,8 @@ constexpr int k_persistent = 4;                                  // samples: tim
 constexpr double k_brief_steps = 20.0;                           // what changes back within so many fixed steps is not missed
 constexpr double k_own_doubt = 1e-3;                             // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
+constexpr double k_rest_share = 1e-9;     // of the bodies' size: smaller errors of places are those of rest (run_comparison.cpp)
+constexpr double k_rest_errors = 0.1;     // the same over the tolerance: a hundred times 1e-3, to which errors are absolute (Integrator)
 constexpr long k_steps_between_looks = 8; // a step of time stepping may take milliseconds
 constexpr double k_closer = 0.25;         // steps and samples of a closer look
 
@@ -86,6 +89,7 @@ private:
     std::size_t run = 0; ///< in check_.runs
     std::vector<RunResult> coarser;
     bool is_adaptive = true;
+    double tolerance = 0.0; ///< of the coarsest run
   };
 
   // The levels of a method within an even part of what is left: `methods_left`, this one among them.
@@ -95,6 +99,7 @@ private:
     made.setting = method.levels.back();
     levels.run = check_.runs.size();
     levels.is_adaptive = !made.setting.is_step;
+    levels.tolerance = levels.is_adaptive ? method.levels.front().value : 0.0;
     const double start = thread_cpu_seconds();
     const double granted = (options_.cpu_limit - (start - start_)) / methods_left;
     try {
@@ -164,7 +169,7 @@ private:
   void check_laws(std::size_t i) {
     const CrossRun& r = run_of(i);
     const double exchanged = energy_scale(system_, r.result), residual = r.result.statistics.energy_residual;
-    const double allowed = (methods_[i].is_adaptive ? k_energy_allowed : k_stepped_energy_allowed) * exchanged;
+    const double allowed = (methods_[i].is_adaptive ? k_energy_allowed : k_stepped_energy_allowed) * exchanged + energy_of_rest(i);
     // Time stepping damps: a residual that goes with the step is its error, and estimated as such.
     const bool is_shrinking = !methods_[i].is_adaptive && residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
     // One that does not is a step too coarse for the scene: such a run has no opinion.
@@ -188,6 +193,16 @@ private:
           number_text(change.value) + " of its own"});
   }
 
+  // J: rounding of energies, and what a method leaves of them in steps that are at rest for it.
+  double energy_of_rest(std::size_t i) {
+    const CrossRun& r = run_of(i);
+    const RunStatistics& s = r.result.statistics;
+    if (!methods_[i].is_adaptive) return s.energy_rounding;
+    const int dimension = 6 * system_.body_count();
+    const double of_step = EnergyAccount::step_bound(r.setting.value, dimension, 0.0, EnergyAccount::energy_of_floor(system_));
+    return s.energy_rounding + k_margin * static_cast<double>(s.steps) * of_step;
+  }
+
   // Such a run has no opinion.
   void dismiss(std::size_t i) {
     curves_[i]->distrust();
@@ -209,11 +224,26 @@ private:
       if (!methods_[i].is_adaptive) continue;
       for (const ErrorKind kind : {ErrorKind::position, ErrorKind::velocity}) {
         const WorstError own = curves_[i]->largest(kind);
-        const double bound = std::max(k_own_doubt, 2.0 * (*stepping)->largest(kind).value);
+        const double bound = std::max({k_own_doubt, 2.0 * (*stepping)->largest(kind).value, error_of_rest(i, kind, own.where)});
         note({Doubt::self, name_of_run(i), "", own.where, base_.end, own.value / bound,
               "its own estimate is " + number_text(own.value) + ", time stepping's " + number_text((*stepping)->largest(kind).value)});
       }
     }
+  }
+
+  // Of the channel's scale: an error of places that is none, and the velocity with which the stiffest spring lets a body swing by that.
+  double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
+    const auto channel =
+        std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });
+    if (channel == channels_.end()) return 0.0;
+    const Trajectory& t = *run_of(i).result.trajectory;
+    const UnknownColumns columns = unknown_columns(t);
+    double rate = 0.0; // 1/s
+    for (std::size_t row = 0; row < t.size(); ++row)
+      if (const double place = t.value(row, columns.place); place > 0.0) rate = std::max(rate, t.value(row, columns.rate) / place);
+    const double share = std::max(k_rest_share, k_rest_errors * methods_[i].tolerance);
+    const double error = share * size_of_bodies(system_) * (kind == ErrorKind::velocity ? rate : 1.0);
+    return error / (channel->arm * channel->wide_scale);
   }
 
   // --- together ---------------------------------------------------------------------------------
@@ -229,10 +259,11 @@ private:
   void compare_channels(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const std::size_t rows = std::min(x.rows(), y.rows());
-    const double until = std::min(x.known_until(), y.known_until());      // beyond it nothing can be told
-    const int unknown_column = unknown_force_column(*x.run().trajectory); // the same in all runs
-    const auto unknown_force = [&](const MethodCurves& curves, std::size_t row) {
-      return unknown_column < 0 ? 0.0 : curves.run().trajectory->value(row, static_cast<std::size_t>(unknown_column));
+    const double until = std::min(x.known_until(), y.known_until());     // beyond it nothing can be told
+    const UnknownColumns columns = unknown_columns(*x.run().trajectory); // the same in all runs
+    const auto unknown = [&](ErrorKind kind, std::size_t row) {
+      const std::size_t column = kind == ErrorKind::reaction ? columns.force : (kind == ErrorKind::velocity ? columns.rate : columns.place);
+      return x.run().trajectory->value(row, column) + y.run().trajectory->value(row, column);
     };
     Disagreement worst{Doubt::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -247,9 +278,7 @@ private:
         if (is_share(channel, *x.run().trajectory, row) || is_share(channel, *y.run().trajectory, row)) continue;
         const double distance =
             distance_at(channel, *x.run().trajectory, *y.run().trajectory, row, k_margin * (x.slack(row) + y.slack(row)));
-        const double unknown =
-            channel.kind == ErrorKind::reaction ? std::max(unknown_force(x, row), unknown_force(y, row)) / channel.arm : 0.0;
-        const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor + unknown;
+        const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor + unknown(channel.kind, row) / channel.arm;
         ratio = distance > 0.0 ? distance / allowed : 0.0;
         const bool is_near_event = x.slack(row) > 2.0 * x.step() || y.slack(row) > 2.0 * y.step();
         const double lasting = may_be_brief && is_near_event ? *std::min_element(recent.begin(), recent.end()) : ratio;
@@ -271,7 +300,8 @@ private:
     const double until = std::min(x.known_until(), y.known_until());
     const double near = std::max(k_time_floor * base_.end, k_brief_steps * std::max(x.step(), y.step()));
     const double energy_allowed = k_margin * (x.dissipated_error() + y.dissipated_error()) +
-                                  k_integral_floor * std::max(energy_scale(system_, x.run()), energy_scale(system_, y.run())) + 1e-300;
+                                  k_integral_floor * std::max(energy_scale(system_, x.run()), energy_scale(system_, y.run())) +
+                                  energy_of_rest(i) + energy_of_rest(j) + 1e-300;
     Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
@@ -307,7 +337,7 @@ private:
     const RunStatistics &a = run_of(i).result.statistics, &b = run_of(j).result.statistics;
     const double scale = std::max(energy_scale(system_, run_of(i).result), energy_scale(system_, run_of(j).result));
     const auto one = [&](const char* what, double x, double y, double estimates) {
-      const double allowed = k_margin * estimates + k_integral_floor * scale;
+      const double allowed = k_margin * estimates + k_integral_floor * scale + energy_of_rest(i) + energy_of_rest(j);
       if (allowed > 0.0)
         note({Doubt::integral, name_of_run(i), name_of_run(j), what, base_.end, std::abs(x - y) / allowed,
               number_text(std::abs(x - y)) + " J, estimates " + number_text(estimates) + " J"});

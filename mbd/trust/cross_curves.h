@@ -27,6 +27,9 @@ struct ComparedChannel {
   return channel.shares >= 0 && run.value(row, static_cast<std::size_t>(channel.shares)) != 0.0;
 }
 
+/// m: the largest radius of gyration; 1 where no body has one.
+[[nodiscard]] double size_of_bodies(const System& system);
+
 /// Ranges are the middle ones of those of all runs: a single one that has gone astray does not set the scale.
 [[nodiscard]] std::vector<ComparedChannel> compared_channels(const System& system, const std::vector<const RunResult*>& runs);
 

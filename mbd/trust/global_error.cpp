@@ -33,6 +33,10 @@ constexpr double k_disagreed = 0.01, k_grown = 1e3;
 
 bool locates_events(const SimulationOptions& options) { return !method(options.integrator).is_time_stepping; }
 
+bool takes_shorter_steps(const RunStatistics& finer, const RunStatistics& run) {
+  return finer.steps > run.steps || finer.evaluations > run.evaluations;
+}
+
 // Error over difference; unknown where the finer run was none. What it leaves of the error is told by the steps that were
 // taken, not by those that were asked for.
 double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine, const RunStatistics& finer,
@@ -43,8 +47,7 @@ double factor_for(const SimulationOptions& coarse, const RunStatistics& run, con
     return part > k_most_left ? k_unknown_error : (locates_events(coarse) ? 1.0 : k_stepping_safety) / (1.0 - part);
   }
   const double part = has_storm ? k_first_order : fine.settings.tolerance / coarse.settings.tolerance;
-  const bool is_same = finer.steps <= run.steps && finer.evaluations <= run.evaluations;
-  return part > k_most_left || is_same ? k_unknown_error : k_safety / (1.0 - std::min(k_first_order, part));
+  return part > k_most_left || !takes_shorter_steps(finer, run) ? k_unknown_error : k_safety / (1.0 - std::min(k_first_order, part));
 }
 
 double difference(double a, double b) {
@@ -356,8 +359,12 @@ void compare_with_finer_runs(const System& system, const State& initial, const S
                              const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
   estimate.finer = finer_options(system, options);
   bool has_storm = run.statistics.storms > 0, is_any_finer = false;
-  for (const SimulationOptions& finer : estimate.finer) {
+  for (SimulationOptions& finer : estimate.finer) {
     RunResult fine = budget.simulate(system, initial, finer);
+    if (!takes_shorter_steps(fine.statistics, run.statistics) && finer.settings.step == options.settings.step) {
+      finer.settings.max_step = k_finer_step * (run.final_state.t - initial.t) / static_cast<double>(std::max(run.statistics.steps, 1L));
+      fine = budget.simulate(system, initial, finer);
+    }
     has_storm = has_storm || fine.statistics.storms > 0;
     const double factor = factor_for(options, run.statistics, finer, fine.statistics, has_storm);
     if (!std::isnan(factor)) {

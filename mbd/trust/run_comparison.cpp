@@ -14,6 +14,9 @@ namespace {
 
 constexpr double k_least_range = 1e-3; // of the largest range among channels of one kind
 constexpr double k_is_constant = 1e-9; // a range below this part of the value is rounding
+// Of the bodies' size L, m: motions below it are none. Errors of places are absolute to 1e-3 L (Integrator), and steps by the hundred
+// leave 1e-9 L of them at the usual tolerance; a tenth of this is that.
+constexpr double k_no_motion = 1e-8;
 // Of the largest value of its kind, as in mbd/simulation/extremes.h: a channel whose whole range is less shows rounding only.
 constexpr double k_rounding = 1e-12;
 
@@ -133,18 +136,22 @@ double difference(double a, double b) {
   return std::abs(a - b);
 }
 
-double scale_of(const Compared& c, const Scales& scales) { return std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm); }
+// What an error of the channel is compared with, `size` that of the bodies, m.
+double scale_of(const Compared& c, const Scales& scales, double size) {
+  const double of_kind = std::max(k_least_range * scales.at(c.kind), c.kind == ErrorKind::position ? k_no_motion * size : 0.0);
+  return std::max(c.range(), of_kind / c.arm);
+}
 
-// Of every channel the largest error and when; row after row, for they may be on disk.
-std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, const Trajectory& mine,
-                                                                      const Trajectory& theirs, const RowPairs& rows,
-                                                                      const BetweenEvents& between) {
+// The largest error of every channel and its time. Rows are read one after another, because they may be on disk.
+std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, double size,
+                                                                      const Trajectory& mine, const Trajectory& theirs,
+                                                                      const RowPairs& rows, const BetweenEvents& between) {
   const Scales scales = scales_of(channels), sizes = sizes_of(channels);
   std::vector<std::pair<const Compared*, WorstError>> list;
   std::vector<double> scale, rounding; // rounding: of a channel that does nothing else; 0 of all others
   for (const Compared& c : channels) {
     list.push_back({&c, {}});
-    scale.push_back(scale_of(c, scales));
+    scale.push_back(scale_of(c, scales, size));
     const double least = k_rounding * sizes.at(c.kind) / c.arm;
     rounding.push_back(c.range() <= least ? least : 0.0);
   }
@@ -201,7 +208,7 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
   d.unmatched_events = static_cast<int>(counted(match.only_mine, run.events) + counted(match.only_reference, reference.events));
   const BetweenEvents between(match, run.events, reference.events);
   const std::vector<Compared> channels = compared_channels(system, reference);
-  for (const auto& [c, worst] : worst_of_channels(channels, mine, theirs, rows, between))
+  for (const auto& [c, worst] : worst_of_channels(channels, size_of(system), mine, theirs, rows, between))
     keep_worst(d.worst[static_cast<std::size_t>(c->kind)], worst.value, c->channel->name, worst.t);
   const double duration = theirs.size() > 0 ? theirs.time(theirs.size() - 1) - theirs.time(0) : 0.0;
   for (const EventPair& pair : match.pairs) {
@@ -220,12 +227,13 @@ std::optional<double> parts_at(const System& system, const RunResult& run, const
   const BetweenEvents between(match, run.events, reference.events);
   const std::vector<Compared> channels = compared_channels(system, reference);
   const Scales scales = scales_of(channels);
+  const double size = size_of(system);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::span<const double> a = mine.row(row), b = theirs.row(rows.theirs(row));
     const bool is_jump = between.holds(b[0]);
     for (const Compared& c : channels) {
       if (c.kind == ErrorKind::reaction || (c.kind == ErrorKind::velocity && is_jump)) continue;
-      if (!(difference(a[c.column + 1], b[c.column + 1]) <= share * scale_of(c, scales))) return b[0];
+      if (!(difference(a[c.column + 1], b[c.column + 1]) <= share * scale_of(c, scales, size))) return b[0];
     }
   }
   return {};
