@@ -193,7 +193,7 @@ TEST_CASE("moreau: two equal limbs of a base begin to slide in the same step and
       text += body(name, "mass = 1000.0; inertia = 500.0; position = [" + x + ", 0.05]") +
               element("step_lap_joint", name + " joint", "limb = '" + name + "'; active_part = 'base'") +
               element("step_lap_interface", name + " corner",
-                      "joint = '" + name + " joint'; yoke = " + square(1.5 * side, 1.0) + "; limb = " + square(0.0, 0.3) +
+                      "joint = '" + name + " joint'; yoke = " + square(1.5 * side, 1.0) + "; limb = " + square(1.5 * side, 0.3) +
                           "; count = 100; static_friction = 0.25; kinetic_friction = 0.1; pressure = 700.0");
     }
     const Run run = stepped(text, step, 0.3);
