@@ -29,7 +29,7 @@ struct Tables {
 
 // A load or a drive that begins within `end` and lasts beyond it; one in four jumps.
 std::string lasting_signal(const std::string& name, double peak, double end, RandomNumber& r) {
-  const double start = end * r.between(0.05, 0.6), rise = end * r.between(0.05, 0.4);
+  const double start = end * r.between(0.1, 0.8), rise = end * r.between(0.05, 0.4);
   const std::string when = "peak = " + number(peak) + "; start = " + number(start) + "; duration = " + number(2.0 * end);
   if (r.chance(0.25)) return signal_entry("rectangle", name, when);
   return signal_entry("trapezoid", name, when + "; rise = " + number(rise) + "; fall = 0.0");
@@ -81,8 +81,8 @@ RubbingBodies rubbing_on_guides(int seed, const Writing& writing) {
     tables.elements.push_back(element("prismatic", "guide " + name, "a = '" + name + "'"));
     for (std::size_t k = 0; k < rubs[i].size(); ++k) {
       Rubbing& rub = rubs[i][k];
-      rub.holds = carried[i] * size * (k == 0 ? r.between(0.5, 1.8) : r.between(0.2, 0.8));
-      rub.drags = rub.holds * r.between(0.3, 0.95);
+      rub.holds = carried[i] * size * (k == 0 ? r.between(0.3, 1.3) : r.between(0.1, 0.5));
+      rub.drags = rub.holds * r.between(0.2, 0.7);
       const std::string on = rub.on < 0 ? "deck" : "m" + std::to_string(rub.on), friction = "f" + std::to_string(k) + " " + name;
       tables.elements.push_back(element("joint_friction", friction,
                                         "a = '" + name + "'; b = '" + on + "'; coordinate = 'x'; holds = " +
