@@ -13,6 +13,7 @@
 #include "mbd/rest/freedom.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/balance.h"
+#include "mbd/trust/judgement.h"
 #include "run/acted_loads.h"
 #include "run/action_findings.h"
 #include "run/edges.h"
@@ -363,8 +364,17 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
   return findings;
 }
 
+namespace {
+
+bool is_judged(const Model& model) {
+  return !model.criteria.empty() ||
+         std::any_of(model.elements.begin(), model.elements.end(), [](const ElementEntry& entry) { return entry.kind->judge != nullptr; });
+}
+
+} // namespace
+
 std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
-  if (result.ranges.empty()) return {}; // extremes were not looked for
+  if (result.ranges.empty() || !judgement.has_criteria) return {}; // extremes were not looked for, or nothing is judged
   Findings findings = loads_not_acted(loaded, result, judgement);
   append(findings, growing_criteria(loaded, result, judgement));
   append(findings, bodies_that_fall(loaded, result));
@@ -410,7 +420,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   append(findings, stepped_feet(loaded));
   append(findings, doubled_corners(loaded));
   append(findings, implausible_findings(loaded));
-  append(findings, loads_beyond_end(loaded));
+  if (is_judged(model)) append(findings, loads_beyond_end(loaded));
   warn_of_shared_reactions(*loaded.system, findings);
   const Trajectory written(*loaded.system, model.output.channels);
   if (written.channels().empty())

@@ -21,13 +21,17 @@ bool is_modulated(const Piece& piece) {
 bool is_level(const Piece& piece) { return piece.is_level && !has_waves(piece) && !is_modulated(piece); }
 bool is_stationary(const Piece& piece) { return piece.is_level && has_waves(piece) && !is_modulated(piece); }
 
+// Σ a², twice the mean square.
+double power_of(const Piece& piece) {
+  double square = 0.0;
+  for (const Signal::Harmonic& h : piece.harmonics) square += h.amplitude * h.amplitude;
+  return square;
+}
+
 double mean_period(const Piece& piece) {
-  double square = 0.0, square_of_rate = 0.0;
-  for (const Signal::Harmonic& h : piece.harmonics) {
-    square += h.amplitude * h.amplitude;
-    square_of_rate += h.amplitude * h.amplitude * h.frequency * h.frequency;
-  }
-  return 2.0 * std::numbers::pi * std::sqrt(square / square_of_rate);
+  double square_of_rate = 0.0;
+  for (const Signal::Harmonic& h : piece.harmonics) square_of_rate += h.amplitude * h.amplitude * h.frequency * h.frequency;
+  return 2.0 * std::numbers::pi * std::sqrt(power_of(piece) / square_of_rate);
 }
 
 // Sums and products leave levels that differ by rounding: of sixteen digits nine are asked, of the largest value at the beginning and
@@ -63,14 +67,15 @@ SignalCourse course_of(const Signal& signal) {
   if (is_at(last, level)) {
     course.ends = last_start;
     if (course.ends <= 0.0) return {};
-    for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
-      if (!is_stationary(pieces[k])) continue;
-      const double period = mean_period(pieces[k]);
-      if (pieces[k + 1].start - pieces[k].start < SignalCourse::k_periods * period) continue;
-      course.full = std::max(0.0, pieces[k].start);
-      course.period = period;
-      break;
-    }
+    // Harmonics that rise and fall as harmonics are of this form, too, and have less power than between.
+    const Piece* strongest = nullptr;
+    for (const Piece& piece : pieces)
+      if (is_stationary(piece) && (!strongest || power_of(piece) > power_of(*strongest))) strongest = &piece;
+    if (!strongest) return course;
+    const double period = mean_period(*strongest);
+    if ((strongest + 1)->start - strongest->start < SignalCourse::k_periods * period) return course;
+    course.full = std::max(0.0, strongest->start);
+    course.period = period;
     return course;
   }
   if (!is_level(last) && !is_stationary(last)) return course;

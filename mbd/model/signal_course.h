@@ -6,8 +6,8 @@
 //   its first level  a pulse on top of an offset      the same
 //   another level    ramp and hold                    it has no end; full where that piece begins
 //   harmonics        sine, sea, road                  it has no end; full where that piece begins, with a mean period
-// A signal with an end may be stationary before it, as a random vibration is: a piece of harmonics alone that is k_periods mean periods
-// long, or longer, is then its full size. The mean period of Σ a cos(ω t + φ) is 2π √(Σ a² / Σ a² ω²), the mean time between two
+// A signal with an end may be stationary before it, as a random vibration is: the piece of harmonics alone with the largest mean
+// square is then its full size, if it is k_periods mean periods long or longer. The mean period of Σ a cos(ω t + φ) is 2π √(Σ a² / Σ a² ω²), the mean time between two
 // upward crossings of a Gaussian process with this spectrum (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46).
 #pragma once
 

@@ -74,6 +74,13 @@ TEST_CASE("waves are full where nothing but they is left, with their mean period
   check(Signal({wave(0.5, 2.0, 0.2), level(2.25, 0.0)}), 0.5, k_never, 2.25, 0.0);
 }
 
+TEST_CASE("waves that grow as a haversine are at their full size where they have grown") {
+  Signal::Piece rise = wave(0.5, 0.5, 0.01);
+  for (const double beat : {0.01 / (1.0 - 0.01 / 2.0), 0.01 / (1.0 + 0.01 / 2.0)}) // ½ − ½ cos over 1 s, times a cosine of 100 Hz
+    rise.harmonics.push_back({-0.25, 2.0 * std::numbers::pi / beat, 0.0});
+  check(Signal({rise, wave(1.5, 1.0, 0.01), level(3.0, 0.0)}), 0.5, 1.5, 3.0, 0.01);
+}
+
 TEST_CASE("a product of a wave and its envelope has the course of the envelope") {
   const Signal carrier({wave(0.0, 2.0, 0.1)}), envelope({ramp(0.5, 0.0, 2.0), level(1.0, 1.0), ramp(3.0, 1.0, -2.0), level(3.5, 0.0)});
   check(product_of({&carrier, &envelope}), 0.5, 1.0, 3.5, 0.1);

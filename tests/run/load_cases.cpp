@@ -54,7 +54,7 @@ std::string action(const std::string& name, double t, const std::string& step, c
 std::string scene(const LoadKind& kind, double end, bool is_active, const std::string& first_signal, const std::string& more) {
   std::string text = "[simulation]\nend = " + text_of(end) + R"(
 [output]
-step = 1.0
+step = 0.1
 [[body]]
 name = "b"
 mass = 100.0
