@@ -287,7 +287,8 @@ void keep_worst(RunDifference& worst, const RunDifference& other, double factor)
 // --- by references
 
 // What the reference itself may be wrong by: from the other run, which may have few samples and no extremes.
-void add_own_errors(const System& system, const ReferenceRuns& pair, const EventMatch& match, GlobalErrorEstimate& estimate) {
+void add_own_errors(const System& system, const RunResult& run, const ReferenceRuns& pair, const EventMatch& match,
+                    GlobalErrorEstimate& estimate) {
   GlobalErrorEstimate own;
   own.channels.resize(system.channels.size());
   own.event_times.resize(pair.coarse.events.size());
@@ -303,8 +304,9 @@ void add_own_errors(const System& system, const ReferenceRuns& pair, const Event
   for (std::size_t c = 0; c < estimate.channels.size(); ++c) {
     ChannelError& error = estimate.channels[c];
     const ChannelError& o = own.channels[c];
-    error.low += larger_error(o.low, o.curve);
-    error.high += larger_error(o.high, o.curve);
+    const bool has_range = c < run.ranges.size(); // some channels have samples, but no extremes
+    if (has_range && std::isfinite(run.ranges[c].low.value)) error.low += larger_error(o.low, o.curve);
+    if (has_range && std::isfinite(run.ranges[c].high.value)) error.high += larger_error(o.high, o.curve);
     error.final += larger_error(o.final, o.curve);
     error.curve += o.curve;
     for (double* value : {&error.t_low, &error.t_high, &error.first_above_one}) *value += time;
@@ -345,7 +347,7 @@ bool measure_by_references(const System& system, const State& initial, const Sim
   const Comparison comparison(system, run, pair->reference, k_safety);
   comparison.add_to(estimate);
   keep_worst(estimate.error, pair->of_run, k_safety);
-  add_own_errors(system, *pair, comparison.match(), estimate);
+  add_own_errors(system, run, *pair, comparison.match(), estimate);
   estimate.finest = std::move(pair->reference);
   add_floors(system, run, estimate);
   if (pair->parted_at) forget_from(*pair->parted_at, run, *pair, estimate);
