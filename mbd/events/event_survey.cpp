@@ -28,6 +28,7 @@ constexpr int k_most_parts = 400;                         // of one step
 // Of the step: nearer to its start nobody believes what was not positive there (dense output does not know so small
 // changes); what has not become positive at all is decided anew here.
 constexpr double k_at_once = 1e-4;
+constexpr double k_of_flanks = 0.05;  // of the larger of two values: tangents that meet so low may belong to a kink below zero
 constexpr double k_off_places = 0.25; // of a gap between places: a check is not made nearer to these, where nothing can be off
 // Beside what a polynomial is off by at one place it may be off by so many times that at others: between the first two
 // places it reaches about a quarter of what it does in the middle.
@@ -36,9 +37,10 @@ constexpr double k_far = 0.25; // of the size of a value that is clear: it is no
 
 } // namespace
 
-// Where the tangents at two neighbouring places, falling at one and rising at the next, meet below zero: the bottom of
-// what is convex between them, as the gap to anything round that is flown past, may be as low. −1: nowhere, or rates
-// are not known.
+// Where the tangents at two neighbouring places, falling at one and rising at the next, meet below zero or near it: the bottom of
+// what is convex between them, as the gap to anything round that is flown past, may be as low. That of two flanks of a sine, as of the
+// end of an arm that turns past a thin wall, is lower than where they meet, by δ³/3 of a place δ off it: 2 % of the value there between
+// places of a step that turns by a radian. −1: nowhere, or rates are not known.
 double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
   const double begin = place_[0].theta, width = place_[k_places - 1].theta - begin;
   for (std::size_t k = 0; k < last; ++k) {
@@ -46,7 +48,7 @@ double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
     const double s0 = place_[k].rate[slot], s1 = place_[k + 1].rate[slot];
     if (!(s0 < 0.0 && s1 > 0.0)) continue;
     const double gap = place_[k + 1].theta - place_[k].theta, x = (w1 - w0 - s1 * gap) / (s0 - s1);
-    if (x > 0.0 && x < gap && w0 + s0 * x < 0.0)
+    if (x > 0.0 && x < gap && w0 + s0 * x < k_of_flanks * std::max(w0, w1))
       return std::clamp((place_[k].theta + x - begin) / width, k_margin_of_cut, 1.0 - k_margin_of_cut);
   }
   return -1.0;
