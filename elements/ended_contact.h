@@ -14,7 +14,7 @@ namespace steplap {
 
 inline constexpr UnitMode k_contact_off = 3;
 
-template <class Law> class EndedContactGroup final : public ForceGroup, public GapSource {
+template <class Law> class EndedContactGroup final : public ForceGroup, public GapSource, public TurningElements {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -66,6 +66,9 @@ public:
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.gap));
   }
   void enter_links(LinkTable& links) override {
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);

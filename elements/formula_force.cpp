@@ -87,7 +87,7 @@ private:
 };
 
 /// `Works`: booked as work, else as heat. `Jumps`: some formula compares, so that its force may jump.
-template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup, public StateReader {
+template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup, public StateReader, public TurningElements {
 public:
   using Entry = ForceEntry;
   std::vector<Entry> entries;
@@ -133,6 +133,14 @@ public:
     for (const Entry& entry : entries) {
       is_used[entry.a] = is_used[entry.b] = 1;
       for (const int body : entry.formula.bodies()) is_used[body] = 1;
+    }
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) {
+      if (entry.is_following) turns.add_all({entry.a, entry.b});
+      else turns.add(entry.a, entry.b, turning_of(entry.row));
+      if (entry.row.kind == MeasureKind::angle && !entry.formula.program().is_linear()) turns.add(entry.a, entry.b);
+      entry.formula.enter_turns(turns);
     }
   }
   void enter_links(LinkTable& links) override {

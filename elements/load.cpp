@@ -1,6 +1,7 @@
 #include "elements/load.h"
 
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 
 namespace steplap {
 
@@ -39,7 +40,7 @@ AppliedLoad<double> load_at(const LoadEntry& entry, const Evaluation& e) {
   return load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.force_of(*signal); });
 }
 
-class LoadGroup final : public ForceGroup {
+class LoadGroup final : public ForceGroup, public TurningElements {
 public:
   static constexpr bool k_does_work = true;
   std::vector<LoadEntry> entries;
@@ -74,6 +75,11 @@ public:
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const LoadEntry& entry : entries) is_used[entry.body] = 1;
+  }
+
+  void enter_turns(TurnTable& turns) const override {
+    for (const LoadEntry& entry : entries)
+      if (entry.is_in_body || moves_by_turning(entry.point)) turns.add(entry.body, k_ground);
   }
 
 private:

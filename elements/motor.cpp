@@ -3,6 +3,7 @@
 #include "mbd/system/law_group.h"
 #include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 
 namespace steplap {
 
@@ -43,7 +44,7 @@ struct MotorLaw {
   }
 };
 
-template <class Measure> class MotorGroup final : public ForceGroup {
+template <class Measure> class MotorGroup final : public ForceGroup, public TurningElements {
 public:
   struct Entry {
     int a, b;
@@ -68,6 +69,9 @@ public:
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
   void enter_links(LinkTable& links) override {
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);

@@ -35,7 +35,7 @@ template <class S, class B> struct Placed {
   }
 };
 
-class PolygonGroup final : public ForceGroup, public GapSource, public SwallowingContacts {
+class PolygonGroup final : public ForceGroup, public GapSource, public SwallowingContacts, public TurningElements {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -113,6 +113,9 @@ public:
 
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) turns.add_all({entry.a, entry.b});
   }
   // Friction on a face of a sees b's corners from there.
   void enter_links(LinkTable& links) override {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "mbd/system/gap_source.h"
+#include "mbd/system/turn_table.h"
 
 namespace steplap {
 
@@ -55,6 +56,9 @@ struct SegmentMeasure {
     return DistanceMeasure{point_a, to()}.at<false, S>(a, b);
   }
 };
+
+[[nodiscard]] inline Turning turning_of(const InsideMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
+[[nodiscard]] inline Turning turning_of(const SegmentMeasure& m) { return {moves_by_turning(m.point_a), true}; }
 
 /// A circle inside a ring has nowhere to go through.
 inline GapBounds gap_bounds(const InsideMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {

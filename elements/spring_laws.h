@@ -218,6 +218,12 @@ struct SmoothSpring {
   // Of doubles alone: which piece holds is not written down.
   [[nodiscard]] double elastic_force(double value, UnitMode) const { return -count * spring.value(value - free); }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
+  /// Of an angle.
+  [[nodiscard]] std::vector<TurnKnots> knots() const {
+    TurnKnots knots{-free, {}};
+    for (const Vec2& point : spring.points()) knots.at.push_back(point.x());
+    return {knots};
+  }
 };
 
 /// f = −T(value − free) − D(rate) with tables T, D; the mode is the pair of segments. Only the ends of the present

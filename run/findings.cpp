@@ -351,6 +351,22 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
   return findings;
 }
 
+// Legs of a run have the bodies of the model, in its order.
+static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Integrator::DividedSteps& divided) {
+  if (divided.count == 0) return std::nullopt;
+  const auto name = [&](int body) {
+    return body == k_ground ? "the ground" : "'" + loaded.system->bodies[static_cast<std::size_t>(body)].name + "'";
+  };
+  Finding finding;
+  finding.code = "steps_divided";
+  finding.level = FindingLevel::note;
+  finding.text = std::to_string(divided.count) + (divided.count == 1 ? " step of '" : " steps of '") + loaded.model.simulation.integrator +
+                 (divided.count == 1 ? "' was" : "' were") + " divided, down to " + rounded_text(divided.shortest, 3) +
+                 " s: " + name(divided.a) + " turns against " + name(divided.b) +
+                 ", and within one step it may turn by 1 rad at most and pass no point of a curve over its angle";
+  return finding;
+}
+
 std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result) {
   Findings findings = feet_beyond_edges(loaded, result.final_state);
   for (Finding& finding : findings) finding.text = "at the end " + finding.text;
@@ -360,6 +376,7 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
            "channel '" + range.channel->name +
                "' had no value at some time (a division by zero, a root of what is negative): its extremes are of the other times");
   append(findings, contacts_too_deep(loaded, result.ranges));
+  if (const std::optional<Finding> divided = divided_steps(loaded, result.statistics.divided_steps)) findings.push_back(*divided);
   append(findings, actions_that_wait(loaded, result));
   return findings;
 }

@@ -6,8 +6,12 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/system/motion_formula.h"
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace steplap {
 
@@ -54,7 +58,7 @@ template <class S> std::array<BodyForceOf<S>, 3> forces_of(const CamGap<S>& gap,
   return on;
 }
 
-class CamGroup final : public ForceGroup {
+class CamGroup final : public ForceGroup, public TurningElements {
 public:
   using Entry = CamEntry;
   std::vector<Entry> entries;
@@ -104,6 +108,13 @@ public:
     for (const Entry& entry : entries)
       for (const int body : entry.bodies()) is_used[body] = 1;
   }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) {
+      turns.add(entry.a, entry.b, turning_of(entry.measure));
+      turns.add(entry.cam, entry.b);
+      if (!entry.curve.knots().empty()) turns.add(entry.cam, entry.b, TurnKnots{entry.zero, entry.curve.knots(), true});
+    }
+  }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const Entry& entry = entry_at(element);
     if (entry.holds) return k_contact_pressed;
@@ -133,6 +144,27 @@ private:
   }
 };
 
+// The last point, where the first comes again a whole turn later, is often left out: of a table in even intervals, which has it one
+// interval after its last point, and of one that ends with the lift with which it begins, if what is left out is no wider than the
+// intervals that it has. Nothing where that is not so.
+std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
+  constexpr double k_digits = 1e-6; // of intervals and lifts in a file
+  double widest = 0.0, narrowest = std::numeric_limits<double>::infinity(), low = points.front().y(), high = low;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    widest = std::max(widest, points[i].x() - points[i - 1].x());
+    narrowest = std::min(narrowest, points[i].x() - points[i - 1].x());
+    low = std::min(low, points[i].y());
+    high = std::max(high, points[i].y());
+  }
+  const Vec2 end(points.front().x() + 2.0 * std::numbers::pi, points.front().y());
+  const double left_out = end.x() - points.back().x();
+  const bool is_even = std::max(widest, left_out) - std::min(narrowest, left_out) <= k_digits * widest;
+  const bool ends_alike = std::abs(points.back().y() - end.y()) <= k_digits * (high - low);
+  if (!is_even && !(ends_alike && left_out <= widest)) return std::nullopt;
+  points.push_back(end);
+  return points;
+}
+
 // Nothing where something is wrong with it.
 std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   const auto fail = [&](const std::string& message) -> std::optional<LiftCurve> {
@@ -161,8 +193,15 @@ std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   if (LiftCurve::is_whole_turn(e.lift) && e.lift.back().y() != e.lift.front().y())
     return fail("'lift' spans a whole turn, but ends at " + rounded_text(e.lift.back().y()) + " m where it begins with " +
                 rounded_text(e.lift.front().y()) + " m");
-  if (e.lift.back().x() - e.lift.front().x() > 6.2831853072) return fail("'lift' spans more than a whole turn");
-  return LiftCurve(e.lift);
+  const double span = e.lift.back().x() - e.lift.front().x(), turn = 2.0 * std::numbers::pi;
+  if (span > 6.2831853072) return fail("'lift' spans more than a whole turn");
+  if (LiftCurve::is_whole_turn(e.lift)) return LiftCurve(e.lift);
+  const std::optional<std::vector<Vec2>> closed = closed_turn(e.lift);
+  if (closed) return LiftCurve(*closed);
+  return fail("'lift' spans " + rounded_text(span * 360.0 / turn, 4) + " degrees of a turn, from " + rounded_text(e.lift.front().x()) +
+              " to " + rounded_text(e.lift.back().x()) + " rad, and says nothing of the rest. Add points up to [" +
+              rounded_text(e.lift.front().x() + turn, 12) + ", " + rounded_text(e.lift.front().y()) +
+              "], a whole turn behind the first one and with its lift; a dwell is points of equal lift");
 }
 
 void compile_cam(const Element& element, SystemBuilder& builder) {
@@ -216,7 +255,9 @@ const ElementKind& cam_kind() {
     f.add("axis", &T::axis).doc("direction in which it is lifted, in marker b's axes");
     f.add("lift", &T::lift)
         .in("rad", "m")
-        .doc("[angle, lift] over at most one turn: a smooth curve through them, periodic over a whole turn");
+        .doc(
+            "[angle, lift] over one whole turn: a smooth curve through them, periodic. The last point, where the first comes again, may be "
+            "left out");
     f.add("formula", &T::formula).doc("instead: lift in m over the angle `value`: \"'4 mm' * (1 - cos(value))\"");
     f.add("start_angle", &T::start_angle).in("rad").doc("of the cam in the reference pose, as the curve counts");
     f.add("gap", &T::gap).in("m").doc("between follower and cam in the reference pose; negative: pressed in");

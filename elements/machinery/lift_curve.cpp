@@ -54,6 +54,12 @@ LiftCurve::LiftCurve(std::vector<Vec2> points)
 
 LiftCurve::LiftCurve(FormulaProgram formula) : formula_(std::move(formula)) {}
 
+std::vector<double> LiftCurve::knots() const {
+  std::vector<double> angles;
+  for (const Vec2& point : points_) angles.push_back(point.x());
+  return angles;
+}
+
 Lift LiftCurve::at(double angle) const { return formula_ ? of_formula(angle) : of_points(angle); }
 
 Lift LiftCurve::of_points(double angle) const {

@@ -27,6 +27,8 @@ public:
   explicit LiftCurve(FormulaProgram formula);
 
   [[nodiscard]] Lift at(double angle) const;
+  /// Angles of the points; none of a formula.
+  [[nodiscard]] std::vector<double> knots() const;
   /// Do the points span one whole turn?
   [[nodiscard]] static bool is_whole_turn(const std::vector<Vec2>& points);
 

@@ -2,6 +2,7 @@
 
 #include "elements/bounded_friction.h"
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ struct MeshEntry {
 };
 
 // Modes: which way the teeth are loaded, so that friction has no corner within one.
-class MeshGroup final : public ForceGroup {
+class MeshGroup final : public ForceGroup, public TurningElements {
 public:
   static constexpr UnitMode k_forwards = 0, k_backwards = 1;
   std::vector<MeshEntry> entries;
@@ -66,6 +67,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
   }
+  void enter_turns(TurnTable&) const override {} // a gear is linear in its angles
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return entries[static_cast<std::size_t>(element)].couple(e.motion) < 0.0 ? k_backwards : k_forwards;
   }

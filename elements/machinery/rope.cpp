@@ -7,6 +7,7 @@
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/rope_end.h"
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ struct RopePart {
 // released. The contact's force is the tension. Over pulleys one more watch value tells whether a part is left between
 // any two points while it is taut: by less than what the rest of the rope would be taut without, of a part that was a
 // thousand times as long, what hangs on it is jammed in its pulley; and no part has a direction at no length.
-class RopeGroup final : public ForceGroup {
+class RopeGroup final : public ForceGroup, public TurningElements {
 public:
   static constexpr int k_watches = KelvinVoigtContact::k_watches + 1, k_on_pulley = KelvinVoigtContact::k_watches;
   static constexpr double k_run_in = 1e-3; ///< of a part's length as given
@@ -134,6 +135,10 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries)
       for (const RopePart& part : entry.parts) is_used[part.a] = is_used[part.b] = 1;
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries)
+      for (const RopePart& part : entry.parts) turns.add(part.a, part.b, turning_of(part.measure));
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const Way way = way_of(entries[element], e.motion);

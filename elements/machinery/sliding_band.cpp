@@ -244,6 +244,11 @@ void SlidingBandGroup::mark_bodies(std::vector<char>& is_used) const {
     for (const int body : entry.bodies()) is_used[body] = 1;
 }
 
+void SlidingBandGroup::enter_turns(TurnTable& turns) const {
+  for (const Entry& entry : entries)
+    for (const Part& part : entry.parts) turns.add(entry.drum, part.end, turning_of(part.measure));
+}
+
 // --- modes ------------------------------------------------------------------------------------------
 
 UnitMode SlidingBandGroup::contact_mode(UnitMode mode) {

@@ -26,7 +26,7 @@
 
 namespace steplap {
 
-class SlidingBandGroup final : public ForceGroup, public StateReader {
+class SlidingBandGroup final : public ForceGroup, public StateReader, public TurningElements {
 public:
   static constexpr int k_watches = 2;
   static constexpr double k_place = 1e-12; ///< m: to which places are known; a bound is no bound to less than what that stretches
@@ -83,6 +83,7 @@ public:
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
+  void enter_turns(TurnTable& turns) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
   [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override;

@@ -2,6 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 #include "mbd/trust/element_judgement.h"
 
 #include <cmath>
@@ -84,7 +85,7 @@ struct TieLaw {
   }
 };
 
-template <class Measure> class TieGroup final : public ForceGroup {
+template <class Measure> class TieGroup final : public ForceGroup, public TurningElements {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -133,6 +134,9 @@ public:
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
   void enter_links(LinkTable& links) override {
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);

@@ -21,11 +21,11 @@ UnitMode contact_of(UnitMode mode) { return mode & 3U; }
 UnitMode sliding_of(UnitMode mode) { return mode >> 2U & 3U; }
 bool turns_forward(UnitMode mode) { return (mode >> 4U & 1U) != 0; }
 bool turns_fast(UnitMode mode) { return (mode >> 5U & 1U) != 0; }
-struct Turning {
+struct WheelSpin {
   bool is_forward = false, is_fast = false;
 };
-Turning turning_of(UnitMode mode) { return {turns_forward(mode), turns_fast(mode)}; }
-UnitMode mode_of(UnitMode contact, UnitMode sliding, Turning turning) {
+WheelSpin spin_in(UnitMode mode) { return {turns_forward(mode), turns_fast(mode)}; }
+UnitMode mode_of(UnitMode contact, UnitMode sliding, WheelSpin turning) {
   return contact | sliding << 2U | (turning.is_forward ? 1U : 0U) << 4U | (turning.is_fast ? 1U : 0U) << 5U;
 }
 
@@ -64,7 +64,7 @@ UnitMode sliding_at(double trial, double most) {
 
 // What the wheel does, found with the contact's mode alone; sense and sliding follow from it.
 UnitMode mode_with(const TyreGroup::Entry& entry, const WheelMotion<double>& w, double p, UnitMode contact) {
-  const Turning turning{w.rolling<0.0, std::abs(w.rolling)> entry.tread.slow()};
+  const WheelSpin turning{w.rolling<0.0, std::abs(w.rolling)> entry.tread.slow()};
   if (contact != k_contact_pressed) return mode_of(contact, k_adheres, turning);
   const TreadState<double> t =
       tread_at(entry, w, p, entry.press.force(w.gap.value, w.gap.rate, contact), mode_of(contact, k_adheres, turning));
@@ -188,6 +188,10 @@ void TyreGroup::mark_bodies(std::vector<char>& is_used) const {
   for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
+void TyreGroup::enter_turns(TurnTable& turns) const {
+  for (const Entry& entry : entries) turns.add(entry.a, entry.b, Turning{moves_by_turning(entry.measure.centre), true});
+}
+
 void TyreGroup::enter_links(LinkTable& links) {
   for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
@@ -224,7 +228,7 @@ UnitMode TyreGroup::next_mode(int element, UnitMode mode, int slot, const Evalua
     const UnitMode next = entry.press.next_mode(contact, slot, w.gap.value, w.gap.rate, rounding);
     return next == contact ? mode : mode_with(entry, w, e.inner[entry.inner], next);
   }
-  const Turning turning = turning_of(mode);
+  const WheelSpin turning = spin_in(mode);
   if (slot == 4) return mode_of(contact, sliding, {!turning.is_forward, turning.is_fast});
   if (slot == 5) return mode_of(contact, sliding, {turning.is_forward, !turning.is_fast});
   if (sliding != k_adheres) return mode_of(contact, k_adheres, turning);

@@ -8,6 +8,7 @@
 #include "elements/contact_laws.h"
 #include "elements/machinery/road.h"
 #include "mbd/system/sliding_units.h"
+#include "mbd/system/turn_table.h"
 
 #include <memory>
 
@@ -71,7 +72,7 @@ template <class S> struct TreadState {
   S rate{0.0};  ///< u̇
 };
 
-class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
+class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits, public TurningElements {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -91,6 +92,7 @@ public:
   void add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const override;
   void start_inner(const Motion<double>* motion, double* inner) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
+  void enter_turns(TurnTable& turns) const override;
   void enter_links(LinkTable& links) override;
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;

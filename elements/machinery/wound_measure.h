@@ -2,7 +2,7 @@
 // derived.
 #pragma once
 
-#include "mbd/system/measure.h"
+#include "mbd/system/turn_table.h"
 
 #include <cmath>
 
@@ -48,6 +48,8 @@ struct WoundMeasure {
     return m;
   }
 };
+
+[[nodiscard]] inline Turning turning_of(const WoundMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 
 /// rad: beyond, the angle of the straight part against the reference pose would soon jump by a turn.
 inline constexpr double k_most_turned = 3.0;

@@ -6,6 +6,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/system.h"
+#include "mbd/system/turn_table.h"
 
 #include <cmath>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double k_shortest = 1e-6; // of its straight part in the reference pose, as of a rope's parts
 
-class WoundRopeGroup final : public ForceGroup {
+class WoundRopeGroup final : public ForceGroup, public TurningElements {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -62,6 +63,9 @@ public:
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const auto m = measured(entries[element], e.motion);

@@ -37,6 +37,10 @@ constexpr int k_most_parts = 400; // limit of the work in one step
 // θ from which on a function that is fresh or starts negative can be armed, because dense output does not resolve smaller changes.
 // A function that never becomes positive is reported here.
 constexpr double k_at_once = 1e-4;
+// Two flanks of a sine, such as the end of an arm that turns past a thin wall, dip below the point where their tangents meet: by δ³/3 at a
+// distance δ from it, 2 % of the value there between nodes of a step that turns by a radian. So tangents that meet below this share of the
+// larger of the two values count as well. A kink may lie there, too.
+constexpr double k_of_flanks = 0.05;
 constexpr double k_off_places = 0.25; // smallest distance of a check point from a node, in gaps between nodes: g = p at the nodes
 // Factor from the deviation |g − p| at the check point to the new E: between the first two nodes the deviation reaches only about a
 // quarter of that in the middle of a part.
@@ -49,7 +53,8 @@ constexpr double k_far = 0.25; // a function whose minimum is above this share o
 // The gap to a round body that is passed is such a function. With values w0, w1 and slopes s0 < 0 < s1, and the nodes `gap` apart,
 // a convex function lies above both tangents. They meet at x from the first node:
 //   w0 + s0 x = w1 + s1 (x − gap)   ⇒   x = (w1 − w0 − s1 gap)/(s0 − s1).
-// Returns the position of x in the part, 0 … 1, if the tangents are below zero there; −1 otherwise, or if slopes are unknown.
+// Returns the position of x in the part, 0 … 1, if the tangents are below zero there, or near it (k_of_flanks); −1 otherwise, or if slopes
+// are unknown.
 double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
   const double begin = place_[0].theta, width = place_[k_places - 1].theta - begin;
   for (std::size_t k = 0; k < last; ++k) {
@@ -57,7 +62,7 @@ double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
     const double s0 = place_[k].rate[slot], s1 = place_[k + 1].rate[slot];
     if (!(s0 < 0.0 && s1 > 0.0)) continue;
     const double gap = place_[k + 1].theta - place_[k].theta, x = (w1 - w0 - s1 * gap) / (s0 - s1);
-    if (x > 0.0 && x < gap && w0 + s0 * x < 0.0)
+    if (x > 0.0 && x < gap && w0 + s0 * x < k_of_flanks * std::max(w0, w1))
       return std::clamp((place_[k].theta + x - begin) / width, k_margin_of_cut, 1.0 - k_margin_of_cut);
   }
   return -1.0;

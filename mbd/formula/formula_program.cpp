@@ -55,6 +55,35 @@ FormulaProgram::FormulaProgram(const FormulaTree& tree) {
   set_guards();
 }
 
+bool FormulaProgram::is_linear() const {
+  std::vector<char> varies;
+  for (const Step& step : steps_) {
+    const auto in = [&](std::size_t k) { return step.of[k] >= 0 && varies[static_cast<std::size_t>(step.of[k])] != 0; };
+    const bool is_any = in(0) || in(1) || in(2);
+    bool is_plain = true, does_vary = is_any;
+    switch (step.op) {
+    case FormulaOp::operand:
+    case FormulaOp::time: does_vary = true; break;
+    case FormulaOp::add:
+    case FormulaOp::subtract:
+    case FormulaOp::negate:
+    case FormulaOp::abs:
+    case FormulaOp::min:
+    case FormulaOp::max:
+    case FormulaOp::finite:
+    case FormulaOp::choice: break;
+    case FormulaOp::multiply: is_plain = !(in(0) && in(1)); break;
+    case FormulaOp::divide: is_plain = !in(1); break;
+    case FormulaOp::less:
+    case FormulaOp::less_or_equal: does_vary = false; break; // true or false from here on
+    default: is_plain = !is_any; break;
+    }
+    if (!is_plain) return false;
+    varies.push_back(does_vary ? 1 : 0);
+  }
+  return true;
+}
+
 bool FormulaProgram::has_comparisons() const {
   return std::any_of(comparisons_.begin(), comparisons_.end(), [](char is_one) { return is_one != 0; });
 }

@@ -115,6 +115,8 @@ public:
   /// Has the value a jump where switch `s` changes? False of |a|, min and max.
   [[nodiscard]] bool is_comparison(int s) const { return comparisons_[static_cast<std::size_t>(s)] != 0; }
   [[nodiscard]] bool has_comparisons() const;
+  /// Is every piece of it, and the quantity of every switch, linear in the operands and the time?
+  [[nodiscard]] bool is_linear() const;
   [[nodiscard]] bool uses_time() const { return uses_time_; }
 
   /// Its value with the bits given. `values` has room for size() numbers. `quantity`: one per switch, what its bit hangs on; untouched

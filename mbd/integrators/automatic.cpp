@@ -65,6 +65,11 @@ public:
     if (!resolves) note_counts();
     return resolves;
   }
+  [[nodiscard]] bool shorten(Dynamics& dynamics, double share) override {
+    const bool is_shortened = active_->shorten(dynamics, share);
+    if (is_shortened) note_counts();
+    return is_shortened;
+  }
   void limit_step(double longest) override {
     Integrator::limit_step(longest);
     explicit_->limit_step(longest);

@@ -99,7 +99,7 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
 void ExplicitPair::begin_step(Dynamics& dynamics, double t_limit) {
   Integrator::begin_step(dynamics, t_limit);
   attempt_.left = t_limit - t0_;
-  const double h_max = limited(attempt_.left);
+  const double h_max = limited_by_turns(dynamics, limited(attempt_.left), settings_.division);
   if (next_h_ <= 0.0) next_h_ = first_step(dynamics, order_ - 1, h_max);
   update_weights(dynamics);
   attempt_.h = std::min(next_h_, h_max);

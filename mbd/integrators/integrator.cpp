@@ -41,7 +41,8 @@ double slip_share(int division) { return k_slip_share / (static_cast<double>(div
 Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
     : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0), y1_(max_dimension, 0.0), weight_(max_dimension, 0.0),
       scratch_(3 * max_dimension, 0.0), watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_), watch_rate1_(watch0_),
-      nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_), slip_scale_inside_(slip_scale0_) {
+      nodes_(system_.watch_count), turn_limit_(system_), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_),
+      slip_scale_inside_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -93,6 +94,14 @@ bool Integrator::resolves_slips(Dynamics& dynamics, double theta, const double* 
   for (int i = 0; i < dynamics.coordinate_count(); ++i)
     if ((*scale)[i] < k_least_slip * slip_scale0_[i]) return !withdraw(dynamics, k_shorter_slip * theta * h_);
   return true;
+}
+
+void Integrator::note_divided(double h) {
+  ++divided_.count;
+  if (!turn_limit_.limiting() || h >= divided_.shortest) return;
+  divided_.shortest = h;
+  divided_.a = turn_limit_.limiting()->a;
+  divided_.b = turn_limit_.limiting()->b;
 }
 
 double Integrator::rate_accuracy(const Dynamics& dynamics) const {

@@ -8,6 +8,7 @@
 
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/integrators/singular_crossing.h"
+#include "mbd/integrators/turn_limit.h"
 #include "mbd/integrators/watch_nodes.h"
 
 #include <algorithm>
@@ -51,6 +52,10 @@ public:
   /// what velocities are known to in this step, so that nobody could tell whether it comes to rest or which way it goes on;
   /// the step is withdrawn, and step() makes another, shorter one.
   [[nodiscard]] virtual bool resolves_slips(Dynamics& dynamics, double theta, const double* y);
+  /// The share of the step made in which bodies turn no further than they may (turn_limit.h); 1: all of it.
+  [[nodiscard]] double turns_kept(const Dynamics& dynamics) { return turn_limit_.kept(dynamics.layout(), y0_.data(), y1_.data()); }
+  /// Takes the step made back, so that step() makes one of this share of it. False: it has to stay as it is.
+  [[nodiscard]] virtual bool shorten(Dynamics& dynamics, double share) { return withdraw(dynamics, share * h_); }
   /// No step is longer than this, s: Simulation sets it anew wherever the loads' and drives' harmonics change.
   virtual void limit_step(double longest) { longest_step_ = longest; }
   /// Takes the memory that its steps will need, at (t, y) in the present layout: afterwards they allocate nothing.
@@ -104,6 +109,13 @@ public:
   [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
   /// The same of places, m, and of angles, rad.
   [[nodiscard]] double place_accuracy(const Dynamics& dynamics) const;
+  /// Fixed steps that were divided, since bodies turned too far in them.
+  struct DividedSteps {
+    long count = 0;
+    double shortest = std::numeric_limits<double>::infinity(); ///< s
+    int a = k_ground, b = k_ground;                            ///< which turned fastest against each other
+  };
+  [[nodiscard]] const DividedSteps& divided_steps() const { return divided_; }
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] long rejections() const { return rejections_; }
   [[nodiscard]] double max_position_residual() const { return residual_.position; }
@@ -142,6 +154,12 @@ protected:
     if (settings_.max_step > 0.0) h = std::min(h, settings_.max_step);
     return std::min(h, longest_step_);
   }
+  /// Of the next step: as far as bodies may turn in it. `division`: into so many parts as in TurnLimit.
+  [[nodiscard]] double limited_by_turns(const Dynamics& dynamics, double h, int division) {
+    return turn_limit_.longest(dynamics.layout(), y0_.data(), k0_, h, division);
+  }
+  /// Counts a fixed step that became shorter than what was asked for, since it would have turned bodies too far.
+  void note_divided(double h);
   /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
   void update_weights(Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;
@@ -171,6 +189,8 @@ protected:
   std::vector<double> watch0_, watch1_, watch_rate0_, watch_rate1_;
   WatchNodes nodes_;
   double longest_step_ = std::numeric_limits<double>::infinity();
+  TurnLimit turn_limit_;
+  DividedSteps divided_;
   double last_merged_look_ = 0.0;                 ///< theta at which joints that are merged were last looked at inside the step
   std::vector<double> slip_scale0_, slip_scale1_; ///< per rate (Dynamics::slip_scales)
   std::vector<double> slip_scale_inside_;         ///< where the step is used up to

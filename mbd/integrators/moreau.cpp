@@ -26,7 +26,11 @@ public:
     // step of that length would tell nothing but rounding.
     const double left = t_limit - t0_, count = steps_to(t_limit, left);
     h_ = count > 1.0 ? left / count : left;
-    t1_ = count > 1.0 ? t0_ + h_ : t_limit;
+    const double turned = limited_by_turns(dynamics, h_, settings_.division);
+    const bool is_divided = turned < h_;
+    if (is_divided) note_divided(turned);
+    h_ = turned;
+    t1_ = count > 1.0 || is_divided ? t0_ + h_ : t_limit;
     state_ = dynamics.state();
     dynamics.unpack(t0_, y0_.data(), state_);
     start_ = state_;

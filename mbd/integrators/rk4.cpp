@@ -32,14 +32,16 @@ public:
 
   void step(Dynamics& dynamics, double t_limit) override {
     const double left = t_limit - t0_;
-    if (parts_left_ == 0) cut_step(left);
+    if (parts_left_ == 0) cut_step(dynamics, left);
     --parts_left_;
     const bool is_last = is_cut_at_limit_ && parts_left_ == 0;
     h_ = is_last ? left : part_;
     t1_ = is_last ? t_limit : t0_ + h_;
-    while (!try_step(dynamics)) {
+    double share = 1.0;
+    while (!try_step(dynamics) || (share = turns_kept(dynamics)) < 1.0) {
       ++rejections_;
-      h_ *= 0.5;
+      h_ *= share < 1.0 ? share : 0.5;
+      if (share < 1.0) note_divided(h_);
       t1_ = t0_ + h_;
       parts_left_ = 0;
     }
@@ -81,9 +83,14 @@ private:
     return try_finish_step(dynamics);
   }
   // The step that is due, into `division` parts.
-  void cut_step(double left) {
+  void cut_step(Dynamics& dynamics, double left) {
+    double step = limited(next_step(settings_.division * settings_.step));
+    const double most = std::min(step, left), turned = limited_by_turns(dynamics, most, 1);
+    if (turned < most) {
+      step = turned;
+      note_divided(step / settings_.division);
+    }
     // A remainder of a step's rounding is taken along rather than left for a step of its own.
-    const double step = limited(next_step(settings_.division * settings_.step));
     is_cut_at_limit_ = left <= step * (1.0 + 1e-9);
     parts_left_ = settings_.division;
     part_ = (is_cut_at_limit_ ? left : step) / settings_.division;

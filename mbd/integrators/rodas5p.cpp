@@ -265,7 +265,7 @@ void Rodas5p::note_end(const Dynamics& dynamics) {
 
 void Rodas5p::step(Dynamics& dynamics, double t_limit) {
   const double left = t_limit - t0_;
-  const double h_max = limited(left);
+  const double h_max = limited_by_turns(dynamics, limited(left), settings_.division);
   if (next_h_ <= 0.0) next_h_ = first_step(dynamics, 4, h_max);
   update_weights(dynamics);
   double h = std::min(next_h_, h_max);

@@ -19,6 +19,7 @@ constexpr double k_bend_of_range = 2.0;
 // A clamping pressure bends what a load takes of a joint's grip far more where it is least: 1 − 1/q of q = 1 + b (1 − cos 1.6 θ) by
 // 2.56 (1 + b) times its range, and elsewhere hardly at all. b is 9 where a tenth of the mean is left.
 constexpr double k_bend_of_share = 25.6;
+constexpr double k_steeper = 1.5;       // 1/cos of 0.84 rad
 constexpr int k_few = 3;                // so few gaps may lie about such a place
 constexpr double k_unseen_by_one = 2.0; // of what the values at three places differ by
 
@@ -110,8 +111,15 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
   return c;
 }
 
+// A kink in a gap, as of the distance of what is passed, takes a value below its chord by (jump of the slope) u (g − u)/g, wherever in the gap
+// it is: by M = 2 (jump)/g. Second differences alone show less of it, the wider the gaps beside it are. The jump is what the slopes of the
+// chords beside the gap differ by, or more: the flanks of a point that passes on a circle grow steeper towards the kink, by no more than
+// k_steeper within a step that turns by a radian. (Where a slope is not known, comparisons with NaN are false.)
 double WatchNodes::Curve::bound(int gap) const {
-  const double seen = k_curvature_safety * std::max(std::abs(bend[gap]), std::abs(bend[gap + 1]));
+  const auto chord = [this](int i) { return (w[i + 1] - w[i]) / (x[i + 1] - x[i]); };
+  const double before = gap > 0 ? chord(gap - 1) : start_slope, after = gap + 1 < last ? chord(gap + 1) : end_slope;
+  const double kink = 2.0 * k_steeper * std::abs(after - before) / (x[gap + 1] - x[gap]);
+  const double seen = std::max(k_curvature_safety * std::max(std::abs(bend[gap]), std::abs(bend[gap + 1])), kink);
   return last > k_few ? seen : std::max(seen, most_bend);
 }
 

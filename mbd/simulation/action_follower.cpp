@@ -30,6 +30,9 @@ RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
   sum.energy_worst_step = std::max(a.energy_worst_step, b.energy_worst_step);
   sum.energy_rounding = std::max(a.energy_rounding, b.energy_rounding);
   if (a.passed_pulse) sum.passed_pulse = a.passed_pulse;
+  if (a.undecided_condition) sum.undecided_condition = a.undecided_condition;
+  if (a.divided_steps.shortest < b.divided_steps.shortest) sum.divided_steps = a.divided_steps;
+  sum.divided_steps.count = a.divided_steps.count + b.divided_steps.count;
   return sum;
 }
 

@@ -70,6 +70,8 @@ void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& un
     if (before) ledger_->go_on_from(*before);
     dynamics_.show_integrals(ledger_.get());
   }
+  if (actions_) conditions_ = std::make_unique<ConditionSearch>(system_, group_);
+  if (conditions_ && conditions_->is_empty()) conditions_.reset();
   integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
   if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
   restart();
@@ -141,6 +143,7 @@ void RunLeg::restart(bool is_evaluated) {
     check_holding(state_.t, integrator_->watch0());
     swallowed_.check(dynamics_, state_.t, integrator_->y0(), state_.mode, integrator_->watch0());
   }
+  if (conditions_) conditions_->restart();
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()), *integrator_, dynamics_);
   if (extremes_ && options_.has_growth) keep_growth(state_.t, false);
@@ -368,6 +371,16 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
+// Where the step made leaps over a place where a condition is true it has to end there. True: it is withdrawn for that.
+bool RunLeg::ends_at_truth() {
+  if (!integrator_->bears_look(dynamics_)) return true;
+  const double place = conditions_->place_of_truth(*integrator_, dynamics_, actions_->is_armed);
+  if (place >= 1.0) return false;
+  if (integrator_->is_adaptive()) return integrator_->shorten(dynamics_, place);
+  (void)integrator_->end_at(dynamics_, place);
+  return false;
+}
+
 // Events in the step made, its samples, its end. False: the step is withdrawn, and another try of it due.
 bool RunLeg::pass_step() {
   const double limit = next_limit();
@@ -380,6 +393,11 @@ bool RunLeg::pass_step() {
     return true;
   }
   check_finite();
+  const double share = integrator_->is_adaptive() ? integrator_->turns_kept(dynamics_) : 1.0;
+  if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (conditions_ && ends_at_truth())) {
+    integrator_->begin_step(dynamics_, limit);
+    return false;
+  }
   const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
   const bool is_withdrawn =
       finder_.is_step_withdrawn() || !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data());
@@ -514,6 +532,8 @@ RunStatistics RunLeg::statistics() const {
   RunStatistics s = statistics_;
   s.steps += integrator_->steps();
   s.rejections = integrator_->rejections();
+  s.divided_steps = integrator_->divided_steps();
+  if (conditions_) s.undecided_condition = conditions_->undecided();
   s.evaluations = dynamics_.evaluations() - evaluations_behind_end_;
   s.coded_stages = dynamics_.coded_stages();
   s.max_position_residual = integrator_->max_position_residual();

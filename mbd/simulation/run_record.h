@@ -52,8 +52,10 @@ struct RunStatistics {
   double energy_worst_step = 0.0;                              ///< largest energy a step made or lost, of what its tolerance lets it
   double energy_rounding = 0.0;                                ///< below this a residual is rounding of the energies, J
   double dissipated = 0.0, work = 0.0;                         ///< J
-  std::optional<double> passed_pulse; ///< s: where time stepping passed over a part of a load that is far shorter than its step
-  double cpu_seconds = 0.0;           ///< of this thread, samples included
+  std::optional<double> passed_pulse;        ///< s: where time stepping passed over a part of a load that is far shorter than its step
+  Integrator::DividedSteps divided_steps;    ///< fixed steps in which bodies would have turned too far
+  std::optional<double> undecided_condition; ///< s: where nobody knows whether the condition of an action was true for an instant
+  double cpu_seconds = 0.0;                  ///< of this thread, samples included
 };
 
 /// Extremes as they were at some time of a run, of what went before.

@@ -33,6 +33,11 @@ void ActionGroup::mark_bodies(std::vector<char>& is_used) const {
       for (const int body : entry.trigger.formula->bodies()) is_used[body] = 1;
 }
 
+void ActionGroup::enter_turns(TurnTable& turns) const {
+  for (const Entry& entry : entries)
+    if (entry.trigger.formula) entry.trigger.formula->enter_turns(turns);
+}
+
 UnitMode ActionGroup::initial_mode(int element, const Evaluation& e) const {
   FormulaProgram::Bits bits{0, 0};
   entries[static_cast<std::size_t>(element)].trigger.formula->find_bits(e, no_coordinate<double>(), bits);

@@ -10,6 +10,7 @@
 
 #include "mbd/model/action.h"
 #include "mbd/system/motion_formula.h"
+#include "mbd/system/turn_table.h"
 
 #include <functional>
 #include <memory>
@@ -37,7 +38,7 @@ struct ActionTrigger {
 };
 
 /// All actions of a model, in the order of the file. Gives no force.
-class ActionGroup final : public ForceGroup {
+class ActionGroup final : public ForceGroup, public TurningElements {
 public:
   struct Entry {
     std::string name, text; ///< text: of all its steps, for people
@@ -57,6 +58,7 @@ public:
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   void mark_bodies(std::vector<char>& is_used) const override;
+  void enter_turns(TurnTable& turns) const override;
   [[nodiscard]] bool follows_jumps() const override { return true; }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;

@@ -16,6 +16,7 @@
 #include "mbd/system/gap_source.h"
 #include "mbd/system/roles.h"
 #include "mbd/system/rounding.h"
+#include "mbd/system/turn_table.h"
 
 #include <type_traits>
 
@@ -81,7 +82,7 @@ concept TraceableLaw = requires(const Law& law, const Traced& x, Traced* watch) 
 struct NoGaps {};
 
 template <class Measure, class Law>
-class LawGroup final : public ForceGroup, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
+class LawGroup final : public ForceGroup, public TurningElements, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -121,6 +122,13 @@ public:
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
 
+  void enter_turns(TurnTable& turns) const override {
+    for (const Entry& entry : entries) {
+      turns.add(entry.a, entry.b, turning_of(entry.measure));
+      if constexpr (std::is_same_v<Measure, AngleMeasure> && requires { entry.law.knots(); })
+        for (TurnKnots& knots : entry.law.knots()) turns.add(entry.a, entry.b, std::move(knots));
+    }
+  }
   void enter_links(LinkTable& links) override {
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }

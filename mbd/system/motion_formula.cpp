@@ -235,6 +235,7 @@ MotionFormula::MotionFormula(SystemBuilder& builder, const MotionFormulaText& te
   }
   try {
     programs_.emplace_back(tree);
+    tree_ = std::move(tree);
   } catch (const std::invalid_argument& error) {
     builder.error("'" + text.field + "' " + error.what());
     return;
@@ -344,6 +345,17 @@ std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluatio
   for (std::size_t s = 0; s < gains.size(); ++s)
     if (gains[s] > 0.0 && !program.is_comparison(static_cast<int>(s))) scales[s] = {1.0 / gains[s], k_met};
   return scales;
+}
+
+void MotionFormula::enter_turns(TurnTable& turns) const {
+  constexpr int k_angle = 2; // of a body's coordinates
+  const bool is_linear = !is_valid() || program().is_linear();
+  for (const MotionOperand& operand : operands_) {
+    if (operand.kind == MotionOperand::Kind::coordinate && operand.coordinate == k_angle && !is_linear) turns.add(operand.body, k_ground);
+    if (operand.kind != MotionOperand::Kind::measure) continue;
+    turns.add(operand.row.a, operand.row.b, turning_of(operand.row));
+    if (operand.row.kind == MeasureKind::angle && !is_linear) turns.add(operand.row.a, operand.row.b);
+  }
 }
 
 } // namespace steplap

@@ -13,6 +13,7 @@
 
 #include "mbd/formula/formula_program.h"
 #include "mbd/system/measured_channel.h"
+#include "mbd/system/turn_table.h"
 
 #include <array>
 #include <string>
@@ -53,9 +54,14 @@ public:
 
   [[nodiscard]] bool is_valid() const { return !programs_.empty(); }
   [[nodiscard]] const FormulaProgram& program() const { return programs_.front(); }
+  /// What the program was made of.
+  [[nodiscard]] const FormulaTree& tree() const { return tree_; }
   [[nodiscard]] const std::vector<MotionOperand>& operands() const { return operands_; }
   /// Bodies whose motion it reads, besides that of its own coordinate.
   [[nodiscard]] const std::vector<int>& bodies() const { return bodies_; }
+
+  /// Enters the angles on which it depends other than linearly, besides its own coordinate.
+  void enter_turns(TurnTable& turns) const;
 
   /// The value in an evaluation. `at_time(signal)`: what a signal is at the time; `quantity` as in FormulaProgram.
   template <class S, class AtTime>
@@ -74,6 +80,7 @@ private:
   std::vector<FormulaProgram> programs_; ///< one, if it is valid
   std::vector<MotionOperand> operands_;
   std::vector<int> bodies_;
+  FormulaTree tree_;
 };
 
 /// A body's share of the derivatives of an operand: by its pose and its velocity.

@@ -116,6 +116,10 @@ void OwnStateGroup::mark_bodies(std::vector<char>& is_used) const {
     for (const int body : entry.rate.bodies()) is_used[body] = 1;
 }
 
+void OwnStateGroup::enter_turns(TurnTable& turns) const {
+  for (const Entry& entry : entries) entry.rate.enter_turns(turns);
+}
+
 UnitMode OwnStateGroup::initial_mode(int element, const Evaluation& e) const {
   FormulaProgram::Bits bits{0, 0};
   entries[element].rate.find_bits(e, k_no_coordinate, bits);

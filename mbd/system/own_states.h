@@ -41,7 +41,7 @@ struct StatePlace {
 [[nodiscard]] std::vector<double> start_of_states(SystemBuilder& builder);
 
 /// All own states of a model.
-class OwnStateGroup final : public ForceGroup, public StateReader {
+class OwnStateGroup final : public ForceGroup, public StateReader, public TurningElements {
 public:
   struct Entry {
     MotionFormula rate;
@@ -60,6 +60,7 @@ public:
   [[nodiscard]] bool follows_jumps() const override { return true; }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
+  void enter_turns(TurnTable& turns) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
   [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }

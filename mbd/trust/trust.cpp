@@ -50,6 +50,9 @@ std::string distrust_of(const Model& model, const System& system, const RunResul
     return "time stepping passed over a part of a load at t = " + limit_text(*s.passed_pulse) +
            " s that is far shorter than its steps: bodies have its impulse, but no force or acceleration shows it: " +
            remedy(model.simulation);
+  if (s.undecided_condition)
+    return "whether the condition of an action was true for an instant at t = " + limit_text(*s.undecided_condition) +
+           " s cannot be told: its two sides come nearer to each other there than the motion is known to. " + remedy(model.simulation);
   if (s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale && s.energy_residual > s.energy_rounding)
     return "the energy balance is off by " + limit_text(s.energy_residual) + " J of " + limit_text(s.energy_scale) +
            " J turned over: " + remedy(model.simulation);

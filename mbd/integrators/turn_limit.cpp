@@ -1,0 +1,99 @@
+#include "mbd/integrators/turn_limit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Of the interval behind a knot: a step that ends no further beyond counts as ending there. More than k_reached of turn_table.cpp.
+constexpr double k_beyond_knot = 0.05;
+constexpr double k_shorter = 0.9; // of what a step turned too far would have been allowed
+constexpr double k_whole = 1e-9;  // by which an interval may be longer than so many parts
+
+// Time in which `turn` is reached at `rate` with `acceleration`, both positive.
+double time_to(double turn, double rate, double acceleration) {
+  return 2.0 * turn / (rate + std::sqrt(rate * rate + 2.0 * acceleration * turn));
+}
+
+// The coordinate that is a cluster's angle.
+int angle_of(const Layout& layout, int cluster) {
+  if (cluster < layout.absolute_count) return 3 * cluster + 2;
+  const Mechanism& m = layout.mechanism_of_cluster(cluster);
+  return m.first_coordinate + m.members[static_cast<std::size_t>(m.member_of(cluster))].coordinate;
+}
+
+} // namespace
+
+TurnLimit::TurnLimit(const System& system) : turns_(turn_table_of(system).turns()) {
+  has_knots_ = std::any_of(turns_.begin(), turns_.end(), [](const Turn& turn) { return !turn.knots.empty(); });
+}
+
+double TurnLimit::difference(const Layout& layout, const Turn& turn, const double* values) {
+  const int a = layout.placements[static_cast<std::size_t>(turn.a)].cluster;
+  const int b = layout.placements[static_cast<std::size_t>(turn.b)].cluster;
+  if (a == b) return 0.0; // they move as one body
+  return (a < 0 ? 0.0 : values[angle_of(layout, a)]) - (b < 0 ? 0.0 : values[angle_of(layout, b)]);
+}
+
+double TurnLimit::offset(const Layout& layout, const Turn& turn) {
+  return layout.placements[static_cast<std::size_t>(turn.a)].angle - layout.placements[static_cast<std::size_t>(turn.b)].angle;
+}
+
+double TurnLimit::shortened(const Layout& layout, const double* y, const double* dy, double h, int division) {
+  for (const Turn& turn : turns_) {
+    const double longest = shortened_by(turn, layout, y, dy, h, division);
+    if (longest >= h) continue;
+    limiting_ = &turn;
+    h = longest;
+  }
+  return h;
+}
+
+double TurnLimit::shortened_by(const Turn& turn, const Layout& layout, const double* y, const double* dy, double h, int division) {
+  const double rate = difference(layout, turn, y + layout.coordinate_count);
+  double most = k_aim / division;
+  if (std::abs(rate) * h <= (turn.knots.empty() ? most : 0.0)) return h;
+  const double angle = turn.knots.empty() ? 0.0 : difference(layout, turn, y) + offset(layout, turn);
+  for (const TurnKnots& knots : turn.knots) {
+    const double x = angle + knots.zero;
+    const TurnKnots::Interval interval = knots.about(x, rate);
+    const double left = rate > 0.0 ? interval.high - x : x - interval.low, part = (interval.high - interval.low) / division;
+    // As many equal steps up to the knot as the interval has parts of that length.
+    if (std::isfinite(left)) most = std::min(most, left / std::max(1.0, std::ceil(left / part - k_whole)));
+  }
+  // An acceleration that doubles the rate within such a step is a transient: what the step turns is seen at its end.
+  const double even = most / std::abs(rate), growth = difference(layout, turn, dy + layout.coordinate_count) * (rate > 0.0 ? 1.0 : -1.0);
+  const bool is_steady = growth > 0.0 && growth * even < std::abs(rate);
+  return is_steady ? time_to(most, std::abs(rate), growth) : even;
+}
+
+double TurnLimit::kept_by_all(const Layout& layout, const double* y0, const double* y1) {
+  double share = 1.0;
+  for (const Turn& turn : turns_) {
+    const double turned = difference(layout, turn, y1) - difference(layout, turn, y0);
+    const double kept = std::abs(turned) > (turn.knots.empty() ? k_most : 0.0) ? kept_by(turn, layout, y0, turned) : 1.0;
+    if (kept >= share) continue;
+    share = kept;
+    limiting_ = &turn;
+  }
+  return share;
+}
+
+double TurnLimit::kept_by(const Turn& turn, const Layout& layout, const double* y0, double turned) {
+  double most = k_most;
+  const double angle = turn.knots.empty() ? 0.0 : difference(layout, turn, y0) + offset(layout, turn);
+  for (const TurnKnots& knots : turn.knots) {
+    const double x = angle + knots.zero;
+    const TurnKnots::Interval interval = knots.about(x, turned);
+    const double knot = turned > 0.0 ? interval.high : interval.low;
+    if (!std::isfinite(knot)) continue;
+    const TurnKnots::Interval behind = knots.about(knot, turned); // counts as reached
+    const double width = std::isfinite(behind.high - behind.low) ? std::min(behind.high - behind.low, k_most) : k_most;
+    most = std::min(most, std::abs(knot - x) + k_beyond_knot * width);
+  }
+  return std::abs(turned) > most ? k_shorter * most / std::abs(turned) : 1.0;
+}
+
+} // namespace steplap

@@ -1,0 +1,304 @@
+// What a body passes in even rotation and even flight is found, however long the steps are that the motion alone would allow: random
+// scenes of each kind of element with an event function, whose first event is known in closed form.
+#include "elements/machinery/lift_curve.h"
+#include "tests/physics/model_text.h"
+#include "tests/physics/scene.h"
+#include "tests/random/random_number.h"
+
+#include "doctest/doctest.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+using random::RandomNumber;
+
+constexpr double k_turn = 2.0 * std::numbers::pi;
+
+std::string digits(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+std::string point(double x, double y) { return "[" + digits(x) + ", " + digits(y) + "]"; }
+std::string metres(double x) { return "'" + digits(x) + " m'"; }
+
+/// A scene, which element's first event counts, and when that is.
+struct Passing {
+  std::string text, element = "it";
+  double first = std::numeric_limits<double>::infinity(); ///< s
+  double off = 0.0;                                       ///< s, of the first event at most
+  double end = 1.0;                                       ///< s
+};
+
+/// An arm of length r that turns evenly about the origin.
+struct Arm {
+  double r = 1.0, rate = 1.0, start = 0.0; ///< m, rad/s, rad
+  double half = 0.1;                       ///< rad: half of the angle over which it touches, about `at`
+  double at = 0.0;
+
+  [[nodiscard]] std::string text() const {
+    return k_no_gravity + body("arm", "mass = 1.0; inertia = 1.0; angle = " + digits(start) + "; angular_velocity = " + digits(rate)) +
+           element("revolute", "pin", "a = 'arm'");
+  }
+  [[nodiscard]] std::string tip() const { return "{ body = 'arm', point = " + point(r, 0.0) + " }"; }
+  [[nodiscard]] double angle_at_start() const { return start - at; }
+  /// s: when it comes to `half` before or behind `at`, as it turns.
+  [[nodiscard]] double first_touch() const {
+    const double left = rate > 0.0 ? -half - angle_at_start() : angle_at_start() - half;
+    return (left - k_turn * std::floor(left / k_turn)) / std::abs(rate);
+  }
+  /// A place at a distance from the origin, in the direction of `at` or turned from that.
+  [[nodiscard]] std::string place(double distance, double turned = 0.0) const {
+    return point(distance * std::cos(at + turned), distance * std::sin(at + turned));
+  }
+};
+
+/// It begins outside of the angle over which it touches.
+Arm random_arm(RandomNumber& own) {
+  Arm arm;
+  arm.r = own.between(0.3, 3.0);
+  arm.rate = own.decades(0.0, 2.477) * (own.chance(0.5) ? 1.0 : -1.0);
+  arm.half = own.decades(-4.0, -0.7);
+  arm.at = own.between(-3.0, 3.0);
+  arm.start = arm.at + own.between(arm.half + 0.05, k_turn - arm.half - 0.05);
+  return arm;
+}
+
+const std::vector<std::string>& kinds() {
+  static const std::vector<std::string> all{
+      "circle",         "ring",        "segment", "line",  "face with ends",  "polygon", "tie", "rope", "inextensible rope",
+      "distance limit", "place limit", "gap",     "place", "place by formula"};
+  return all;
+}
+
+// What the end of the arm touches. `slope`: by how much that changes with the angle where it begins, m; 1 of an angle.
+std::string touched(const std::string& kind, const Arm& arm, double& slope) {
+  const double half = arm.half, r = arm.r, depth = r * std::cos(half);
+  const double far = 1.7 * r, taut = std::sqrt(r * r + far * far + 2.0 * r * far * std::cos(half)); // of a point opposite to `at`
+  const double now = std::sqrt(r * r + far * far + 2.0 * r * far * std::cos(arm.angle_at_start()));
+  const std::string ends = "a = " + arm.tip() + "; b = { body = 'ground', at = " + arm.place(far, std::numbers::pi) + " }; ";
+  const std::string inwards = "normal = " + arm.place(-1.0) + "; b = { body = 'ground', at = " + arm.place(depth) + " }; ";
+  const auto by_chord = [&](double chord, double distance) { slope = r * distance * std::sin(half) / chord; };
+  const std::string stiff = "stiffness = 1e6";
+  if (kind == "circle") {
+    const double distance = 1.001 * r, radius = std::sqrt(r * r + distance * distance - 2.0 * r * distance * std::cos(half));
+    by_chord(radius, distance);
+    return element("circle_contact", "it",
+                   "a = " + arm.tip() + "; b = { body = 'ground', at = " + arm.place(distance) + " }; radius_b = " + digits(radius) + "; " +
+                       stiff);
+  }
+  if (kind == "ring") {
+    by_chord(taut, far);
+    return element("circle_contact", "it", ends + "inside = true; radius_b = " + digits(taut) + "; " + stiff);
+  }
+  if (kind == "segment") {
+    slope = r * std::cos(half);
+    return element("segment_contact", "it",
+                   "a = " + arm.tip() + "; from = " + arm.place(0.8 * r) + "; to = " + arm.place(1.2 * r) +
+                       "; thickness = " + digits(2.0 * r * std::sin(half)) + "; " + stiff);
+  }
+  slope = r * std::sin(half);
+  if (kind == "line") return element("unilateral_contact", "it", "a = " + arm.tip() + "; " + inwards + stiff);
+  if (kind == "face with ends")
+    return element("unilateral_contact", "it", "a = " + arm.tip() + "; " + inwards + "ends = " + point(-r, r) + "; " + stiff);
+  if (kind == "polygon")
+    return element("polygon_contact", "it",
+                   "a = 'arm'; outline_a = [" + point(r, 0.0) + ", " + point(0.0, 1e-3 * r) + ", " + point(-0.1 * r, 0.0) + ", " +
+                       point(0.0, -1e-3 * r) + "]; " + inwards + stiff);
+  if (kind == "place limit") // along x: `at` is zero
+    return element("limit", "it",
+                   "a = " + arm.tip() + "; coordinate = 'x'; upper = " + digits(depth - r * std::cos(arm.start)) + "; " + stiff);
+  if (kind == "place")
+    return "[[marker]]\nname = 'tip'\nbody = 'arm'\npoint = " + point(r, 0.0) + "\n[[action]]\nname = 'it'\nwhen = \"tip.x > " +
+           metres(depth) + "\"\ndo = ['stop']\n";
+  if (kind == "place by formula") {
+    const double radius = 2.0 * r * std::sin(0.5 * half);
+    slope = r * std::cos(0.5 * half);
+    return "[[marker]]\nname = 'tip'\nbody = 'arm'\npoint = " + point(r, 0.0) + "\n[[action]]\nname = 'it'\nwhen = \"hypot(tip.x - " +
+           metres(r) + ", tip.y) < " + metres(radius) + "\"\ndo = ['stop']\n";
+  }
+  by_chord(taut, far);
+  if (kind == "tie") return element("tie", "it", ends + "slack = " + digits(taut - now) + "; stiffness = 1e6");
+  if (kind == "rope") return element("rope", "it", ends + "length = " + digits(taut) + "; stiffness = 1e6");
+  if (kind == "inextensible rope") return element("rope", "it", ends + "length = " + digits(taut) + "; inextensible = true");
+  if (kind == "distance limit") return element("limit", "it", ends + "coordinate = 'distance'; upper = " + digits(taut) + "; " + stiff);
+  if (kind == "gap") return element("spring_damper", "it", ends + "free_length = 0.0; gap = " + digits(2.0 * taut) + "; " + stiff);
+  throw std::invalid_argument(kind);
+}
+
+Passing random_passing(const std::string& kind, RandomNumber& own) {
+  Arm arm = random_arm(own);
+  if (kind == "place limit" || kind == "place" || kind == "place by formula") { // of x
+    arm.start -= arm.at;
+    arm.at = 0.0;
+  }
+  double slope = 1.0;
+  Passing passing;
+  passing.text = arm.text() + touched(kind, arm, slope);
+  passing.first = arm.first_touch();
+  passing.end = k_turn * own.decades(0.0, 2.0) / std::abs(arm.rate);
+  passing.end = std::max(passing.end, 1.05 * passing.first);
+  // Of a place rounding leaves some 1e-15 of the arm and of the angle: over the slope that is the angle's. An inextensible rope is caught
+  // 2e-11 of its length beyond it (docs/explanation/theory.md).
+  const double caught = kind == "inextensible rope" ? 1e-10 * arm.r : 0.0;
+  passing.off = (1e-9 + (1e-13 * arm.r + caught) / slope) / std::abs(arm.rate);
+  return passing;
+}
+
+// A lobe on an even cam, as wide as said, that lifts a follower which stands `gap` above it.
+Passing random_cam(RandomNumber& own) {
+  const double rate = own.decades(0.0, 2.477), lobe = own.between(0.17, 1.6), top = own.between(1.0, 5.0), height = own.between(1e-3, 0.02);
+  const double start = own.between(0.0, top - 0.5 * lobe - 0.05), gap = height * own.between(0.01, 0.9);
+  std::vector<Vec2> lift{{0.0, 0.0}};
+  for (const double share : {-0.5, -0.3, -0.15, 0.0, 0.15, 0.3, 0.5})
+    lift.emplace_back(top + share * lobe, height * std::pow(std::cos(std::numbers::pi * share), 2));
+  lift.emplace_back(k_turn, 0.0);
+  const LiftCurve curve(lift);
+  Passing passing;
+  std::string table;
+  for (const Vec2& p : lift) table += (table.empty() ? "[" : ", ") + point(p.x(), p.y());
+  passing.text = k_no_gravity + body("shaft", "mass = 1.0; inertia = 1e6; angular_velocity = " + digits(rate)) +
+                 element("revolute", "pin", "a = 'shaft'") + body("follower", "mass = 1.0; inertia = 1.0; position = [0.0, 1.0]") +
+                 element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
+                 element("cam", "it",
+                         "a = 'follower'; cam = 'shaft'; start_angle = " + digits(start) + "; stiffness = 1e5; lift = " + table +
+                             "]; gap = " + digits(gap));
+  // The flank rises from the lobe's foot to its top; the spline may dip a little before it.
+  const double wanted = curve.at(start).value + gap;
+  double low = start;
+  while (curve.at(low).value < wanted) low += 1e-4 * lobe;
+  double from = low - 1e-4 * lobe;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (from + low);
+    (curve.at(middle).value < wanted ? from : low) = middle;
+  }
+  passing.first = (low - start) / rate;
+  passing.end = k_turn * own.decades(0.0, 2.0) / rate;
+  passing.end = std::max(passing.end, 1.05 * passing.first);
+  passing.off = (1e-9 + 1e-12 / std::abs(curve.at(low).slope)) / rate;
+  return passing;
+}
+
+// Two arms that turn at rates of their own and meet with their ends, after many turns or never. The first time is found by steps that
+// the distance of the ends cannot use up.
+Passing random_meeting(RandomNumber& own) {
+  const double rate[2] = {own.either(1.0, 300.0), own.either(1.0, 300.0)}, start[2] = {own.between(0.3, 2.8), own.between(0.3, 2.8)};
+  const double apart = own.between(1.7, 1.99), radius = own.decades(-2.5, -1.0);
+  const auto distance = [&](double t) {
+    const double a = start[0] + rate[0] * t, b = start[1] + rate[1] * t;
+    return std::hypot(apart + std::cos(b) - std::cos(a), std::sin(b) - std::sin(a));
+  };
+  Passing passing;
+  passing.end = k_turn * own.decades(1.0, 2.0) / std::min(std::abs(rate[0]), std::abs(rate[1]));
+  const double fastest = std::abs(rate[0]) + std::abs(rate[1]);
+  double t = 0.0;
+  while (t < passing.end && distance(t) > radius + 1e-11) t += (distance(t) - radius) / fastest;
+  if (t < passing.end) passing.first = t;
+  const double step = 1e-7 / fastest, slope = std::abs(distance(t + step) - distance(t - step)) / (2e-7);
+  passing.off = (1e-8 + 1e-10 / std::max(slope, 1e-9)) / fastest;
+  for (int i = 0; i < 2; ++i)
+    passing.text +=
+        body(i == 0 ? "one" : "two", "mass = 1.0; inertia = 1e6; position = " + point(i * apart, 0.0) + "; angle = " + digits(start[i]) +
+                                         "; angular_velocity = " + digits(rate[i])) +
+        element("revolute", i == 0 ? "pin one" : "pin two",
+                std::string("a = '") + (i == 0 ? "one" : "two") + "'; b = { body = 'ground', at = " + point(i * apart, 0.0) + " }");
+  passing.text =
+      k_no_gravity + passing.text +
+      element("circle_contact", "it",
+              "a = { body = 'one', point = [1.0, 0.0] }; b = { body = 'two', point = [1.0, 0.0] }; stiffness = 1e6; radius_b = " +
+                  digits(radius));
+  return passing;
+}
+
+// A body that flies straight past a circle, or over a line in a condition.
+Passing random_flight(RandomNumber& own, bool has_formula) {
+  const double v = own.decades(0.0, 2.5), way = own.between(0.5, 20.0), radius = own.decades(-5.0, -1.0),
+               aside = radius * own.between(0.0, 0.9);
+  Passing passing;
+  passing.text =
+      k_no_gravity + body("flier", "mass = 1.0; inertia = 1.0; velocity = [" + digits(v) + ", 0.0]; position = " + point(0.0, aside));
+  passing.text +=
+      has_formula
+          ? "[[action]]\nname = 'it'\nwhen = \"hypot(flier.x - " + metres(way) + ", flier.y) < " + metres(radius) + "\"\ndo = ['stop']\n"
+          : element("circle_contact", "it",
+                    "a = 'flier'; b = { body = 'ground', at = " + point(way, 0.0) + " }; stiffness = 1e3; radius_b = " + digits(radius));
+  const double half = std::sqrt(radius * radius - aside * aside);
+  passing.first = (way - half) / v;
+  passing.end = own.between(1.2, 5.0) * way / v;
+  passing.off = (1e-9 + 1e-13 * way / (half / radius)) / v;
+  return passing;
+}
+
+struct Found {
+  double first = std::numeric_limits<double>::infinity();
+  long steps = 0;
+};
+
+// Up to the first event of the element.
+Found find(const Passing& passing, const System& system, const std::string& method, RandomNumber& own) {
+  SimulationOptions wanted = options({"dop853", 1e-8, passing.end, 0.0});
+  wanted.integrator = method;
+  wanted.has_extremes = own.chance(0.5);
+  if (method == "rk4") wanted.settings.step = passing.end * own.decades(-3.0, 0.0);
+  Simulation simulation(system, system.initial_state(), wanted);
+  Found found;
+  bool goes_on = true;
+  while (goes_on && std::isinf(found.first)) {
+    goes_on = simulation.advance();
+    for (const Event& event : simulation.events())
+      if (event.element == passing.element && event.t > 0.0 && std::isinf(found.first)) found.first = event.t;
+  }
+  found.steps = simulation.statistics().steps;
+  return found;
+}
+
+// Of `count` scenes that `make` draws, by all methods.
+template <class Make> void check_all(const std::string& kind, int count, const Make& make) {
+  int missed = 0, late = 0;
+  for (int seed = 0; seed < count; ++seed) {
+    RandomNumber own(static_cast<std::uint64_t>(seed) * 7919 + kind.size());
+    const Passing passing = make(own);
+    const auto system = compile(scene(passing.text + "[simulation]\nstep = 1e-3\n"));
+    for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4"}) {
+      const Found found = find(passing, *system, method, own);
+      const bool is_missed = std::isinf(found.first) != std::isinf(passing.first) || found.first > passing.first + 1e3 * passing.off;
+      const bool is_late = !is_missed && !std::isinf(found.first) && std::abs(found.first - passing.first) > passing.off;
+      missed += is_missed ? 1 : 0;
+      late += is_late ? 1 : 0;
+      if (is_missed || is_late)
+        MESSAGE(kind << " " << seed << " " << std::string(method) << ": " << digits(found.first) << " for " << digits(passing.first)
+                     << " s, allowed " << passing.off << ", end " << passing.end << ", steps " << found.steps
+                     << (is_missed ? "\n" + passing.text : std::string()));
+    }
+  }
+  CHECK_MESSAGE(missed == 0, kind);
+  CHECK_MESSAGE(late == 0, kind);
+}
+
+int cases() {
+  const char* const wanted = std::getenv("STEPLAP_PASSINGS"); // more than a test has time for
+  return wanted ? std::atoi(wanted) : 20;
+}
+
+} // namespace
+
+TEST_CASE("what the end of an arm touches in even rotation is found by every method, however long its steps") {
+  for (const std::string& kind : kinds()) check_all(kind, cases(), [&](RandomNumber& own) { return random_passing(kind, own); });
+}
+
+TEST_CASE("lobes of cams are found by every method") { check_all("cam", 2 * cases(), random_cam); }
+
+TEST_CASE("two arms that turn evenly meet where they do, after however many turns") { check_all("meeting", 2 * cases(), random_meeting); }
+
+TEST_CASE("what is flown past straight is found by every method") {
+  check_all("flight", 2 * cases(), [](RandomNumber& own) { return random_flight(own, false); });
+}
