@@ -5,7 +5,7 @@
 #include "tests/physics/scene.h"
 #include "tests/random/random_number.h"
 
-#include "doctest/doctest.h"
+#include <doctest/doctest.h>
 
 #include <cmath>
 #include <cstdio>
