@@ -174,10 +174,12 @@ void Rodas5p::interpolate(double theta, double* out) {
   for (std::size_t j = 0; j < 8; ++j) weight[j] = s * r * (H[0][j] + s * (H[1][j] + s * H[2][j]));
   // What projection moved is spread over the step, so that the output meets the projected end.
   const double blend = s * s * (3.0 - 2.0 * s);
+  // The place at the step's start and what has been gone since: (1 − s) y₀ + s y₁ would round a place that does not move, and what touches
+  // there would open or close by that.
   for (int i = 0; i < n_ - 2; ++i) {
     double sum = 0.0;
     for (std::size_t j = 0; j < 8; ++j) sum += weight[j] * u_[j * stride_ + i];
-    out[i] = r * y0_[i] + s * raw_[i] + sum + blend * (y1_[i] - raw_[i]);
+    out[i] = y0_[i] + (s * (raw_[i] - y0_[i]) + sum + blend * (y1_[i] - raw_[i]));
   }
 }
 
