@@ -52,8 +52,8 @@ private:
     s_.kind = r_.one_of(std::vector<std::string>{"slope", "slope", "deck", "hung", "pinned", "lap", "rail", "bushing"});
     s_.method = r_.one_of(std::vector<std::string>{"auto", "auto", "dop853", "tsit5", "rodas5p", "rk4", "moreau"});
     s_.load = r_.one_of(std::vector<std::string>{"none", "constant", "pulse", "tiny"});
-    // Its steps of a two thousandth of the run are too coarse for a pulse on a stiff body, and its estimate says so by right.
-    if (s_.method == "moreau" && s_.load != "constant") s_.load = "none";
+    // Its steps of a two thousandth of the run are too coarse for pulses and drives beside a stiff body, and its estimate says so by right.
+    if (s_.method == "moreau" && (s_.load != "constant" || s_.kind == "deck")) s_.load = "none";
   }
 
   void choose_sizes() {
@@ -71,7 +71,7 @@ private:
     inertia_ = mass_ * size_ * size_ * r_.between(0.1, 0.5);
     // What explicit methods take steps for.
     const double fastest = rate * std::max(1.0, 2.0 * share);
-    end_ = r_.decades(-2.0, 2.0);
+    end_ = std::min(r_.decades(-2.0, 2.0), 1e6 / fastest);
     if (s_.method == "dop853" || s_.method == "tsit5" || s_.method == "rk4") end_ = std::min(end_, 2e4 / fastest);
     if (s_.method == "rk4") step_ = field("step", std::min(end_ / 50.0, 0.3 / fastest));
     if (s_.method == "moreau") step_ = field("step", end_ / 2000.0);

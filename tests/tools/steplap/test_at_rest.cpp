@@ -30,9 +30,10 @@ TEST_CASE("a box below the angle of friction holds, at every angle and for any t
       CHECK(outcome.code == 0);
       CHECK_MESSAGE(outcome.out.rfind("HOLD", 0) == 0, outcome.out);
     }
-  // Beyond it nothing holds.
-  CHECK(simulated(bench, "c02b_require_hold", {"--require-hold", "--set", "parameters.slope=27 deg", "--set", "simulation.end=2"}).code ==
-        5);
+  // Beyond it there is no rest to begin from, and what begins without is not held.
+  const Outcome beyond = simulated(bench, "c02b_require_hold", {"--require-hold", "--set", "parameters.slope=27 deg", "--end", "2"});
+  CHECK(beyond.code == 4);
+  CHECK(has(beyond.err, "no static equilibrium"));
 }
 
 // μ m g = 49.05 N hold 48.85 N, on feet of any stiffness; 49.1 N they do not.
