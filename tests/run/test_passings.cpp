@@ -1,5 +1,4 @@
 // Judged runs of scenes in which an even motion passes something within one step of its own.
-#include "mbd/io/overrides.h"
 #include "run/loaded_model.h"
 #include "run/report.h"
 
