@@ -29,9 +29,11 @@ constexpr double k_confirmed = 0.5;        // of the exponent: instants are few,
 // drifts evenly a hundred times.
 constexpr double k_begun = 2.0, k_half_way = 100.0;
 constexpr double k_slower = 5.0;
-// A direction that a leg moves in at last was not moved by rounding unless the exponent up to there is that large: rounding of 1e-12
-// grows to k_moved by it. Earlier than in this share of the leg what falls is seen to fall.
-constexpr double k_by_rounding = 12.0, k_early = 0.05;
+// A direction that a leg moves in at last was moved by a nudge too small to be seen if the exponent up to there is that large: joints are
+// met to some 1e-9 of a body's size, which grows to k_moved by it. Earlier than in this share of the leg what falls is seen to fall.
+constexpr double k_by_rounding = 6.0, k_early = 0.05;
+// Instants of a leg in motion that have to show growth: a single one may lie within a blow.
+constexpr int k_least_instants = 3;
 // Coordinates up to which the stiffness is analysed, by dense algebra; its cost at an instant grows with the cube.
 constexpr int k_most_coordinates = 300;
 constexpr double k_dense_work = 3e8; // cubes of coordinates, over all instants of a leg
@@ -43,6 +45,7 @@ struct Course {
   double exponent = 0.0; ///< ∫ rate dt
   double rate = 0.0;     ///< the largest, 1/s
   VecX shape;            ///< of that one
+  int growing = 0;       ///< instants at which something grows
 };
 
 // Instants at which a leg is looked at, each for a share of its duration.
@@ -88,6 +91,7 @@ Course course_of(FrozenLeg& frozen, const std::vector<Instant>& instants, double
   for (const Instant& instant : instants) {
     const FrozenGrowth growth = frozen.growth_at(instant.state, least);
     course.exponent += growth.rate * instant.duration;
+    if (growth.rate > 0.0) ++course.growing;
     if (!(growth.rate > course.rate)) continue;
     course.rate = growth.rate;
     course.shape = growth.shape;
@@ -405,6 +409,7 @@ std::optional<Balance> AskedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion
       is_at_rest(leg) ? instants_at_rest(own_system(leg), leg, instants()) : instants_in_motion(leg, instants());
   const Course course = course_of(frozen, looks, k_least_share * least);
   if (!(course.exponent > least_exponent)) return {};
+  if (!is_at_rest(leg) && course.growing < std::min(k_least_instants, static_cast<int>(looks.size()))) return {};
   NudgedLeg nudged(system, initial, options, leg, most_evaluations);
   nudged.choose_nudge(&frozen, course.shape);
   if (course.exponent >= k_visible_exponent && !nudged.confirms(course)) return {};
