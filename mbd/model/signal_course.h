@@ -26,6 +26,7 @@ struct SignalCourse {
   double ends = std::numeric_limits<double>::infinity();   ///< from there on it is zero, or at its first level
   double period = 0.0;                                     ///< mean period of the harmonics from `full` on; 0: a level
 
+  /// Does it return to zero, or to its first level, for good?
   [[nodiscard]] bool has_end() const { return ends < std::numeric_limits<double>::infinity(); }
   /// It never differs from zero, or from one level.
   [[nodiscard]] bool is_level() const { return !(begins < std::numeric_limits<double>::infinity()); }

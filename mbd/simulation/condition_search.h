@@ -19,13 +19,15 @@
 
 namespace steplap {
 
+/// Finds, within a step, where the condition of an armed action becomes true.
 class ConditionSearch {
 public:
   /// Of the conditions of `group`, which may be null. Refers to both.
   ConditionSearch(const System& system, const ActionGroup* group);
 
+  /// True if no condition needs a search.
   [[nodiscard]] bool is_empty() const { return sought_.empty(); }
-  /// The motion goes on anew: nothing is known of its begin.
+  /// Forgets the values at the end of the last step, because the state has jumped.
   void restart() {
     for (Sought& sought : sought_) sought.is_known = false;
   }

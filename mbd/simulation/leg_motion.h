@@ -65,6 +65,7 @@ public:
   /// Room for a state that is to be noted, of the present leg's size.
   [[nodiscard]] State& scratch() { return scratch_; }
 
+  /// The legs noted so far.
   [[nodiscard]] std::vector<LegMotion> legs() && { return std::move(legs_); }
 
 private:
