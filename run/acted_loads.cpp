@@ -66,7 +66,7 @@ public:
   Growth(const RunResult& result, std::vector<LimitedChannel> limited) : result_(result), limited_(std::move(limited)) {}
 
   [[nodiscard]] std::size_t count() const { return result_.growth.empty() ? 0 : limited_.size(); }
-  // Of a criterion, at the last time that was kept before t.
+  // Value of a criterion at the last time that was kept before t.
   [[nodiscard]] double reserve(std::size_t i, double t) const {
     const std::size_t c = limited_[i].channel;
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -78,7 +78,7 @@ public:
     return limited_[i].reserve(low, high);
   }
   [[nodiscard]] const std::string& name(std::size_t i) const { return limited_[i].criterion; }
-  // Of a criterion, at the start.
+  // Value of a criterion at the start.
   [[nodiscard]] double first_reserve(std::size_t i) const {
     const double first = result_.ranges[limited_[i].channel].first;
     return limited_[i].reserve(first, first);
@@ -174,7 +174,7 @@ private:
     return !course.has_end() && has_settled(since, span);
   }
 
-  // Of a signal that began to act behind its own beginning: is its largest value still to come?
+  // If a signal began to act behind its own beginning: is its largest value still to come?
   static bool is_at_full_size(double from, const LoadPart& part) {
     constexpr double k_nearly = 0.99; // of the largest: looks between may miss the top by less
     constexpr int k_looks = 16;       // in each piece
@@ -211,7 +211,7 @@ private:
     return growth_->count() > 0;
   }
 
-  // Of a level: an action that ends it says how long it was meant to last.
+  // An action that ends a level says how long the level was meant to last.
   [[nodiscard]] bool has_settled(double since, const SignalSpan& span) const {
     if (!growth_ || !result_ || (span.cut.action && span.cut.verb != ActionVerb::stop)) return true;
     const Motions motions(loaded_, *result_);

@@ -53,7 +53,7 @@ public:
     }
   }
 
-  // Of actions that have not happened: what they would have begun.
+  // Loads that actions would have begun, had they happened.
   void wait(const Action& action) {
     for (const std::string& text : action.steps) {
       const ActionStepText step = action_step(text);

@@ -11,7 +11,7 @@
 
 namespace steplap {
 
-/// What ended a stretch of time in which a signal acted.
+/// The end of a stretch of time in which a signal acted.
 struct SignalCut {
   const Action* action = nullptr;     ///< null: the end of the run
   ActionVerb verb = ActionVerb::stop; ///< what the action did to the signal

@@ -19,7 +19,7 @@ struct RunResult;
 [[nodiscard]] std::vector<Finding> findings_before(const LoadedModel& loaded);
 /// What a run came to: feet beyond the parts they stood on, contacts through each other, channels without a value, actions that wait.
 [[nodiscard]] std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result);
-/// Of a run that was not broken off: loads that have not acted (acted_loads.h), and what is still going on (open_end.h).
+/// Findings on a run that was not broken off: loads that have not acted (acted_loads.h), and what is still going on (open_end.h).
 [[nodiscard]] std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
 /// A machine that stays where it is only because nothing disturbs it (mbd/trust/balance.h).
 [[nodiscard]] Finding balance_finding(const LoadedModel& loaded, const Balance& balance);

@@ -36,7 +36,7 @@ bool uses_time(const ElementEntry& entry) {
   return false;
 }
 
-// What an element gives at other times, bodies being where the run left them.
+// Force of an element at other times, with bodies where the run left them.
 class AtOtherTimes {
 public:
   AtOtherTimes(const System& system, const State& state, const std::string& element) : system_(system), state_(state), dynamics_(system) {

@@ -23,7 +23,7 @@ struct LimitedChannel {
   [[nodiscard]] double reserve(double low, double high) const { return std::min(low - least, largest - high); }
 };
 
-/// Of all criteria with values that hold; none of a run without extremes.
+/// All criteria that hold and have values; none for a run without extremes.
 [[nodiscard]] std::vector<LimitedChannel> limited_channels(const Model& model, const RunResult& result, const Judgement& judgement);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// What is still going on where a run ends, and what nothing carried in it.
+// Finds motions that still go on where a run ends, and bodies that nothing carried in it.
 #pragma once
 
 #include "mbd/trust/judgement.h"

@@ -20,7 +20,7 @@ constexpr double k_projection_tolerance = 1e-12; // m, rad
 // Rows that rest together one way only, as nearly parallel ones do (two feet of a box that is not quite level), take
 // what is left of one's slip from the motion many times over. More than this is no rest.
 constexpr double k_most_taken = 1e3;
-// Of what friction bears either way, by which it has to be inside to hold for certain: a thousand times what wrenches are known to.
+// Share of its bound by which friction has to be inside the bound to hold for certain: a thousand times what wrenches are known to.
 constexpr double k_inside = 1e-9;
 
 // What holds of one dimension: fills in f(row, its measure).

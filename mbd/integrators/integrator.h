@@ -154,7 +154,7 @@ protected:
     if (settings_.max_step > 0.0) h = std::min(h, settings_.max_step);
     return std::min(h, longest_step_);
   }
-  /// Of the next step: as far as bodies may turn in it. `division`: into so many parts as in TurnLimit.
+  /// Limits the next step by the angle that bodies may turn in it. `division`: into so many parts as in TurnLimit.
   [[nodiscard]] double limited_by_turns(const Dynamics& dynamics, double h, int division) {
     return turn_limit_.longest(dynamics.layout(), y0_.data(), k0_, h, division);
   }

@@ -28,7 +28,7 @@ constexpr double k_changes_in_tie = 10.0;
 // Where not all can hold (friction between parts that drives move apart) the loads are those of springs of the same stiffness relative
 // to the mobilities. Rounding makes errors of 1e-10 of them.
 constexpr double k_soft = 1e-6;
-// Of the velocities that add up to a row's: this is rest. They are solved to 1e-6 at worst.
+// Share of the velocities that add up to a row's velocity, below which the row is at rest. They are solved to 1e-6 at worst.
 constexpr double k_rest_by_others = 1e-6;
 
 } // namespace

@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// Of the interval behind a knot: a step that ends no further beyond counts as ending there. More than k_reached of turn_table.cpp.
+// Share of the interval behind a knot: a step that ends within it counts as ending at the knot. More than k_reached of turn_table.cpp.
 constexpr double k_beyond_knot = 0.05;
 constexpr double k_shorter = 0.9; // of what a step turned too far would have been allowed
 constexpr double k_whole = 1e-9;  // by which an interval may be longer than so many parts

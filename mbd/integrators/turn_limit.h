@@ -58,7 +58,7 @@ private:
     for_angles(layout, [&](int i) { most = std::max(most, std::abs(y1[i] - y0[i])); });
     return most;
   }
-  /// Of the angle of the pair's a against its b, as `values` has it of coordinates.
+  /// Returns the angle of the pair's a against its b, as `values` has it of coordinates.
   [[nodiscard]] static double difference(const Layout& layout, const Turn& turn, const double* values);
   /// From a curve's argument to the angle between coordinates of the layout: clusters carry the angle of one of their bodies.
   [[nodiscard]] static double offset(const Layout& layout, const Turn& turn);

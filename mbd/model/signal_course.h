@@ -32,7 +32,7 @@ struct SignalCourse {
   [[nodiscard]] bool is_level() const { return !(begins < std::numeric_limits<double>::infinity()); }
 };
 
-/// Of the signal from t = 0 on.
+/// Returns the course of the signal from t = 0 on.
 [[nodiscard]] SignalCourse course_of(const Signal& signal);
 
 } // namespace steplap

@@ -22,7 +22,7 @@ namespace steplap {
 /// Finds, within a step, where the condition of an armed action becomes true.
 class ConditionSearch {
 public:
-  /// Of the conditions of `group`, which may be null. Refers to both.
+  /// Searches the conditions of `group`, which may be null. Refers to both.
   ConditionSearch(const System& system, const ActionGroup* group);
 
   /// True if no condition needs a search.

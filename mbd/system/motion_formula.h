@@ -54,7 +54,7 @@ public:
 
   [[nodiscard]] bool is_valid() const { return !programs_.empty(); }
   [[nodiscard]] const FormulaProgram& program() const { return programs_.front(); }
-  /// What the program was made of.
+  /// Returns the tree that the program was made of.
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
   [[nodiscard]] const std::vector<MotionOperand>& operands() const { return operands_; }
   /// Bodies whose motion it reads, besides that of its own coordinate.

@@ -12,7 +12,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_turn = 2.0 * std::numbers::pi;
-// Of the interval between two knots: nearer to the one ahead than this it counts as reached. Steps end beside a knot by as much as the
+// Share of the interval between two knots: a knot ahead that is nearer than this counts as reached. Steps end beside a knot by as much as the
 // motion is not even, and a step of its own for the rest would tell nothing.
 constexpr double k_reached = 0.02;
 constexpr double k_without_end = std::numeric_limits<double>::infinity();

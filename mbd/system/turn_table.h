@@ -31,7 +31,7 @@ template <int K> [[nodiscard]] Turning turning_of(const CoordinateMeasure<K>& m)
 [[nodiscard]] inline Turning turning_of(const DistanceMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 [[nodiscard]] inline Turning turning_of(const AngleMeasure&) { return {}; }
 [[nodiscard]] inline Turning turning_of(const GapMeasure& m) { return {m.is_axis_in_a || moves_by_turning(m.point_a), true}; }
-/// Of a row's own measure, without its further parts.
+/// Considers a row's own measure, without its further parts.
 [[nodiscard]] Turning turning_of(const RowSpec& row);
 
 /// Knots of a curve over an angle θ_a − θ_b + zero, rad.

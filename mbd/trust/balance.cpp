@@ -234,7 +234,7 @@ bool goes_off(Growth& g, double way, double t0, double t1) {
   return t_far - g.t_half_way <= k_slower * (g.t_half_way - g.t_begun);
 }
 
-// What has grown from rest to `grown` times by an exponential has done so as cosh.
+// Exponential growth from rest by the factor `grown` follows a cosh.
 double exponent_of(double grown) { return std::numbers::ln10 * portable::log10(grown + std::sqrt((grown - 1.0) * (grown + 1.0))); }
 
 // One leg of a run, asked by nudges.

@@ -231,7 +231,7 @@ private:
     }
   }
 
-  // Of the channel's scale: an error of places that is none, and the velocity with which the stiffest spring lets a body swing by that.
+  // Allowance, relative to the channel's scale: an error of places that is none, and the velocity with which the stiffest spring lets a body swing by that.
   double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
     const auto channel =
         std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });

@@ -139,7 +139,7 @@ FrozenGrowth FrozenLeg::growth_at(const State& state, double least) {
   }
   if (!(fastest.rate > least)) return {};
   const VecX shape = (z * fastest.eta).normalized();
-  // What grows is pushed by a negative stiffness, which has to be more than rounding of the terms it is the sum of.
+  // Growth is pushed by a negative stiffness, which has to be more than rounding of the terms it is the sum of.
   const VecX place = weights_.cwiseInverse().cwiseProduct(shape);
   const double rounding = k_epsilon * (k_rounded_terms * place.cwiseAbs().dot(size * place.cwiseAbs()) + 4.0 * a.cwiseAbs().maxCoeff());
   if (!(place.dot(stiffness * place) > rounding)) return {};

@@ -286,7 +286,7 @@ void keep_worst(RunDifference& worst, const RunDifference& other, double factor)
 
 // --- by references
 
-// What the reference itself may be wrong by: from the other run, which may have few samples and no extremes.
+// Error of the reference itself, from the other run, which may have few samples and no extremes.
 void add_own_errors(const System& system, const RunResult& run, const ReferenceRuns& pair, const EventMatch& match,
                     GlobalErrorEstimate& estimate) {
   GlobalErrorEstimate own;
@@ -321,7 +321,7 @@ std::string tolerances_of(const ReferenceRuns& pair) {
          rounded_text(pair.options.settings.tolerance);
 }
 
-// What happened before the two references part is known: times of events, and when a number passed 1. An extreme is one of the whole run.
+// Results before the two references part are known: times of events, and when a number passed 1. An extreme is one of the whole run.
 void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, GlobalErrorEstimate& estimate) {
   const std::vector<ChannelError> channels = estimate.channels;
   const std::vector<double> times = estimate.event_times;

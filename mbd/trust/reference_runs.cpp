@@ -46,7 +46,7 @@ struct Rung {
   RunResult run;
 };
 
-// What `coarse` and `fine` together tell of the own error of `fine`.
+// Error of `fine`, from its difference to `coarse`.
 ReferenceRuns pair_of(const Rung& coarse, const Rung& fine, std::size_t stride, const System& system, const EventFilter& is_counted) {
   ReferenceRuns pair;
   pair.stride = stride;
@@ -97,7 +97,7 @@ std::optional<ReferenceRuns> reference_runs(const System& system, const State& i
   try { // the next run may fail or be too dear: then what the ones before tell is all there is
     coarse.run = budget.simulate(system, initial, coarse.options, left());
     for (;;) {
-      // What else cuts steps is divided, too: both would take the same ones, and their difference would be zero.
+      // Other limits of steps are divided, too: both would take the same ones, and their difference would be zero.
       next.settings.division *= k_division;
       next.settings.tolerance *= k_tightening;
       Rung finer{next, budget.simulate(system, initial, next, left())};

@@ -23,7 +23,7 @@
 
 namespace steplap {
 
-/// What finer runs may take together, in evaluations: a computer may be fast or slow.
+/// Limit of what finer runs may take together, in evaluations: a computer may be fast or slow.
 class EvaluationBudget {
 public:
   explicit EvaluationBudget(double most) : most_(most) {}
@@ -31,7 +31,7 @@ public:
   /// Throws EstimateTooDear if the run takes more than what is left, or than `most_of_run`.
   [[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options,
                                    double most_of_run = std::numeric_limits<double>::infinity());
-  /// Of all runs so far, of those that were given up, too.
+  /// Returns the cost of all runs so far, including those that were given up.
   [[nodiscard]] const RunStatistics& spent() const { return spent_; }
   /// Evaluations.
   [[nodiscard]] double left() const { return most_ - static_cast<double>(spent_.evaluations); }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_least_range = 1e-3; // of the largest range among channels of one kind
 constexpr double k_is_constant = 1e-9; // a range below this part of the value is rounding
-// Of the bodies' size L, m: motions below it are none. Errors of places are absolute to 1e-3 L (Integrator), and steps by the hundred
+// Share of the bodies' size L, m: motions below it are none. Errors of places are absolute to 1e-3 L (Integrator), and steps by the hundred
 // leave 1e-9 L of them at the usual tolerance; a tenth of this is that.
 constexpr double k_no_motion = 1e-8;
 // Of the largest value of its kind, as in mbd/simulation/extremes.h: a channel whose whole range is less shows rounding only.
@@ -136,7 +136,7 @@ double difference(double a, double b) {
   return std::abs(a - b);
 }
 
-// What an error of the channel is compared with, `size` that of the bodies, m.
+// Scale that an error of the channel is compared with; `size` is that of the bodies, m.
 double scale_of(const Compared& c, const Scales& scales, double size) {
   const double of_kind = std::max(k_least_range * scales.at(c.kind), c.kind == ErrorKind::position ? k_no_motion * size : 0.0);
   return std::max(c.range(), of_kind / c.arm);
