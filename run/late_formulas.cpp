@@ -1,6 +1,7 @@
 #include "run/late_formulas.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/formula/formula.h"
@@ -92,7 +93,7 @@ std::optional<double> begins_at(AtOtherTimes& at, double end) {
   for (int i = 1; i <= k_looks; ++i)
     if (const double t = end * (1.0 + (k_near - 1.0) * i / k_looks); !are_alike(at.values(t), first)) return t;
   for (int i = 1; i <= k_looks; ++i)
-    if (const double t = end * std::pow(10.0, std::log10(k_near) + std::log10(k_behind / k_near) * i / k_looks);
+    if (const double t = end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_looks);
         !are_alike(at.values(t), first))
       return t;
   return std::nullopt;

@@ -3,6 +3,7 @@
 #include "elements/formula_force.h"
 #include "elements/load.h"
 #include "mbd/base/name_pattern.h"
+#include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/formula/formula.h"
 #include "mbd/model/action.h"
@@ -198,7 +199,7 @@ std::vector<Finding> bodies_that_fall(const LoadedModel& loaded, const RunResult
   for (const Body& body : model.bodies) {
     if (carriers.is_carried(body)) continue;
     const ChannelRange *const x = ranges.find(body.name + ".x"), *const y = ranges.find(body.name + ".y");
-    const double way = x && y ? std::hypot(x->final - x->first, y->final - y->first) : 0.0;
+    const double way = x && y ? portable::hypot(x->final - x->first, y->final - y->first) : 0.0;
     findings.push_back(
         {"nothing_carries", FindingLevel::warning,
          "nothing carries body '" + body.name + "', which moves by " + quantity_text(way, "m") +

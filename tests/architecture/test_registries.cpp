@@ -64,6 +64,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
       {"mbd/model/model.h", "what a file that names none has"},
       {"mbd/simulation/run_record.h", "what a program that names none has"},
       {"mbd/trust/accuracy_study.h", "the two that make references"},
+      {"mbd/trust/reference_runs.cpp", "the method of references for fixed steps"},
       {"mbd/trust/cross_check.cpp", "the plan of a cross check, method by method"},
       {"mbd/trust/trust.cpp", "what to try instead"},
       {"run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
@@ -166,12 +167,13 @@ TEST_CASE("a sub-command is a file pair and a line in commands.cpp") {
   }
 }
 
-TEST_CASE("one switch over measures") {
-  // Values, tapes, derivatives and rest take it from there (mbd/system/row_gradient.h).
+TEST_CASE("two switches over measures") {
+  // Values, tapes, derivatives and rest use that of row.h (mbd/system/row_gradient.h). That of turn_table.cpp says on which angles a
+  // measure depends.
   std::vector<std::string> switches;
   for (const auto& [path, text] : product_sources())
     if (text.find("case MeasureKind::") != std::string::npos) switches.push_back(path);
-  CHECK(switches == std::vector<std::string>{"mbd/system/row.h"});
+  CHECK(switches == std::vector<std::string>{"mbd/system/row.h", "mbd/system/turn_table.cpp"});
 }
 
 namespace {
@@ -236,6 +238,8 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/simulation/changeover.cpp", "the unit of a message"},
       {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},
       {"mbd/system/slight_force.h", "the unit of a force"},
+      {"mbd/system/turn_table.cpp", "on which angles a measure depends"},
+      {"mbd/system/motion_formula.cpp", "an angle is linear in itself"},
   };
   for (const auto& [path, text] : product_sources())
     if (path.starts_with("mbd/") && text.find("MeasureKind::") != std::string::npos)

@@ -163,7 +163,7 @@ TEST_CASE("the installed library: an element kind of one's own, in a model file 
   CHECK(weak.find("verdict: reject") != std::string::npos);
   // Without the kind the file is refused by its line.
   const std::string refused = output_of("(" + k_prefix + "/bin/steplap check " STEPLAP_SOURCE "/docs/examples/own_element.toml || true)");
-  CHECK(refused.find("own_element.toml:24:8") != std::string::npos);
+  CHECK(refused.find("own_element.toml:25:8") != std::string::npos);
   CHECK(refused.find("orifice_damper") != std::string::npos);
 }
 
