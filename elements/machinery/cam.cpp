@@ -148,7 +148,7 @@ private:
 // interval after its last point, and of one that ends with the lift with which it begins, if what is left out is no wider than the
 // intervals that it has. Nothing where that is not so.
 std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
-  constexpr double k_digits = 1e-6; // of intervals and lifts in a file
+  constexpr double k_digits = 1e-3; // angles and lifts are written with three digits or more
   double widest = 0.0, narrowest = std::numeric_limits<double>::infinity(), low = points.front().y(), high = low;
   for (std::size_t i = 1; i < points.size(); ++i) {
     widest = std::max(widest, points[i].x() - points[i - 1].x());
