@@ -242,5 +242,7 @@ TEST_CASE("a run that ends before its load has grown does not hold") {
   };
   CHECK(growing({}).empty());
   CHECK(growing({"signal.road.speed=1 m/s"}).find("from t = 20 s on") != std::string::npos);
-  CHECK(growing({"signal.road.speed=1 m/s", "simulation.end=21"}).empty());
+  CHECK(growing({"signal.road.speed=1 m/s", "simulation.end=21"}).find("from t = 27 s on") !=
+        std::string::npos); // the rear axles, 7 m behind
+  CHECK(growing({"signal.road.speed=1 m/s", "simulation.end=45"}).empty());
 }
