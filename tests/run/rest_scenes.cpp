@@ -69,10 +69,9 @@ private:
     tilt_ = r_.between(-std::numbers::pi, std::numbers::pi);
     friction_ = r_.between(0.1, 1.0);
     inertia_ = mass_ * size_ * size_ * r_.between(0.1, 0.5);
-    // What explicit methods take steps for.
-    const double fastest = rate * std::max(1.0, 2.0 * share);
-    end_ = std::min(r_.decades(-2.0, 2.0), 1e6 / fastest);
-    if (s_.method == "dop853" || s_.method == "tsit5" || s_.method == "rk4") end_ = std::min(end_, 2e4 / fastest);
+    // Explicit methods step by the fastest motion, whether or not it is there: the method itself, or the second one that is asked.
+    const double fastest = rate * std::max(1.0, 2.0 * share), most = s_.method == "rk4" ? 1e3 : 1e4;
+    end_ = std::min(r_.decades(-2.0, 2.0), most / fastest);
     if (s_.method == "rk4") step_ = field("step", std::min(end_ / 50.0, 0.3 / fastest));
     if (s_.method == "moreau") step_ = field("step", end_ / 2000.0);
     share_ = s_.load == "none" ? 0.0 : s_.load == "tiny" ? r_.decades(-9.0, -3.0) : r_.between(0.1, 0.9);

@@ -11,9 +11,8 @@ struct RestScene {
   std::string text;               ///< the model as TOML
 };
 
-/// Stiffness of 1e4 to 1e10 N/m, masses of 1e-3 to 1e6 kg, lengths of 1e-3 to 1e2 m, runs of 0.01 to 100 s (of 1e6 times of the
-/// stiffest spring at most, of explicit methods 2e4), at random angles. Weight moves
-/// a body by at most a thousandth of its size: from there on stiffness is too little for it.
+/// Stiffness of 1e4 to 1e10 N/m, masses of 1e-3 to 1e6 kg, lengths of 1e-3 to 1e2 m, runs of up to 100 s and 1e4 times of the stiffest
+/// spring, at random angles. Weight moves a body by at most a thousandth of its size: from there on stiffness is too little for it.
 [[nodiscard]] RestScene random_rest_scene(std::uint64_t seed);
 
 } // namespace steplap::testing

@@ -19,7 +19,7 @@ namespace {
 #ifdef STEPLAP_TESTS_SANITIZED
 constexpr std::uint64_t k_scenes = 20; // ten times as slow
 #else
-constexpr std::uint64_t k_scenes = 250;
+constexpr std::uint64_t k_scenes = 200;
 #endif
 
 bool has_doubt(const Report& report) {
