@@ -67,8 +67,8 @@ private:
 [[nodiscard]] RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference,
                                          const EventFilter& is_counted = {}, std::size_t stride = 1);
 
-/// The first sample, s, at which a position or velocity differs by more than `share` of its range, as compare_runs() scales it; empty:
-/// none does. Velocities are left out between an event and its partner.
+/// Time of the first sample, s, at which a position differs by more than `share` of its range, as compare_runs() scales it; empty if none
+/// does.
 [[nodiscard]] std::optional<double> parts_at(const System& system, const RunResult& run, const RunResult& reference, std::size_t stride,
                                              double share);
 

@@ -142,7 +142,8 @@ TEST_CASE("random scenes balance where closed forms say so, and none of the othe
     CAPTURE(scene.what);
     const Report report = run_of(scene.text);
     CHECK(is_found(report) == scene.balances);
-    if (scene.balances) CHECK(report.judgement.verdict == Verdict::open);
+    // A column may also leave its place within the run; then a criterion that it breaks says more than "open".
+    if (scene.balances) CHECK(report.judgement.verdict != Verdict::hold);
     else if (scene.is_sound) CHECK(report.judgement.verdict == Verdict::hold);
     (scene.balances ? balancing : sound) += 1;
   }

@@ -36,7 +36,8 @@ Judged judged(const Workbench& bench, const std::string& model, const std::vecto
     if (names.empty() && line.rfind("#", 0) != 0) names = line;
     else if (!line.empty()) last = line;
   std::istringstream heads(names), values(last);
-  while (std::getline(heads, name, ',') && std::getline(values, value, ',')) j.last[name] = std::atof(value.c_str());
+  while (std::getline(heads, name, ',') && std::getline(values, value, ','))
+    j.last[name.substr(0, name.find(" ["))] = std::atof(value.c_str()); // without the unit
   return j;
 }
 
