@@ -218,7 +218,7 @@ struct SmoothSpring {
   // Of doubles alone: which piece holds is not written down.
   [[nodiscard]] double elastic_force(double value, UnitMode) const { return -count * spring.value(value - free); }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
-  /// Of an angle.
+  /// Returns the knots of the curve over the angle that it depends on.
   [[nodiscard]] std::vector<TurnKnots> knots() const {
     TurnKnots knots{-free, {}};
     for (const Vec2& point : spring.points()) knots.at.push_back(point.x());

@@ -1,4 +1,4 @@
-// Which signals acted in a run, and when: each use of a signal by an element, over the legs of the run.
+// Finds which signals acted in a run, and when: each use of a signal by an element, over the legs of the run.
 //
 // The events of a run tell which actions happened, and these what they released, held and set. So nothing has to be kept by the run.
 #pragma once
@@ -35,7 +35,7 @@ struct ActingSignal {
 
 /// All uses of a run from t = 0 to result.final_state.t. Signals that only an action names are among them, whether or not it happened.
 [[nodiscard]] std::vector<ActingSignal> acting_signals(const Model& model, const RunResult& result);
-/// The same of a run to `end` in which no action happens.
+/// Returns the signals that act in a run to `end`, s, if no action happens.
 [[nodiscard]] std::vector<ActingSignal> acting_signals_without_actions(const Model& model, double end);
 
 /// The action of that name; nullptr if there is none.

@@ -25,7 +25,7 @@ namespace {
 constexpr double k_tie = 1e-9; // of overloads that are equal: far above the rounding of identical elements
 // Wrenches are known to the last change of the sweeps; overloads that differ by no more than this many times that are equal, too.
 constexpr double k_changes_in_tie = 10.0;
-// Where not all can hold (friction between parts that drives move apart) the loads are those of springs of the same stiffness relative
+// If not all frictions can hold, as between parts that drives move apart, the loads are those of springs of the same stiffness relative
 // to the mobilities. Rounding makes errors of 1e-10 of them.
 constexpr double k_soft = 1e-6;
 // Share of the velocities that add up to a row's velocity, below which the row is at rest. They are solved to 1e-6 at worst.
@@ -33,7 +33,7 @@ constexpr double k_rest_by_others = 1e-6;
 
 } // namespace
 
-// Where time stands still a step begins at rest, whatever the last one came to.
+// A step of zero length begins at rest, whatever the last step ended with.
 bool TimeStepping::slid_before(int f) const { return start_.friction[f].phase == FrictionPhase::slip && std::isnan(held_time_); }
 
 // `keeps_kinetic`: goes on with the coefficients of the last call, of which more become kinetic.

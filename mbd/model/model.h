@@ -87,7 +87,7 @@ struct ElementKind {
   std::shared_ptr<Element> (*copy)(const Element& element) = nullptr; ///< set by holds()
   /// Adds the element to the system; reports what is wrong through the builder's errors.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
-  /// What is asked of every element of the kind in every run, if anything (mbd/trust/element_judgement.h).
+  /// Judges an element of the kind after a run (mbd/trust/element_judgement.h); null if the kind has no limits of its own.
   ElementJudgement (*judge)(const Element& element, const Model& model, const RunResult& result) = nullptr;
   /// Names of the channels whose extremes `judge` needs to tell whether the run can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;

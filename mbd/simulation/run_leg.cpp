@@ -371,7 +371,7 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
-// Where the step made leaps over a place where a condition is true it has to end there. True: it is withdrawn for that.
+// Ends the step where the condition of an armed action becomes true inside it. Returns true if the step is withdrawn for that.
 bool RunLeg::ends_at_truth() {
   if (!integrator_->bears_look(dynamics_)) return true;
   const double place = conditions_->place_of_truth(*integrator_, dynamics_, actions_->is_armed);

@@ -49,7 +49,7 @@ public:
   [[nodiscard]] const State& state() const { return state_; }    ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
-  /// The same without making a new state: `into` is one of this leg's system.
+  /// Writes the state into `into`, which belongs to this leg's system, without allocating.
   void read_state(State& into) const;
   /// Goes on with the bodies displaced by `by` (Simulation::displace).
   void displace(const std::vector<double>& by);

@@ -58,7 +58,7 @@ class TurnTable {
 public:
   /// The angle of a against b; nothing if they are the same body.
   void add(int a, int b);
-  /// The same with the knots of a curve over that angle.
+  /// Adds the pair with the knots of a curve over its relative angle.
   void add(int a, int b, TurnKnots knots);
   /// A measure between a and b: each body that turns it, against the ground, and against each other if both do.
   void add(int a, int b, Turning turning);
@@ -66,7 +66,7 @@ public:
   void add_all(std::span<const int> bodies);
   void add_all(std::initializer_list<int> bodies) { add_all(std::span(bodies.begin(), bodies.size())); }
 
-  /// The same of the bodies marked; of many those against the ground alone.
+  /// Adds all pairs of the marked bodies; if there are many, only each body against the ground.
   void add_marked(const std::vector<char>& is_marked);
 
   [[nodiscard]] const std::vector<Turn>& turns() const { return turns_; }

@@ -281,7 +281,7 @@ public:
     return exponent_of(grown) > k_confirmed * course.exponent;
   }
 
-  // Where the stiffness says nothing: the body that goes off exponentially, by its index, and its displacement.
+  // Looks for growth that the stiffness does not show. Returns the index of the body that leaves exponentially, and its displacement.
   std::optional<std::pair<double, VecX>> goes_off_otherwise() {
     NudgedRun run = nudged(1.0);
     if (!run.reach_leg()) return {};

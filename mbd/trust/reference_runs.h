@@ -6,12 +6,12 @@
 //
 //   |run − truth| ≤ |run − reference| + |reference − truth|
 //
-// Where the second part is more than a third of the first, in positions, velocities, reactions or times of events, both tolerances
+// If the second part is more than a third of the first, in positions, velocities, reactions or times of events, both tolerances
 // become a hundredth, once. The run at the larger tolerance looks for no extremes and has few samples: its difference is
 // multiplied by a small part only.
 //
-// Where the two part, nobody knows which of them is right, nor whether the run is: the motion then depends on the last digits.
-// Where they have other events, their difference does not follow the tolerance, and counts in full.
+// From the time at which the two references part, the motion depends on the last digits, and no error of it is known. If they have
+// different events, their difference does not follow the tolerance, and counts in full.
 #pragma once
 
 #include "mbd/simulation/simulation.h"

@@ -1,5 +1,5 @@
-// What a body passes in even rotation and even flight is found, however long the steps are that the motion alone would allow: random
-// scenes of each kind of element with an event function, whose first event is known in closed form.
+// Bodies in even rotation and even flight touch what they pass, however long the steps are that the motion alone would allow. Random scenes
+// of each kind of element with an event function have a first event that is known in closed form.
 #include "elements/machinery/lift_curve.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
@@ -80,7 +80,8 @@ const std::vector<std::string>& kinds() {
   return all;
 }
 
-// What the end of the arm touches. `slope`: by how much that changes with the angle where it begins, m; 1 of an angle.
+// Writes the element that the end of the arm touches. `slope` becomes the derivative of its gap by the arm's angle at the first touch, m;
+// 1 if the gap is an angle.
 std::string touched(const std::string& kind, const Arm& arm, double& slope) {
   const double half = arm.half, r = arm.r, depth = r * std::cos(half);
   const double far = 1.7 * r, taut = std::sqrt(r * r + far * far + 2.0 * r * far * std::cos(half)); // of a point opposite to `at`
@@ -147,8 +148,8 @@ Passing random_passing(const std::string& kind, RandomNumber& own) {
   passing.first = arm.first_touch();
   passing.end = k_turn * own.decades(0.0, 2.0) / std::abs(arm.rate);
   passing.end = std::max(passing.end, 1.05 * passing.first);
-  // Of a place rounding leaves some 1e-15 of the arm and of the angle: over the slope that is the angle's. An inextensible rope is caught
-  // 2e-11 of its length beyond it (docs/explanation/theory.md).
+  // Rounding of a position is some 1e-15 of the arm; divided by the slope it is an error of the angle. An inextensible rope is caught
+  // 2e-11 of its length beyond its end (docs/explanation/theory.md).
   const double caught = kind == "inextensible rope" ? 1e-10 * arm.r : 0.0;
   passing.off = (1e-9 + (1e-13 * arm.r + caught) / slope) / std::abs(arm.rate);
   return passing;
@@ -261,7 +262,7 @@ Found find(const Passing& passing, const System& system, const std::string& meth
   return found;
 }
 
-// Of `count` scenes that `make` draws, by all methods.
+// Runs `count` scenes that `make` draws by all methods, and checks the first touch.
 template <class Make> void check_all(const std::string& kind, int count, const Make& make) {
   int missed = 0, late = 0;
   for (int seed = 0; seed < count; ++seed) {

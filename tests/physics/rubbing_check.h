@@ -22,8 +22,8 @@ public:
   [[nodiscard]] bool is_robust() const { return is_robust_; }
   [[nodiscard]] int holding() const { return static_cast<int>(scene_.frictions.size() - slips_.size()); }
   [[nodiscard]] int sliding() const { return static_cast<int>(slips_.size()); }
-  /// What the run with such steps, of the scene written so, has wrong: friction that slides although it holds, or the other way
-  /// round, or a body that is not where it is in truth. Empty: nothing.
+  /// Runs the scene, written as `writing` says, with steps of `step`, s. Returns how it differs from the exact motion: friction that
+  /// slides although it holds, or the other way round, or a body at another place; empty if it agrees.
   [[nodiscard]] std::string differs(RubbingScene make, int seed, double step, const Writing& writing) const;
 
 private:

@@ -32,7 +32,7 @@ std::string digits(double value) {
   return std::strpbrk(text, ".en") ? text : std::string(text) + ".0";
 }
 
-// What an element does first, in closed form.
+// First event of an element, known in closed form.
 struct Change {
   std::string element;
   EventKind kind = EventKind::none;
@@ -238,7 +238,7 @@ std::string gap_in(const std::vector<Event>& events) {
   return "";
 }
 
-// Of motion, s: of the first order in steps from where the storm begins, of the tolerance before.
+// Error of an event's time, s: first order in the steps of the storm after its start, set by the tolerance before.
 double drift_of(double t, double storm_begin) { return t < storm_begin ? 1e-7 : 2.0 * k_step; }
 
 Outcome outcome_of(std::uint64_t seed) {
@@ -267,7 +267,7 @@ Outcome outcome_of(std::uint64_t seed) {
     bool is_same = mine.size() == events.size();
     for (std::size_t i = 0; is_same && i < events.size(); ++i) {
       is_same = mine[i].kind == events[i].kind;
-      // What comes back from a spring has lost 1 − exp(−½ π ω h) of its speed, up to 6 %, and comes later.
+      // A body that returns from a spring has lost 1 − exp(−½ π ω h) of its speed, up to 6 %, and comes later.
       const double late = 0.1 * (events[i].t - events[0].t);
       if (is_same && std::abs(mine[i].t - events[i].t) > mine[i].located_within + drift_of(mine[i].t, storm_begin) + late)
         outcome.failure += line_of(mine[i]) + "  and not at " + digits(events[i].t) + "\n";

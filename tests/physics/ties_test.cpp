@@ -1,4 +1,4 @@
-// What reaches its bounds at one instant, whatever rounding makes of it: those slide that have a rate.
+// Frictions that reach their bounds at the same instant: those slide that then have a rate, whatever rounding does.
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 #include "tests/random/random_number.h"
@@ -84,7 +84,7 @@ TEST_CASE("ties: nothing is said to slip that has no rate") {
         CHECK(event.kind != EventKind::sticks); // what slides does so to the end: the deck brakes more than all it drags
         if (!is_slip(event.kind)) continue;
         ++slips;
-        // What holds drops to what drags, a quarter less at least: 10 ms later it has a rate.
+        // Kinetic friction is at least a quarter below static friction, so 10 ms later a sliding element has a rate.
         const auto row = static_cast<std::size_t>(std::ceil(event.t / k_sample)) + 1;
         CHECK(std::abs(stack.series(event.element + ".slip_rate").at(row)) > 1e-4);
       }

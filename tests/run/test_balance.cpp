@@ -1,4 +1,4 @@
-// What stays where it is only because nothing disturbs it: rods on their ends, columns that are pressed, toggles, balls on balls, from the
+// Bodies that stay in place only because nothing disturbs them: rods on their ends, columns that are pressed, toggles, balls on balls, from the
 // start or since an action let them go, in scenes that are turned by any angle. Closed forms say which of them do, and how fast they leave.
 #include "balance_scenes.h"
 

@@ -44,7 +44,7 @@ TEST_CASE("no random scene at rest is distrusted or open, whatever the method") 
     CHECK_FALSE(report.run.failure.has_value());
     CHECK(report.judgement.distrust.empty());
     CHECK_FALSE(has_doubt(report));
-    // What is implausible about a random scene, as a pressure that no joint has, caps its verdict by right.
+    // An implausible value of a random scene, such as an unusual pressure, caps its verdict rightly.
     if (!report.judgement.caps.empty()) continue;
     ++uncapped;
     CHECK(report.judgement.verdict == Verdict::hold);

@@ -26,7 +26,7 @@ std::optional<std::size_t> offset_of(const std::string& text, const Location& wh
   return at;
 }
 
-// Where the key's name begins, past a quote. Nothing if another text is there.
+// Returns the offset at which the key's name begins, past a quote; nothing if another text is there.
 std::optional<std::size_t> place_of_key(const std::string& text, const RenamedKey& key) {
   std::optional<std::size_t> at = offset_of(text, key.where);
   if (at && *at < text.size() && (text[*at] == '"' || text[*at] == '\'')) ++*at;

@@ -1,4 +1,4 @@
-// What studies draw: numbers by counter (mbd/base/counter_random.h) of one seed and one purpose.
+// Random numbers of studies, drawn by counter (mbd/base/counter_random.h) from one seed and one purpose.
 #pragma once
 
 #include "mbd/base/counter_random.h"
