@@ -14,7 +14,7 @@ namespace steplap {
 
 inline constexpr UnitMode k_contact_off = 3;
 
-template <class Law> class EndedContactGroup final : public ForceGroup, public GapSource, public TurningElements {
+template <class Law> class EndedContactGroup final : public ForceGroup, public GapSource {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;

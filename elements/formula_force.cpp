@@ -87,7 +87,7 @@ private:
 };
 
 /// `Works`: booked as work, else as heat. `Jumps`: some formula compares, so that its force may jump.
-template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup, public StateReader, public TurningElements {
+template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup, public StateReader {
 public:
   using Entry = ForceEntry;
   std::vector<Entry> entries;

@@ -40,7 +40,7 @@ AppliedLoad<double> load_at(const LoadEntry& entry, const Evaluation& e) {
   return load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.force_of(*signal); });
 }
 
-class LoadGroup final : public ForceGroup, public TurningElements {
+class LoadGroup final : public ForceGroup {
 public:
   static constexpr bool k_does_work = true;
   std::vector<LoadEntry> entries;

@@ -44,7 +44,7 @@ struct MotorLaw {
   }
 };
 
-template <class Measure> class MotorGroup final : public ForceGroup, public TurningElements {
+template <class Measure> class MotorGroup final : public ForceGroup {
 public:
   struct Entry {
     int a, b;

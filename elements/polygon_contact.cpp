@@ -35,7 +35,7 @@ template <class S, class B> struct Placed {
   }
 };
 
-class PolygonGroup final : public ForceGroup, public GapSource, public SwallowingContacts, public TurningElements {
+class PolygonGroup final : public ForceGroup, public GapSource, public SwallowingContacts {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;

@@ -58,7 +58,7 @@ template <class S> std::array<BodyForceOf<S>, 3> forces_of(const CamGap<S>& gap,
   return on;
 }
 
-class CamGroup final : public ForceGroup, public TurningElements {
+class CamGroup final : public ForceGroup {
 public:
   using Entry = CamEntry;
   std::vector<Entry> entries;

@@ -30,7 +30,7 @@ struct MeshEntry {
 };
 
 // Modes: which way the teeth are loaded, so that friction has no corner within one.
-class MeshGroup final : public ForceGroup, public TurningElements {
+class MeshGroup final : public ForceGroup {
 public:
   static constexpr UnitMode k_forwards = 0, k_backwards = 1;
   std::vector<MeshEntry> entries;

@@ -32,7 +32,7 @@ struct RopePart {
 // released. The contact's force is the tension. Over pulleys one more watch value tells whether a part is left between
 // any two points while it is taut: by less than what the rest of the rope would be taut without, of a part that was a
 // thousand times as long, what hangs on it is jammed in its pulley; and no part has a direction at no length.
-class RopeGroup final : public ForceGroup, public TurningElements {
+class RopeGroup final : public ForceGroup {
 public:
   static constexpr int k_watches = KelvinVoigtContact::k_watches + 1, k_on_pulley = KelvinVoigtContact::k_watches;
   static constexpr double k_run_in = 1e-3; ///< of a part's length as given

@@ -26,7 +26,7 @@
 
 namespace steplap {
 
-class SlidingBandGroup final : public ForceGroup, public StateReader, public TurningElements {
+class SlidingBandGroup final : public ForceGroup, public StateReader {
 public:
   static constexpr int k_watches = 2;
   static constexpr double k_place = 1e-12; ///< m: to which places are known; a bound is no bound to less than what that stretches

@@ -85,7 +85,7 @@ struct TieLaw {
   }
 };
 
-template <class Measure> class TieGroup final : public ForceGroup, public TurningElements {
+template <class Measure> class TieGroup final : public ForceGroup {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;

@@ -72,7 +72,7 @@ template <class S> struct TreadState {
   S rate{0.0};  ///< u̇
 };
 
-class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits, public TurningElements {
+class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double k_shortest = 1e-6; // of its straight part in the reference pose, as of a rope's parts
 
-class WoundRopeGroup final : public ForceGroup, public TurningElements {
+class WoundRopeGroup final : public ForceGroup {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;

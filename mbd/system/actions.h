@@ -38,7 +38,7 @@ struct ActionTrigger {
 };
 
 /// All actions of a model, in the order of the file. Gives no force.
-class ActionGroup final : public ForceGroup, public TurningElements {
+class ActionGroup final : public ForceGroup {
 public:
   struct Entry {
     std::string name, text; ///< text: of all its steps, for people

@@ -82,7 +82,7 @@ concept TraceableLaw = requires(const Law& law, const Traced& x, Traced* watch) 
 struct NoGaps {};
 
 template <class Measure, class Law>
-class LawGroup final : public ForceGroup, public TurningElements, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
+class LawGroup final : public ForceGroup, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;

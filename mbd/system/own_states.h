@@ -41,7 +41,7 @@ struct StatePlace {
 [[nodiscard]] std::vector<double> start_of_states(SystemBuilder& builder);
 
 /// All own states of a model.
-class OwnStateGroup final : public ForceGroup, public StateReader, public TurningElements {
+class OwnStateGroup final : public ForceGroup, public StateReader {
 public:
   struct Entry {
     MotionFormula rate;

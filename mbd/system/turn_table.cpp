@@ -101,17 +101,15 @@ void enter_row(const RowSpec& row, TurnTable& turns) {
 
 } // namespace
 
+void ForceGroup::enter_turns(TurnTable& turns) const {
+  std::vector<char> is_used(turns.body_count(), 0);
+  mark_bodies(is_used);
+  turns.add_marked(is_used);
+}
+
 TurnTable turn_table_of(const System& system) {
-  TurnTable turns;
-  for (const auto& group : system.groups) {
-    if (const auto* const turning = dynamic_cast<const TurningElements*>(group.get())) {
-      turning->enter_turns(turns);
-      continue;
-    }
-    std::vector<char> is_used(system.bodies.size(), 0);
-    group->mark_bodies(is_used);
-    turns.add_marked(is_used);
-  }
+  TurnTable turns(system.bodies.size());
+  for (const auto& group : system.groups) group->enter_turns(turns);
   for (const RowSpec& row : system.rows) enter_row(row, turns);
   for (const FrictionUnit& unit : system.frictions)
     for (int i = 0; i < unit.friction->dimension(); ++i) enter_row(unit.friction->rows({})[i], turns);

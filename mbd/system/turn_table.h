@@ -3,7 +3,7 @@
 // A rotation at a constant rate is a straight line in its angle: no error estimate shortens a step for it, however many turns the step
 // takes, while the tip of a body passes whatever stands in its way twice a turn. Step control therefore bounds the angle by which
 // such a pair turns within one step (mbd/integrators/turn_limit.h), so that every sine in a gap is resolved by the places inside a step.
-// Groups declare their pairs in the role TurningElements; of rows the measure tells.
+// Groups declare their pairs (ForceGroup::enter_turns); those of rows follow from the measure.
 //
 // A curve over such an angle, as the lift of a cam, may do between two of its knots whatever it likes: each knot also ends a step.
 #pragma once
@@ -48,21 +48,25 @@ struct TurnKnots {
   [[nodiscard]] Interval about(double x, double direction) const;
 };
 
-/// One pair.
+/// A pair of bodies, and the curves over its angle.
 struct Turn {
   int a = k_ground, b = k_ground; ///< a > b
   std::vector<TurnKnots> knots = {};
 };
 
+/// The pairs of a system's bodies, each once.
 class TurnTable {
 public:
-  /// The angle of a against b; nothing if they are the same body.
+  explicit TurnTable(std::size_t body_count) : body_count_(body_count) {}
+
+  /// Adds the angle of a against b, unless they are the same body.
   void add(int a, int b);
   /// Adds the pair with the knots of a curve over its relative angle.
   void add(int a, int b, TurnKnots knots);
-  /// A measure between a and b: each body that turns it, against the ground, and against each other if both do.
+  /// Adds the angles on which a measure between a and b depends: of each body that turns it, against the ground, and against each other
+  /// if both do.
   void add(int a, int b, Turning turning);
-  /// Angles of all these bodies against each other and against the ground.
+  /// Adds the angles of all these bodies against each other and against the ground.
   void add_all(std::span<const int> bodies);
   void add_all(std::initializer_list<int> bodies) { add_all(std::span(bodies.begin(), bodies.size())); }
 
@@ -70,27 +74,18 @@ public:
   void add_marked(const std::vector<char>& is_marked);
 
   [[nodiscard]] const std::vector<Turn>& turns() const { return turns_; }
+  /// Number of bodies of the system, the ground among them.
+  [[nodiscard]] std::size_t body_count() const { return body_count_; }
 
 private:
   Turn& entry(int a, int b);
+  std::size_t body_count_;
   std::vector<Turn> turns_;
   std::unordered_map<std::uint64_t, std::size_t> index_;
 };
 
-/// A role that a ForceGroup may have besides: it knows on which angles its watch values, its forces and its channels depend other than
-/// linearly. Of a group without it those of all its bodies count.
-class TurningElements {
-public:
-  TurningElements() = default;
-  TurningElements(const TurningElements&) = delete;
-  TurningElements& operator=(const TurningElements&) = delete;
-  virtual ~TurningElements() = default;
-
-  virtual void enter_turns(TurnTable& turns) const = 0;
-};
-
 class System;
-/// Those of all elements and joints of a system.
+/// Returns the pairs of all elements, joints and frictions of a system.
 [[nodiscard]] TurnTable turn_table_of(const System& system);
 
 } // namespace steplap
