@@ -23,7 +23,7 @@ bool is_number_or_list(const Field& field) {
          field.type == FieldType::points;
 }
 
-bool is_action(const ElementEntry& entry) { return dynamic_cast<const Action*>(entry.element.get()) != nullptr; }
+bool is_action(const ElementEntry& entry) { return as_action(*entry.element) != nullptr; }
 
 // Elements that can be released: all but what a model is described with.
 bool can_act(const ElementEntry& entry) { return !is_action(entry) && dynamic_cast<const OwnState*>(entry.element.get()) == nullptr; }

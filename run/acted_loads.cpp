@@ -46,14 +46,11 @@ private:
     const auto entry =
         std::find_if(model_.signals.begin(), model_.signals.end(), [&](const SignalEntry& each) { return each.definition->name == name; });
     if (entry == model_.signals.end()) return;
-    if (entry->kind != &sum_kind()) {
-      if (const Signal* const signal = network_.build(name)) parts.push_back({&*entry, signal, course_of(*signal)});
-      return;
+    if (const auto summands = summands_of(*entry)) {
+      for (const std::string& summand : *summands) add(summand, parts);
+    } else if (const Signal* const signal = network_.build(name)) {
+      parts.push_back({&*entry, signal, course_of(*signal)});
     }
-    const std::vector<std::string> names = parts_of(entry->kind->fields, entry->definition.get());
-    const auto factors = std::get<std::vector<double>>(entry->kind->fields.find("factors")->get(entry->definition.get()));
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (i >= factors.size() || factors[i] != 0.0) add(names[i], parts);
   }
 
   const Model& model_;

@@ -32,7 +32,7 @@ public:
     for (const SignalEntry& signal : model.signals) signals.insert(signal.definition->name);
     for (std::size_t i = 0; i < model.elements.size(); ++i)
       for (const std::string& operand : names_in_formulas(model.elements[i]))
-        if (signals.contains(operand) && !dynamic_cast<const Action*>(model.elements[i].element.get()))
+        if (signals.contains(operand) && !as_action(*model.elements[i].element))
           now_[{i, "formula " + operand}] = {&use(i, "formula", operand), 0.0};
     for (auto& [key, each] : uses_) each.is_named_at_start = true;
   }
@@ -127,7 +127,7 @@ private:
 
 const Action* find_action(const Model& model, const std::string& name) {
   for (const ElementEntry& entry : model.elements)
-    if (entry.element->name == name) return dynamic_cast<const Action*>(entry.element.get());
+    if (entry.element->name == name) return as_action(*entry.element);
   return nullptr;
 }
 
@@ -142,8 +142,7 @@ std::vector<ActingSignal> acting_signals(const Model& model, const RunResult& re
     legs.happen(*action, event.t);
   }
   for (const ElementEntry& entry : model.elements)
-    if (const auto* const action = dynamic_cast<const Action*>(entry.element.get()); action && !happened.contains(action))
-      legs.wait(*action);
+    if (const auto* const action = as_action(*entry.element); action && !happened.contains(action)) legs.wait(*action);
   return legs.finished(result.final_state.t, {find_action(model, result.ended_by), ActionVerb::stop});
 }
 

@@ -65,7 +65,7 @@ References references_of(const Model& model) {
       }
     }
   for (const ElementEntry& entry : model.elements)
-    if (const auto* const action = dynamic_cast<const Action*>(entry.element.get()))
+    if (const auto* const action = as_action(*entry.element))
       for (const std::string& step : action->steps) found.signals.insert(action_step(step).value);
   for (const ElementEntry& entry : model.elements)
     for (const std::string& name : names_in_formulas(entry)) {

@@ -24,7 +24,7 @@ constexpr double k_behind = 1e4;    // run lengths up to which there are looks
 constexpr double k_rounding = 1e-9; // of the largest value: what is alike
 
 bool uses_time(const ElementEntry& entry) {
-  if (dynamic_cast<const Action*>(entry.element.get())) return false;
+  if (as_action(*entry.element)) return false;
   for (const Field& field : entry.kind->fields.fields()) {
     if (!is_formula_field(field)) continue;
     try {

@@ -158,7 +158,7 @@ private:
 
   void add(const ElementEntry& entry, const RangeIndex& ranges) {
     const Element& element = *entry.element;
-    if (dynamic_cast<const Action*>(&element)) return;
+    if (as_action(element)) return;
     for (const std::string& name : names_in_formulas(entry)) join_named(name);
     if (const ChannelRange* const force = force_of_contact(ranges, element.name);
         force && force->low.value == 0.0 && force->high.value == 0.0)

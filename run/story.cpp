@@ -220,7 +220,7 @@ private:
     begin(What::happens, event, error);
     entry(What::happens, event.element).detail = event.detail;
     const ElementEntry* const found = entry_of(event.element);
-    const auto* const action = found ? dynamic_cast<const Action*>(found->element.get()) : nullptr;
+    const auto* const action = found ? as_action(*found->element) : nullptr;
     if (!action) return;
     for (const std::string& text : action->steps) {
       const ActionStepText step = action_step(text);

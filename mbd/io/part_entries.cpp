@@ -229,7 +229,7 @@ void PartEntries::put_field(Node& child, const Field& field, const KindFacts& fa
   case FieldType::marker: put_reference(child, part); break;
   default: break;
   }
-  if (dynamic_cast<const Action*>(facts.made.get())) {
+  if (facts.made && as_action(*facts.made)) {
     if (field.name == "do") return prefix_steps(child, part.prefix);
     const auto event = field.name == "when" && child.type == Node::Type::text ? event_text(child.text()) : std::nullopt;
     if (event) {

@@ -51,7 +51,7 @@ EventKinds possible_events(const Model& model, const System& system, const std::
   bool is_any_asleep = false;
   for (ElementEntry& entry : all.elements) {
     if (!matches_pattern(entry.element->name, element)) continue;
-    if (dynamic_cast<const Action*>(entry.element.get())) add(kinds, EventKind::happens);
+    if (as_action(*entry.element)) add(kinds, EventKind::happens);
     if (entry.element->active) continue;
     entry.element->active = true;
     is_any_asleep = true;

@@ -89,7 +89,7 @@ public:
     });
     for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
     for (const ElementEntry& entry : model_.elements)
-      if (const auto* const action = dynamic_cast<const Action*>(entry.element.get())) check_action(*action);
+      if (const auto* const action = as_action(*entry.element)) check_action(*action);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
     return std::move(left_out_);
   }

@@ -39,6 +39,8 @@ std::string unquoted(const std::string& text) {
 
 } // namespace
 
+const Action* as_action(const Element& element) { return dynamic_cast<const Action*>(&element); }
+
 ActionStepText action_step(const std::string& text) {
   const std::string whole = trimmed(text);
   const std::size_t space = std::min(whole.find(' '), whole.size());

@@ -22,6 +22,9 @@ struct Action : TableObject {
   std::string reason;             ///< why loads that it cuts off are meant to end there; empty: they have not acted
 };
 
+/// The action that the element is; nullptr if it is another element.
+[[nodiscard]] const Action* as_action(const Element& element);
+
 /// What one step does.
 enum class ActionVerb { release, hold, set, arm, disarm, stop };
 

@@ -76,6 +76,15 @@ const SignalKind& sum_kind() {
   return kind;
 }
 
+std::optional<std::vector<std::string>> summands_of(const SignalEntry& entry) {
+  if (entry.kind != &sum_kind()) return std::nullopt;
+  const auto& sum = static_cast<const Sum&>(*entry.definition);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < sum.signals.size(); ++i)
+    if (i >= sum.factors.size() || sum.factors[i] != 0.0) names.push_back(sum.signals[i]);
+  return names;
+}
+
 const SignalKind& product_kind() {
   static const SignalKind kind = [] {
     SignalKind k = kind_of<Product>("product",
