@@ -41,6 +41,9 @@ Node text_node(const std::string& key, const std::string& text) {
   return node;
 }
 
+// The format is a property of a file, which its document does not keep (document.h).
+std::string written(const Node& root) { return "format = " + std::to_string(k_file_format) + "\n" + write_toml(root); }
+
 } // namespace
 
 std::string path_named_by(const Node& node, const std::string& name) {
@@ -63,14 +66,14 @@ std::string standalone_text(const Document& document, const Catalogue& catalogue
     entry->erase("sha256");
     entry->children.push_back(text_node("sha256", checksum));
   }
-  return write_toml(root);
+  return written(root);
 }
 
 std::string text_with_settings(const std::string& text, const std::vector<std::string>& assignments) {
   Document document = parse_document(text, "the model");
   for (const std::string& assignment : assignments) apply_override(document, assignment, {{}, {"simulation", "output"}, {}});
   if (!document.problems.empty()) throw ModelError(std::move(document.problems));
-  return write_toml(document.root);
+  return written(document.root);
 }
 
 } // namespace steplap

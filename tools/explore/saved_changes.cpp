@@ -110,7 +110,7 @@ std::string text_of_changes(const ExploredModel& model, const ExploredValues& va
   const Model wanted = read_given_model(model.path(), program_catalogue(), all);
   if (is_whole && makes(text, (file.parent_path() / "changes.toml").string(), wanted)) return text;
   return "# Saved by steplap explore. What was changed lies in parts of " + file.filename().string() +
-         ", where a file that extends it does not reach:\n# this one stands alone.\n" + k_format_line + alone;
+         ", where a file that extends it does not reach:\n# this one stands alone.\n" + alone;
 }
 
 std::string save_changes(const ExploredModel& model, const ExploredValues& values, const std::string& name) {
