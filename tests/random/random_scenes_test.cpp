@@ -83,10 +83,10 @@ TEST_CASE("methods agree on random scenes within their own error estimates") {
   std::vector<std::uint64_t> seeds(k_scenes);
   std::iota(seeds.begin(), seeds.end(), 1);
   for (std::uint64_t seed = 3001; seed <= 3000 + k_scenes / 2; ++seed)                        // with buffers, forces by formula, brakes
-    if (seed != 3004) seeds.push_back(seed);                                                  // KNOWN_ISSUES.md
+    if (seed != 3004) seeds.push_back(seed);                                                  // docs/evidence/cross_check.md
   for (std::uint64_t seed = 6001; seed <= 6000 + k_scenes / 2; ++seed) seeds.push_back(seed); // with wheels and skates
   for (std::uint64_t seed = 9001; seed <= 9000 + k_scenes / 2; ++seed)                        // with actions
-    if (seed != 9023) seeds.push_back(seed);                                                  // KNOWN_ISSUES.md
+    if (seed != 9023) seeds.push_back(seed);                                                  // docs/evidence/cross_check.md
   for (std::uint64_t seed = 12001; seed <= 12000 + k_scenes / 4; ++seed)
     seeds.push_back(seed); // with belts, bands, cams, clutches, gears with losses, beams
   for (std::uint64_t seed = 15001; seed <= 15000 + k_scenes / 4; ++seed)
