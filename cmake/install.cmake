@@ -80,12 +80,16 @@ foreach(row ${rows})
     install(FILES /usr/share/doc/${package}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME ${package} COMPONENT program)
   endif()
 endforeach()
-# Completions and man pages are what the program says of itself when it is installed.
+# Completions, man pages and the complete reference are made from the program's own texts when it is installed.
 find_program(STEPLAP_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(STEPLAP_PYTHON3)
   install(CODE "execute_process(COMMAND \"${STEPLAP_PYTHON3}\" \"${PROJECT_SOURCE_DIR}/tools/site/shell_files\"
     \"$<TARGET_FILE:steplap>\" \"${CMAKE_CURRENT_BINARY_DIR}/shell\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
   install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/shell/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program)
+  # The complete reference replaces the short pages of the same name, installed above.
+  install(CODE "execute_process(COMMAND \"${STEPLAP_PYTHON3}\" \"${PROJECT_SOURCE_DIR}/tools/site/reference_pages\"
+    \"$<TARGET_FILE:steplap>\" \"${CMAKE_CURRENT_BINARY_DIR}/reference\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
+  install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/reference/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/docs/reference COMPONENT program)
 endif()
 install(FILES tools/pages/plotly/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME plotly COMPONENT program)
 

@@ -1,5 +1,6 @@
 # The documentation as a site: Sphinx reads the Markdown pages as they are. `tools/docs` builds it.
 # The root of the project is the source folder, so that every relative link means the same here and on GitHub.
+import os
 import pathlib
 import re
 
@@ -29,3 +30,19 @@ html_copy_source = False
 html_extra_path = ["site/index.html"]  # leads from the top of the site to docs/index.html
 pygments_style = "tango"
 pygments_dark_style = "monokai"
+smartquotes = False  # a curly quote that is copied from a page is an error in TOML
+
+# The complete reference of elements and of the command line, made by tools/site/reference_pages, replaces the short pages of the same name.
+complete = pathlib.Path(os.environ.get("STEPLAP_REFERENCE", root / "build/reference"))
+made_pages = [name for name in ("models", "command_line") if (complete / f"{name}.md").exists()]
+
+
+def read_complete_page(app, name, source):
+    folder, _, page = name.rpartition("/")
+    if folder == "docs/reference" and page in made_pages:
+        source[0] = (complete / f"{page}.md").read_text()
+
+
+def setup(app):
+    app.connect("source-read", read_complete_page)
+    app.connect("env-get-outdated", lambda *_: {f"docs/reference/{page}" for page in made_pages})

@@ -1,18 +1,23 @@
 #!/usr/bin/python3
 """The documentation builds as a site without a warning, and the site needs no network: neither its pages nor its search.
 
-usage: site.py ROOT FOLDER
+usage: site.py PROGRAM ROOT FOLDER
+
+The reference in the site is the complete one, made by tools/site/reference_pages.
 """
 import json
+import os
 import pathlib
 import re
 import subprocess
 import sys
 
 
-def build(root, folder):
+def build(program, root, folder):
+    subprocess.run([sys.executable, str(root / "tools/site/reference_pages"), program, str(folder / "reference")], check=True)
     command = [sys.executable, "-m", "sphinx", "-b", "html", "-c", "docs", "-d", str(folder / "doctrees"), "-W", "--keep-going", "-q", "-E", ".", str(folder / "html")]
-    outcome = subprocess.run(command, cwd=root, capture_output=True, text=True)
+    outcome = subprocess.run(command, cwd=root, capture_output=True, text=True,
+                             env={**os.environ, "STEPLAP_REFERENCE": str(folder / "reference")})
     return outcome.stdout + outcome.stderr if outcome.returncode else ""
 
 
@@ -34,6 +39,11 @@ def faults(folder):
     names = [search["docnames"][page] for page in (pages if isinstance(pages, list) else [pages])]
     if "docs/reference/core" not in names:
         yield f"the search for 'clearance' does not find docs/reference/core, but {names}"
+    for page, part in (("models", "unilateral_contact"), ("command_line", "--require-hold")):
+        if part not in (html / f"docs/reference/{page}.html").read_text():
+            yield f"docs/reference/{page} in the site is not the complete one: '{part}' is missing"
+    if "“" in (html / "docs/reference/model_files.html").read_text():
+        yield "quotes are made curly: copied, they are errors in TOML"
     target = re.search(r"url=([^\"]+)", (html / "index.html").read_text())[1]
     if not (html / target).exists():
         yield f"index.html leads to {target}, which is not there"
@@ -41,8 +51,8 @@ def faults(folder):
 
 def main():
     assert loaded_from_elsewhere('<script src="https://a/b.js"></script><a href="https://c">') == ["https://a/b.js"]
-    root, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    said = build(root, folder)
+    root, folder = pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
+    said = build(sys.argv[1], root, folder)
     found = [said] if said else list(faults(folder))
     print("\n".join(found) or "the site is whole and needs no network")
     sys.exit(1 if found else 0)

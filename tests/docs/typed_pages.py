@@ -88,6 +88,7 @@ class Typist:
         self.root, self.folder = root, folder
         shutil.copytree(root / "models", folder / "models")
         (folder / "tools").symlink_to(root / "tools")
+        (folder / "docs").symlink_to(root / "docs")
         (folder / "build/release/bin").mkdir(parents=True)
         (folder / "build/release/bin/steplap").symlink_to(program)
         self.has_studies = (program.parent.parent / "libexec/steplap-study").exists()
