@@ -72,7 +72,7 @@ install(DIRECTORY models docs/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/step
 install(FILES tools/editors/steplap.lua tools/editors/taplo_lsp.js DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap/editors COMPONENT program)
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" REGEX "/cookbook/[^/]*\\.toml$")
 file(STRINGS THIRD_PARTY.md rows REGEX "^\\| lib[^|]+\\|")
 foreach(row ${rows})
   string(REGEX REPLACE "^\\| ([^ |]+).*" "\\1" package ${row})
