@@ -1,5 +1,6 @@
 #include "elements/formula_force.h"
 
+#include "mbd/formula/formula.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/own_states.h"
 
@@ -330,6 +331,10 @@ formula = "-'1 N m s' * rate"
     k.stage = 1;
     k.holds<T>();
     k.compile = compile_formula_force;
+    // A formula that names coordinates or rates answers a motion; one that names signals acts with these.
+    k.has_constant_load = [](const Element& element) {
+      return Formula(static_cast<const T&>(element).formula, "formula", {}).names().empty();
+    };
     return k;
   }();
   return kind;

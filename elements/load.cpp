@@ -126,6 +126,10 @@ const ElementKind& load_kind() {
     f.add("frame", &Load::frame).one_of({"ground", "body"}).doc("axes of the force: ground, or the marker's");
     k.holds<Load>();
     k.compile = compile_load;
+    k.has_constant_load = [](const Element& element) {
+      const auto& load = static_cast<const Load&>(element);
+      return load.force != Vec2::Zero() || load.couple != 0.0;
+    };
     return k;
   }();
   return kind;

@@ -182,6 +182,7 @@ const ElementKind& motor_kind() {
     f.add("derivative", &T::derivative).in("N m s/rad|N s/m").not_negative().doc("of the servo");
     k.holds<T>();
     k.compile = compile_motor;
+    k.has_constant_load = [](const Element& element) { return static_cast<const T&>(element).constant_effort != 0.0; };
     return k;
   }();
   return kind;

@@ -57,35 +57,6 @@ private:
   SignalNetwork network_;
 };
 
-// How near criteria had come to their limits, at any time of the run.
-class Growth {
-public:
-  Growth(const RunResult& result, std::vector<LimitedChannel> limited) : result_(result), limited_(std::move(limited)) {}
-
-  [[nodiscard]] std::size_t count() const { return result_.growth.empty() ? 0 : limited_.size(); }
-  // Value of a criterion at the last time that was kept before t.
-  [[nodiscard]] double reserve(std::size_t i, double t) const {
-    const std::size_t c = limited_[i].channel;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const ExtremesSoFar& then : result_.growth) {
-      if (then.t > t) break;
-      low = std::fmin(low, then.range[c].first); // of legs before, too
-      high = std::fmax(high, then.range[c].second);
-    }
-    return limited_[i].reserve(low, high);
-  }
-  [[nodiscard]] const std::string& name(std::size_t i) const { return limited_[i].criterion; }
-  // Value of a criterion at the start.
-  [[nodiscard]] double first_reserve(std::size_t i) const {
-    const double first = result_.ranges[limited_[i].channel].first;
-    return limited_[i].reserve(first, first);
-  }
-
-private:
-  const RunResult& result_;
-  std::vector<LimitedChannel> limited_;
-};
-
 // Velocities and accelerations of bodies at the end, beside the largest of the run.
 class Motions {
 public:
@@ -119,7 +90,7 @@ std::string seconds(double t) { return rounded_text(t) + " s"; }
 class Judge {
 public:
   // `growth`, `result`: null before a run.
-  Judge(const LoadedModel& loaded, double end, const Growth* growth, const RunResult* result)
+  Judge(const LoadedModel& loaded, double end, const ReserveHistory* growth, const RunResult* result)
       : loaded_(loaded), model_(loaded.model), slack_(k_same_time * end), growth_(growth), result_(result) {}
 
   std::optional<Finding> finding(const ActingSignal& use, const LoadPart& part) const {
@@ -229,7 +200,7 @@ private:
       const double left = growth_->reserve(i, span.to + slack_), rate = (growth_->reserve(i, half) - left) / (span.to - half);
       if (!std::isfinite(left) || !(rate > 0.0) || left > rate * span.to) continue;
       return warning("criterion_still_grows",
-                     "'" + growth_->name(i) + "' is met so far, but under signal '" + part.entry->definition->name +
+                     "'" + growth_->limited(i).criterion + "' is met so far, but under signal '" + part.entry->definition->name +
                          "' its value still grows when the run ends: at its present rate it reaches its limit after " +
                          rounded_text(left / rate, 3) + " s more. Let the run go on until it repeats itself",
                      part.entry->definition->where);
@@ -299,9 +270,9 @@ private:
 
   const LoadedModel& loaded_;
   const Model& model_;
-  double slack_;            ///< s
-  const Growth* growth_;    ///< null: nothing has been run
-  const RunResult* result_; ///< the same
+  double slack_;                 ///< s
+  const ReserveHistory* growth_; ///< null: nothing has been run
+  const RunResult* result_;      ///< the same
 };
 
 std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vector<ActingSignal>& uses, const Judge& judge) {
@@ -325,16 +296,6 @@ std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vect
 
 } // namespace
 
-bool has_endless_loads(const Model& model) {
-  SignalNetwork network(model);
-  return std::any_of(model.signals.begin(), model.signals.end(), [&](const SignalEntry& entry) {
-    const Signal* const signal = network.build(entry.definition->name);
-    if (!signal || signal->is_constant()) return false;
-    const SignalCourse course = course_of(*signal);
-    return !course.is_level() && (!course.has_end() || course.period > 0.0);
-  });
-}
-
 std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
   const double end = loaded.model.simulation.end;
   return findings_of_uses(loaded, acting_signals_without_actions(loaded.model, end), Judge(loaded, end, nullptr, nullptr));
@@ -342,7 +303,8 @@ std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
 
 std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   if (!result.stop_reason.empty()) return {}; // an element that came apart ended it, which the verdict says
-  const Growth growth(result, result.growth.empty() ? std::vector<LimitedChannel>{} : limited_channels(loaded.model, result, judgement));
+  const ReserveHistory growth(result,
+                              result.growth.empty() ? std::vector<LimitedChannel>{} : limited_channels(loaded.model, result, judgement));
   const Judge judge(loaded, result.final_state.t, &growth, &result);
   std::vector<Finding> findings = findings_of_uses(loaded, acting_signals(loaded.model, result), judge);
   for (Finding& finding : late_formulas(loaded, result)) findings.push_back(std::move(finding));

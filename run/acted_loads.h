@@ -15,8 +15,6 @@
 
 namespace steplap {
 
-/// Does the model name a signal without an end that is not level all the time? Then a run has to keep how its extremes grow.
-[[nodiscard]] bool has_endless_loads(const Model& model);
 /// Before a run: signals that its end cuts off, as if no action happened.
 [[nodiscard]] std::vector<Finding> loads_beyond_end(const LoadedModel& loaded);
 /// After a run that was not broken off: loads that have not acted, each once. `judgement`: of this run.

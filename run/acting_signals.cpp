@@ -1,6 +1,5 @@
 #include "run/acting_signals.h"
 
-#include "elements/load.h"
 #include "mbd/model/formula_fields.h"
 
 #include <algorithm>
@@ -24,9 +23,7 @@ public:
       acts_.push_back(entry.element->active);
       for (const Field& field : entry.kind->fields.fields())
         if (field.type == FieldType::signal) name(i, field.name, std::get<std::string>(field.get(entry.element.get())));
-      if (const auto* const load = dynamic_cast<const Load*>(entry.element.get());
-          load && (load->force != Vec2::Zero() || load->couple != 0.0))
-        now_[{i, ""}] = {&use(i, "", ""), 0.0};
+      if (entry.kind->has_constant_load && entry.kind->has_constant_load(*entry.element)) now_[{i, ""}] = {&use(i, "", ""), 0.0};
     }
     std::unordered_set<std::string> signals;
     for (const SignalEntry& signal : model.signals) signals.insert(signal.definition->name);
@@ -61,6 +58,8 @@ public:
       if (found == index_.end()) continue;
       if (step.verb == ActionVerb::set && is_signal(found->second, step.field))
         use(found->second, step.field, step.value).waiting.push_back(&action);
+      else if (step.verb == ActionVerb::set && model_.elements[found->second].kind->has_constant_load && !is_zero(step.value))
+        use(found->second, "", "").waiting.push_back(&action);
       if (step.verb != ActionVerb::hold) continue;
       for (auto& [key, each] : uses_)
         if (each.element == found->second) each.waiting.push_back(&action);
@@ -97,6 +96,9 @@ private:
     const Field* const found = model_.elements[element].kind->fields.find(field);
     return found && found->type == FieldType::signal;
   }
+
+  // A value as an action sets it: "[0, 0]", "0 N".
+  static bool is_zero(const std::string& value) { return value.find_first_of("123456789=") == std::string::npos; }
 
   void end(std::size_t element, const std::string& field, double t, const SignalCut& cut) {
     const auto found = now_.find({element, field});

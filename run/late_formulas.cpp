@@ -18,8 +18,10 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_looks = 200;        // over the run, and as many evenly and in even ratios behind it
-constexpr double k_near = 10.0;     // run lengths over which looks behind the end are even
+constexpr int k_looks = 200;        // over the run, and as many near behind it and in even ratios further on
+constexpr double k_near = 10.0;     // run lengths over which looks behind the end are spread evenly
+constexpr double k_larger = 1.25;   // than in the run: tops of sums of harmonics differ by less from one stretch to the next
+constexpr double k_far = 100.0;     // run lengths by which a load has come to its full size, if it has one
 constexpr double k_behind = 1e4;    // run lengths up to which there are looks
 constexpr double k_rounding = 1e-9; // of the largest value: what is alike
 
@@ -85,18 +87,56 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
   return true;
 }
 
-// The first look behind the end at which the formula does what it never did before.
-std::optional<double> begins_at(AtOtherTimes& at, double end) {
+// Share of an interval, in no ratio to any period: looks at even distances meet a harmonic always at the same phase.
+double golden(int i) { return std::fmod(i * 0.6180339887498949, 1.0); }
+
+// What a formula does behind the end of a run.
+struct Late {
+  double t = 0.0;        ///< s
+  bool is_first = false; ///< it depends on the time there for the first time; else it is larger than it ever was
+};
+
+// Largest sizes of the channels of an element.
+class Sizes {
+public:
+  void add(const std::vector<double>& values) {
+    largest_.resize(values.size(), 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) largest_[i] = std::max(largest_[i], std::abs(values[i]));
+  }
+  [[nodiscard]] const std::vector<double>& largest() const { return largest_; }
+  [[nodiscard]] bool are_exceeded_by(const std::vector<double>& values) const {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::abs(values[i]) > k_larger * largest_[i]) return true;
+    return false;
+  }
+
+private:
+  std::vector<double> largest_;
+};
+
+std::optional<Late> late_look(AtOtherTimes& at, double end) {
   const std::vector<double> first = at.values(0.0);
+  bool depends = false;
+  Sizes within, behind, far_behind;
+  within.add(first);
+  for (int i = 1; i <= k_looks; ++i) {
+    const std::vector<double> values = at.values(i == k_looks ? end : end * golden(i));
+    depends = depends || !are_alike(values, first);
+    within.add(values);
+  }
+  std::optional<Late> begins, grows;
+  const auto look = [&](double t) {
+    const std::vector<double> values = at.values(t);
+    if (!depends && !begins && !are_alike(values, first)) begins = Late{t, true};
+    if (depends && !grows && within.are_exceeded_by(values)) grows = Late{t, false};
+    (t > k_far * end ? far_behind : behind).add(values);
+  };
+  for (int i = 1; i <= k_looks; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_looks));
   for (int i = 1; i <= k_looks; ++i)
-    if (!are_alike(at.values(end * i / k_looks), first)) return std::nullopt;
-  for (int i = 1; i <= k_looks; ++i)
-    if (const double t = end * (1.0 + (k_near - 1.0) * i / k_looks); !are_alike(at.values(t), first)) return t;
-  for (int i = 1; i <= k_looks; ++i)
-    if (const double t = end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_looks);
-        !are_alike(at.values(t), first))
-      return t;
-  return std::nullopt;
+    look(end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_looks));
+  // What grows to the last look, as c t does, has no full size that a run could reach: the end of the run is the load's.
+  if (behind.are_exceeded_by(far_behind.largest())) return begins;
+  return begins ? begins : grows;
 }
 
 } // namespace
@@ -108,11 +148,13 @@ std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& r
     if (!uses_time(entry)) continue;
     try {
       AtOtherTimes at(*loaded.system, result.final_state, entry.element->name);
-      if (const std::optional<double> t = begins_at(at, end))
-        findings.push_back({"load_behind_end", FindingLevel::warning,
-                            "the formula of '" + entry.element->name + "' begins to depend on the time by t = " + rounded_text(*t, 3) +
-                                " s, but the run ends at " + number_text(end) + " s: what it does then is not judged",
-                            entry.element->where});
+      const std::optional<Late> late = late_look(at, end);
+      if (!late) continue;
+      const std::string what = late->is_first ? "begins to depend on the time by" : "is larger than in the whole run at";
+      findings.push_back({late->is_first ? "load_behind_end" : "load_still_grows", FindingLevel::warning,
+                          "the formula of '" + entry.element->name + "' " + what + " t = " + rounded_text(late->t, 3) +
+                              " s, but the run ends at " + number_text(end) + " s: what it does then is not judged",
+                          entry.element->where});
     } catch (const NumericalFailure&) { // at another time the machine cannot be
     }
   }

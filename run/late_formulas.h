@@ -1,6 +1,6 @@
-// Formulas of the time that do nothing within a run and would do something behind its end.
+// Formulas of the time that do nothing within a run and would do something behind its end, or come to their full size there.
 //
-// They are evaluated at the last state of the run with other times: evenly over the run, and behind it up to k_behind times its length.
+// They are evaluated at the last state of the run with other times: over the run, and behind it up to k_behind times its length.
 // Assumed is that what a formula does with the time alone shows at that state. A pulse behind the end may fall between two looks.
 #pragma once
 

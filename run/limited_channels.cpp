@@ -2,6 +2,8 @@
 
 #include "mbd/base/name_pattern.h"
 
+#include <cmath>
+
 namespace steplap {
 
 namespace {
@@ -29,6 +31,22 @@ void add_of_element(const CriterionResult& criterion, const RunResult& result, s
 }
 
 } // namespace
+
+double ReserveHistory::reserve(std::size_t i, double t) const {
+  const std::size_t c = limited_[i].channel;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const ExtremesSoFar& then : result_.growth) {
+    if (then.t > t) break;
+    low = std::fmin(low, then.range[c].first); // of legs before, too
+    high = std::fmax(high, then.range[c].second);
+  }
+  return limited_[i].reserve(low, high);
+}
+
+double ReserveHistory::first_reserve(std::size_t i) const {
+  const double first = result_.ranges[limited_[i].channel].first;
+  return limited_[i].reserve(first, first);
+}
 
 std::vector<LimitedChannel> limited_channels(const Model& model, const RunResult& result, const Judgement& judgement) {
   std::vector<LimitedChannel> limited;

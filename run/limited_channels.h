@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -21,6 +22,25 @@ struct LimitedChannel {
 
   /// How far inside its limits the nearest of two extremes is; negative: beyond.
   [[nodiscard]] double reserve(double low, double high) const { return std::min(low - least, largest - high); }
+};
+
+/// How near criteria had come to their limits at any time of a run that kept how its extremes grew (RunResult::growth).
+class ReserveHistory {
+public:
+  /// Refers to `result`.
+  ReserveHistory(const RunResult& result, std::vector<LimitedChannel> limited) : result_(result), limited_(std::move(limited)) {}
+
+  /// Of the criteria; 0 if nothing was kept.
+  [[nodiscard]] std::size_t count() const { return result_.growth.empty() ? 0 : limited_.size(); }
+  [[nodiscard]] const LimitedChannel& limited(std::size_t i) const { return limited_[i]; }
+  /// Reserve of criterion i at the last time before t, s, that was kept.
+  [[nodiscard]] double reserve(std::size_t i, double t) const;
+  /// The same at the start.
+  [[nodiscard]] double first_reserve(std::size_t i) const;
+
+private:
+  const RunResult& result_;
+  std::vector<LimitedChannel> limited_;
 };
 
 /// All criteria that hold and have values; none for a run without extremes.

@@ -1,7 +1,5 @@
 #include "run/open_end.h"
 
-#include "elements/formula_force.h"
-#include "elements/load.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
@@ -15,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <unordered_map>
 #include <unordered_set>
@@ -61,28 +61,71 @@ const ChannelRange* force_of_contact(const RangeIndex& ranges, const std::string
 
 } // namespace
 
+namespace {
+
+Location where_of(const Model& model, const std::string& criterion) {
+  const auto found = std::find_if(model.criteria.begin(), model.criteria.end(), [&](const Criterion& c) { return c.name == criterion; });
+  return found == model.criteria.end() ? Location{} : found->where;
+}
+
+Finding still_grows(const Model& model, const std::string& criterion, const std::string& how, double seconds_left) {
+  return {"criterion_still_grows", FindingLevel::warning,
+          "'" + criterion + "' is met so far, but " + how + " after " + rounded_text(seconds_left, 3) +
+              " s more. Let the run go on until it comes to rest",
+          where_of(model, criterion)};
+}
+
+// Time in which the worst value of criterion i reaches its limit at the rate of the last eighth of a run of length `end`, s; nothing if
+// the worst value did not grow in each eighth of its second half, or less and less.
+std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i, double end) {
+  constexpr int k_parts = 8;
+  constexpr double k_steady = 0.5; // of the growth in the eighths before
+  double before = history.reserve(i, 0.5 * end), grown = 0.0, last = 0.0;
+  for (int part = k_parts / 2 + 1; part <= k_parts; ++part) {
+    const double left = history.reserve(i, part == k_parts ? std::numeric_limits<double>::infinity() : end * part / k_parts);
+    last = before - left;
+    if (!(last > 0.0) || !std::isfinite(last)) return std::nullopt;
+    if (part < k_parts) grown += last;
+    before = left;
+  }
+  if (last < k_steady * grown / (k_parts / 2 - 1)) return std::nullopt;
+  return before / last * end / k_parts;
+}
+
+} // namespace
+
 std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   constexpr double k_still_worst = 1e-6; // of the range: extremes are located to within that
   const double length = result.final_state.t;
   std::vector<Finding> findings;
   std::unordered_set<std::string> known;
-  for (const LimitedChannel& limited : limited_channels(loaded.model, result, judgement)) {
+  const std::vector<LimitedChannel> all = limited_channels(loaded.model, result, judgement);
+  const ReserveHistory history(result, all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const LimitedChannel& limited = all[i];
     const ChannelRange& range = result.ranges[limited.channel];
     const double slack = k_still_worst * (range.high.value - range.low.value), rate = range.final_rate;
     const double then = range.final + rate * length;
     const bool rises = rate > 0.0 && range.final >= range.high.value - slack && then >= limited.largest;
     const bool falls = rate < 0.0 && range.final <= range.low.value + slack && then <= limited.least;
-    if ((!rises && !falls) || !known.insert(limited.criterion).second) continue;
-    const std::string& unit = range.channel->unit;
-    const double limit = rises ? limited.largest : limited.least;
-    const auto criterion = std::find_if(loaded.model.criteria.begin(), loaded.model.criteria.end(),
-                                        [&](const Criterion& c) { return c.name == limited.criterion; });
-    findings.push_back({"criterion_still_grows", FindingLevel::warning,
-                        "'" + limited.criterion + "' is met so far, but when the run ends '" + range.channel->name + "' is at " +
-                            quantity_text(range.final, unit) + " and still " + (rises ? "rises" : "falls") +
-                            ": at its present rate it reaches the limit of " + quantity_text(limit, unit) + " after " +
-                            rounded_text((limit - range.final) / rate, 3) + " s more. Let the run go on until it comes to rest",
-                        criterion == loaded.model.criteria.end() ? Location{} : criterion->where});
+    const std::string &unit = range.channel->unit, &name = range.channel->name;
+    if (rises || falls) {
+      const double limit = rises ? limited.largest : limited.least;
+      if (known.insert(limited.criterion).second)
+        findings.push_back(still_grows(loaded.model, limited.criterion,
+                                       "when the run ends '" + name + "' is at " + quantity_text(range.final, unit) + " and still " +
+                                           (rises ? "rises" : "falls") + ": at its present rate it reaches the limit of " +
+                                           quantity_text(limit, unit),
+                                       (limit - range.final) / rate));
+    } else if (const auto builds_up = i < history.count() ? builds_up_in(history, i, length) : std::nullopt;
+               builds_up && *builds_up <= length) {
+      if (known.insert(limited.criterion).second)
+        findings.push_back(still_grows(loaded.model, limited.criterion,
+                                       "the largest value of '" + name +
+                                           "' grows to the end of the run: at its present rate it reaches "
+                                           "the limit",
+                                       *builds_up));
+    }
   }
   return findings;
 }
@@ -171,9 +214,9 @@ private:
       const auto over = std::get<std::vector<std::string>>(field.get(&element));
       for (const std::string& marker : over) bodies.push_back(of(marker));
     }
-    const bool is_force = dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element);
+    const bool is_load = entry.kind->has_constant_load != nullptr;
     const bool is_drive = !parts_of(entry.kind->fields, &element).empty();
-    if (is_force || is_drive || (asks_ && is_asked(model_, result_, element.name))) bodies.push_back(0);
+    if (is_load || is_drive || (asks_ && is_asked(model_, result_, element.name))) bodies.push_back(0);
     for (const int body : bodies) join(body, bodies.front());
   }
 

@@ -7,7 +7,8 @@
 namespace steplap {
 
 /// Criteria whose value is still the worst of the run at its end, grows, and would reach its limit within one more run length at its
-/// present rate. After a load without an end the rate is that of the second half of the run, too.
+/// present rate; and criteria whose worst value has grown in each eighth of the second half, as that of a swing that builds up does, and
+/// would reach the limit at the rate of the last.
 [[nodiscard]] std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
 /// A note of friction that slips and of contacts that have opened at the end, and that no criterion asks for.
 [[nodiscard]] std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& result);

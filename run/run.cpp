@@ -1,7 +1,6 @@
 #include "run/run.h"
 
 #include "mbd/base/number_text.h"
-#include "run/acted_loads.h"
 #include "run/with_settings.h"
 
 #include <stdexcept>
@@ -33,7 +32,7 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
     if (options.progress) options.progress(t);
     if (!is_over) stop_if_asked(options, t);
   };
-  simulation_asked.has_growth = options.has_extremes && has_endless_loads(loaded->model);
+  simulation_asked.has_growth = options.has_extremes;
   Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));
   Run run;
   try {

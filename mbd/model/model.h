@@ -89,6 +89,8 @@ struct ElementKind {
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
   /// Judges an element of the kind after a run (mbd/trust/element_judgement.h); null if the kind has no limits of its own.
   ElementJudgement (*judge)(const Element& element, const Model& model, const RunResult& result) = nullptr;
+  /// Kinds that exert a force that is given, and not the answer to a motion: does an element exert one besides its signals? Null: other kinds.
+  bool (*has_constant_load)(const Element& element) = nullptr;
   /// Names of the channels whose extremes `judge` needs to tell whether the run can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 

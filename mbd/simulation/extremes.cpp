@@ -27,6 +27,9 @@ constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr double k_within_reach = 0.25; // of a channel's range: what lies further from both extremes is left where it may not bend so much
 constexpr double k_bit_of_slack = 0.1;  // by which a polynomial's top is found
+// Estimated errors of polynomials are exceeded by up to so much in one of a hundred: a top whose estimate is not smaller than the
+// tolerance by this factor is evaluated.
+constexpr double k_safety = 3.0;
 constexpr double k_same_crossing = 1e-10; // of a stretch
 // So many channels are followed each for itself without asking whether what they do is rounding.
 constexpr std::size_t k_few = 8;
@@ -378,10 +381,26 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     const double bit = k_bit_of_slack * slack; // the top is looked for in all gaps between nodes
     const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
     if (!top || !(top->value + bit + error > record + slack)) continue;
+    // At the first level the error is what one guess was off by, which is small by chance where the guess happens to cross the curve.
+    if (level == 1 || k_safety * error > slack) {
+      unchecked_.push_back({c, top->theta, sign * top->value});
+      continue;
+    }
     if (!sure_.empty()) note_sure(c, sign * top->value);
     note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
   }
   return true;
+}
+
+// Evaluates the tops that settle() left unchecked. Channels whose polynomial is off there are open again.
+void ExtremeFinder::check_tops(Integrator& integrator, Dynamics& dynamics) {
+  for (const Top& top : unchecked_) {
+    const double value = ranges_[top.channel].channel->value(look(top.theta, integrator, dynamics));
+    take(top.channel, t_ + top.theta * (t1_ - t_), value);
+    const bool is_exact = std::abs(value - top.value) <= tolerance(top.channel);
+    if (!is_exact && std::find(open_.begin(), open_.end(), top.channel) == open_.end()) open_.push_back(top.channel);
+  }
+  unchecked_.clear();
 }
 
 void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics) {
@@ -453,6 +472,7 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
       for (const int node : {0, k_last}) look_at_end(node);
     if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
+    check_tops(integrator, dynamics);
   }
   drop_jittery(integrator, dynamics);
   for (const std::size_t c : open_) section(c, integrator, dynamics);

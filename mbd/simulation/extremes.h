@@ -99,6 +99,10 @@ private:
     double scale = 0.0; ///< size of what moves, where nothing moves yet
   };
 
+  struct Top { ///< of the polynomial through a channel's nodes
+    std::size_t channel = 0;
+    double theta = 0.0, value = 0.0;
+  };
   struct Sure { ///< met where each slip was known to go its way
     double low = std::numeric_limits<double>::quiet_NaN(), high = low;
   };
@@ -120,6 +124,7 @@ private:
   void search(Integrator& integrator, Dynamics& dynamics);
   void refine(int level, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool settle(std::size_t c, int level);
+  void check_tops(Integrator& integrator, Dynamics& dynamics);
   void drop_jittery(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool is_jitter(std::size_t c, double change);
   [[nodiscard]] double spread_about(std::size_t c, int middle) const;
@@ -150,6 +155,7 @@ private:
   std::vector<Curve> curve_;
   std::vector<double> curvature_; ///< second derivative as seen lately, per s²
   std::vector<std::size_t> open_; ///< channels still followed in this stretch
+  std::vector<Top> unchecked_;    ///< whose polynomial may be off by more than the tolerance
   std::vector<double> jitter_;    ///< per channel: what rounding was seen to change it by; empty as long as nobody had to ask
   std::vector<ValueBounds> bounds_, bounds_before_;
   std::vector<char> is_wanted_; ///< per screened channel: it may be beyond its extremes at the last end

@@ -176,10 +176,88 @@ TEST_CASE("a formula of the time that begins behind the end has not acted") {
     CHECK(report.judgement.verdict == Verdict::open);
     CHECK(has(report, "load_behind_end"));
   }
-  for (const char* const seen : {"t > '0.5 s' ? '200 N' : '0 N'", "'100 N/s' * t", "'100 N'", "-'5 N s/m' * rate"}) {
+  for (const char* const grows : {"min('100 N/s' * t, '250 N')", "'250 N' * tanh(t / '4 s')",
+                                  "t < '0.999 s' ? '0 N' : t < '2 s' ? min('250 N', '5000 N/s' * (t - '0.999 s')) : '0 N'"}) {
+    CAPTURE(grows);
+    const Report report = run_of(scene(grows));
+    CHECK(report.judgement.verdict == Verdict::open);
+    CHECK(has(report, "load_still_grows"));
+  }
+  // A harmonic is as large behind the end as before it, whatever its phase at the looks; a ramp without an end has no full size.
+  for (const char* const seen :
+       {"'200 N' * sin('628.318530718 rad/s' * t)", "'90 N' * (sin('70 rad/s' * t) + sin('113 rad/s' * t))", "min('400 N/s' * t, '250 N')",
+        "t > '0.5 s' ? '200 N' : '0 N'", "'100 N/s' * t", "'100 N'", "-'5 N s/m' * rate"}) {
     CAPTURE(seen);
     CHECK(run_of(scene(seen)).judgement.verdict == Verdict::hold);
   }
+}
+
+TEST_CASE("a load, a motor or a force that waits for an action which does not happen has not acted") {
+  const auto scene = [](const std::string& element, const std::string& step) {
+    return R"([simulation]
+end = 1.0
+[[body]]
+name = "b"
+mass = 100.0
+inertia = 10.0
+[[element]]
+kind = "prismatic"
+name = "rail"
+a = "b"
+axis = [1.0, 0.0]
+[[element]]
+kind = "joint_friction"
+name = "f"
+a = "b"
+coordinate = "x"
+holds = 300.0
+[[acceptance]]
+name = "stays"
+channel = "b.x"
+within = 0.001
+[[element]]
+name = "l"
+)" + element +
+           "\n[[action]]\nname = \"never\"\nwhen = \"b.x > '1 m'\"\ndo = [\"" + step + "\"]\n";
+  };
+  const std::string load = "kind = \"load\"\nat = \"b\"\n", motor = "kind = \"motor\"\na = \"b\"\ncoordinate = \"x\"\n",
+                    force = "kind = \"force\"\na = \"b\"\ncoordinate = \"x\"\n", waits = "active = false";
+  const std::pair<std::string, std::string> unheard[] = {{load + "force = [500.0, 0.0]\n" + waits, "hold l"},
+                                                         {load, "set l.force = [500 N, 0]"},
+                                                         {motor + "constant_effort = 500.0\n" + waits, "hold l"},
+                                                         {force + "formula = \"'500 N'\"\n" + waits, "hold l"}};
+  for (const auto& [element, step] : unheard) {
+    CAPTURE(element);
+    const Report report = run_of(scene(element, step));
+    CHECK(report.judgement.verdict == Verdict::open);
+    CHECK(has(report, "load_never_acts"));
+  }
+  // Brakes and drags that wait for a motion which does not come are no loads, nor is a load that would only be taken away.
+  const std::pair<std::string, std::string> sound[] = {{force + "formula = \"-'5 N s/m' * rate\"\n" + waits, "hold l"},
+                                                       {load + "force = [200.0, 0.0]", "release l"},
+                                                       {load + "force = [200.0, 0.0]", "set l.force = [0, 0]"},
+                                                       {motor + "constant_effort = 200.0", "set l.constant_effort = 0 N"}};
+  for (const auto& [element, step] : sound) {
+    CAPTURE(element);
+    CHECK(run_of(scene(element, step)).judgement.verdict == Verdict::hold);
+  }
+}
+
+TEST_CASE("a swing that builds up by itself is open until it repeats") {
+  // x'' − 2 x' + 100 x = 0 from 1 mm/s: amplitude 0.1 mm exp(t), 14.8 mm at 5 s. With 2 x' instead it decays from the first swing on.
+  const auto scene = [](const std::string& push, double within) {
+    return "gravity = [0.0, 0.0]\n[simulation]\nend = 5.0\n[[body]]\nname = \"b\"\nmass = 100.0\ninertia = 10.0\nvelocity = [0.001, 0.0]\n"
+           "[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"b\"\n[[element]]\nkind = \"spring_damper\"\nname = \"s\"\na = \"b\"\n"
+           "axis = [1.0, 0.0]\nstiffness = 1e4\nfree_length = 0.0\n[[element]]\nkind = \"force\"\nname = \"push\"\na = \"b\"\ncoordinate = "
+           "\"x\"\n"
+           "formula = \"" +
+           push + " * rate\"\n[[acceptance]]\nname = \"stays\"\nchannel = \"b.x\"\nwithin = " + std::to_string(within) + "\n";
+  };
+  const Report grows = run_of(scene("'200 N s/m'", 0.02));
+  CHECK(grows.judgement.verdict == Verdict::open);
+  CHECK(has(grows, "criterion_still_grows"));
+  CHECK_FALSE(has(run_of(scene("'200 N s/m'", 1.0)), "criterion_still_grows")); // too far to come near it within 5 s at this rate
+  CHECK_FALSE(has(run_of(scene("-'200 N s/m'", 1.001e-4)), "criterion_still_grows"));
 }
 
 TEST_CASE("friction that slips at the end is noted where no criterion asks for it, and caps nothing") {
