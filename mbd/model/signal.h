@@ -139,7 +139,7 @@ struct SignalKind {
 };
 
 /// Returns the kinds constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, chirp, sum, product, scaled, road, random,
-/// sea, shunting (mbd/io adds `record`).
+/// sea (mbd/io adds `record`, elements/catalog.cpp `shunting`).
 [[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
 
 } // namespace steplap
