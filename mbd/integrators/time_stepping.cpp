@@ -18,11 +18,11 @@ constexpr int k_passes_static = 6;     // later passes do not return the static 
 constexpr int k_max_halvings = 20;
 // Wrenches are converged if they change by less than this relative to those of the element; far below the error of the method.
 constexpr double k_settled = 1e-8;
-// What changes by no more than this, and no longer less and less, may stay: the wrenches are those
-// of a step whose normal forces and free velocities differ by so much, relatively, from its own.
+// Smaller relative changes that no longer decrease are tolerated. The wrenches are then those of a step whose normal forces and velocities
+// differ from the true ones by this relative amount.
 constexpr double k_tolerated = 1e-6;
-// A step shorter than this share of the longest is one of rounding: residual velocities of the
-// steps before, 1e-8 of what a step adds, would be taken for forces a hundred times those that act.
+// A step shorter than this fraction of the longest is only rounding. Residual velocities of earlier steps, 1e-8 of what a step adds, would
+// otherwise appear as forces a hundred times the real ones.
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // relative to a part: a shorter remainder is added to it
