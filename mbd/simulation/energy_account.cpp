@@ -12,11 +12,11 @@ namespace {
 
 // Relative accuracy of positions due to projection onto the constraints (1e-12 m of q₀ = 1e-3 m), independent of the steps.
 constexpr double k_projected = 1e-9;
-// Of scale(): beyond it a step stops the run whatever its tolerance, for fixed steps the only limit. No bound of errors
-// but what the run is worth: five times what distrusts all of it (k_untrusted).
+// Relative to scale(): an energy error of a step above this ends the run, whatever the tolerance; the only limit for fixed steps. It is not
+// derived from error bounds but from the use of the result: five times the value above which the run is not trusted (k_untrusted).
 constexpr double k_most_share = 5e-2;
-// Of scale(): what setting to rest may take at one event, where its tolerance does not let it more. Velocities of rounding
-// are far below, a blow is far above.
+// Relative to scale(): largest energy that may be removed at one event by setting velocities to zero, unless the tolerance allows more.
+// Residual velocities by rounding have far less, an impact far more.
 constexpr double k_settled_share = 1e-4;
 // v₀/L relative to the scene's characteristic rate: velocities below v₀ have the absolute accuracy tol v₀ (Integrator: q₀ = 1e-3 L, at 60/s
 // for bodies of 1 m).

@@ -204,7 +204,7 @@ double FormulaExtremes::real_value(const Sought& sought, double theta, ExtremeSi
 
 long FormulaExtremes::spans_left() const { return run_spans_ < k_run_spans ? k_most_spans : k_few_spans; }
 
-// Of equal bounds the deeper interval comes first, so that one of many equal peaks is found soon.
+// Order of intervals with equal bounds: the deeper one first, so that one of many equal peaks is found soon.
 constexpr auto k_further_in = [](const auto& a, const auto& b) { return a.bound < b.bound || (a.bound == b.bound && a.depth < b.depth); };
 
 void FormulaExtremes::push(const Sought& sought, double sign, Span span) {
