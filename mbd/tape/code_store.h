@@ -27,7 +27,7 @@ public:
   [[nodiscard]] const Tape& tape() const { return tape_; }
   /// Returns the code; null if it is not compiled yet.
   [[nodiscard]] const MachineCode* code() const;
-  /// So many evaluations were made without the code. It is made as soon as it would have paid for itself.
+  /// Counts evaluations made without the code. Compiles it as soon as it would have paid for itself.
   void count_uses(long evaluations);
   /// Compiles the code now, unless that has been done.
   void make();

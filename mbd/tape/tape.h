@@ -94,14 +94,15 @@ struct Tape {
 /// Returns the steps that are the arguments of a call, in order.
 [[nodiscard]] std::vector<std::int32_t> arguments_of(const Tape& tape, const TapeStep& call);
 
-/// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that
-/// costs nothing (x + (−y) is x − y), and without what a literal does nothing to (x · 1, x − 0): the same bits, but for the sign of a NaN, and constants in the same places. Values of
-/// Executes the steps one after another. Returns false, with outputs unchanged, if a condition fails. Slow; used for comparison with other
-/// methods. Array lengths are those of the tape. Precondition: `simplified` accepts the tape.
+/// Returns a simplified tape with bit-identical results (except for the sign of a NaN) and the same indices of constants: without steps
+/// that no output and no condition depends on, without repeated steps, with negations merged into other operations where possible (x + (−y)
+/// is x − y), and without operations that a literal makes trivial (x · 1, x − 0). Values of constants are not used and may be missing.
+/// Linear in the number of steps. Throws std::logic_error if a step uses something that is not an earlier value, or not an input or
+/// constant of the tape.
 [[nodiscard]] Tape simplified(const Tape& tape);
 
-/// Does the steps one after another; false, with outputs untouched, where a condition fails. Slow: what others are compared
-/// with. Arrays are as long as the tape says. Precondition: a tape that `simplified` takes.
+/// Executes the steps one after another. Returns false, with outputs unchanged, if a condition fails. Slow; used for comparison with other
+/// methods. Array lengths are those of the tape. Precondition: `simplified` accepts the tape.
 [[nodiscard]] bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs);
 
 } // namespace steplap
