@@ -1,6 +1,6 @@
-// A patch seen without units, for the convex problems: twists about the centroid of the traction
-// with ω in units of 1/gyration, h and wrenches in units of the force capacity. There h(y) ≤ |y|,
-// with equality for translation, whatever the patch's size, place and pressure.
+// A patch in its own units, for the convex problems: twists about the centroid of the traction with ω in units of 1/gyration, h and
+// wrenches in units of the force capacity. Then h(y) ≤ |y|, with equality for translation, whatever the size, position and pressure of the
+// patch.
 #pragma once
 
 #include "elements/step_lap/patch/limit_surface.h"
@@ -22,7 +22,7 @@ public:
   [[nodiscard]] Vec3 twist(const Vec3& y) const { return from_scaled_ * y; }
   [[nodiscard]] Vec3 scaled_wrench(const Vec3& w) const { return from_scaled_.transpose() * w / force_; }
   [[nodiscard]] Vec3 wrench(const Vec3& w) const { return to_scaled_.transpose() * w * force_; }
-  /// Of a matrix that takes wrenches to twists.
+  /// Converts a matrix that maps wrenches to twists.
   [[nodiscard]] Mat3 scaled_mobility(const Mat3& a) const { return to_scaled_ * a * to_scaled_.transpose() * force_; }
 
   [[nodiscard]] Dissipation evaluate(const Vec3& y) const {
@@ -34,7 +34,7 @@ public:
     d.hessian.col(2) *= s;
     return d;
   }
-  /// The same without the Hessian, which stays zero.
+  /// Returns h and its gradient; the Hessian is zero.
   [[nodiscard]] Dissipation evaluate_gradient(const Vec3& y) const {
     Dissipation d = evaluate_gradient_about(patch_, centre_, {y[0], y[1], y[2] / size_});
     scale_gradient(d);
