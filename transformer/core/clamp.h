@@ -59,7 +59,7 @@ struct YokeClamping {
 /// Returns true if the fields of all clamps of the core are within their ranges. If not, the error is reported where these tables are
 /// checked, and the clamps must not be used.
 [[nodiscard]] bool has_sound_clamps(const Core& core, const Model& model);
-/// Is the core pressed by clamps of the model, and not by a pressure of its own?
+/// Returns true if the core is pressed by clamps of the model and not by its own pressure.
 [[nodiscard]] bool is_clamped(const Core& core, const Model& model);
 /// Returns the resultant for the top or bottom yoke of the core. Throws ModelError for invalid clamps.
 [[nodiscard]] YokeClamping clamping_of(const Core& core, const Model& model, bool is_top);

@@ -25,7 +25,8 @@ struct Uncertain : TableObject {
 /// Returns all uncertain numbers of the model, in order.
 [[nodiscard]] std::vector<const Uncertain*> uncertain_of(const Model& model);
 
-/// What a text of the table is worth in SI; empty if it is not given. Throws ModelError at the field. `model`: as given or completed.
+/// Returns the SI value of a text of the table; empty if it is not given. Throws ModelError with the location of the field. `model` may be
+/// as given or completed.
 [[nodiscard]] std::optional<double> value_of_text(const Uncertain& uncertain, const std::string& field, const std::string& text,
                                                   const Model& model);
 

@@ -27,9 +27,8 @@ struct AdmissibleWrench {
   bool converged = true;
 };
 
-/// Solves the problem above. `warm`, if not zero, is a slip direction to start from. An empty
-/// patch gives W = 0, slipping at b. Where A is singular many wrenches may hold b; then the
-/// sticking W is the one that uses least of the capacity.
+/// Solves the problem. `warm`, if not zero, is an initial slip direction. An empty patch gives W = 0, slipping along b. If A is singular
+/// several wrenches may hold b; then the sticking W is the one with the smallest utilisation.
 [[nodiscard]] AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, const Vec3& free_acceleration,
                                                  const Vec3& warm = Vec3::Zero());
 
