@@ -5,7 +5,6 @@
 // The functions are listed in the order in which Dynamics::rates_at and the tracer (traced_evaluation.cpp) call them. The layout defines
 // the indices; the caller owns the arrays: motions and forces per slot, gradients, γ and multipliers per active row, accelerations per
 // coordinate. The caller also solves for the multipliers and manages factorisations (schur.h, mechanism.h).
-// for the multipliers (schur.h, mechanism.h).
 #pragma once
 
 #include "mbd/dynamics/row_pull.h"

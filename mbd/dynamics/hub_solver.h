@@ -11,7 +11,6 @@
 //
 // The accuracy of B λ = r − U z decreases with the ratio of B to A. The method is therefore refused, and SchurSolver solves for A itself,
 // if the hubs dominate the diagonal of a row, if rows become nearly dependent once the hubs are fixed, or if rows are left out.
-// something else, too. SchurSolver takes its own way for them.
 #pragma once
 
 #include "mbd/dynamics/schur.h"

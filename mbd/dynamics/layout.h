@@ -6,7 +6,6 @@
 //
 // Coordinates are x, y and θ of each cluster, or, in small islands with pins, joint coordinates (mechanism.h). Clusters, rows and
 // coordinates in absolute coordinates are numbered first, then those of each mechanism.
-// of mechanisms; coordinates likewise.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"

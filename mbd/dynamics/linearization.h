@@ -27,7 +27,6 @@
 //
 // Locked coordinates do not depend on the state: their columns are omitted, their rows have zero inverse mass. The linearisation is valid
 // while no event function crosses zero.
-// inverse mass. Modes are those of the state; the linearisation holds while no watch value crosses zero.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"

@@ -19,7 +19,7 @@ constexpr double k_reach = 1.5;
 constexpr double k_noise = 1e-6;  // accuracy of utilisations; wrenches converge to this (time_stepping.cpp)
 constexpr double k_glance = 1e-3; // duration of averaging, relative to a part
 constexpr double k_unlike_parabola =
-    0.3; // of what it bends by in a part: harmonics turn by 0.4 rad at most, but a usage may be one over them
+    0.3; // relative to the curvature within a part. Harmonics advance by at most 0.4 rad per part; the reciprocal of one may curve more
 constexpr double k_places[] = {0.125, 0.5625, 1.0}; // positions within a part; the last is its end
 
 // Returns an upper limit of the utilisation between 0 and 1: the maximum of the parabola through three values at k_places, plus a fraction

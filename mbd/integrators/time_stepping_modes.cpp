@@ -14,7 +14,6 @@
 //
 // Each element gets its static coefficient back at most once in a step, and no set of coefficients is tried twice: once one would be,
 // elements only change to kinetic. The number of rounds is therefore at most about twice the number of elements.
-// that would be, the elements with kinetic coefficients only become more. So there are at most about twice as many rounds as elements.
 #include "mbd/integrators/time_stepping.h"
 
 #include <algorithm>

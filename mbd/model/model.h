@@ -220,7 +220,7 @@ struct TableKind {
   std::shared_ptr<Element> (*create)() = nullptr;                   ///< returns a new table with default values; set by holds()
   std::shared_ptr<Element> (*copy)(const Element& table) = nullptr; ///< returns a copy; set by holds()
   void (*apply)(const Element& table, Model& model) =
-      nullptr; ///< adds elements, gives bodies what they lack, or adds what is shown and judged, and changes nothing else; throws ModelError
+      nullptr; ///< adds elements, missing data of bodies, or channels and criteria, and changes nothing else; throws ModelError
   /// True if apply() reads masses and inertias of bodies, or numbers of elements. If not, these may be changed after completion.
   bool reads_masses = true, reads_elements = true;
 

@@ -10,7 +10,6 @@
 // only that has the largest mean square, provided it lasts at least k_periods mean periods. The mean period of Σ a cos(ω t + φ) is 2π √(Σ
 // a² / Σ a² ω²), the mean time between two upward zero crossings of a Gaussian process with this spectrum (S. O. Rice, Bell Syst. Tech. J.
 // 24 (1945) 46).
-// upward crossings of a Gaussian process with this spectrum (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46).
 #pragma once
 
 #include "mbd/model/signal.h"
@@ -26,11 +25,11 @@ struct SignalCourse {
   double begins = std::numeric_limits<double>::infinity(); ///< before this time the signal is zero, or constant at its first level; ≥ 0
   double full = std::numeric_limits<double>::infinity();   ///< from this time on the signal is a constant level or stationary harmonics
   double ends = std::numeric_limits<double>::infinity();   ///< from this time on the signal is zero, or at its first level
-  double period = 0.0;                                     ///< Returns true if the signal finally returns to zero or to its first level.
+  double period = 0.0;                                     ///< mean period of the harmonics after `full`, s; 0: constant level
 
-  /// Returns true if the signal is constant for all t ≥ 0.
+  /// Returns true if the signal finally returns to zero or to its first level.
   [[nodiscard]] bool has_end() const { return ends < std::numeric_limits<double>::infinity(); }
-  /// It never differs from zero, or from one level.
+  /// Returns true if the signal is constant for all t ≥ 0.
   [[nodiscard]] bool is_level() const { return !(begins < std::numeric_limits<double>::infinity()); }
 };
 

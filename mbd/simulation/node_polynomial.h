@@ -8,7 +8,6 @@
 // and does not exceed its largest coefficient. The interval is divided at the maximum (zero slope) or in the middle by de Casteljau's
 // algorithm; parts that cannot exceed the best value found are dropped, as are gaps that cannot according to max |p″| w²/8, with w their
 // width. The maximum is therefore never missed.
-// width. So no gap is taken for lower than it is.
 #pragma once
 
 #include <array>

@@ -106,7 +106,7 @@ double RunLeg::next_motion_limit() const {
 // Returns the limit of a step of length `step` for methods that average forces: breakpoints of forces that are too near for a step of their
 // own are passed.
 double RunLeg::next_limit_of_steps(double step) const {
-  constexpr double k_own_step = 1e-4; // of a step: far above what time stepping takes for rounding
+  constexpr double k_own_step = 1e-4; // relative to a step; far above the tolerance for rounding in time stepping
   const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);
   return next == system_.breakpoints.end() ? next_motion_limit() : std::min(*next, next_motion_limit());
 }

@@ -91,8 +91,8 @@ struct Channel {
 
 /// A power that a run integrates over time because a channel needs the integral (Snapshot::integrals).
 struct Integrand {
-  std::function<double(const Snapshot&)> power;  ///< energy, J, whose decrease at an event is added to the integral; null: none
-  std::function<double(const Snapshot&)> stored; ///< J; what an event takes from it at once counts with the integral. Null: nothing
+  std::function<double(const Snapshot&)> power;  ///< W
+  std::function<double(const Snapshot&)> stored; ///< energy, J, whose decrease at an event is added to the integral; null: none
 };
 
 /// Mass properties and initial state of a body; index 0 is the ground.

@@ -23,8 +23,8 @@ enum class TapeOperation : std::uint32_t {
   absolute,    ///< |a|
   minimum,     ///< a < b ? a : b
   maximum,     ///< a < b ? b : a
-  sine,        ///< portable::sin_cos(a).cos; computed together with a `sine` of the same a
-  cosine,      ///< portable::sin_cos(a).cos; behind a `sine` of the same a both are found by one call
+  sine,        ///< portable::sin_cos(a).sin
+  cosine,      ///< portable::sin_cos(a).cos; computed together with a `sine` of the same a
   if_less,     ///< no value; the tape is valid only for a < b
   if_not_less, ///< no value; the tape is valid only for not a < b, which includes NaN
   argument,    ///< no value; a is an argument of a call, after the arguments that end with step b; b = −1: it is the first

@@ -205,8 +205,8 @@ void CoreGeometry::add_counted(const End& end, std::vector<Lap>& laps) const {
   laps.push_back(std::move(only));
 }
 
-// Returns the name of a zone, such as "packet 2, slice 3"; "" if there is only one packet. In a stack by place names within a packet refer
-// to the zone.
+// Returns the name of a packet, such as "packet 2", or in a stack by place that of a zone, such as "packet 2, slice 3"; "" for the only
+// packet of a stack that is not by place.
 std::string CoreGeometry::zone_name(std::size_t packet, std::size_t zone) const {
   if (!stack_.is_by_place) return stack_.packets.size() == 1 ? "" : "packet " + std::to_string(packet + 1);
   const auto slices = static_cast<std::size_t>(stack_.slices);
