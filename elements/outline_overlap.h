@@ -136,7 +136,7 @@ template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& dept
   out.size = 0;
   if (in.size == 0) return;
   const auto put = [&out](const Pair<S>& corner, int edge) {
-    if (out.size == k_most_ring) return; // slivers of rounding, whose corners change sides more than twice
+    if (out.size == k_most_ring) return; // capacity exceeded: only in slivers of rounding size, whose corners change sides more than twice
     out.corner[out.size] = corner;
     out.edge[out.size++] = edge;
   };
@@ -233,7 +233,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     line[i].normal = is_a ? a.normal[edge] : b.normal[edge - a.edge_count];
     line[i].offset = (is_a ? a.offset[edge] : b.offset[edge - a.edge_count]) - dot(line[i].normal, origin);
   }
-  CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the one written last
+  CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the ring written last
   const S k(stiffness), alpha(dissipation);
   result.is_swallowed = of_a == 0 || of_a == overlap.size;
   const bool is_from_a = 2 * of_a < overlap.size;

@@ -44,7 +44,7 @@ bool jumps(double now, double wanted) {
 }
 
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
-  if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // rounding error of a sine
+  if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // below the rounding error of a sine
   const std::string unit = row.kind == MeasureKind::angle ? " rad" : " m";
   std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " + number_text(wanted) + unit +
                      " at t = 0: the body would have to jump. ";

@@ -67,7 +67,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
   }
-  void enter_turns(TurnTable&) const override {} // a gear is linear in its angles
+  void enter_turns(TurnTable&) const override {} // nothing to add: a gear is linear in its angles
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return entries[static_cast<std::size_t>(element)].couple(e.motion) < 0.0 ? k_backwards : k_forwards;
   }
@@ -136,7 +136,7 @@ private:
 };
 
 void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
-  constexpr double k_no_twist = 1e-12; // rad: residual of joints
+  constexpr double k_no_twist = 1e-12; // rad: a smaller initial twist is a residual of the joints
   const auto& e = static_cast<const LossyGear&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), carrier = builder.marker(e.carrier);
   if (a.body == b.body || a.body == carrier.body || b.body == carrier.body)

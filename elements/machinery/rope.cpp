@@ -260,7 +260,7 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
 
 // `entry`: as for an elastic rope; `now`: length of the way in the reference pose.
 void add_inextensible(const RopeGroup::Entry& entry, double now, double length, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11;              // m/s²: a tension that gives less to the lightest body is rounding
+  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that accelerates the lightest body by less counts as rounding
   constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // relative to the length; m, larger than the residuals after projection
   refuse_time_stepping(builder);
   if (now > length * (1.0 + OneSidedRow::k_too_long))

@@ -133,7 +133,7 @@ UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
 // A gap of zero counts as closed if it decreases. A bed that closes parallel to its yoke changes by both event functions at once, in either
 // order; the result is the same for both.
 UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation& e) const {
-  constexpr double k_parallel = 1e-9; // rad
+  constexpr double k_parallel = 1e-9; // rad: a bed at a smaller angle to its yoke counts as parallel
   const Entry& entry = entries[element];
   double length = 0.0;
   for (const Line& line : entry.lines) length = std::max(length, line.length);
@@ -156,7 +156,8 @@ EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion)
   for (const Line& line : entry.lines) {
     double depth[2];
     for (int end = 0; end < 2; ++end) depth[end] = -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
-    const auto p = press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // by the signs of the penetrations
+    const auto p =
+        press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // the mode does not matter: the penetrations decide
     bearing.force += p.force[0] + p.force[1];
     for (int end = 0; end < 2; ++end) bearing.load[end] += line.stiffness * std::max(0.0, depth[end]);
   }

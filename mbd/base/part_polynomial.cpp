@@ -28,7 +28,7 @@ constexpr int k_sections = 40;      // golden-section steps, enough for the roun
 
 struct Table {
   Values place{}, between{};
-  std::array<Values, k_order + 1> transform{}; // Chebyshev coefficients from values
+  std::array<Values, k_order + 1> transform{}; // matrix from values to Chebyshev coefficients
   std::array<Values, k_order + 1> bernstein{}; // Bernstein coefficients of T_j on [0, 1]
 
   Table() {

@@ -16,7 +16,7 @@ namespace steplap {
 class Kinematics {
 public:
   explicit Kinematics(const System& system);
-  Kinematics(const Kinematics&) = delete; // what it places is pointed into
+  Kinematics(const Kinematics&) = delete; // others keep pointers into its arrays
   Kinematics& operator=(const Kinematics&) = delete;
 
   /// Sets layout and state, which must outlive their use here. Motions placed before become invalid.

@@ -17,8 +17,8 @@ using D12 = Dual<12>;
 
 // Steps of the central differences of slip laws: the cube root of the rounding error, relative to the quantity changed.
 constexpr double k_relative_step = 6e-6;
-constexpr double k_pose_step = 1e-7;  // m, rad: sheets are metres long
-constexpr double k_least_rate = 1e-9; // m/s, rad/s
+constexpr double k_pose_step = 1e-7;  // step for m and for rad; suits bodies of about one metre
+constexpr double k_least_rate = 1e-9; // smallest magnitude assumed for rates, m/s or rad/s
 
 // Returns the motion of a body on a cluster with motion k.
 Motion<D12> placed(const Motion<D12>& k, const Placement& place) {

@@ -117,7 +117,7 @@ private:
 
   // Builds the tree: breadth-first over pins from the ground, then over a rod, or from a free member, to clusters that pins do not reach.
   void consider(const std::vector<int>& island) {
-    if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each has a coordinate at least
+    if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each cluster needs at least one coordinate
     for (const int k : island)
       if (is_driven_[k] != 0 || is_long_[k] != 0) return;
     tree_ = Mechanism();

@@ -118,7 +118,8 @@ bool StageProgram::has_call_failed() const {
   return is_any;
 }
 
-// In the order in which the solvers compare pivots.
+// Returns the smallest relative pivot of the constraint solvers. The comparisons are those of the solvers, in the same order, so that the
+// result has the same bits.
 double StageProgram::smallest_pivot_in(const double* rest) const {
   const double* at = rest + traced_.wrenches.size();
   double smallest = 1.0;

@@ -22,7 +22,7 @@ constexpr double k_loose = 1e-5;     // tolerance above which order 5 is cheaper
 constexpr double k_limited = 0.8;    // stability share from which a step counts as limited by stability
 constexpr int k_steps_limited = 5;   // consecutive limited steps before the change; the share of an accurate step is well below
 constexpr int k_steps_implicit = 60; // implicit steps before the explicit method is tried again
-constexpr double k_worth = 6.0;      // cost of an implicit step in explicit ones
+constexpr double k_worth = 6.0;      // cost of an implicit step relative to an explicit one
 // Stability share of an accurate dop853 step on an oscillation at tolerance 1e-8; proportional to the eighth root of the tolerance.
 constexpr double k_accurate_share = 0.26;
 constexpr double k_suspicious = 2.0;       // multiple of this share, on average, above which accuracy is unlikely to be the cause
@@ -153,7 +153,8 @@ private:
     count_ = 0;
     is_started_ = false;
     if (!is_explicit) {
-      const bool is_in_vain = implicit_->steps() - implicit_steps_before_ < k_steps_implicit / 2; // only a handful of steps
+      const bool is_in_vain = implicit_->steps() - implicit_steps_before_ <
+                              k_steps_implicit / 2; // ended early: each step that was too short counted like several
       if (is_trial_) steps_before_trial_ = is_in_vain ? std::min(2 * steps_before_trial_, k_most_before_trial) : k_steps_before_trial;
       if (is_trial_) steps_before_any_ = is_in_vain ? 4 * steps_before_any_ : k_steps_before_any;
       implicit_step_ = is_in_vain ? 0.0 : h_;
@@ -163,7 +164,7 @@ private:
     }
     is_trial_ = is_trial;
     if (is_trial) explicit_step_ = mean_step_;
-    if (implicit_->steps() == 0) implicit_->propose_step(10.0 * explicit_step_); // ten times the explicit step
+    if (implicit_->steps() == 0) implicit_->propose_step(10.0 * explicit_step_); // first guess
     active_ = implicit_.get();
     implicit_steps_before_ = implicit_->steps();
   }
@@ -175,8 +176,9 @@ private:
   int count_ = 0;
   double explicit_step_ = 0.0; ///< longest explicit step allowed by stability, or reached in a trial, s
   double suspicious_share_;
-  double mean_share_ = 0.0, mean_step_ = 0.0;                           ///< averages over explicit steps; mean_step_ in s
-  long steps_explicit_ = 0, steps_before_trial_ = k_steps_before_trial; ///< since the method was resumed
+  double mean_share_ = 0.0, mean_step_ = 0.0; ///< averages over explicit steps; mean_step_ in s
+  long steps_explicit_ = 0,
+       steps_before_trial_ = k_steps_before_trial; ///< explicit steps since the method was resumed; number of them before the next trial
   long steps_before_any_ = k_steps_before_any;
   double last_step_ = 0.0;     ///< s
   double implicit_step_ = 0.0; ///< implicit step length that the explicit method has to compete with, s; 0: unknown

@@ -116,7 +116,7 @@ private:
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
     evaluate_stage(dynamics, t0_ + c * h_, y, k(index), c);
   }
-  std::vector<double> k_, kept_; ///< kept_: end of a step that is repeated
+  std::vector<double> k_, kept_; ///< kept_: state at the end of a step that is repeated in parts
   int stride_;
   double last_decay_rate_ = 0.0; ///< decay rate at the start of the last step, 1/s
   double part_ = 0.0;            ///< length of a part of the present step, s

@@ -240,7 +240,7 @@ double Rodas5p::error_of_powers() const {
     const double share = std::abs((p[0] + p[3] + 5.0 * (p[1] + p[2])) / 12.0 - 0.5 * (p[1] + p[2])) / largest;
     worst = std::max(worst, k_share_of_cube * h_ * largest * share * share * share * weight_[e + i]);
   }
-  return worst / std::sqrt(static_cast<double>(n_)); // as part of the norm
+  return worst / std::sqrt(static_cast<double>(n_)); // contribution to the norm, a root mean square
 }
 
 // After a try that came near a singular position: crosses it by one step of collocation with the position between two of its stages.

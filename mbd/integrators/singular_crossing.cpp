@@ -251,7 +251,7 @@ double SingularCrossing::cross(Dynamics& dynamics, const Step& step, double* y1)
   try {
     for (int i = 0; i < k_stages; ++i) begin_stage(dynamics, step, i);
     if (!settle(dynamics, step, y1)) return k_infinite;
-    for (int i = 0; i < k_stages; ++i) { // as nodes for event functions
+    for (int i = 0; i < k_stages; ++i) { // the stages become nodes of the event functions
       evaluate(dynamics, step, i);
       step.note_stage(rate(i), gauss_table().c[i]);
     }

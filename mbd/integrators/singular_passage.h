@@ -28,7 +28,7 @@ public:
 private:
   [[nodiscard]] bool is_near() const { return !dynamics_.layout().active.empty() && dynamics_.smallest_pivot() < k_end_pivot; }
 
-  // Pivots, about squares of distances in rad².
+  // Pivots of the constraints, about the squares of the distance from the singular position in rad².
   static constexpr double k_close_pivot = 1e-3, k_end_pivot = 1e-4;
   static constexpr int k_max_tries_across = 14, k_max_other_ends = 3;
 

@@ -266,7 +266,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     const FrictionElement& element = *system_.frictions[part.friction].friction;
     FrictionState& friction = state.friction[part.friction];
     const RowSpec* rows = element.rows(friction);
-    if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // remains free
+    if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // an unloaded element is free
     double rate[3] = {0, 0, 0};
     const bool stays = part.block.is_inside && has_held(friction, part.friction);
     for (int r = 0; r < part.dimension; ++r) {

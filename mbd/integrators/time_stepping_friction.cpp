@@ -138,7 +138,7 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
 void TimeStepping::find_driven(FrictionPart& part, double h) {
   const std::vector<double>& w = linearization_.inverse_mass();
   Mat3 scaled = Mat3::Identity();
-  Vec3 scale = Vec3::Ones(); // mobility without joints
+  Vec3 scale = Vec3::Ones(); // mobility of the two bodies without joints
   for (int i = 0; i < part.dimension; ++i) {
     const FrictionGradient& row = gradient_[part.first + i];
     double own = 0.0;
@@ -204,7 +204,7 @@ void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance
     double& wrench = wrench_[part.first];
     if (part.dimension != 1 || wrench == 0.0) continue;
     if (!is_first && bound_of(dynamics.evaluation(), part, false) > 0.0) continue;
-    wrench = 0.0; // the repetition may have led anywhere
+    wrench = 0.0; // the repetitions so far may have led to any value
     is_moved = true;
   }
   if (is_moved) move(dynamics, t1, tolerance);
@@ -257,7 +257,7 @@ FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, do
   block.wrench[0] = held;
   if (block.is_inside) return block;
   double least = std::numeric_limits<double>::infinity();
-  for (const double sign : {1.0, -1.0}) { // sign of the rate
+  for (const double sign : {1.0, -1.0}) { // direction of slip
     const double against = 1.0 + sign * slope;
     const double wrench = bound > 0.0 && against > 0.0 ? -sign * bound / against : 0.0;
     const double wrong = std::max(0.0, -sign * (a * wrench + b)) + (bound > 0.0 && against <= 0.0 ? std::abs(b) : 0.0);

@@ -9,21 +9,21 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_surprise = 3.0, k_remembered = 0.5; // of curvatures, as in extremes.cpp
+constexpr double k_surprise = 3.0, k_remembered = 0.5; // factors for recent curvatures, as in extremes.cpp
 constexpr long k_most_spans = 20000;                   // for one extreme in one stretch: 0.01 s of computing
 constexpr long k_few_spans = 500;
 constexpr long k_run_spans = 4000000; // afterwards only few are allowed for each extreme
-constexpr int k_most_panels = 96;     // in one stretch
+constexpr int k_most_panels = 96;     // largest number of panels in one stretch
 constexpr int k_few_panels = 8;
 constexpr int k_run_panels = 20000;
 constexpr int k_deepest_panel = 40;
 constexpr int k_deepest_missing = 24; // bisections: a formula that has no value for less than 1e-7 of a stretch is not reported
 constexpr long k_missing_spans = 2000;
-constexpr double k_shortest = 0x1p-51;    // relative to the stretch, or to time: an interval of rounding size
-constexpr double k_same_crossing = 1e-10; // relative to the stretch
+constexpr double k_shortest = 0x1p-51;    // shortest interval, relative to the stretch or to t: its ends are equal up to rounding
+constexpr double k_same_crossing = 1e-10; // largest distance of two crossings that count as one, relative to the stretch
 
 constexpr double k_golden = 0.3819660112501051;
-constexpr int k_golden_steps = 60; // down to rounding
+constexpr int k_golden_steps = 60; // steps of golden-section search, enough to reach rounding
 
 // Fraction of the remaining gap: if the uncertainty of the enclosure itself is larger, bisection does not reduce the gap.
 constexpr double k_own = 0.5;

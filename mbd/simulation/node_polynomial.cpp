@@ -137,7 +137,7 @@ private:
     const auto highest = std::max_element(b.begin(), b.begin() + degree_ + 1) - b.begin();
     double s = std::clamp(static_cast<double>(highest) / degree_, k_beside_an_end, 1.0 - k_beside_an_end);
     for (int step = 0; step < k_newton_steps; ++step) {
-      Coefficients d; // of the slope
+      Coefficients d; // coefficients of p′, without the factor n
       for (int j = 0; j < degree_; ++j) d[j] = b[j + 1] - b[j];
       for (int k = 1; k < degree_ - 1; ++k)
         for (int j = 0; j < degree_ - k; ++j) d[j] += s * (d[j + 1] - d[j]);

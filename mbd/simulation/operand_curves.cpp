@@ -23,8 +23,8 @@ constexpr double k_rough = 0.25;                  // an error above this fractio
                                                   // itself
 
 struct Tables {
-  std::array<double, k_last + 1> node{};                              // in s, ascending
-  std::array<std::array<double, k_last + 1>, k_last + 1> transform{}; // values at nodes to Chebyshev coefficients
+  std::array<double, k_last + 1> node{};                              // nodes in s, ascending
+  std::array<std::array<double, k_last + 1>, k_last + 1> transform{}; // matrix from values at nodes to Chebyshev coefficients
   std::array<std::array<double, k_last + 1>, k_last + 1> powers{};    // Chebyshev polynomials in powers of s
 };
 

@@ -48,7 +48,7 @@ private:
   void close(const Piece& piece);
 
   const System& system_;
-  std::vector<double> unhurt_; ///< memory before the first impulses
+  std::vector<double> unhurt_; ///< memory (State::memory) before the first impulses
   std::size_t count_;
   std::vector<Piece> pieces_; ///< ring buffer
   std::size_t last_ = 0, known_ = 0;

@@ -330,7 +330,7 @@ void RunLeg::look_for_extremes(long evaluations, bool is_last) {
 // Keeps times evenly distributed over the run so far. When there are too many, every other one is dropped.
 void RunLeg::keep_growth(double t, bool is_last) {
   constexpr std::size_t k_most = 128;
-  constexpr double k_finest = 1e-4; // relative to the run, which may end early
+  constexpr double k_finest = 1e-4; // smallest interval, relative to the duration of the run, which may end early
   std::vector<ExtremesSoFar>& kept = record_->growth;
   if (record_->growth_step == 0.0) record_->growth_step = k_finest * options_.end;
   if (!is_last && !kept.empty() && t < kept.back().t + record_->growth_step) return;
@@ -475,7 +475,7 @@ void RunLeg::finish_extremes() {
 // Reports a part of a load that a time step has averaged: bodies get its impulse, but no force or acceleration shows it.
 void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
-  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // for times that were meant to be equal
+  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
   const std::vector<double>& times = system_.breakpoints;
   for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;
        ++next)

@@ -76,7 +76,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   };
   while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts && handler_.stop_reason().empty()) {
     const double due = static_cast<double>(record_->samples) * options_.output_step;
-    if (part == division) { // cut by a sample like a step of its length
+    if (part == division) { // all parts made: the next step, shortened by samples as if it were not divided
       part = 0;
       t_whole = std::min({end, state_.t + division * step, next_limit_of_steps(division * step)});
       if (const double fastest = system_.fastest_at(0.5 * (state_.t + t_whole)); fastest > 0.0)

@@ -29,7 +29,7 @@ template <int K> [[nodiscard]] Turning turning_of(const CoordinateMeasure<K>& m)
 [[nodiscard]] inline Turning turning_of(const DistanceMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 [[nodiscard]] inline Turning turning_of(const AngleMeasure&) { return {}; }
 [[nodiscard]] inline Turning turning_of(const GapMeasure& m) { return {m.is_axis_in_a || moves_by_turning(m.point_a), true}; }
-/// Returns the dependence for the row's own measure, without its further parts.
+/// Returns which rotations the row's measure depends on nonlinearly. Further parts of the row (RowSpec::next) are not included.
 [[nodiscard]] Turning turning_of(const RowSpec& row);
 
 /// Knots of a curve over the angle θ_a − θ_b + zero, rad.

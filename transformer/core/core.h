@@ -19,13 +19,13 @@ struct Core : TableObject {
   std::vector<std::string> middle_limbs; ///< bodies of the middle limbs
   std::vector<std::string> joints;       ///< name of the joint of each limb, outer ones first; default "<limb> joint"
 
-  double core_height = 0.0;                                   ///< m, of the packet with the highest yokes
+  double core_height = 0.0;                                   ///< height including both yokes, of the packet with the highest yokes, m
   std::optional<double> limb_width, yoke_height, stack_depth; ///< dimensions of a core with one packet, m
   std::vector<Vec2> packets;                                  ///< width of the limb sheets and depth of each packet, front to back, m
-  std::vector<double> yoke_heights;                           ///< of each packet, m
+  std::vector<double> yoke_heights;                           ///< height of the yoke in each packet, m
   std::vector<double> pressure_shares;                        ///< of each packet, relative to `pressure`; none: all 1
   std::string yoke_steps = "both";                            ///< steps of the yokes of several packets: "both", "window" or "outside"
-  std::vector<Vec2> ducts;                                    ///< position in the stack and width, m
+  std::vector<Vec2> ducts;                                    ///< position in the stack and width of each duct, m
   std::vector<Vec2> bolt_holes;             ///< relative to the intersection of the axes of limb and yoke: outwards, away from the window,
                                             ///< m
   std::optional<double> bolt_hole_diameter; ///< m

@@ -42,7 +42,7 @@ public:
     const auto add = [&](std::size_t zone, const Shapes& shapes) {
       if (gaps.count(before) > 0) return;
       LayerPair& pair = found.try_emplace({zone, shapes}, LayerPair{shapes.first, shapes.second, 0, zone, 0.0}).first->second;
-      pair.before += static_cast<double>(before); // a sum until the end
+      pair.before += static_cast<double>(before); // sum; divided by the count at the end
       if (pair.count == 0) pair.first = before;   // pairs are visited from front to back
       pair.last = before;
       ++pair.count;

@@ -107,7 +107,7 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
   const Mat3 a = scaled.scaled_mobility(mobility);
   const Vec3 b = scaled.scaled_twist(free_acceleration);
   const Inverse inverse(a);
-  Vec3 z0 = -inverse.inverse * b; // holds b as far as a wrench can
+  Vec3 z0 = -inverse.inverse * b; // wrench that cancels b as far as possible
   z0 -= inverse.inverse * (b + a * z0);
   const bool holdable = (b - inverse.range * b).norm() <= k_rank * (b.norm() + a.norm() * z0.norm());
   const double size = z0.norm();

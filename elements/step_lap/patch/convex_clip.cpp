@@ -89,7 +89,7 @@ public:
     for (; by.inwards(at(after)) < 0; after = links_[after].next)
       if (after == here_) return false;
     while (by.inwards(at(before)) < 0) before = links_[before].prev;
-    const Corner out = links_[links_[after].prev].corner; // last one outside
+    const Corner out = links_[links_[after].prev].corner; // last corner outside
     const std::size_t start = links_.size(), end = start + 1;
     links_.push_back({{between(by, before, links_[before].next), by.side, true}, end, before});
     links_.push_back({{between(by, links_[after].prev, after), out.side, out.is_second}, after, start});

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_straight = 1e-9; // rad
+constexpr double k_straight = 1e-9; // rad: corners with a smaller angle count as straight
 
 /// One side of a part during merging: half of an edge or of a cut.
 struct Half {

@@ -84,7 +84,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
     t = next;
     residual = reduced(t.residual(w));
     out.converged = residual.norm() <= tolerance;
-    if (is_likely_last && !out.converged) { // it was not the last
+    if (is_likely_last && !out.converged) { // more iterations follow, which need the dissipation at y
       t.d = patch.evaluate(t.y);
       ++out.evaluations;
     }

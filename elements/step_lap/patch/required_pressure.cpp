@@ -16,7 +16,7 @@ constexpr double k_nothing = 1e-150;
 } // namespace
 
 std::optional<Vec2> centre_of_rotation(const Vec2& reference, const Vec3& nu) {
-  constexpr double infinite = 1e12; // [m]
+  constexpr double infinite = 1e12; // [m]: a centre farther away counts as translation
   if (portable::hypot(nu[0], nu[1]) >= infinite * std::abs(nu[2])) return std::nullopt;
   return reference + Vec2(-nu[1], nu[0]) / nu[2];
 }

@@ -7,12 +7,13 @@
 
 namespace steplap {
 
+/// A patch with conversions of twists and wrenches between SI and scaled units. The patch must outlive it.
 class ScaledPatch {
 public:
   /// Precondition: the patch is not empty.
   explicit ScaledPatch(const Patch& patch) : patch_(patch), centre_(patch.centroid()), force_(patch.force()), size_(patch.gyration()) {
     const Vec2 arm = centre_ - patch.reference();
-    // y = S ν: v_centre = v + ω ẑ×arm, third component size·ω
+    // y = S ν: the first two components are the velocity v + ω ẑ×arm of the centroid, the third is size·ω
     to_scaled_ << 1, 0, -arm.y(), 0, 1, arm.x(), 0, 0, size_;
     from_scaled_ << 1, 0, arm.y() / size_, 0, 1, -arm.x() / size_, 0, 0, 1 / size_;
   }

@@ -15,7 +15,8 @@ constexpr double k_nought = 1, k_push = 100, k_margin = 2 * k_push;
 constexpr double k_least_push = 0.1; // smallest component of the shift across an edge, relative to the shift
 constexpr double k_film = 4;         // in roundings: narrower parts are caused by the shift
 constexpr double k_blur = 10;        // uncertainty of the position of a crossing, in roundings
-const Vec2 k_push_directions[] = {{0.540302305868140, 0.841470984807897}, {-0.588501117255346, 0.808496403819590}}; // at 1 and 2.2 rad
+const Vec2 k_push_directions[] = {{0.540302305868140, 0.841470984807897},
+                                  {-0.588501117255346, 0.808496403819590}}; // unit vectors at 1 and 2.2 rad
 
 using Crossing = TraceWorkspace::Crossing;
 using Order = TraceWorkspace::Order;
