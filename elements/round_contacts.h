@@ -1,7 +1,8 @@
 // Contacts of circles with each other and with line segments, for rollers, balls, rounded feet.
 //
 //   circle_contact   a circle about marker a against a circle about marker b, outside or inside it
-//   segment_contact  a circle about marker a (or a point) against a segment fixed in b, both sides and ends; a thickness makes the ends round
+//   segment_contact  a circle about marker a (or a point) against a segment fixed in b, both sides and ends; a thickness makes the ends
+//                    round
 //
 // The gap is the distance of the circle's centre from the other centre or from the segment, minus the radii; contact if it is negative.
 // Laws as in unilateral_contact.h. The normal force passes through the circle's centre; friction (coulomb_stick) acts at the point of

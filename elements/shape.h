@@ -51,6 +51,7 @@ struct MassOfShapes {
 /// own. Throws ModelError for invalid shapes, or if a mass is missing.
 [[nodiscard]] std::optional<MassOfShapes> mass_of_shapes(const Model& model, const Body& body, double given_mass);
 
+/// A contradiction between the values of a body and those of its shapes.
 struct ShapeRemark {
   Location where;
   std::string text;

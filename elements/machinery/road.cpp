@@ -95,7 +95,8 @@ double Road::Piece::length_over(double d) const {
   return half * sum;
 }
 
-// Finds the largest upward curvature κ = h″/(1 + h′²)^{3/2} of the road. h″ is linear between the points, but the effect of the slope h′ has
+// Finds the largest upward curvature κ = h″/(1 + h′²)^{3/2} of the road. h″ is linear between the points, but the effect of the slope h′
+// has
 // no simple maximum and is therefore sampled.
 void Road::find_hollowest() {
   constexpr int k_samples = 16;

@@ -15,6 +15,7 @@
 
 namespace steplap {
 
+/// Values of a cross section.
 struct SectionValues {
   double area = 0.0;          ///< m²
   double second_moment = 0.0; ///< m⁴

@@ -36,6 +36,7 @@ inline constexpr UnitMode k_bed_open = 0, k_bed_partly = 1, k_bed_whole = 2;
 /// All beds of edges, as one force group.
 class EdgeGroup final : public ForceGroup {
 public:
+  /// A line along which two edges can touch.
   struct Line {
     AxisMeasure gap[2];     ///< gaps at its ends, m; closed if negative
     double stiffness = 0.0; ///< k, N/m²
@@ -64,6 +65,7 @@ public:
   struct Bearing {
     double force = 0.0, load[2] = {0.0, 0.0};
   };
+  /// Returns the load of bed `element` for the given motion.
   [[nodiscard]] Bearing bearing(int element, const Motion<double>* motion) const;
 };
 

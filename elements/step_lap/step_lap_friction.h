@@ -61,6 +61,7 @@ public:
   RowSpec hold[3]; ///< x and y in the axes of the active part, and the angle
   /// Sets the signals of PressureState: factor (1 − loss) · `factor`, and the acceleration across the sheets; null if there is none.
   void set_pressure(const Signal* factor, double loss, const Signal* acceleration);
+  /// Returns the pressure factor and the transverse acceleration at time t. Throws NumericalFailure if the factor is not positive.
   [[nodiscard]] PressureState pressure_at(double t) const;
   [[nodiscard]] bool has_changing_pressure() const { return pressure_signal_ || acceleration_ || kept_ != 1.0; }
   /// Sets the points at which linear pressures have their nominal values: the centroids of the overlaps at this pose.
@@ -80,6 +81,7 @@ public:
   [[nodiscard]] bool has_sheets() const { return !sheets_.empty(); }
   /// Returns one pair of sheets for each interface, in the order of the model.
   [[nodiscard]] const std::vector<SheetPair>& sheets() const { return sheets_; }
+  /// Returns the pose of the limb relative to the active part.
   [[nodiscard]] Pose pose_of(const Motion<double>* motion) const;
   /// Returns the overlap area with its tractions at a pose.
   [[nodiscard]] Patch patch_at(const Pose& pose, GripLaw law) const;
@@ -89,13 +91,16 @@ public:
   [[nodiscard]] ValueBounds usage_between(const Snapshot& s) const;
   /// Returns the required pressure. Throws NumericalFailure, naming the joint, if the iteration does not converge.
   [[nodiscard]] RequiredPressure required(const Patch& patch, const Vec3& wrench, double t) const;
+  /// Returns the sum of the overlap areas, m²; equal interfaces count once.
   [[nodiscard]] double area(const Snapshot& s) const;
   [[nodiscard]] const OverlapReference& overlaps() const { return overlaps_; }
+  /// Returns the loss of overlap since the reference pose.
   [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
   /// Returns the wrench on the limb about its centre of gravity, axes of the active part.
   [[nodiscard]] Vec3 wrench(const Snapshot& s) const;
   /// Returns the slid pose; for an elastic joint without the elastic strain.
   [[nodiscard]] Pose slid_pose(const Snapshot& s) const;
+  /// Returns whether the joint is free, sticks or slips.
   [[nodiscard]] FrictionPhase phase(const Snapshot& s) const;
 
   // --- elastic joints -----------------------------------------------------------------------------------

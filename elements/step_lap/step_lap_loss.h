@@ -13,6 +13,7 @@
 
 namespace steplap {
 
+/// Loss of overlap of one joint relative to the reference pose.
 struct OverlapLoss {
   double area_lost = 0.0;    ///< m², sum over the interfaces that lost area, times their numbers
   double overlap_left = 1.0; ///< remaining fraction for the corner that lost most; 0: separated completely, or no overlap from the start
@@ -24,11 +25,14 @@ struct OverlapLoss {
 class OverlapReference {
 public:
   OverlapReference() = default;
+  /// Computes the overlaps of the sheets at the pose `reference`.
   OverlapReference(const std::vector<SheetPair>& sheets, const Pose& reference);
 
+  /// Returns the loss at `pose`. `workspace` and `region` are scratch memory.
   [[nodiscard]] OverlapLoss loss_at(const std::vector<SheetPair>& sheets, const Pose& pose, OverlapWorkspace& workspace,
                                     Region& region) const;
   [[nodiscard]] std::size_t corner_count() const { return corner_area_.size(); }
+  /// Returns the corner to which interface `sheets` belongs.
   [[nodiscard]] std::size_t corner_of(std::size_t sheets) const { return overlaps_[sheets].corner; }
   [[nodiscard]] double area_of(std::size_t sheets) const { return overlaps_[sheets].area; } ///< area of one interface, m²
   /// Returns the vertices of the overlap of one interface, in the axes of the active part, m.

@@ -19,6 +19,7 @@ namespace steplap {
 struct Qr {
   MatX q, r;
 };
+/// Returns the decomposition of a, with `columns_of_q` columns in Q.
 [[nodiscard]] Qr qr_of(const MatX& a, Eigen::Index columns_of_q);
 /// Returns only the first `columns` columns of Q.
 [[nodiscard]] MatX orthonormal(const MatX& a, Eigen::Index columns);
@@ -47,6 +48,7 @@ public:
     MatX vectors;
     std::vector<int> pivots;
   };
+  /// Returns the null space; `least` as above.
   [[nodiscard]] NullSpace null_space(double least) const;
   /// Returns a solution x of a x ≈ right (least squares) that uses only the rank() pivot columns; other entries of x are zero.
   [[nodiscard]] MatX solve_by_rank(const MatX& right) const;
@@ -73,6 +75,7 @@ private:
 [[nodiscard]] MatX solve_lower(const MatX& a, const MatX& right);
 /// Returns a⁻¹ right for symmetric a, by LDLᵀ with pivoting.
 [[nodiscard]] VecX solve_symmetric(const MatX& a, const VecX& right);
+/// The same for several right sides, one per column.
 [[nodiscard]] MatX solve_symmetric(const MatX& a, const MatX& right);
 
 /// LU decomposition with row pivoting, Π a = L U, of a square regular matrix. factor() and solve(right, x) do not allocate if a matrix of
@@ -80,15 +83,18 @@ private:
 class DenseLu {
 public:
   DenseLu();
+  /// Factorises a.
   explicit DenseLu(const MatX& a);
   ~DenseLu();
   DenseLu(DenseLu&&) noexcept;
   DenseLu& operator=(DenseLu&&) noexcept;
 
+  /// Factorises a in place of the previous matrix.
   void factor(const MatX& a);
   [[nodiscard]] double least_pivot() const;     ///< min |U_ii|
   void solve(const VecX& right, VecX& x) const; ///< x = a⁻¹ right; `right` and `x` must be different vectors
   [[nodiscard]] VecX solve(const VecX& right) const;
+  /// Returns a⁻ᵀ right.
   [[nodiscard]] VecX solve_transposed(const VecX& right) const;
 
 private:
@@ -99,6 +105,7 @@ private:
 /// LU decomposition with full pivoting, Π a Π' = L U, for matrices of any rank. solve() may be called repeatedly.
 class RankLu {
 public:
+  /// Factorises a.
   explicit RankLu(const MatX& a);
   ~RankLu();
   RankLu(const RankLu&) = delete;
@@ -115,6 +122,7 @@ struct SymmetricEigen {
   VecX values;
   MatX vectors;
 };
+/// Returns the eigenvalues and eigenvectors of a symmetric matrix.
 [[nodiscard]] SymmetricEigen symmetric_eigen(const MatX& a);
 /// Eigenvalues and eigenvectors of a general square matrix; valid only if `is_converged`.
 struct Eigenpairs {
@@ -122,6 +130,7 @@ struct Eigenpairs {
   Eigen::MatrixXcd vectors;
   bool is_converged = false;
 };
+/// Returns the eigenvalues and eigenvectors of a square matrix.
 [[nodiscard]] Eigenpairs eigenpairs(const MatX& a);
 [[nodiscard]] Eigen::VectorXcd eigenvalues(const MatX& a);
 
@@ -132,6 +141,7 @@ struct RightSingular {
   VecX values;
   MatX v;
 };
+/// Returns the singular values and right singular vectors of a.
 [[nodiscard]] RightSingular right_singular(const MatX& a);
 
 } // namespace steplap

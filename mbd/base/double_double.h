@@ -7,6 +7,7 @@
 
 namespace steplap {
 
+/// The number hi + lo.
 struct DoubleDouble {
   double hi = 0.0, lo = 0.0; ///< |lo| ≤ half a unit in the last place of hi
 };

@@ -12,6 +12,7 @@
 
 namespace steplap {
 
+/// Hash of all data added so far, in their order.
 class Fingerprint {
 public:
   void add(std::uint64_t word) {

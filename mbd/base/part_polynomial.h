@@ -15,6 +15,7 @@
 
 namespace steplap {
 
+/// Polynomial p with its error bound E.
 class PartPolynomial {
 public:
   static constexpr std::size_t k_order = 6;

@@ -13,6 +13,7 @@
 
 namespace steplap::portable {
 
+/// Sine and cosine of one angle.
 struct SinCos {
   double sin = 0.0, cos = 1.0;
 };

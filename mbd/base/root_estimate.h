@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// Samples of one function, and the root that they predict.
 class RootEstimate {
 public:
   void clear() { n_ = 0; }

@@ -23,6 +23,7 @@ struct Residual {
 /// Computes multipliers and projections for the rows of a layout. solve() and take_away() do not allocate.
 class ConstraintSolution {
 public:
+  /// `kinematics` provides the motions, and must outlive it.
   explicit ConstraintSolution(const Kinematics& kinematics);
 
   /// Sets layout and state; both must outlive their use here.

@@ -15,6 +15,7 @@ namespace steplap {
 /// Computes motions from the coordinates of a layout. It does not allocate after construction.
 class Kinematics {
 public:
+  /// `system` must outlive it. use() must be called before any other function.
   explicit Kinematics(const System& system);
   Kinematics(const Kinematics&) = delete; // others keep pointers into its arrays
   Kinematics& operator=(const Kinematics&) = delete;

@@ -14,8 +14,10 @@
 
 namespace steplap {
 
+/// Cache of the layouts used most recently.
 class LayoutStore {
 public:
+  /// `system` must outlive it.
   explicit LayoutStore(const System& system);
 
   /// The layout for the modes of `state`. The reference is valid until the next call of at() or clear().
@@ -23,6 +25,7 @@ public:
     Layout& layout;
     bool is_new;
   };
+  /// Returns that layout, which is made if it is not stored.
   [[nodiscard]] Found at(const State& state, Coordinates coordinates);
   /// Discards all layouts. Required when merged bodies have moved relative to each other.
   void clear();
@@ -33,6 +36,7 @@ public:
   [[nodiscard]] std::size_t program_count() const { return program_count_; }
   /// To be called when a layout has got a compiled stage. The number is counted because it is needed at every event.
   void count_program() { ++program_count_; }
+  /// Discards the compiled stages of all layouts.
   void clear_programs();
 
 private:

@@ -33,6 +33,7 @@ public:
   virtual double gauge(int part, const double* wrench, double* normal) const = 0;
 };
 
+/// Least utilisation u of one group of elements, with the distribution of wrenches that attains it.
 class LeastUsage {
 public:
   /// `dimension`: 1 or 3 for each element, whose rows are consecutive. `basis`: N, rows × k, of full column rank; row pivots[j] is zero

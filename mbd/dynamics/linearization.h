@@ -36,6 +36,7 @@
 
 namespace steplap {
 
+/// Matrices of the linearised equations of motion at one state.
 class Linearization {
 public:
   using Triplet = Eigen::Triplet<double, int>;

@@ -4,8 +4,10 @@
 // unique, single multipliers are not. This class finds the null vectors in the coordinates of the bodies, independently of merging and
 // locking, and provides
 //
-//   groups   sticking elements whose wrenches are not unique. A group sticks as long as an admissible distribution exists (least_usage.h); it has common event functions.
-//   reports  one distribution of many: friction carries what joints cannot, in proportion to its capacities (LeastUsage::settled); joints have the least Σ A_rr λ_r², where A_rr = J_r M⁻¹ J_rᵀ is the acceleration by a unit multiplier.
+//   groups   sticking elements whose wrenches are not unique. A group sticks as long as an admissible distribution exists (least_usage.h);
+//            it has common event functions.
+//   reports  one distribution of many: friction carries what joints cannot, in proportion to its capacities (LeastUsage::settled); joints
+//            have the least Σ A_rr λ_r², where A_rr = J_r M⁻¹ J_rᵀ is the acceleration by a unit multiplier.
 //
 // Null vectors depend on the pose, but remain valid while the bodies do not move relative to each other; callers check this by holds_at().
 // Which friction rows count as dependent is decided by SchurSolver, which leaves them out of the equations. Each row left out there has one
@@ -33,6 +35,7 @@ struct Release {
   double wrench[3] = {0, 0, 0}; ///< on the boundary of the admissible set
 };
 
+/// Groups of sticking elements that share a load in a statically indeterminate way, for one set of modes.
 class LoadSharing {
 public:
   /// Finds the null vectors for the poses `motion` of all bodies and the phases of `state`. `left_out`: per index of

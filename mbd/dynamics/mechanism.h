@@ -65,6 +65,7 @@ public:
   [[nodiscard]] int cluster_count() const { return static_cast<int>(member_of_.size()); }
   /// Returns the largest distance from its pin of anything that coordinate i rotates, m; 0 for a translation.
   [[nodiscard]] double reach(int i) const { return reach_[i]; }
+  /// Returns true if coordinate i is a length in m, false if it is an angle in rad.
   [[nodiscard]] bool is_place(int i) const { return is_place_[i] != 0; }
   /// Returns a bit mask: bit i is set if coordinate i moves the cluster.
   [[nodiscard]] unsigned moved_by(int cluster) const { return path_[member_of_[cluster - first_cluster]]; }
@@ -96,7 +97,9 @@ public:
   /// Return the vectors from the parent's pin to the member's pin, and from there to its centre, ground axes, m.
   [[nodiscard]] Pair<double> arm(int member) const;
   [[nodiscard]] Pair<double> lever(int member) const;
+  /// Returns the angular velocity of the member, rad/s.
   [[nodiscard]] double spin(int member) const;
+  /// Returns the index of the member for a cluster of the layout.
   [[nodiscard]] int member_of(int cluster) const { return member_of_[cluster - first_cluster]; }
 
   // --- rows: as in SchurSolver ------------------------------------------------------------------------
@@ -113,8 +116,10 @@ public:
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const;
+  /// Returns true if the row is dependent on others and left out of the equations.
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
+  /// Returns the gradient of a row by the coordinates s, size() numbers.
   [[nodiscard]] const double* gradient(int row) const;
   /// Returns its constants, for recording an evaluation (traced_mechanism.h).
   [[nodiscard]] const MechanismWork& work() const { return *work_; }

@@ -5,6 +5,7 @@
 
 namespace steplap {
 
+/// A mechanism whose motion and forces are recorded numbers; its constants are those of `mechanism`.
 class TracedMechanism {
 public:
   explicit TracedMechanism(const Mechanism& mechanism);

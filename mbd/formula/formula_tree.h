@@ -44,6 +44,7 @@ enum class FormulaOp : unsigned char {
   finite,   ///< NaN for infinite operands
 };
 
+/// One number, operand or operation of a formula.
 struct FormulaNode {
   FormulaOp op = FormulaOp::number;
   std::array<int, 3> of{-1, -1, -1}; ///< nodes that are its operands

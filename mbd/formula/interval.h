@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// Closed interval of real numbers; empty if low > high.
 struct Interval {
   double low = 0.0, high = 0.0;
 
@@ -20,14 +21,17 @@ struct Interval {
 
 namespace interval {
 
+/// The empty interval, and all numbers.
 inline constexpr Interval k_none{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 inline constexpr Interval k_all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
+/// Returns [low, high] rounded outward; NaN counts as infinite.
 [[nodiscard]] Interval widened(double low, double high);
 [[nodiscard]] inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
 [[nodiscard]] inline Interval common(const Interval& a, const Interval& b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
 
-// Precondition of the following functions: no argument is empty.
+// Precondition of the following functions: no argument is empty. `is_partial` is set to true if the result is partial, and otherwise left
+// unchanged.
 [[nodiscard]] Interval add(const Interval& a, const Interval& b);
 [[nodiscard]] Interval subtract(const Interval& a, const Interval& b);
 [[nodiscard]] Interval multiply(const Interval& a, const Interval& b);

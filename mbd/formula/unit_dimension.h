@@ -13,6 +13,7 @@
 
 namespace steplap {
 
+/// Dimension of a unit, and its size in SI.
 struct UnitDimension {
   double factor = 1.0;            ///< SI value of one unit
   std::array<double, 3> powers{}; ///< exponents of kg, m, s

@@ -9,6 +9,7 @@
 
 namespace steplap {
 
+/// Decisions of one step near a singular position.
 class SingularPassage {
 public:
   /// To be created at the start of a step, with the last evaluation at its state.

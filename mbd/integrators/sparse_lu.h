@@ -15,6 +15,7 @@
 
 namespace steplap {
 
+/// A sparse matrix A and its LU factors.
 class SparseLu {
 public:
   /// Begins a matrix of n rows. Its entries must be added in the same order as before if the pattern is the same.

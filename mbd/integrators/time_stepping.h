@@ -1,7 +1,8 @@
 // Time stepping after Moreau and Jean: impulses over a fixed step, with the laws satisfied at its end.
 //
 //   M (v₁ − v₀) = h (Q(q₁, v₁, t₁) + Jᵀλ₁ + Hᵀw),   q₁ = q₀ + h v₁,   J v₁ = prescribed rate,
-//   −H v₁ in the normal cone of K at w: each friction element can have any w in its convex set K, and slides only on the boundary of K, in the direction of maximum dissipation.
+//   −H v₁ in the normal cone of K at w: each friction element can have any w in its convex set K, and slides only on the boundary of K, in
+//   the direction of maximum dissipation.
 //
 // Forces that are signals enter by their means over the step, so that the impulse of a short pulse is exact. Signals used in other ways
 // (drives, parameters) enter by their value at the end of the step, and steps must resolve them (Moreau, Simulation).

@@ -13,6 +13,7 @@
 
 namespace steplap {
 
+/// Limits of rotation for the bodies of one system, which must outlive it.
 class TurnLimit {
 public:
   /// Largest rotation of a pair in one step, rad.

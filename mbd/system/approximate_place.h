@@ -7,6 +7,7 @@
 
 namespace steplap {
 
+/// Additional interface of a friction element with an approximate contact point.
 class ApproximatePlace {
 public:
   virtual ~ApproximatePlace() = default;

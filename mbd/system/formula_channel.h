@@ -11,8 +11,10 @@
 
 namespace steplap {
 
+/// The value of a channel that is a formula of other channels.
 class FormulaChannel {
 public:
+  /// A channel that is not a formula itself.
   struct Leaf {
     std::string name; ///< name of the channel
     std::function<double(const Snapshot&)> value;
@@ -25,7 +27,9 @@ public:
 
   /// Returns the merged tree over the leaves, in SI; its last node is the value.
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
+  /// Returns the operands of the merged tree.
   [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
+  /// Returns the value at `snapshot`, in the unit of the channel.
   [[nodiscard]] double value(const Snapshot& snapshot) const;
 
 private:

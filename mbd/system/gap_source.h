@@ -14,6 +14,7 @@
 
 namespace steplap {
 
+/// Bounds for the gap of one contact between bodies a and b.
 struct GapBounds {
   int a = k_ground, b = k_ground;
   double gap = 0.0;                    ///< m

@@ -19,7 +19,8 @@ struct Link {
 };
 
 /// Set of all links. Each has a slot (an index) in the arrays of motions and forces: first the slots of the bodies, then those of links
-/// between two bodies. A link to the ground uses the slot of its body a, since the motion relative to the ground is that of the body itself.
+/// between two bodies. A link to the ground uses the slot of its body a, since the motion relative to the ground is that of the body
+/// itself.
 class LinkTable {
 public:
   /// Sets the number of bodies, ground included; slots below it are bodies. To be called before add().

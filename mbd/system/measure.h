@@ -5,7 +5,8 @@
 // provides
 //
 //   value, rate
-//   gradient   as a unit wrench: direction d at a common point of both bodies plus a couple, acting on a, and its opposite on b, so that Newton's third law is satisfied by construction
+//   gradient   as a unit wrench: direction d at a common point of both bodies plus a couple, acting on a, and its opposite on b, so that
+//              Newton's third law is satisfied by construction
 //   bias       second time derivative at zero accelerations, q̇ᵀ f_qq q̇ (γ of physics.md §1 is −bias)
 #pragma once
 

@@ -49,6 +49,7 @@ template <class S> struct OwnCoordinate {
   S value{0}, rate{0};
 };
 
+/// A compiled formula of motions, signals, own states and time.
 class MotionFormula {
 public:
   /// Compiles the formula. Errors are reported to the builder; is_valid() is then false. To be called at stage 1.

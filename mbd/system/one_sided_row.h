@@ -22,6 +22,7 @@
 
 namespace steplap {
 
+/// The constraint of one rope.
 class OneSidedRow final : public FrictionElement {
 public:
   static constexpr double k_at_length = 1e-9;  ///< relative: the rope starts taut if it is nearer than this to its full length

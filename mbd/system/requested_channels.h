@@ -16,6 +16,7 @@
 
 namespace steplap {
 
+/// Compiles the channels that a model requests: formulas, and energies of single elements.
 class RequestedChannels {
 public:
   /// Parses the formulas. Errors are reported to the builder.

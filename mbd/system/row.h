@@ -21,6 +21,7 @@ namespace steplap {
 
 enum class MeasureKind : unsigned char { axis, distance, angle, slide, roll_line, roll_round, skate };
 
+/// One constraint row between two bodies: measure, and for a driven row its target.
 struct RowSpec {
   MeasureKind kind = MeasureKind::axis;
   int a = k_ground, b = k_ground; ///< bodies of the compiled system

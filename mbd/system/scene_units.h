@@ -4,6 +4,7 @@
 
 namespace steplap {
 
+/// Characteristic values of one scene.
 struct SceneUnits {
   double length = 1.0;   ///< largest radius of gyration √(J/m), m
   double duration = 1.0; ///< duration of the run, s

@@ -36,6 +36,7 @@ struct StateJacobian {
 class StateReader {
 public:
   virtual ~StateReader() = default;
+  /// Adds the derivatives of rates of own states, and of forces by own states, to `out`.
   virtual void add_state_jacobian(const Evaluation& e, StateJacobian& out) const = 0;
 };
 

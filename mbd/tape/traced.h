@@ -57,6 +57,7 @@ struct TapeWriter {
   static inline constinit thread_local TapeWriter* now = nullptr;
 };
 
+/// A recorded number.
 class Traced {
 public:
   Traced() = default;

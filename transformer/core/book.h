@@ -20,6 +20,7 @@ namespace steplap {
 
 enum class BookKind { saw_tooth, zig_zag, zig_zag_doubled };
 
+/// Structure of a book.
 struct Book {
   BookKind kind = BookKind::saw_tooth;
   long sheets_per_layer = 1;

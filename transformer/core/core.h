@@ -71,6 +71,7 @@ struct Core : TableObject {
   [[nodiscard]] bool is_middle(std::size_t limb) const { return limb >= limbs.size(); }
   /// Returns the names of all limbs, outer ones first.
   [[nodiscard]] std::vector<std::string> all_limbs() const;
+  /// Returns the name of the joint of a limb.
   [[nodiscard]] std::string joint_name(std::size_t limb) const;
   /// Returns the factor of the clamping pressures of a joint at that end.
   [[nodiscard]] double joint_share(std::size_t limb, bool is_top) const {

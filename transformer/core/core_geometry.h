@@ -50,6 +50,7 @@ struct LapPressure {
   double transverse_spread = 0.0; ///< difference of `transverse` between the outermost of these interfaces and their mean
 };
 
+/// Position of a limb in the core.
 struct LimbPlace {
   bool is_middle = false;
   double side = 1.0; ///< +1 or −1, for an outer limb
@@ -71,6 +72,7 @@ public:
   [[nodiscard]] const Stack& stack() const { return stack_; } ///< for a core with counted overlaps: one packet without sheets
   /// Returns the index of the widest packet with the highest yoke.
   [[nodiscard]] std::size_t largest() const { return largest_; }
+  /// Returns the dimensions of the mitre of a packet.
   [[nodiscard]] Mitre mitre(std::size_t packet, bool is_middle) const;
   /// Returns the angle of the mitre relative to the yoke, rad.
   [[nodiscard]] double angle(std::size_t packet, bool is_middle) const;
@@ -84,6 +86,7 @@ public:
   /// Returns all corners of a limb on this side of the active part, at distance `reach` from it. Throws PolygonError if a bolt hole divides
   /// a sheet.
   [[nodiscard]] std::vector<CoreCorner> corners(bool is_middle, double side, double reach) const;
+  /// Returns mass, inertia and centre of gravity of the sheets of one limb.
   [[nodiscard]] LimbSteel limb_steel(bool is_middle, double side) const;
   /// Returns the fraction of a limb's steel in each packet. If the stack is not by place, equal packets count as the first of them and the
   /// others have none. Empty if the stack is unknown.

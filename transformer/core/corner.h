@@ -20,11 +20,13 @@
 
 namespace steplap {
 
+/// Dimensions of limb and yoke at a corner.
 struct Mitre {
   double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
   std::optional<double> angle;                                   ///< relative to the yoke, rad; not given: from corner to corner
 };
 
+/// Position and directions of one mitre, in axes with the origin in the middle of the limb, m.
 struct CornerFrame {
   Vec2 origin = Vec2::Zero(); ///< corner of the window
   Vec2 along = Vec2::Zero();  ///< t
@@ -32,6 +34,7 @@ struct CornerFrame {
   double length = 0.0;        ///< length of the mitre, m
 };
 
+/// Returns the frame of the mitre at an outer limb.
 [[nodiscard]] CornerFrame corner_frame(const Mitre& mitre, double side, double level);
 
 /// Returns the frame of one side of a middle limb's point: the mitre that rises towards `side`. Precondition: mitre.angle is given.
@@ -46,9 +49,11 @@ struct CornerFrame {
 
 /// Returns the end of a limb from half its height on, cut at q; empty if nothing is left.
 [[nodiscard]] std::vector<Vec2> limb_end(const Mitre& mitre, double side, double level, double q);
+/// The same for a middle limb, which ends in a point.
 [[nodiscard]] std::vector<Vec2> pointed_end(const Mitre& mitre, double level, double q);
 /// Returns the whole limb with both ends cut at q.
 [[nodiscard]] std::vector<Vec2> whole_limb(const Mitre& mitre, double side, double q);
+/// The same for a middle limb.
 [[nodiscard]] std::vector<Vec2> whole_pointed_limb(const Mitre& mitre, double q);
 
 /// Returns the end of the yoke at an outer limb, up to `reach` from the limb's axis towards the active part.

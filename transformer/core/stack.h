@@ -13,6 +13,7 @@
 
 namespace steplap {
 
+/// Packet of equal sheets.
 struct Packet {
   double width = 0.0;       ///< width of the limb sheets, m
   double yoke_height = 0.0; ///< height of the yoke, m
@@ -20,11 +21,13 @@ struct Packet {
   double pressure = 1.0;    ///< relative to the clamping pressure of the corner
 };
 
+/// Cooling duct in the stack.
 struct Duct {
   double place = 0.0; ///< m
   double width = 0.0; ///< m
 };
 
+/// The sheets of a core from front to back.
 struct Stack {
   std::vector<Packet> packets;
   double stacking_factor = 1.0;
@@ -56,11 +59,13 @@ struct LayerPair {
   long first = 0, last = 0; ///< in a stack by place: number of sheets in front of the first and the last such pair
 };
 
+/// Number of sheets with one outline.
 struct LayerCount {
   LayerShape shape;
   long sheets = 0;
 };
 
+/// Return the number of sheets in a packet, or in the whole stack.
 [[nodiscard]] long sheets_in(const Stack& stack, const Packet& packet);
 [[nodiscard]] long sheets_in(const Stack& stack);
 /// Returns the number of layers. The last layer of a packet may be incomplete.

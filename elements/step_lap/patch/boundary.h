@@ -18,6 +18,7 @@ struct Boundary {
   std::vector<std::size_t> next; ///< per corner: the next one around its ring
 };
 
+/// Returns the boundary of a polygon: outer ring first, then the holes.
 [[nodiscard]] Boundary boundary_of(const Polygon& polygon);
 
 /// Binary tree of bounding boxes over consecutive items. Does not allocate once its storage is large enough.

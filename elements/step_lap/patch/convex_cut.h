@@ -15,15 +15,18 @@ struct PartSide {
   int beyond = -1; ///< part on the other side of a cut; −1: an edge of the polygon
 };
 
+/// Bounding box parallel to the axes.
 struct Box {
   Vec2 low{0, 0}, high{0, 0};
 };
 
+/// One convex part of a polygon.
 struct ConvexPart {
   std::size_t first = 0, count = 0; ///< range of the cut's corners
   Box box;
 };
 
+/// Division of a polygon into convex parts.
 struct ConvexCut {
   Ring corners;                ///< corners of all parts, one part after another, each counter-clockwise
   std::vector<PartSide> sides; ///< side from each corner to the next of its part
@@ -36,6 +39,7 @@ struct ConvexCut {
 /// Returns a convex ring as a single part.
 [[nodiscard]] ConvexCut uncut(const Ring& ring);
 
+/// Returns the bounding box of `count` points.
 [[nodiscard]] Box box_of(const Vec2* corners, std::size_t count);
 
 } // namespace steplap

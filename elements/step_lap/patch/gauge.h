@@ -10,6 +10,7 @@
 
 namespace steplap {
 
+/// Solution of the problem.
 struct Gauge {
   double value = 0;           ///< max y·w/h
   Vec3 y = Vec3::Zero();      ///< maximiser

@@ -40,6 +40,7 @@ public:
   /// Adds a polygon with uniform traction n·μ·p [N/m²] ≥ 0. Pieces with zero area or traction are ignored. Throws std::invalid_argument for
   /// a negative or non-finite traction.
   void add(const Polygon& polygon, double traction);
+  /// The same for all polygons of a region.
   void add(const Region& region, double traction);
 
   /// Adds a polygon with linearly varying traction, integrated exactly; it must not be negative at any vertex.
@@ -103,6 +104,7 @@ struct Dissipation {
 
 /// The same with twist and wrench about another point [m].
 [[nodiscard]] Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu);
+/// evaluate_gradient() with twist and wrench about another point [m].
 [[nodiscard]] Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu);
 
 /// Returns ∇h of one polygon with the traction w(r) = at_centroid + gradient·(r − origin), about `point`, for a single evaluation. For a

@@ -63,6 +63,7 @@ struct DepthBound {
   /// Returns a lower bound of penetration() at pose `there`: it changes by at most the displacement of the points of b relative to a.
   [[nodiscard]] double at_least(const Pose& there) const;
 };
+/// Returns the bound for poses near `b_in_a`.
 [[nodiscard]] DepthBound depth_bound(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace);
 
 /// Returns the point p of b's frame in a's frame.

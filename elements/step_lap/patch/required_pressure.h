@@ -52,6 +52,7 @@ struct Capacity {
 struct UsageBounds {
   double lower = 0, upper = 0;
 };
+/// Returns the bounds of u for `wrench`.
 [[nodiscard]] UsageBounds usage_bounds(const Capacity& capacity, const Vec3& wrench);
 
 /// Returns the centre of rotation of a twist about `reference`, or nothing if it is farther than 1e12 m or ν = 0.
