@@ -75,7 +75,7 @@ struct JointAssessment {
   std::optional<double> allowed_line_load; ///< N/m
   bool has_edges = false;                  ///< sheet edges are modelled as contacts
   std::vector<SharedLoad> shared_with;     ///< elements in parallel; the joint's margin refers to the remaining load
-  bool is_elastic = false;                 ///< if not, elements in parallel carry nothing before it slides
+  bool is_elastic = false;                 ///< it has a stiffness; otherwise elements in parallel carry nothing before it slides
   bool has_come_apart = false;
   bool is_monitored = false;
 

@@ -19,7 +19,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_band = 0.0125;
-constexpr std::uint32_t k_stream = 0x726f6164; // random number stream
+constexpr std::uint32_t k_stream =
+    0x726f6164; // stream of random numbers of this kind, independent of those of other kinds with the same seed
 
 struct Road : SignalDefinition {
   std::optional<std::string> road_class;

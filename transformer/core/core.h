@@ -41,7 +41,7 @@ struct Core : TableObject {
   std::optional<double> sheet_thickness, stacking_factor, step_pitch, clearance; ///< m, dimensionless, m, m
   std::optional<long> steps, sheets_per_layer;
   std::string pitch_direction, book; ///< no default, since each may double the capacity of the joint
-  std::string bands = "each";        ///< "each" or "mean"
+  std::string bands = "each";        ///< "each": every overlap of a book in its position; "mean": one overlap of mean area for each packet
 
   double density = 7650.0;                         ///< of the sheets, kg/m³
   std::string centre_of_gravity = "of_the_sheets"; ///< or "as_given" in the body

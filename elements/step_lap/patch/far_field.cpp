@@ -100,7 +100,7 @@ constexpr auto k_degrees = [] {
 /// Sums over l of g and of the derivatives by φ, Re(−il e·r) = l Im(e·r).
 template <bool WithCurvature> class PolarSums {
 public:
-  /// `half`: 0 for l, 1 for l + 2.
+  /// Adds the row for l (Half = 0) or l + 2 (Half = 1).
   template <int Half> [[gnu::always_inline]] inline void add(const TwoRows& rows, int l) {
     Two by_l, by_square;
     std::memcpy(&by_l, k_degrees[l].data(), sizeof by_l);
