@@ -17,7 +17,7 @@ namespace steplap {
 
 namespace {
 
-// Values that an action sets, beside names of signals.
+// Returns true for fields that an action may set by value rather than by name.
 bool is_number_or_list(const Field& field) {
   return field.type == FieldType::number || field.type == FieldType::vec2 || field.type == FieldType::numbers ||
          field.type == FieldType::points;
@@ -25,10 +25,10 @@ bool is_number_or_list(const Field& field) {
 
 bool is_action(const ElementEntry& entry) { return as_action(*entry.element) != nullptr; }
 
-// Elements that can be released: all but what a model is described with.
+// Returns true for elements that can be released: all except actions and states.
 bool can_act(const ElementEntry& entry) { return !is_action(entry) && dynamic_cast<const OwnState*>(entry.element.get()) == nullptr; }
 
-/// Reads one action in the model that it belongs to.
+/// Parses one action for the model that it belongs to.
 class ActionReader {
 public:
   ActionReader(const Action& action, SystemBuilder& builder) : action_(action), builder_(builder) {}
@@ -39,7 +39,7 @@ public:
     entry.is_once = action_.once;
     entry.is_armed = action_.armed;
     if (action_.steps.empty()) builder_.error("'do' is empty: say what happens, as \"release hook\" or \"stop\"");
-    std::vector<std::string> targets; // of release and hold
+    std::vector<std::string> targets; // for release and hold
     for (const std::string& text : action_.steps) {
       try {
         const ActionStepText step = action_step(text);
@@ -123,7 +123,8 @@ private:
     if (field->type != FieldType::number) try_out(step, *field);
   }
 
-  // What only the element's own checks tell of a list, as points that have to ascend, is told now and not when it happens.
+  // Checks a list that the element itself validates, for example ascending points, when the model is compiled and not only when the action
+  // is executed.
   void try_out(const ActionStep& step, const Field& field) const {
     Model trial = model();
     ElementEntry& entry = trial.elements[static_cast<std::size_t>(step.target)];
@@ -174,7 +175,7 @@ private:
   }
 
   [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const std::string& unit) {
-    double plain = 0.0; // SI, as a number of a file is
+    double plain = 0.0; // SI, like a number in a file
     const char *const begin = text.value.data(), *const end = begin + text.value.size();
     if (const auto read = std::from_chars(begin, end, plain); read.ec == std::errc() && read.ptr == end) return checked(plain, text, field);
     const Quantity quantity = parse_quantity(text.value, unit);
@@ -263,7 +264,7 @@ void compile_action(const Element& element, SystemBuilder& builder) {
   if (switch_count > 0) builder.add_unit(group, switch_count);
 }
 
-// What a table becomes; no element of a file is of this kind.
+// Kind of the element made from the table; elements in files cannot have this kind.
 const ElementKind& compiled_kind() {
   static const ElementKind kind = [] {
     ElementKind k;

@@ -1,11 +1,11 @@
-// `[[action]]`: what happens when a condition comes true (mbd/system/actions.h).
+// Model table `[[action]]`: release, hold or set something when a condition becomes true (mbd/system/actions.h).
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// The table as a file has it; completion makes an element of it.
+/// Returns the kind of table; completion makes an element of each table.
 [[nodiscard]] const TableKind& action_kind();
 
 } // namespace steplap

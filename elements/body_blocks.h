@@ -1,7 +1,7 @@
-// Derivatives of forces on several bodies by the motion of all of them, from dual numbers.
+// Derivatives of the forces on several bodies by the motions of all of them, from dual numbers.
 //
-// A law of up to N bodies is evaluated with Dual<6 N>: derivatives by the pose of the j-th body stand at 3 j, those by its velocity
-// at 3 N + 3 j. The same body may stand in several places; then all its shares add up.
+// A law of up to N bodies is evaluated with Dual<6 N>: derivatives by the pose of body j have indices 3 j …, those by its velocity 3 N + 3
+// j …. If a body occurs several times, its contributions add up.
 #pragma once
 
 #include "mbd/base/dual.h"
@@ -14,7 +14,7 @@
 
 namespace steplap {
 
-/// Appends what the forces on the bodies change by with the motion of each.
+/// Appends the derivatives of the force on each body by the motion of each body.
 template <int N>
 void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForceOf<Dual<6 * N>>, N>& forces,
                      std::vector<PairJacobian>& out) {
@@ -38,7 +38,7 @@ void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForc
     }
 }
 
-/// Appends what a rate of the inner state `inner` changes by with the motion of each body.
+/// Appends the derivatives of the rate of inner state `inner` by the motion of each body.
 template <int N> void add_rate_by_motion(int inner, const std::array<int, N>& bodies, const Dual<6 * N>& rate, StateJacobian& out) {
   for (int j = 0; j < N; ++j)
     if (bodies[static_cast<std::size_t>(j)] != k_ground)
@@ -46,7 +46,7 @@ template <int N> void add_rate_by_motion(int inner, const std::array<int, N>& bo
                                rate.d.template segment<3>(3 * N + 3 * j).matrix()});
 }
 
-/// Adds a force at `lever` from the body's centre.
+/// Adds a force acting at `lever` from the body's centre of gravity.
 template <class S> void add_at(BodyForceOf<S>& sum, const Pair<S>& lever, const Pair<S>& force) {
   sum.fx += force.x;
   sum.fy += force.y;

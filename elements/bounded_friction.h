@@ -1,4 +1,4 @@
-// Friction along one line whose force lies between two equal bounds: what all elements of that kind have in common.
+// Functions for one-dimensional friction with a symmetric bound, |λ| ≤ bound.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -8,22 +8,22 @@
 
 namespace steplap {
 
-// λ may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
+// Relative tolerance of the bound for rounding errors of λ; ten times less than the 1e-12 to which a load is resolved.
 inline constexpr double k_friction_bound_slack = 1e-13;
 
-/// FrictionElement::watch_stick() of |λ| ≤ bound, N or N m.
+/// Event functions of sticking, FrictionElement::watch_stick(): bound ± λ, N or N m.
 template <class S> void watch_bounds(const S& bound, const S& wrench, S* watch) {
   const S most = bound * (1.0 + k_friction_bound_slack);
   watch[0] = most - wrench;
   watch[1] = most + wrench;
 }
 
-/// FrictionElement::solve_block() of |λ| ≤ bound: min ½ a λ² + b λ.
+/// Solves FrictionElement::solve_block(): minimises ½ a λ² + b λ for |λ| ≤ bound.
 [[nodiscard]] inline FrictionBlock block_within(double bound, double a, double b) {
-  constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
+  constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding error of a coordinate that a drive keeps at rest
   FrictionBlock block;
   const double wanted = a > 0.0 ? -b / a : (b > 0.0 ? -bound : bound);
-  // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
+  // If a drive prescribes the coordinate (a = 0) friction does not affect the motion, and b alone decides.
   block.is_inside = a > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_friction_bound_slack) : std::abs(b) <= k_no_motion;
   block.wrench[0] = std::clamp(wanted, -bound, bound);
   block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;

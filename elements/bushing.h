@@ -1,5 +1,6 @@
-// Bushing: springs and dampers along x and y of marker b and about it, between two markers that lie
-// together (physics.md §2). Forces on a: −k δ − c δ̇ for each of the three, in the frame of b.
+// Bushing: springs and dampers along x and y of marker b and about it, between two coincident markers (physics.md §2).
+//
+// Force on a for each of the three coordinates, in the frame of b: −k δ − c δ̇. The opposite acts on b.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -1,11 +1,11 @@
-// The list of all kinds of elements and signals. A new kind needs a line here.
+// List of all kinds of elements and signals. A new kind needs a line in catalog.cpp.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// All kinds that are not special to transformers. Constant, made at first use.
+/// Returns all kinds that are not specific to transformers. Constant; made on the first call.
 [[nodiscard]] const Catalogue& element_catalog();
 
 } // namespace steplap

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_endless = std::numeric_limits<double>::infinity();
 
-// Endless where there is no outline: a half-plane.
+// Returns the width of an outline; infinite for a half-plane, which has none.
 double width_of(const std::vector<Vec2>& given, const std::string& marker, const Model& model) {
   if (!given.empty()) return width_of(convex_outline(given, CompiledMarker{}));
   const auto m = std::find_if(model.markers.begin(), model.markers.end(), [&](const Marker& each) { return each.name == marker; });

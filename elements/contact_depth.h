@@ -1,4 +1,4 @@
-// How deep a contact may be pressed before its law has lost its meaning: by then something has gone through something.
+// Largest penetration for which a contact law is meaningful. Beyond it one part has passed through the other.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,8 +7,8 @@
 
 namespace steplap {
 
-/// Of outlines half the width of the thinner one (of a half-plane the other's whole width), of round things the depth at
-/// which the direction between them is lost. Nothing for elements that are no contacts, or have no thickness.
+/// Returns this penetration, m: half the width of the thinner outline (for a half-plane the whole width of the other); for circles the
+/// penetration at which the direction between them is lost. Nothing for elements that are not contacts or have no thickness.
 [[nodiscard]] std::optional<double> largest_depth(const Element& element, const Model& model);
 
 } // namespace steplap

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_straight = 1e-9; // sine of a turn: less is a straight line as it was typed
+constexpr double k_straight = 1e-9; // sine of the angle below which an edge is straight, given the digits of typed coordinates
 
 std::string place_text(const Vec2& p) {
   char text[64];
@@ -27,7 +27,7 @@ double twice_area(const std::vector<Vec2>& ring) {
   return sum;
 }
 
-// Without corners that repeat, or that lie between their neighbours.
+// Returns the corners without repeated ones and those on straight edges.
 std::vector<Vec2> true_corners(const std::vector<Vec2>& ring, double size) {
   std::vector<Vec2> apart;
   for (const Vec2& p : ring)

@@ -1,4 +1,4 @@
-// Outlines as a model gives them, made ready for contact: turned counter-clockwise, corners in a straight line left out.
+// Prepares the outlines of a model for contact: counter-clockwise, without corners on straight edges.
 #pragma once
 
 #include "elements/outline_overlap.h"
@@ -11,25 +11,26 @@ namespace steplap {
 class SystemBuilder;
 struct CompiledMarker;
 
-/// Says what is wrong with an outline, in words that follow its name.
+/// Error in an outline. The message continues a sentence that begins with its name.
 struct OutlineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `points` in the axes of `frame`, either sense. Throws OutlineError if they are not the corners of a convex polygon.
+/// Returns the outline with corners `points`, in either order, in the axes of `frame`. Throws OutlineError if they do not form a convex
+/// polygon.
 [[nodiscard]] ConvexOutline convex_outline(const std::vector<Vec2>& points, const CompiledMarker& frame);
 
-/// What lies behind the line through the frame's origin; `normal` in its axes, away from it.
+/// Returns the half-plane behind the line through the origin of `frame`; `normal`, in its axes, points away from it.
 [[nodiscard]] ConvexOutline half_plane(const Vec2& normal, const CompiledMarker& frame);
 
-/// The least distance of two parallel lines that have the outline between them; of a half-plane infinite.
+/// Returns the smallest distance of two parallel lines that enclose the outline, m; infinite for a half-plane.
 [[nodiscard]] double width_of(const ConvexOutline& outline);
-/// The largest distance of a corner from the body's centre of gravity.
+/// Returns the largest distance of a corner from the body's centre of gravity, m.
 [[nodiscard]] double reach_of(const ConvexOutline& outline);
 
-/// Name of the body that a marker, or a body, belongs to.
+/// Returns the name of the body of a marker, or of the body itself.
 [[nodiscard]] std::string body_of(const std::string& marker, const SystemBuilder& builder);
-/// Corners that the model gives this body, in the body's axes; empty if none.
+/// Returns the corners that the model gives this body, in its axes; empty if none.
 [[nodiscard]] const std::vector<Vec2>& outline_of_body(const std::string& body, const SystemBuilder& builder);
 
 } // namespace steplap

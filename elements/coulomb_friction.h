@@ -1,5 +1,5 @@
-// Coulomb friction as a friction element: |λ| ≤ μ_s N while it sticks, μ_k N against the slip, N the sum of the normal forces
-// of contacts. Which rows it sticks along, and where, is up to who makes one (coulomb_stick, polygon_contact).
+// Coulomb friction as a friction element: |λ| ≤ μ_s N while sticking, μ_k N opposite to the slip, with N the sum of the normal forces of
+// its contacts. The elements that use it (coulomb_stick, polygon_contact) define the rows and the contact points.
 #pragma once
 
 #include "elements/bounded_friction.h"
@@ -13,26 +13,27 @@ namespace steplap {
 
 class CoulombFriction : public FrictionElement {
 public:
-  // Level feet are the normal state at rest: the foot is kept within this dead band, rad.
+  // Dead band of the change of foot, rad. Level feet are the normal state at rest, and rounding must not change the foot.
   static constexpr double k_foot_dead_band = 1e-13;
-  // Acceleration beside which an error of friction counts, m/s²: that of the motion to which tolerances are absolute.
+  // Acceleration, m/s², relative to which errors of friction are judged: that of a motion at the absolute part of the tolerances.
   static constexpr double k_floor_acceleration = 3.6;
 
   std::vector<ContactIndex> contacts;
-  std::vector<RowSpec> feet; ///< rear-most, front-most; the same twice for one contact
+  std::vector<RowSpec> feet; ///< rows at the rear-most and the front-most contact point; both the same for a single contact
   bool has_two_feet = false;
   double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
   double mu_static = 0.0, mu_kinetic = 0.0;
-  bool may_pull = false;                         ///< a contact's law lets it pull (literal): friction ends where the sum does
-  double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts; of the lighter body; from its centre
+  bool may_pull = false;                         ///< a contact may pull (law `literal`); friction ends where the sum of normal forces
+                                                 ///< becomes zero
+  double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts, N s/m; of the lighter body, kg; distance from its centre, m
 
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override { return &feet[state.foot]; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[feet[0].a] = is_used[feet[0].b] = 1; }
   template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
-  /// As laws of motion have it: a step that goes beyond the end of a contact's force, where it will be cut, finds the force's law
-  /// go on below zero there. A kink at that place would make the step, and what is read inside it, as inexact as its end is known.
-  /// Not so for friction above 1, which makes of a force that is below zero by rounding a larger one.
+  /// Returns N, continued to negative values, as for laws of motion: a step may continue slightly beyond the end of a contact force before
+  /// this is detected, and a kink there would make the step as inaccurate as the time of its end. Not continued for friction above 1, which
+  /// would amplify a force that is negative by rounding.
   template <class S> [[nodiscard]] S smooth_normal_force(const Evaluated<S>& e) const {
     return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
@@ -64,10 +65,9 @@ public:
   void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override { return turn_to_other_foot(e, state); }
   void change_place(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
-  // The contacts' dampers make forces of errors of velocity, and friction with μ > 1 larger ones of these: against what
-  // would accelerate the body as the motion does to which tolerances are absolute. Else the contact rattles: it would
-  // lose and regain, by errors alone, a normal force so small that the tolerance does not show it and yet enough to
-  // carry the body by its friction.
+  // Contact dampers convert velocity errors to normal force errors, and friction with μ > 1 amplifies them. Velocities must then be
+  // accurate enough for the resulting acceleration to be small compared with k_floor_acceleration. Otherwise the contact chatters: errors
+  // alone would remove and restore a normal force below the tolerance, whose friction still moves the body.
   [[nodiscard]] bool turns_with_slip(const FrictionState&) const override { return mu_kinetic > 1.0 && damping > 0.0; }
   [[nodiscard]] SlipScale slip_scale(const Evaluation&, const FrictionState&, const double*) const override {
     SlipScale scale;

@@ -12,7 +12,7 @@ namespace {
 
 using D12 = Dual<12>;
 
-/// Along an axis fixed in a, at a's marker: no gradient of a coordinate, so it has a rate but no value.
+/// Measure along an axis fixed in a, at a's marker. It is not the gradient of a coordinate, so it has a rate but no value.
 struct FollowingMeasure {
   Vec2 point_a, axis;
   template <class S, class B> [[nodiscard]] MeasureValue<S> at(const Motion<S>& a, const B& b) const {
@@ -34,14 +34,14 @@ private:
 
 struct ForceEntry {
   int a, b;
-  RowSpec row; ///< of its coordinate; where it follows a, point_a and direction in a's frame
+  RowSpec row; ///< its coordinate; if it follows a, point_a and direction are in a's frame
   bool is_following = false;
   MotionFormula formula;
-  double zero = 0.0; ///< of an angle: that of the markers
+  double zero = 0.0; ///< for an angle: that of the markers
   std::vector<SwitchScale> switches = {};
   int link = 0;
-  int unit = -1; ///< index of its mode; -1: the formula has no switches
-  int watch = 0; ///< index of its first watch value
+  int unit = -1; ///< index of its mode; −1: the formula has no switches
+  int watch = 0; ///< index of its first event function
 
   template <class S, class B> [[nodiscard]] STEPLAP_INLINE MeasureValue<S> measure(const Motion<S>& m, const B& of_b) const {
     if (is_following) return FollowingMeasure{row.point_a, row.direction}.at(m, of_b);
@@ -52,12 +52,12 @@ struct ForceEntry {
   template <class S> [[nodiscard]] SwitchBits bits(const Evaluated<S>& e) const { return unit < 0 ? 0 : e.mode[unit]; }
 };
 
-/// ∂(force on a)/∂… and ∂(force on b)/∂… by the motion of other bodies, one after another.
+/// Derivatives of the forces on a and b by the motions of other bodies.
 class SharesOfBodies {
 public:
   SharesOfBodies(const ForceEntry& entry, std::vector<PairJacobian>& out) : entry_(entry), out_(out), first_(out.size()) {}
 
-  /// A value whose wrench on a and b is `along` changes with a body's motion by `share`.
+  /// Adds the derivative for an operand with `share`; `along` is the wrench on a and b per unit value.
   void add(const Vec3 (&along)[2], double slope, const MotionShare& share) {
     if (share.body == k_ground) return;
     const int ends[2] = {entry_.a, entry_.b};
@@ -87,7 +87,7 @@ private:
   std::size_t first_;
 };
 
-/// `Works`: booked as work, else as heat. `Jumps`: some formula compares, so that its force may jump.
+/// `Works`: counted as work, otherwise as heat. `Jumps`: a formula contains comparisons, so its force may jump.
 template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup, public StateReader {
 public:
   using Entry = ForceEntry;
@@ -104,7 +104,7 @@ public:
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries) {
       const Gradient g(entry, e);
-      PairJacobian& turning = out.emplace_back(); // of the direction and the levers, the value as it is
+      PairJacobian& turning = out.emplace_back(); // derivative of direction and levers at constant value
       turning.a = entry.a;
       turning.b = entry.b;
       for (int i = 0; i < 6; ++i) {
@@ -156,7 +156,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     return next_bits(entries[element].formula, mode, slot, e, entries[element].own_now(e));
   }
-  [[nodiscard]] bool follows_jumps() const override { return true; } // of a signal, if none of its own
+  [[nodiscard]] bool follows_jumps() const override { return true; } // signals may jump, even if the formula does not
   [[nodiscard]] WatchKind watch_kind(int) const override { return Jumps ? WatchKind::exact : WatchKind::rate; }
   [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
@@ -166,13 +166,13 @@ public:
   }
 
 private:
-  /// Value and derivatives of one entry where the motion is.
+  /// Value and derivatives of one entry for the present motion.
   struct Gradient {
     OwnCoordinate<D12> own;
-    D12 along[6];    ///< wrench on a and on b of a unit value
+    D12 along[6];    ///< wrench on a and on b for unit value
     Vec3 on_ends[2]; ///< the same without derivatives
     double value = 0.0;
-    std::vector<double>& slopes; ///< by operands; good until the next one is made
+    std::vector<double>& slopes; ///< by operand; valid until the next Gradient is made
 
     Gradient(const Entry& entry, const Evaluation& e) : slopes(room()) {
       if (slopes.size() < entry.formula.operands().size()) slopes.resize(entry.formula.operands().size());
@@ -207,7 +207,7 @@ private:
   }
 };
 
-// What a coordinate's name stands for between these markers; false where it has no direction.
+// Sets the measure for the coordinate of these markers. Returns false if it has no direction.
 bool set_coordinate(const FormulaForce& e, const CompiledMarker& a, const CompiledMarker& b, SystemBuilder& builder, ForceEntry& entry) {
   const bool is_y = e.coordinate == "y" || e.coordinate == "own_y";
   const Vec2 axis = is_y ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0);
@@ -250,7 +250,7 @@ template <class Group> void add(SystemBuilder& builder, ForceEntry entry, bool i
                         [&group, i](const Snapshot& s) { return group.entries[i].own_now(*s.evaluation).rate; });
 }
 
-// Where the run begins, for formulas that have no value there.
+// Returns an evaluation of the reference pose, to check that formulas have a value there.
 Evaluation reference_evaluation(SystemBuilder& builder, const std::vector<double>& inner) {
   Evaluation e;
   e.motion = &builder.reference(k_ground);

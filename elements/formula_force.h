@@ -1,13 +1,15 @@
-// Force by formula: a force or couple along a coordinate of a against b whose value is a formula (mbd/system/motion_formula.h),
-// its opposite on b. Drag, magnets, tyres, thrusters, controllers.
+// A force or moment on a along a coordinate relative to b, given by a formula (mbd/system/motion_formula.h); the opposite acts on b. For
+// drag, magnets, tyres, thrusters, controllers.
 //
-//   coordinate   value                                     rate            acts
-//   x, y         of marker a in marker b's axes            its rate        along that axis at marker a
-//   distance     of the markers                            its rate        along the line between them
-//   angle        of a against b, less the markers' angles  its rate        as a couple
-//   own_x, own_y none                                      of marker a against b, along marker a's own axis     along that axis at marker a
-// A positive value acts towards larger values of the coordinate. Its power on the two bodies is f·rate. It is booked as work (of a
-// drive: the default), or with energy = "dissipated" as heat, negative where it drives.
+//   coordinate   value                                     rate                                       acts
+//   x, y         position of marker a in marker b's axes   its rate                                   along that axis, at marker a
+//   distance     distance of the markers                   its rate                                   along the line between them
+//   angle        of a relative to b, minus marker angles   its rate                                   as a moment
+//   own_x, own_y none                                      velocity of marker a relative to b along   along that axis, at marker a
+//                                                          marker a's own axis
+//
+// A positive value acts towards larger values of the coordinate. Its power f·rate is counted as work (default, for drives), or, with energy
+// = "dissipated", as heat, negative if it drives.
 #pragma once
 
 #include "mbd/model/model.h"

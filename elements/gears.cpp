@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// Pitch circles need not touch to the digits of the file: off by more, they are not the gears' circles.
+// Relative tolerance for pitch circles that should touch, given the digits of a file.
 constexpr double k_pitch_tolerance = 1e-6;
 
 void add_row(RowSpec row, SystemBuilder& builder) {

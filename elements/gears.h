@@ -1,10 +1,11 @@
-// Gears: constraints on how two bodies roll on each other. What keeps their distance is not theirs: a revolute
-// on a common carrier (or the ground) for each gear, a slide for a rack.
+// Gears: rolling constraints between two bodies. The distance of their axes must be kept by other elements: a revolute joint on a common
+// carrier or on the ground for each gear, a slide for a rack.
 //
-//   gear   pitch circles about markers a and b roll on each other, outside or (a) inside b's ring
+//   gear   pitch circles about markers a and b roll on each other, a outside or inside b's ring
 //   rack   a pitch circle about marker a rolls on a line of b
-// The multiplier is the force between the teeth along the common tangent, on a (no pressure angle: its part
-// along the line of centres is the bearings' affair). One row each: exact, without backlash.
+//
+// One row each, exact, without backlash. The multiplier is the tooth force on a along the common tangent. The pressure angle is neglected;
+// its radial force would act on the bearings.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -20,7 +21,7 @@ struct Gear : Element {
 struct Rack : Element {
   std::string a, b = "ground";
   double radius = 0.0;
-  Vec2 axis{1.0, 0.0}; ///< in marker b's axes; the pinion is on its left
+  Vec2 axis{1.0, 0.0}; ///< direction in marker b's axes; the pinion is on its left
 };
 
 [[nodiscard]] const ElementKind& gear_kind();

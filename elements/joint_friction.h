@@ -1,11 +1,10 @@
-// Dry friction of a bearing, a guide, a brake or a clutch: sticks exactly while the couple (force) that it takes is within
-// `holds`, slides against `drags`, towards which it falls with the rate if it has a Stribeck velocity, and a viscous part. A signal
-// multiplies all of them: the pressure of a brake.
+// Dry friction in a bearing, guide, brake or clutch. It sticks exactly while the moment (or force) is within `holds`, and slides against
+// `drags`, which decreases with the rate if a Stribeck velocity is given, plus a viscous part. A signal multiplies all of them, for example
+// a brake pressure.
 //
-// The bound is a constant (a preloaded bearing, a seal) or a function of time, not μ times the joint's own reaction: reactions are
-// multipliers, and with bounds that depend on them the mode problem (physics of friction modes, docs/explanation/theory.md)
-// would no longer be convex: it may have several answers or none (Painlevé). Friction that follows a load is
-// friction on a contact, whose normal force is a function of the state: coulomb_stick.
+// The bound is a constant (a preloaded bearing, a seal) or a function of time, not μ times the joint's reaction. Reactions are multipliers,
+// and with bounds that depend on them the mode problem (docs/explanation/theory.md) would not be convex and could have several solutions or
+// none (Painlevé). For friction that depends on a load use coulomb_stick, where the normal force is a function of the state.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -14,12 +13,12 @@ namespace steplap {
 
 struct JointFriction : Element {
   std::string a, b = "ground";
-  std::string coordinate = "angle"; ///< angle, x, y (marker b's axes), distance
-  double holds = 0.0;               ///< N m or N
+  std::string coordinate = "angle"; ///< angle, x, y (marker b's axes) or distance
+  double holds = 0.0;               ///< static bound, N m or N
   std::optional<double> drags;
   std::optional<double> stribeck_velocity; ///< rad/s or m/s
   double viscous = 0.0;                    ///< N m s/rad or N s/m
-  std::string signal;                      ///< multiplies all of them; empty: 1
+  std::string signal;                      ///< multiplies all bounds; empty: 1
 };
 
 [[nodiscard]] const ElementKind& joint_friction_kind();

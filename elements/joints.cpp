@@ -28,7 +28,7 @@ RowSpec row_between(const Ends& ends, MeasureKind kind, const Vec2& direction, c
   return row;
 }
 
-// Held at its value in the reference pose.
+// Constrains the row to its value in the reference pose.
 void hold_as_given(RowSpec& row, SystemBuilder& builder) {
   row.memory = builder.add_memory(evaluate_row<false>(row, &builder.reference(0)).value);
 }
@@ -54,7 +54,7 @@ void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = fals
     builder.add_channel(rows[i].quantity, rows[i].kind == MeasureKind::angle ? "N m" : "N", {"reaction on a", sign_of(rows[i])},
                         [r](const Snapshot& s) { return s.row_force[r]; });
   }
-  std::array<RowSpec, 3> held; // at most: no joint holds more
+  std::array<RowSpec, 3> held; // no joint has more rows
   std::copy(rows.begin(), rows.end(), held.begin());
   if (rows.size() > 1 && rows[1].kind == MeasureKind::axis)
     builder.offer_channel("reaction", "N", {"size of the reaction force", "never negative"},

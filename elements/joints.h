@@ -1,14 +1,13 @@
-// Bilateral joints between a marker on a and a marker on b: what they forbid, in marker b's axes.
+// Bilateral joints between a marker on a and a marker on b. Constrained quantities, in marker b's axes:
 //
 //   revolute        both relative displacements of the markers
 //   prismatic       displacement across b's axis, and relative rotation
 //   weld            both displacements and relative rotation, as in the reference pose
 //   distance        change of the distance of the markers (a rod)
 //   point_on_line   displacement across b's axis
-// Each gives its multipliers as channels: the force on a along the direction held.
 //
-// A revolute, prismatic or weld joint that gives its coordinate places one body against the other in the
-// reference pose (mbd/model/placement.h).
+// The multipliers are channels: the force on a along the constrained direction. A revolute, prismatic or weld joint with a given coordinate
+// determines the reference pose of one body relative to the other (mbd/model/placement.h).
 #pragma once
 
 #include "mbd/model/placement.h"
@@ -16,9 +15,9 @@
 namespace steplap {
 
 struct Joint : PlacingElement {
-  Vec2 axis{1.0, 0.0};          ///< prismatic, point_on_line: in marker b's axes
-  std::optional<double> length; ///< distance
-  // Reference pose of marker a's frame against marker b's.
+  Vec2 axis{1.0, 0.0};          ///< prismatic, point_on_line: direction in marker b's axes
+  std::optional<double> length; ///< distance: length of the rod, m
+  // Reference pose of marker a relative to marker b.
   std::optional<double> angle;            ///< revolute, prismatic, weld; rad
   std::optional<double> angular_velocity; ///< revolute; rad/s
   std::optional<double> displacement;     ///< prismatic: along the axis, m
@@ -27,7 +26,7 @@ struct Joint : PlacingElement {
   [[nodiscard]] std::optional<RelativePose> relative_pose() const override;
   [[nodiscard]] const char* placing_field() const override { return is_slide ? "displacement" : "angle"; }
   [[nodiscard]] const char* idle_field() const override;
-  bool is_slide = false; ///< prismatic: the displacement decides whether it places
+  bool is_slide = false; ///< prismatic: the field `displacement` decides whether it determines a pose
 };
 
 [[nodiscard]] const ElementKind& revolute_kind();

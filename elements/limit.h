@@ -1,11 +1,10 @@
-// Limit: stops at the ends of a coordinate's range, for joints (an angle, a slide) or between any two markers.
+// Limit: stops at the ends of the range of a coordinate, for joints (angle, slide) or any two markers.
 //
-// Beyond a stop it presses back like a unilateral contact (contact_laws.h, Kelvin–Voigt without adhesion):
-// f = max(0, −kδ − cδ̇), δ < 0 the depth; between the stops it does nothing. f is along the coordinate: positive
-// at the lower stop, negative at the upper one.
+// Beyond a stop the force is that of a unilateral contact (contact_laws.h, Kelvin–Voigt without adhesion), f = max(0, −kδ − cδ̇) with δ < 0
+// the penetration; between the stops it is zero. f acts along the coordinate: positive at the lower stop, negative at the upper one.
 //
-// What is given at its stop, to the digits that poses are known to, begins in touch with it: nothing is reached then,
-// and where the motion leads away from there it leaves its stop at once. Rounding has no say in either.
+// A coordinate that starts at a stop, within the accuracy of poses, starts in contact. This is not an event, and if the motion leads away
+// it leaves the stop at once. Rounding errors do not decide either.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -14,10 +13,10 @@ namespace steplap {
 
 struct Limit : Element {
   std::string a, b = "ground";
-  std::string coordinate = "angle";   ///< angle, x, y (marker b's axes), distance
-  std::optional<double> lower, upper; ///< from the reference pose; distance: the distance itself
+  std::string coordinate = "angle";   ///< angle, x, y (marker b's axes) or distance
+  std::optional<double> lower, upper; ///< from the reference pose; for `distance` the distance itself
   double stiffness = 0.0, damping = 0.0;
-  std::optional<double> restitution; ///< instead of damping (restitution.h)
+  std::optional<double> restitution; ///< replaces damping (restitution.h)
 };
 
 [[nodiscard]] const ElementKind& limit_kind();

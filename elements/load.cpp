@@ -20,7 +20,7 @@ template <class S> struct AppliedLoad {
   S couple{0.0};
 };
 
-// `value`: of a signal, at the time.
+// `value` returns the value of a signal at the time.
 template <class S, class Value> AppliedLoad<S> load_by(const LoadEntry& entry, const Motion<S>& body, const Value& value) {
   const auto sum = [&value](double constant, const Signal* signal) { return constant + (signal ? value(signal) : S(0.0)); };
   AppliedLoad<S> load;
@@ -63,8 +63,7 @@ public:
       j.b = k_ground;
       j.stiffness.setZero();
       j.damping.setZero();
-      // Turning the body turns the lever, and the force where it is fixed in the body: then the
-      // moment keeps its value.
+      // Rotation of the body rotates the lever. A force fixed in the body rotates with it, so its moment is constant.
       if (entry.is_in_body) {
         j.stiffness(0, 2) = -load.force.y;
         j.stiffness(1, 2) = load.force.x;

@@ -1,4 +1,4 @@
-// Force and couple at a marker, constant or following signals, in ground or body axes.
+// Force and moment at a marker, constant or as signals, in ground or body axes.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -9,7 +9,7 @@ struct Load : Element {
   std::string at;
   Vec2 force = Vec2::Zero();
   double couple = 0.0;
-  std::string force_x, force_y, torque; ///< signals, added to the constants
+  std::string force_x, force_y, torque; ///< signals, added to the constant values
   std::string frame = "ground";
 };
 

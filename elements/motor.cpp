@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-/// What signals are in an evaluation: of an effort the force, of a target what it is at the time.
+/// Values of signals in an evaluation: the mean over the step for an effort, which is a force; the present value for a target.
 struct InputsOf {
   const Evaluation& e;
 
@@ -32,10 +32,10 @@ struct MotorLaw {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, const Evaluation& e) const {
     return force_by(value, rate, InputsOf{e});
   }
-  // `at_time`: what a signal is at the time.
+  // `at_time` returns the value of a signal.
   template <class S, class AtTime> [[nodiscard]] S force_by(const S& value, const S& rate, const AtTime& at_time) const {
     const auto stall = constant_effort + (effort ? at_time(*effort) : 0.0);
-    const bool is_reverse = droop != 0.0 && stall < 0.0; // its no-load speed is on the other side
+    const bool is_reverse = droop != 0.0 && stall < 0.0; // its no-load speed is in the other direction
     S f = S(stall) * (is_reverse ? S(1) + S(droop) * rate : S(1) - S(droop) * rate);
     if (proportional == 0.0 && derivative == 0.0) return f;
     const auto wanted = target ? at_time(TimeInput{target}) : 0.0, wanted_rate = target ? at_time(TimeInput{target, true}) : 0.0;

@@ -1,23 +1,28 @@
-// Overlap of two convex outlines, and what it costs to press them into each other: the contact law of polygon_contact.
+// Contact law of polygon_contact: forces from the overlap of two convex outlines.
 //
-// O is the overlap of the outlines of a and b, itself convex, d(x) the distance of a point of O from O's rim. The energy is
+// O is the overlap of the outlines of a and b, which is convex, and d(x) the distance of a point of O from the boundary of O. The stored
+// energy is
+//
 //   U = 2 k ∫_O d(x) dA,
-// the volume under the roof of slope 1 over O. Its ridges part O into cells, one for each edge: the points nearest to it.
-// Moving edge i outwards by δ raises the roof over its cell alone, by δ, so that
-//   ∂U = 2 k A_i δ,  A_i the area of cell i: the edge is pushed back by 2 k A_i at the cell's middle.
-// Edges of a push a, those of b push b; moved as a whole the roof keeps its volume, so that both sums are equal and opposite,
-// as forces and as moments about any point. Faces that overlap by d over a width w press with k w d each on the other
-// (pressure k d); corners come in with a force that begins as the square of the depth. U has continuous first derivatives
-// whatever corners and edges come and go, but for one case: sides of a and b that lie on one line while faces across them
-// press (bricks stacked flush) have a ridge there, and the force along the face jumps by k d², a share d/w of the normal one.
 //
-// So the elastic force is taken from the side with fewer edges: of a face under a box it is normal to that face to the last bit.
+// the volume under a roof of slope 1 over O. The ridges of the roof divide O into cells, one for each edge: the points nearest to that
+// edge. Moving edge i outwards by δ raises the roof over its cell by δ:
 //
-// Dissipation as of Hunt and Crossley in every point: the pressure is (1 + α c)₊ times the elastic one, c the speed at which
-// the two bodies close along the cell's edge normal. It never pulls and is zero where they part. Both sets of cells cover O,
-// each takes half.
-// Sources: pressure fields and their overlap, R. Elandt et al., IROS 2019; energy of overlaps, Y. T. Feng, D. R. J. Owen, Eng.
-// Comput. 21 (2004) 265; potentials of distance, A. Munjiza, K. R. F. Andrews, Int. J. Numer. Meth. Eng. 49 (2000) 1377.
+//   ∂U = 2 k A_i δ,  A_i the area of cell i: a force 2 k A_i acts on the edge at the centroid of its cell.
+//
+// Edges of a exert forces on a, those of b on b. A rigid motion of the roof preserves its volume, so both sums are equal and opposite, in
+// forces and moments. Faces that overlap by d over a width w press with k w d (pressure k d); the force of a corner begins with the square
+// of the penetration. U has continuous first derivatives also when corners and edges come and go, with one exception: if sides of a and b
+// are on one line and adjacent faces press (bricks stacked flush), a ridge is there, and the force along the face jumps by k d², d/w of the
+// normal force.
+//
+// The elastic force is computed from the body with fewer edges in O. For a face under a box it is then exactly normal to the face.
+//
+// Dissipation as by Hunt and Crossley at every point: the pressure is (1 + α c)₊ times the elastic one, with c the approach speed along the
+// normal of the cell's edge. It never pulls. Both sets of cells cover O, so each contributes half.
+//
+// Sources: pressure fields and their overlap, R. Elandt et al., IROS 2019; energy of overlaps, Y. T. Feng, D. R. J. Owen, Eng. Comput. 21
+// (2004) 265; potentials of distance, A. Munjiza, K. R. F. Andrews, Int. J. Numer. Meth. Eng. 49 (2000) 1377.
 #pragma once
 
 #include "mbd/base/dual.h"
@@ -31,22 +36,22 @@
 
 namespace steplap {
 
-inline constexpr int k_most_corners = 16;                  ///< of one outline
-inline constexpr int k_most_ring = 4 * k_most_corners + 4; ///< a clip adds at most one corner
+inline constexpr int k_most_corners = 16;                  ///< largest number of corners of an outline
+inline constexpr int k_most_ring = 4 * k_most_corners + 4; ///< largest number of corners of a clipped polygon; a cut adds at most one
 
-/// A convex outline about its body's centre of gravity, counter-clockwise; edge k runs from corner k to the next. A half-plane
-/// has one edge and no corners.
+/// A convex outline relative to the body's centre of gravity, counter-clockwise; edge k runs from corner k to the next. A half-plane has
+/// one edge and no corners.
 struct ConvexOutline {
   std::vector<Vec2> corners;
-  std::vector<Vec2> normals;   ///< of the edges, outwards, of length 1
-  std::vector<double> offsets; ///< normal · corner: inside, normal · x is less
+  std::vector<Vec2> normals;   ///< outward unit normals of the edges
+  std::vector<double> offsets; ///< normal · corner; smaller values of normal · x are inside
 
   [[nodiscard]] int edge_count() const { return static_cast<int>(normals.size()); }
   [[nodiscard]] int corner_count() const { return static_cast<int>(corners.size()); }
 };
 
-/// An array of which what is not used is not made either: most outlines have four corners, and to set the room for the most to
-/// zero would take longer than to place them. What is read was written before.
+/// An array without initialisation. Most outlines have four corners, and initialising the full capacity would take longer than placing
+/// them. Elements must be written before they are read.
 template <class T, std::size_t N> class Room {
 public:
   Room() {} // NOLINT: not as zeros
@@ -59,10 +64,10 @@ private:
     T items_[N];
   };
 };
-/// Of plain numbers; others are made.
+/// Room for double, std::array for all other number types.
 template <class S, class T, std::size_t N> using RoomFor = std::conditional_t<std::is_floating_point_v<S>, Room<T, N>, std::array<T, N>>;
 
-/// The same where its body is, seen from one origin.
+/// An outline at the pose of its body, relative to a common origin.
 template <class S> struct PlacedOutline {
   int corner_count = 0, edge_count = 0;
   RoomFor<S, Pair<S>, k_most_corners> corner, normal;
@@ -80,20 +85,20 @@ void place_outline(const ConvexOutline& outline, const Body& body, const Pair<S>
   }
 }
 
-/// By how much two outlines are apart (negative: the least way that parts them), and where.
+/// Distance of two outlines (negative: least displacement that separates them) and where it occurs.
 struct Separation {
   double gap = -std::numeric_limits<double>::infinity();
-  int face = -1;   ///< edge of a, or edge of b behind those of a
-  int corner = -1; ///< of the other body, nearest to that face or deepest behind it
+  int face = -1;   ///< edge of a, or edge of b counted after those of a
+  int corner = -1; ///< corner of the other body that is nearest to this face, or deepest behind it
 };
 
-/// Of one face: the other body's corner that is nearest to it, or deepest behind it.
+/// Returns the distance for one face, with the nearest or deepest corner of the other body.
 inline Separation face_separation(const PlacedOutline<double>& own, int edge, const PlacedOutline<double>& other) {
   Separation found;
   found.gap = std::numeric_limits<double>::infinity();
   for (int i = 0; i < other.corner_count; ++i) {
     const double height = dot(own.normal[edge], other.corner[i]) - own.offset[edge];
-    if (!(height >= found.gap)) { // not-a-number, too, is no gap: it is told where forces are checked
+    if (!(height >= found.gap)) { // also for NaN, which is reported where forces are checked
       found.gap = height;
       found.corner = i;
     }
@@ -101,11 +106,11 @@ inline Separation face_separation(const PlacedOutline<double>& own, int edge, co
   return found;
 }
 
-/// Convex outlines are apart if and only if a face of one of them has the other before it.
+/// Convex outlines are separate exactly if a face of one of them has the other in front of it.
 inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutline<double>& b) {
   Separation best;
   const auto look = [&best](const PlacedOutline<double>& own, const PlacedOutline<double>& other, int first) {
-    if (other.corner_count == 0) return; // a half-plane reaches behind every face
+    if (other.corner_count == 0) return; // a half-plane extends behind every face
     for (int edge = 0; edge < own.edge_count; ++edge) {
       Separation found = face_separation(own, edge, other);
       if (best.corner >= 0 && found.gap <= best.gap) continue;
@@ -118,19 +123,20 @@ inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutl
   return best;
 }
 
-/// A convex polygon being cut; `edge` of the edge from each corner to the next: of a, or of b behind those of a.
+/// A convex polygon during clipping; `edge`: origin of the edge from each corner to the next, an edge of a, or of b counted after those of
+/// a.
 template <class S> struct CutRing {
   int size = 0;
   RoomFor<S, Pair<S>, k_most_ring> corner;
   std::array<int, k_most_ring> edge;
 };
 
-/// What of `in` has a depth that is not negative; depth is linear in the place. The edge that this makes is `made`.
+/// Writes the part of `in` with depth ≥ 0 to `out`; `depth` is a linear function of position. The new edge gets the index `made`.
 template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& depth, int made, CutRing<S>& out) {
   out.size = 0;
   if (in.size == 0) return;
   const auto put = [&out](const Pair<S>& corner, int edge) {
-    if (out.size == k_most_ring) return; // slivers of rounding, whose corners change sides more than twice
+    if (out.size == k_most_ring) return; // capacity exceeded: only in slivers of rounding size, whose corners change sides more than twice
     out.corner[out.size] = corner;
     out.edge[out.size++] = edge;
   };
@@ -150,17 +156,17 @@ template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& dept
   }
 }
 
-/// Force and moment on a that the overlap makes.
+/// Forces on a by the overlap.
 template <class S> struct OverlapForce {
   Pair<S> force;
-  S moment{0};      ///< about the origin
+  S moment{0};      ///< moment about the origin, N m
   S volume{0};      ///< ∫ d dA
   S dissipation{0}; ///< W
-  /// One outline lies wholly within the other: the rim of the overlap belongs to one of them alone, nothing pushes it out.
+  /// One outline is completely inside the other; the boundary of the overlap then belongs to one body, and no force separates them.
   bool is_swallowed = false;
 };
 
-/// Relative velocity of a's points seen from b's: u + Ω ẑ × x.
+/// Velocity of a's points relative to b: u + Ω ẑ × x.
 template <class S> struct RelativeVelocity {
   Pair<S> u;
   S spin{0};
@@ -168,7 +174,7 @@ template <class S> struct RelativeVelocity {
 
 namespace overlap_detail {
 
-// ∫ 1, τ, τ², ν over a polygon, τ and ν the components of places across and along n.
+// Integrals ∫ 1, τ, τ², ν over a polygon, with τ and ν the coordinates across and along n.
 template <class S> struct CellSums {
   S area{0}, across{0}, across2{0}, along{0};
 };
@@ -194,8 +200,8 @@ template <class S> struct EdgeLine {
 
 } // namespace overlap_detail
 
-/// Of outlines placed about one origin. `stiffness` k in N/m², `dissipation` α in s/m. The volume is that of the whole roof only
-/// if `is_whole`; else cells that no force is asked of are left out.
+/// Returns the forces for outlines placed about one origin. `stiffness` k in N/m², `dissipation` α in s/m. `volume` is complete only with
+/// `is_whole`; otherwise cells that contribute no force are skipped.
 template <class S>
 OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>& b, const RelativeVelocity<S>& velocity, double stiffness,
                               double dissipation, bool is_whole = false) {
@@ -215,7 +221,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   }
   CutRing<S>& overlap = rings[now];
   if (overlap.size < 3) return result;
-  const Pair<S> origin = overlap.corner[0]; // thin as it is, it is measured from a corner of its own
+  const Pair<S> origin = overlap.corner[0]; // relative to one of its corners, for accuracy of thin overlaps
   for (int i = 0; i < overlap.size; ++i) overlap.corner[i] = overlap.corner[i] - origin;
   const Pair<S> u = velocity.u + velocity.spin * perp(origin);
   RoomFor<S, EdgeLine<S>, k_most_ring> line;
@@ -227,7 +233,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     line[i].normal = is_a ? a.normal[edge] : b.normal[edge - a.edge_count];
     line[i].offset = (is_a ? a.offset[edge] : b.offset[edge - a.edge_count]) - dot(line[i].normal, origin);
   }
-  CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the one written last
+  CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the ring written last
   const S k(stiffness), alpha(dissipation);
   result.is_swallowed = of_a == 0 || of_a == overlap.size;
   const bool is_from_a = 2 * of_a < overlap.size;
@@ -244,7 +250,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
       source = cell;
     }
     if (source == &overlap || source->size < 3) continue;
-    const Pair<S> n = S(is_a ? -1.0 : 1.0) * line[i].normal; // along which a is pushed
+    const Pair<S> n = S(is_a ? -1.0 : 1.0) * line[i].normal; // direction of the force on a
     const auto whole = overlap_detail::sums_of(*cell, n);
     const S closing = -dot(u, n), turning = -velocity.spin; // c = closing + turning τ
     result.volume += line[i].offset * whole.area + (is_a ? whole.along : -whole.along);
@@ -257,7 +263,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     cut(*cell, pressure, -1, *spare);
     const auto part = overlap_detail::sums_of(*spare, n);
     const S rest = S(1) + alpha * closing, slope = alpha * turning;
-    // What the dissipation adds; nothing, to the last bit, at rest.
+    // Contribution of the dissipation; exactly zero at rest.
     const S f = rest * part.area + slope * part.across - whole.area, m = rest * part.across + slope * part.across2 - whole.across;
     result.force = result.force + (k * f) * n;
     moment += k * m;

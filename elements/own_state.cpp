@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* k_reserved[] = {"value", "rate", "t", "pi"};
 
-// Formulas have to tell it from what stands around it.
+// Checks that formulas can distinguish the name from operators and numbers.
 void check_state(const OwnState& state) {
   const auto fail = [&](const char* field, const std::string& message) {
     throw ModelError(state.place(field), "state '" + state.name + "': " + message);
@@ -57,7 +57,7 @@ void compile_state(const Element& element, SystemBuilder& builder) {
                       [inner_at = place.inner, shown](const Snapshot& s) { return shown * s.evaluation->inner[inner_at]; });
 }
 
-// What a table becomes; no element of a file is of this kind.
+// Kind of the element made from the table; elements in files cannot have this kind.
 const ElementKind& compiled_kind() {
   static const ElementKind kind = [] {
     ElementKind k;

@@ -1,11 +1,11 @@
-// `[[state]]`: a differential equation of the model's own (mbd/system/own_states.h).
+// Model table `[[state]]`: a variable with its own differential equation (mbd/system/own_states.h).
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// The table as a file has it; completion makes an element of it.
+/// Returns the kind of table; completion makes an element of each table.
 [[nodiscard]] const TableKind& own_state_kind();
 
 } // namespace steplap

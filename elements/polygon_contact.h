@@ -1,16 +1,15 @@
-// Polygon contact: the convex outline of a against that of b, or against a half-plane of b (the ground). Boxes stack, tip and
-// fall: corners and edges touch wherever they come, nothing is said beforehand of feet.
+// Contact of the convex outline of a with that of b, or with a half-plane of b (the ground), for boxes that stack, tip and fall. Contact
+// points result from the motion and need not be defined.
 //
-// Normal force: outline_overlap.h, from an energy of the overlap; one contact for the whole overlap, which of two convex
-// outlines is one piece. It is open, or pressed while no face of one has the other before it.
+// Normal force: from an energy of the overlap (outline_overlap.h). The overlap of two convex outlines is one piece and makes one contact.
+// It is open if a face of one outline separates them, otherwise pressed.
 //
-// Friction, if given, sticks exactly along one row, as coulomb_stick does: the touching parts of both bodies lie on one line, so
-// that one tangential coordinate serves them and no load has to be shared between corners. The line is that face, of
-// either body, which the other enters least; the point that is held on it belongs to the other body: its corner behind the
-// face, or the middle of the edge both corners of which are. Both change with located events ("changes foot"). A face keeps
-// its part until it is entered twice as deep as another, so that a tie does not go to and fro.
+// Friction, if given, sticks exactly along one row, as in coulomb_stick. The touching parts of both bodies are on one line, so that a
+// single tangential coordinate is sufficient. The line is the face, of either body, with the least penetration. The contact point belongs
+// to the other body: the corner behind the face, or the middle of the edge if both its corners are. Changes of face or point are events
+// ("changes foot"). A face is kept until its penetration is twice that of another, which prevents alternation between equal faces.
 //
-// Valid while overlaps are small against the parts: beyond half of the thickness the way out is another one.
+// Valid for overlaps that are small compared with the parts; beyond half of the thickness the force pushes the wrong way.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -23,8 +22,8 @@ namespace steplap {
 
 struct PolygonContact : Element {
   std::string a, b = "ground";
-  std::vector<Vec2> outline_a, outline_b; ///< in the markers' axes; empty: the body's own
-  std::optional<Vec2> normal;             ///< b is the half-plane behind the line through marker b
+  std::vector<Vec2> outline_a, outline_b; ///< m, in the markers' axes; empty: outline of the body
+  std::optional<Vec2> normal;             ///< b is the half-plane behind the line through marker b with this normal
   double stiffness = 0.0;                 ///< N/m²
   double dissipation = 0.0;               ///< Hunt–Crossley α
   std::optional<double> static_friction, kinetic_friction;

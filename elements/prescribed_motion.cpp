@@ -16,8 +16,8 @@ DriveLevel level_of(const std::string& as) {
   return as == "velocity" ? DriveLevel::velocity : DriveLevel::acceleration;
 }
 
-// A coordinate of a body's own centre of gravity against the ground's axes can be locked instead of
-// held by a row: 0, 1, 2 for x, y, θ, else −1.
+// A coordinate of a body's centre of gravity relative to the ground axes can be locked instead of being constrained by a row. Returns 0, 1,
+// 2 for x, y, θ, or −1.
 int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
   if (a.body == k_ground || row.b != k_ground || row.kind == MeasureKind::distance) return -1;
   if (row.kind == MeasureKind::angle) return 2;
@@ -26,7 +26,7 @@ int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
   return row.direction == Vec2(0.0, 1.0) ? 1 : -1;
 }
 
-// A velocity that jumps is an impact, which a drive is not made for: what hangs on it by joints would have to jump too.
+// A jump of velocity is an impact. A drive cannot follow it, since everything connected by joints would have to jump, too.
 std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
   const std::string what = jump.is_of_rate ? "the rate of signal '" : "signal '";
   const std::string moved = !jump.is_of_rate && e.as == "position" ? "body" : "body's velocity";
@@ -37,14 +37,14 @@ std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
          " at t = " + number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;
 }
 
-// Poses are given to a few digits; what is further off is no rounding of them.
+// Returns true if the difference is more than rounding of a pose given with few digits.
 bool jumps(double now, double wanted) {
-  constexpr double k_rough = 1e-3, k_rounding = 1e-9; // of the coordinate; m, rad
+  constexpr double k_rough = 1e-3, k_rounding = 1e-9; // relative to the coordinate; m, rad
   return std::abs(wanted - now) > std::max(k_rounding, k_rough * std::max(std::abs(now), std::abs(wanted)));
 }
 
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
-  if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // a sine's rounding
+  if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // below the rounding error of a sine
   const std::string unit = row.kind == MeasureKind::angle ? " rad" : " m";
   std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " + number_text(wanted) + unit +
                      " at t = 0: the body would have to jump. ";
@@ -73,7 +73,7 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end)) return builder.error(jump_message(e, *jump));
   const double now = evaluate_row<false>(row, &builder.reference(0)).value;
   const double base = e.zero == "reference" ? now : 0.0;
-  if (row.level == DriveLevel::position) // wherever the model comes from: a start would move the body there without a word
+  if (row.level == DriveLevel::position) // also for a position relative to the reference pose: a start would move the body without notice
     if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
   row.memory = builder.add_memory(base);
   const int r = builder.next_row();

@@ -1,11 +1,9 @@
-// Prescribed motion: a coordinate of a against b follows a signal, exactly.
+// Prescribed motion: a coordinate of a relative to b follows a signal exactly.
 //
-// The signal gives the coordinate's acceleration, velocity or position; the others are its exact
-// integrals and derivatives (signal.h), starting from the initial pose (acceleration: and velocity). A position is the
-// coordinate itself, or what it is beyond its value in the reference pose; where the reference pose is not where the
-// signal begins, the body would have to jump there, which
-// compile() refuses.
-// The multiplier is the force or couple on a that it takes (the brake force, say).
+// The signal is the acceleration, velocity or position; the others are its exact integrals and derivatives (signal.h). An acceleration
+// starts from the initial position and velocity, a velocity from the initial position. A position is the coordinate itself, or its
+// difference to the reference pose. If the reference pose does not agree with the start of a position signal, compile() reports an error,
+// since the body would have to jump. The multiplier is the required force or moment on a, for example the braking force.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -14,10 +12,10 @@ namespace steplap {
 
 struct PrescribedMotion : Element {
   std::string a, b = "ground";
-  std::string coordinate = "x"; ///< x, y (marker b's axes), angle, distance
+  std::string coordinate = "x"; ///< x, y (marker b's axes), angle or distance
   std::string signal;
   std::string as = "acceleration";
-  std::string zero = "origin"; ///< of a position: the coordinate's own, or "reference", its value in the reference pose
+  std::string zero = "origin"; ///< zero of a position: "origin" of the coordinate, or "reference" for its value in the reference pose
 };
 
 [[nodiscard]] const ElementKind& prescribed_motion_kind();

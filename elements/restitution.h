@@ -1,12 +1,13 @@
-// The damper of a Kelvin–Voigt contact that gives a coefficient of restitution.
+// Damping coefficient of a Kelvin–Voigt contact for a given coefficient of restitution.
 //
-// Two bodies of effective mass m that meet by a spring k and a damper c which never pulls part where the force has fallen to zero,
-// with the share of the closing speed that Schwager and Pöschel (Granular Matter 9, 2007) found. With ζ = c/(2 √(k m)) it is
-//   e = exp(−2ζ/√(1 − ζ²) · arccos ζ),   for ζ > 1: exp(−2ζ/√(ζ² − 1) · arcosh ζ),
-// whatever the speed. Other forces during the blow, such as the weight, are left out: they count the less, the stiffer the contact.
+// Two bodies of effective mass m collide with spring k and damper c, whose force cannot pull, and separate where the force becomes zero.
+// The ratio of separation to approach speed (T. Schwager, T. Pöschel, Granular Matter 9, 2007) depends only on ζ = c/(2 √(k m)):
 //
-// The effective mass is that of the two bodies alone in the reference pose, 1/(J M⁻¹ Jᵀ) with the gradient J of the gap (27). What
-// else holds them, joints, welds and springs, does not count.
+//   e = exp(−2ζ/√(1 − ζ²) · arccos ζ),   for ζ > 1: exp(−2ζ/√(ζ² − 1) · arcosh ζ).
+//
+// Other forces during the collision, such as weight, are neglected; their influence decreases with the stiffness of the contact. The
+// effective mass is that of the two bodies alone in the reference pose, 1/(J M⁻¹ Jᵀ) with the gradient J of the gap (27). Joints, welds and
+// springs that hold the bodies are not considered.
 #pragma once
 
 #include "mbd/system/row_gradient.h"
@@ -17,14 +18,15 @@
 
 namespace steplap {
 
-/// e, 0 to 1, of a contact with the damping ratio ζ ≥ 0.
+/// Returns e, 0 to 1, for the damping ratio ζ ≥ 0.
 [[nodiscard]] double restitution_of(double damping_ratio);
-/// c, N s/m, for e in (0, 1]; `stiffness`: N/m; `mass`: kg, effective.
+/// Returns c, N s/m, for e in (0, 1]; `stiffness` in N/m, effective `mass` in kg.
 [[nodiscard]] double damping_for_restitution(double restitution, double stiffness, double mass);
-/// kg (kg m² of a gap that is an angle); infinite where neither body can move along it.
+/// Returns the effective mass, kg (kg m² if the gap is an angle); infinite if neither body can move along it.
 [[nodiscard]] double effective_mass(const RowGradient<double>& gradient, int a, int b, const SystemBuilder& builder);
 
-/// c of a contact that closes along `measure`: as given, or by its restitution, of which an error is noted if no body can move.
+/// Returns c of a contact that closes along `measure`: as given, or from its restitution. Reports an error if neither body can move along
+/// it.
 template <class Measure>
 [[nodiscard]] double contact_damping(double damping, const std::optional<double>& restitution, double stiffness, int a, int b,
                                      const Measure& measure, SystemBuilder& builder) {

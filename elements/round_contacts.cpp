@@ -80,7 +80,7 @@ RowSpec roll_row(const RoundContact& e, const SystemBuilder& builder) {
   return row;
 }
 
-// The direction of a from b's centre in the reference pose, in b's frame.
+// Returns the unit vector from marker b to marker a in the reference pose, in the frame of body b; (1, 0) if they coincide.
 Vec2 start_of(const RowSpec& row, const SystemBuilder& builder) {
   const Motion<double>&a = builder.reference(row.a), &b = builder.reference(row.b);
   const Vec2 centre = Vec2(a.x - b.x, a.y - b.y) + rotated(row.point_a, a.theta);

@@ -1,8 +1,5 @@
-// Distances of round things, for LawGroup: between two circles, and of a circle from a line segment.
-//
-// Gap = value − offset with the radii in the law's offset. Both are distances of a's point p (the circle's
-// centre), so that the force passes through it; undefined where that distance is zero, which is a penetration
-// by the whole radius.
+// Distances of circles and segments, for LawGroup. The gap is value − offset, with the radii in the law's offset. The distance is that of
+// a's point p (the circle's centre), through which the force passes. It is undefined at zero distance, a penetration by the whole radius.
 #pragma once
 
 #include "mbd/system/gap_source.h"
@@ -10,7 +7,7 @@
 
 namespace steplap {
 
-/// −|p_A − p_B|: a circle of a inside a ring of b.
+/// Value −|p_A − p_B|: a circle of a inside a ring of b.
 struct InsideMeasure {
   Vec2 point_a, point_b;
   template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
@@ -23,17 +20,16 @@ struct InsideMeasure {
   }
 };
 
-/// Which part of a segment is nearest to p: one of its sides, or an end.
+/// Part of a segment that is nearest to p: one of its sides or ends.
 enum class SegmentPart : unsigned char { left, right, from, to };
 
-/// Distance of p from the segment of b that runs along `tangent` from `from`: across it between its ends, from
-/// the nearer end beyond them. Its gradient is continuous.
+/// Distance of p from the segment of b that begins at `from` and runs along `tangent`. The gradient is continuous.
 struct SegmentMeasure {
-  Vec2 point_a, from, tangent; ///< in the frames of a, b, b
+  Vec2 point_a, from, tangent; ///< in the frames of a, b and b
   double length = 0.0;
 
   [[nodiscard]] Vec2 to() const { return from + length * tangent; }
-  /// p's coordinate along the segment; and across, positive on the left.
+  /// Returns the coordinates of p along the segment and across it (positive on the left), m.
   template <class S, class B> STEPLAP_INLINE Pair<S> place(const Motion<S>& a, const B& b) const {
     const Pair<S> start = to_ground(b, from), t = to_ground(b, tangent);
     const Pair<S> d = offset(a, b) + to_ground(a, point_a) - start;
@@ -60,7 +56,7 @@ struct SegmentMeasure {
 [[nodiscard]] inline Turning turning_of(const InsideMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 [[nodiscard]] inline Turning turning_of(const SegmentMeasure& m) { return {moves_by_turning(m.point_a), true}; }
 
-/// A circle inside a ring has nowhere to go through.
+/// A circle cannot pass through the ring that encloses it.
 inline GapBounds gap_bounds(const InsideMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   GapBounds bounds = gap_bounds(DistanceMeasure{measure.point_a, measure.point_b}, 0.0, a, b);
   bounds.gap = -bounds.gap - offset;
@@ -69,7 +65,7 @@ inline GapBounds gap_bounds(const InsideMeasure& measure, double offset, const M
   return bounds;
 }
 
-/// `offset` is what circle and segment are thick together, from the middle of each.
+/// `offset` is the radius of the circle plus half the thickness of the segment.
 inline GapBounds gap_bounds(const SegmentMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   const auto m = measure.at<false, double>(a, b);
   GapBounds bounds;

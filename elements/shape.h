@@ -1,4 +1,4 @@
-// [[shape]]: a body's mass, centre of gravity and inertia from its outline.
+// Model table [[shape]]: mass, centre of gravity and inertia of a body from its outline.
 //
 //   [[shape]]
 //   name = "plate"
@@ -9,11 +9,13 @@
 //   density = "7850 kg/m^3"
 //   thickness = "20 mm"
 //
-// A shape is one area in the body's frame, an outline or a disc, with holes, and of one mass per area. Shapes of a body add up, also
-// where they lie one on the other. What the body gives itself holds; the rest comes from its shapes: of a given mass the inertia is
-// the shapes', in proportion. By Green's theorem an area's moments are sums over its edges,
+// A shape is an area in the body's frame, an outline or a disc, with holes and a uniform mass per area. Shapes of one body add up, even
+// where they overlap. Values that the body gives itself have priority; the rest is computed from its shapes; for a given mass the inertia
+// is scaled accordingly. The moments of an area are sums over its edges (Green's theorem):
+//
 //   A = ½ Σ c,  A x = ⅙ Σ (p_x + q_x) c,  J = 1/12 Σ (p·p + p·q + q·q) c,   c = p × q for an edge from p to q,
-// here about the ring's first corner, so that no digits are lost far from the origin; a disc has A = π d²/4, J = A d²/8.
+//
+// relative to the ring's first corner, so that no accuracy is lost far from the origin. A disc has A = π d²/4, J = A d²/8.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -26,34 +28,35 @@ namespace steplap {
 
 struct BodyShape : TableObject {
   std::string body;
-  std::vector<Vec2> outline;            ///< m, body frame; empty: the body's
-  Vec2 centre = Vec2::Zero();           ///< m, of a disc
-  std::optional<double> diameter;       ///< m, of a disc
-  std::vector<std::vector<Vec2>> holes; ///< m, rings of corners, either sense
-  std::vector<Vec2> hole_centres;       ///< m, of round holes
-  std::vector<double> hole_diameters;   ///< m, one for all or one for each
-  std::optional<double> density;        ///< kg/m³, with thickness
+  std::vector<Vec2> outline;            ///< m, body frame; empty: outline of the body
+  Vec2 centre = Vec2::Zero();           ///< centre of a disc, m
+  std::optional<double> diameter;       ///< diameter of a disc, m
+  std::vector<std::vector<Vec2>> holes; ///< rings of corners, m, in either order
+  std::vector<Vec2> hole_centres;       ///< centres of round holes, m
+  std::vector<double> hole_diameters;   ///< m, one for all holes or one for each
+  std::optional<double> density;        ///< kg/m³, requires thickness
   std::optional<double> thickness;      ///< m
   std::optional<double> area_density;   ///< kg/m²
-  std::optional<double> mass;           ///< kg, of the shape without its holes
+  std::optional<double> mass;           ///< mass of the shape without its holes, kg
 };
 
-/// Of a body: its mass, centre of gravity in its frame, and inertia about that.
+/// Mass, kg, centre of gravity, m, in the body's frame, and inertia about it, kg m².
 struct MassOfShapes {
   double mass = 0.0;
   Vec2 centre = Vec2::Zero();
   double inertia = 0.0;
 };
 
-/// Of all shapes of the body. Nothing if it has none. `given_mass` is what a shape that says nothing of its mass has, if it is the only
-/// one. Throws ModelError for shapes that are none, or that do not say what they weigh.
+/// Returns the sum of all shapes of the body, or nothing if it has none. `given_mass` is the mass of a single shape without mass of its
+/// own. Throws ModelError for invalid shapes, or if a mass is missing.
 [[nodiscard]] std::optional<MassOfShapes> mass_of_shapes(const Model& model, const Body& body, double given_mass);
 
+/// A contradiction between the values of a body and those of its shapes.
 struct ShapeRemark {
   Location where;
   std::string text;
 };
-/// Of a completed model: what bodies give themselves and their shapes make otherwise, by more than a hundredth.
+/// Returns remarks for all bodies of a completed model whose given values differ from those of their shapes by more than 1 %.
 [[nodiscard]] std::vector<ShapeRemark> contradicted_shapes(const Model& model);
 
 [[nodiscard]] const TableKind& shape_kind();

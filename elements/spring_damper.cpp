@@ -14,7 +14,7 @@ bool is_increasing(const std::vector<Vec2>& table) {
   return true;
 }
 
-// `free`, `table`: what the fields are called.
+// `free` and `table` are the names of the fields.
 bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'",
            const std::string& table = "'force_table'") {
   const auto fails = [&builder](bool is_wrong, const std::string& message) {

@@ -1,4 +1,4 @@
-// Laws of springs and dampers for LawGroup: linear, with a dead band, and from tables, straight between points or smooth.
+// Spring and damper laws for LawGroup: linear, with a dead band, and tabulated (piecewise linear or smooth).
 #pragma once
 
 #include "mbd/system/law_group.h"
@@ -22,8 +22,8 @@ struct LinearSpring {
   [[nodiscard]] double energy(double value) const { return 0.5 * k * (value - free) * (value - free); }
 };
 
-/// No force within ± half a gap around the free length, neither elastic nor damping; beyond it a spring
-/// and damper from the band's edge on. Modes: 0 below, 1 inside, 2 above the band.
+/// Linear spring and damper with a dead band of half_gap on both sides of the free length, within which the force is zero. Outside,
+/// elongation is measured from the edge of the band. Modes: 0 below, 1 inside, 2 above the band.
 struct GapSpring {
   static constexpr int k_watches = 2;
   static constexpr bool k_is_contact = false;
@@ -60,10 +60,10 @@ struct GapSpring {
   static EventKind transition(UnitMode, UnitMode to) { return to == 1 ? EventKind::enters_gap : EventKind::closes_gap; }
 };
 
-/// Piecewise linear characteristic y(x), continued with its end slopes.
+/// Piecewise linear function y(x), extrapolated with the slopes at its ends.
 class PiecewiseLinear {
 public:
-  static constexpr std::size_t k_most_points = 1U << 16U; ///< two segments fit into a UnitMode
+  static constexpr std::size_t k_most_points = 1U << 16U; ///< two segment indices must fit into a UnitMode
 
   PiecewiseLinear() = default;
   explicit PiecewiseLinear(std::vector<Vec2> points) : points_(std::move(points)) {
@@ -83,7 +83,7 @@ public:
         std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
     return static_cast<int>(after - points_.begin()) - 1;
   }
-  /// The segment that follows `segment` on one side; a jump of x may have left more than one behind.
+  /// Returns the segment after `segment` on one side. If x has jumped several segments are skipped.
   [[nodiscard]] int segment_beyond(int segment, bool is_above, double x) const {
     const int now = segment_at(x);
     return is_above ? std::min(std::max(segment + 1, now), segments() - 1) : std::max(std::min(segment - 1, now), 0);
@@ -96,7 +96,7 @@ public:
   [[nodiscard]] double slope(int s) const {
     return points_.size() < 2 ? 0.0 : (points_[s + 1].y() - points_[s].y()) / (points_[s + 1].x() - points_[s].x());
   }
-  /// ∫ from 0 to x.
+  /// Returns ∫ y dx from 0 to x.
   [[nodiscard]] double integral(double x) const { return primitive(x) - at_zero_; }
 
 private:
@@ -107,21 +107,21 @@ private:
     return primitive_[s] + d * (points_[s].y() + 0.5 * slope(s) * d);
   }
   std::vector<Vec2> points_;
-  std::vector<double> primitive_; ///< from the first point to each
+  std::vector<double> primitive_; ///< integral from the first point to each point
   double at_zero_ = 0.0;
 };
 
-/// Of a curve y(x) at one place.
+/// Value and derivatives of a curve y(x) at one point.
 template <class S> struct CurveJet {
   S value{0.0}, slope{0.0}, curvature{0.0}; ///< y, y′, y″
 };
 
-/// Smooth characteristic y(x) through points: the cubic spline that has two continuous derivatives and no curvature at its ends, beyond
-/// which it goes on straight.
+/// Smooth function y(x) through points: the natural cubic spline (continuous second derivative, zero curvature at both ends), extrapolated
+/// linearly.
 class SmoothCurve {
 public:
   SmoothCurve() = default;
-  /// At least two points, ascending in x.
+  /// Requires at least two points in ascending order of x.
   explicit SmoothCurve(std::vector<Vec2> points) : points_(std::move(points)) {
     find_curvatures();
     primitive_.resize(points_.size());
@@ -138,7 +138,7 @@ public:
     if (value_of(d) > width) return S(points_[i + 1].y()) + S(end_slope(c, width)) * (d - S(width));
     return S(points_[i].y()) + d * (S(c.slope) + d * (S(0.5 * curvature_[i]) + d * S(c.cubic)));
   }
-  /// The value with two derivatives.
+  /// Returns the value with two derivatives.
   template <class S> [[nodiscard]] CurveJet<S> jet(const S& x) const {
     const std::size_t i = piece_at(value_of(x));
     const Coefficients c = coefficients(i);
@@ -150,18 +150,18 @@ public:
             S(c.slope) + d * (S(curvature_[i]) + d * S(3.0 * c.cubic)), S(curvature_[i]) + d * S(6.0 * c.cubic)};
   }
   [[nodiscard]] const std::vector<Vec2>& points() const { return points_; }
-  /// ∫ from 0 to x.
+  /// Returns ∫ y dx from 0 to x.
   [[nodiscard]] double integral(double x) const { return primitive(x) - at_zero_; }
 
 private:
   struct Coefficients {
     double slope = 0.0, cubic = 0.0; ///< y′ at the left end of the piece; y‴/6
   };
-  // y″ at the points: from the continuity of y′ at each of those inside, by elimination along the diagonal.
+  // Computes y″ at the points from the continuity of y′, a tridiagonal system.
   void find_curvatures() {
     const std::size_t n = points_.size();
     curvature_.assign(n, 0.0);
-    std::vector<double> above(n, 0.0); // what is left of the upper diagonal
+    std::vector<double> above(n, 0.0); // remaining upper diagonal
     for (std::size_t i = 1; i + 1 < n; ++i) {
       const double left = points_[i].x() - points_[i - 1].x(), right = points_[i + 1].x() - points_[i].x();
       const double bend = (points_[i + 1].y() - points_[i].y()) / right - (points_[i].y() - points_[i - 1].y()) / left;
@@ -176,7 +176,7 @@ private:
     return {(points_[i + 1].y() - points_[i].y()) / width - width * (2.0 * curvature_[i] + curvature_[i + 1]) / 6.0,
             (curvature_[i + 1] - curvature_[i]) / (6.0 * width)};
   }
-  /// y′ at the right end of the last piece, whose curvature is zero there.
+  /// Returns y′ at the right end of the last piece, where the curvature is zero.
   [[nodiscard]] double end_slope(const Coefficients& c, double width) const {
     return c.slope + width * (curvature_[curvature_.size() - 2] + 3.0 * c.cubic * width);
   }
@@ -186,7 +186,7 @@ private:
         std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
     return static_cast<std::size_t>(after - points_.begin()) - 1;
   }
-  /// ∫ over the first d of piece i, within it.
+  /// Returns ∫ y dx over the first d of piece i.
   [[nodiscard]] double from_left(std::size_t i, double d) const {
     const Coefficients c = coefficients(i);
     return d * (points_[i].y() + d * (c.slope / 2.0 + d * (curvature_[i] / 6.0 + d * c.cubic / 4.0)));
@@ -201,11 +201,11 @@ private:
   }
   std::vector<Vec2> points_;
   std::vector<double> curvature_; ///< y″ at each point
-  std::vector<double> primitive_; ///< from the first point to each
+  std::vector<double> primitive_; ///< integral from the first point to each point
   double at_zero_ = 0.0;
 };
 
-/// f = −T(value − free) − D(rate) with smooth curves T, D: it has one mode and makes no events.
+/// f = −T(value − free) − D(rate) with smooth curves T, D. It has a single mode and no events.
 struct SmoothSpring {
   static constexpr int k_watches = 0;
   static constexpr bool k_is_contact = false;
@@ -215,10 +215,10 @@ struct SmoothSpring {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode) const {
     return S(-count) * (spring.value(value - S(free)) + damper.value(rate));
   }
-  // Of doubles alone: which piece holds is not written down.
+  // For double only, since a tape could not record the choice of the piece.
   [[nodiscard]] double elastic_force(double value, UnitMode) const { return -count * spring.value(value - free); }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
-  /// Returns the knots of the curve over the angle that it depends on.
+  /// Returns the knots of the curve over the relative angle.
   [[nodiscard]] std::vector<TurnKnots> knots() const {
     TurnKnots knots{-free, {}};
     for (const Vec2& point : spring.points()) knots.at.push_back(point.x());
@@ -226,10 +226,9 @@ struct SmoothSpring {
   }
 };
 
-/// f = −T(value − free) − D(rate) with tables T, D; the mode is the pair of segments. Only the ends of the present
-/// segments are watched, so that a step costs the same however long the tables are. A segment goes on beyond its ends by what
-/// value and rate are not known to: between bodies that joints hold to each other they are rounding, and where that lies at
-/// a kink it would be passed without end.
+/// f = −T(value − free) − D(rate) with tables T, D. The mode is the pair of segments. Event functions are the ends of the present segments
+/// only, so that the cost of a step does not depend on the length of the tables. Segments are extended by the rounding errors of value and
+/// rate: a coordinate held by joints varies by rounding, and if it were exactly at a kink the kink would be passed endlessly.
 struct TabulatedSpring {
   static constexpr int k_watches = 4;
   static constexpr bool k_watches_beyond_rounding = true;

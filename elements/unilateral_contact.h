@@ -1,11 +1,9 @@
-// Unilateral contact: a marker on a against a line on b (feet plates, wooden blocks; the H(−δ) terms of
-// Eqs. (2), (4)).
+// Unilateral contact of a marker on a with a line on b, for feet, plates, wooden blocks (the H(−δ) terms of Eqs. (2), (4)).
 //
-// Gap δ = n·(p_A − p_B)/(n·a) − offset, closed when δ < 0; the force n/(n·a) acts at the tip p_A − δ a.
-// The contact axis a is the normal itself, or fixed in body a (a shaft whose tip rests on b's line: the
-// foot of Eq. 8). Laws: Kelvin–Voigt without adhesion f = max(0, −kδ − cδ̇); the paper's literal
-// f = −kδ − cδ̇, which may pull; Hunt–Crossley f = k|δ|ⁿ(1 − α δ̇). Source: physics.md §2.
-// The line is endless, or a face from ends[0] to ends[1] of the coordinate along t = (n_y, −n_x) from marker b.
+// Gap δ = n·(p_A − p_B)/(n·a) − offset, contact for δ < 0; the force acts at the tip p_A − δ a along n/(n·a). The contact axis a is the
+// normal, or fixed in body a (a shaft whose tip is on b's line, as the foot of Eq. 8). Laws: Kelvin–Voigt without adhesion f = max(0, −kδ −
+// cδ̇); the paper's f = −kδ − cδ̇, which may pull; Hunt–Crossley f = k|δ|ⁿ(1 − α δ̇). The line is infinite, or a face from ends[0] to
+// ends[1] of the coordinate along t = (n_y, −n_x) from marker b. Source: physics.md §2.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -17,27 +15,27 @@ class SystemBuilder;
 
 struct UnilateralContact : Element {
   std::string a, b = "ground";
-  Vec2 normal{0.0, 1.0};    ///< of the line, in marker b's axes, pointing at a
-  std::optional<Vec2> axis; ///< contact axis in marker a's axes
+  Vec2 normal{0.0, 1.0};    ///< normal of the line in marker b's axes, towards a
+  std::optional<Vec2> axis; ///< contact axis in marker a's axes; not given: the normal
   double stiffness = 0.0, damping = 0.0;
   std::string law = "kelvin_voigt";
-  std::optional<double> restitution;  ///< instead of damping (restitution.h)
+  std::optional<double> restitution;  ///< replaces damping (restitution.h)
   double exponent = 1.0;              ///< Hunt–Crossley n
   double dissipation = 0.0;           ///< Hunt–Crossley α
-  std::optional<double> preload;      ///< force in the reference pose
-  std::optional<double> interference; ///< −δ in the reference pose
-  std::optional<double> gap;          ///< δ in the reference pose
-  std::optional<Vec2> ends;           ///< where the face ends, along it from marker b (ended_contact.h)
+  std::optional<double> preload;      ///< force in the reference pose, N
+  std::optional<double> interference; ///< −δ in the reference pose, m
+  std::optional<double> gap;          ///< δ in the reference pose, m
+  std::optional<Vec2> ends;           ///< ends of the face, m, along it from marker b (ended_contact.h)
   long count = 1;
 };
 
-/// Bodies and geometry of a contact, for the friction that sits on it.
+/// Bodies and geometry of a contact, for friction elements that refer to it.
 struct ContactGeometry {
   int a = k_ground, b = k_ground;
   GapMeasure gap;
 };
 [[nodiscard]] ContactGeometry contact_geometry(const UnilateralContact& contact, const SystemBuilder& builder);
-/// c, N s/m, of all its elements: as given, or by its restitution, of which an error is noted if it cannot be.
+/// Returns c, N s/m, of all its parallel elements: as given, or from its restitution. Reports an error if that is impossible.
 [[nodiscard]] double damping_of(const UnilateralContact& contact, const ContactGeometry& geometry, SystemBuilder& builder);
 
 [[nodiscard]] const ElementKind& unilateral_contact_kind();

@@ -16,8 +16,8 @@ namespace {
 
 using Group = SlidingBandGroup;
 
-constexpr double k_shortest = 1e-6;    // of a free part in the reference pose, as of a rope's parts
-constexpr double k_least_angle = 1e-6; // rad: less is a band that does not reach its drum
+constexpr double k_shortest = 1e-6;    // smallest length of a free part, relative to its length in the reference pose; as for ropes
+constexpr double k_least_angle = 1e-6; // rad: with a smaller wrap angle the band does not touch its drum
 
 bool is_followed(SystemBuilder& builder) {
   const std::string& integrator = builder.model().simulation.integrator;
@@ -29,7 +29,7 @@ bool is_followed(SystemBuilder& builder) {
   return true;
 }
 
-// The centres must be so far apart that there is a tangent.
+// Returns false and reports an error if the centres are too close for a common tangent, that is not further apart than c.
 bool has_tangent(const CompiledMarker& wheel, const CompiledMarker& end, double c, const char* what, SystemBuilder& builder) {
   const double apart = (builder.marker_position(end) - builder.marker_position(wheel)).norm();
   if (apart > c && apart > 1e-12) return true;
@@ -48,7 +48,8 @@ Group::Part part_of(int drum, const CompiledMarker& end, const WoundMeasure& mea
   return part;
 }
 
-// Both parts with one tension, or with one pull less than none.
+// Sets the elongations at zero load so that in the reference pose both parts have the given pretension, or the band the given slack. The
+// slack is shared by the parts like an elongation, as if by an equal negative tension.
 void set_free_lengths(Group::Entry& entry, const std::optional<double>& pretension, const std::optional<double>& slack) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   const double pull = pretension ? *pretension : -slack.value_or(0.0) * k0 * k1 / (k0 + k1);
@@ -63,7 +64,7 @@ int add(Group& group, Group::Entry entry, SystemBuilder& builder) {
   return static_cast<int>(group.entries.size()) - 1;
 }
 
-// How much of what friction can hold the tensions take: 1 at the bound.
+// Returns ln(larger tension/smaller tension)/(μ α), the fraction of the friction capacity in use; 1 at the bound.
 double share_of(const Group::Flow<double>& flow) {
   const double least = std::min(flow.tension[0], flow.tension[1]), most = std::max(flow.tension[0], flow.tension[1]);
   if (!(most > 0.0)) return 0.0;
@@ -104,7 +105,8 @@ void compile_band(const Element& element, SystemBuilder& builder) {
   entry.time = e.damping / e.stiffness;
   entry.parts[0] = part_of(drum.body, a, {drum.point, a.point, e.radius, 0.0}, e.stiffness, builder);
   entry.parts[1] = part_of(drum.body, b, {drum.point, b.point, -e.radius, 0.0}, e.stiffness_b.value_or(e.stiffness), builder);
-  // From where it reaches the drum to where it leaves it: the parts' directions are at right angles to the radii there.
+  // Wrap angle between the points where the band reaches and leaves the drum. The radii there are perpendicular to the free parts, so the
+  // angle between radii follows from the directions of the parts.
   const Vec2 &first = entry.parts[0].measure.start, &second = entry.parts[1].measure.start;
   const double between = sense * portable::atan2(first.x() * second.y() - first.y() * second.x(), first.dot(second)) - std::numbers::pi;
   constexpr double k_turn = 2.0 * std::numbers::pi;
@@ -136,7 +138,7 @@ void compile_belt(const Element& element, SystemBuilder& builder) {
   if (a.body == b.body) return builder.error("joins a body with itself: name markers on two different bodies");
   const double far = e.crossed ? e.radius_b : -e.radius_b;
   const double c =
-      e.crossed ? e.radius_a + e.radius_b : std::max(e.radius_a, e.radius_b); // wheels of an open belt do not stand in each other
+      e.crossed ? e.radius_a + e.radius_b : std::max(e.radius_a, e.radius_b); // open belt: no centre may lie inside the other wheel
   if (!has_tangent(a, b, c, "the second wheel's centre", builder)) return;
   Group::Entry entry;
   entry.drum = a.body;

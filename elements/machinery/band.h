@@ -1,9 +1,9 @@
-// Bands and belts with friction e^{μα} (sliding_band.h): a rope round a bollard, a band brake, a belt between two wheels.
+// Bands and belts with friction e^{μα} (sliding_band.h): a rope around a bollard, a band brake, a belt between two wheels.
 //
-// A band runs from marker a to a drum, round it, and on to marker b. The angle α at which it lies on the drum follows the directions of its
-// free parts; whole turns besides are told. A belt runs round two wheels; its two free parts are straight tangents of both, and it slides on
-// the wheel where μ α is smaller. The parts stretch, what lies on a drum or wheel does not: the creep of an elastic belt, which turns a
-// driven wheel slower by some per mille, is left out, and so is the pull of a fast belt's own mass.
+// A band runs from marker a to a drum, around it, and on to marker b. The wrap angle α follows from the directions of its free parts, plus
+// the given number of whole turns. A belt runs around two wheels; its two free parts are common tangents, and it slides on the wheel with
+// the smaller μ α. Free parts are elastic, wrapped parts are not: the creep of an elastic belt, which slows the driven wheel by some tenths
+// of a percent, is neglected, and so is the centrifugal tension of a fast belt.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -12,11 +12,11 @@ namespace steplap {
 
 struct Band : Element {
   std::string a, b = "ground", drum = "ground"; ///< ends; centre of the drum
-  double radius = 0.0;                          ///< m, of the drum; negative where it goes round it clockwise on the way from a to b
-  long turns = 0;                               ///< whole ones, besides the angle that the drawing shows
-  double friction = 0.0;                        ///< μ
-  double stiffness = 0.0;                       ///< N/m, of the part at a
-  std::optional<double> stiffness_b;            ///< N/m; default: as at a
+  double radius = 0.0;                          ///< radius of the drum, m; negative if the band runs clockwise around it from a to b
+  long turns = 0;                               ///< whole turns in addition to the angle between the free parts
+  double friction = 0.0;                        ///< coefficient of friction μ
+  double stiffness = 0.0;                       ///< stiffness of the part at a, N/m
+  std::optional<double> stiffness_b;            ///< stiffness of the part at b, N/m; default: as at a
   double damping = 0.0;                         ///< N s/m, of the part at a; at b in proportion to the stiffness
   std::optional<double> pretension, slack;      ///< N, m, in the reference pose
 };
@@ -26,7 +26,7 @@ struct Belt : Element {
   double radius_a = 0.0, radius_b = 0.0; ///< m
   bool crossed = false;
   double friction_a = 0.0, friction_b = 0.0; ///< μ
-  double stiffness = 0.0, damping = 0.0;     ///< N/m, N s/m, of each free part
+  double stiffness = 0.0, damping = 0.0;     ///< of each free part, N/m and N s/m
   std::optional<double> pretension, slack;   ///< N, m, in the reference pose
 };
 

@@ -25,7 +25,7 @@ constexpr std::array<Material, 2> k_materials = {{
     {"aluminium", 70e9, 2700.0}, // EN 1999-1-1, 3.2.5
 }};
 
-/// What a beam is made of, all found.
+/// All values of a beam, given or computed.
 struct BeamValues {
   double length = 0.0; ///< m
   Vec2 along = Vec2::UnitX();
@@ -35,7 +35,7 @@ struct BeamValues {
   double damping_time = 0.0; ///< s
 };
 
-// One [[beam]] on its way into a model; says all that is wrong with it at once.
+// Expands one [[beam]]; collects all errors before it reports them.
 class BeamMaker {
 public:
   BeamMaker(const Beam& beam, Model& model) : beam_(beam), model_(model) {}
@@ -45,7 +45,9 @@ public:
     find_section();
     find_material();
     find_damping();
-    if (!problems_.empty()) values_ = {1.0, Vec2::UnitX(), 1.0, 1.0, {1.0, 1.0, 1.0}, 0.0}; // what else refers to it is no second error
+    if (!problems_.empty())
+      values_ = {1.0, Vec2::UnitX(), 1.0, 1.0, {1.0, 1.0, 1.0}, 0.0}; // dummy values, so that references to the beam cause no
+                                                                      // further errors
     for (long i = 0; i <= beam_.segments; ++i) add_segment(i);
     for (long i = 1; i <= beam_.segments; ++i) add_part(i);
     add_marker("start", 0, Vec2::Zero());
@@ -81,7 +83,7 @@ void BeamMaker::find_place() {
   values_.along = way / values_.length;
 }
 
-// Either by its shape or by its values; the height is for drawings alone.
+// From a shape or from values; the height is for drawings only.
 void BeamMaker::find_section() {
   const int shapes = int{!beam_.profile.empty()} + int{beam_.width || beam_.height} + int{beam_.diameter || beam_.wall};
   const bool has_values = beam_.area || beam_.second_moment;
@@ -218,7 +220,7 @@ const TableKind& beam_kind() {
     f.add("damping_frequency", &T::damping_frequency).in("Hz").positive().doc("where damping_ratio holds, for one that of the first mode");
     k.holds<T>();
     k.reads_masses = k.reads_elements = false;
-    k.apply = [](const Element&, Model&) {}; // all that it adds are bodies and what is between them
+    k.apply = [](const Element&, Model&) {}; // it adds only bodies and the elements between them
     return k;
   }();
   return kind;

@@ -1,32 +1,32 @@
-// `[[beam]]`: a straight elastic beam in the plane, made of rigid segments with elastic parts between them.
+// Model table `[[beam]]`: a straight elastic beam, made of rigid segments with elastic parts between them.
 //
-// n parts of length h = L/n. At the n + 1 places between and at the ends of the parts stands a rigid segment, h long, at the ends h/2,
-// and in the middle of each part a beam_part (beam_part.h) joins two of them. So deflections and slopes under loads at the segments' places are
-// those of the elastic line, exactly, for any n, as far as these are small; loads in between count as on the segment under them, with an
-// error of the order h². Each segment has the mass of its part of the beam and the moment of inertia of a straight rod and of its cross section,
-// m ℓ²/12 + ρ I ℓ: both add up to the beam's. Frequencies come out too low by the order h²: of a pinned beam by (j π/n)²/24 of the j-th.
-// Large turns are followed; what bends stays elastic. A force of compression buckles it, at Euler's load with an error of the order h⁴.
-// Damping: each part has dampers of τ times its stiffness; a mode of angular frequency ω is damped by the ratio τ ω/2.
+// The beam of length L is divided into n parts of length h = L/n. Each of the n + 1 nodes carries a rigid segment of length h (h/2 at the
+// ends), and in the middle of each part a beam_part (beam_part.h) connects two segments. Small deflections and slopes at the nodes under
+// loads at the nodes are exactly those of Euler–Bernoulli theory for any n. A load between nodes acts on the segment there, with an error
+// of order h². Each segment has the mass of its part of the beam and the moment of inertia of a straight rod plus that of its cross
+// section, m ℓ²/12 + ρ I ℓ; their sums are those of the beam. Natural frequencies are too low by order h²: for a pinned beam by (j π/n)²/24
+// in mode j. Large rotations are allowed; bending remains elastic. Compression leads to buckling at Euler's load with an error of order h⁴.
+// Damping: each part has dampers of τ times its stiffness; a mode of angular frequency ω has the damping ratio τ ω/2.
 #pragma once
 
 #include "mbd/model/body_builder.h"
 
 namespace steplap {
 
-/// One entry of [[beam]]. Its bodies are called "deck.0" … "deck.n", its parts "deck.part 1" … "deck.part n" and its end markers, whose
-/// x axes point along the beam, "deck.start" and "deck.end".
+/// One entry of [[beam]]. The beam "deck" has the bodies "deck.0" … "deck.n", the parts "deck.part 1" … "deck.part n", and the end markers
+/// "deck.start" and "deck.end", whose x axes point along the beam.
 struct Beam : BodyBuilder {
   Vec2 from = Vec2::Zero(), to = Vec2::Zero();                 ///< m
-  std::string frame = "ground";                                ///< axes of from and to: in a part those of the part
+  std::string frame = "ground";                                ///< axes of from and to; in a part of a file those of the part
   long segments = 10;                                          ///< n
-  std::optional<double> modulus, second_moment, area, density; ///< E, I, A, ρ
-  std::optional<double> mass_per_length;                       ///< kg/m, with what lies on the beam; instead of ρ
+  std::optional<double> modulus, second_moment, area, density; ///< E, I, A, ρ, SI units
+  std::optional<double> mass_per_length;                       ///< kg/m, including dead load; replaces ρ
   std::string material, profile;                               ///< "steel", "IPE 300"
-  std::optional<double> width, height;                         ///< m, of a rectangular section
-  std::optional<double> diameter, wall;                        ///< m, of a round one: the outer diameter
-  std::optional<double> shear_stiffness;                       ///< G A_s, N; not given: it does not shear
+  std::optional<double> width, height;                         ///< rectangular section, m
+  std::optional<double> diameter, wall;                        ///< round section, m: outer diameter and wall
+  std::optional<double> shear_stiffness;                       ///< G A_s, N; not given: no shear deformation
   std::optional<double> damping_time;                          ///< τ, s
-  std::optional<double> damping_ratio, damping_frequency;      ///< at a frequency in Hz
+  std::optional<double> damping_ratio, damping_frequency;      ///< damping ratio at a frequency in Hz, replaces τ
 
   void add_bodies(Model& model) const override;
 };

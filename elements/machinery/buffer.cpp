@@ -15,20 +15,20 @@ namespace {
 
 using CurveGroup = LawGroup<AxisMeasure, TabulatedSpring>;
 
-// Friction with the bound half of the distance between the curves. The bound's corners are those of the spring's table, whose
-// segments are modes of its unit: within a set of modes both are straight.
+// Friction whose bound is half of the distance between the curves. The bound and the spring's table have the same corners, which are
+// changes of the spring's mode; for a given mode both are linear.
 class BufferFriction final : public FrictionElement {
 public:
   RowSpec row;
-  PiecewiseLinear bound; ///< N, of what the row has grown since the buffer was free, as the spring's table
-  double free = 0.0;     ///< value of the row where it touches, m
-  int unit = 0;          ///< of the spring
+  PiecewiseLinear bound; ///< bound, N, as a function of the change of the row since the buffer was free, as in the spring's table
+  double free = 0.0;     ///< value of the row at first contact, m
+  int unit = 0;          ///< unit of the spring
 
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
-    return TabulatedSpring::spring_segment(e.mode[unit]) < bound.segments() - 1; // the last one is that of the open buffer
+    return TabulatedSpring::spring_segment(e.mode[unit]) < bound.segments() - 1; // the last segment is that of the open buffer
   }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * bound_at<double>(e);
@@ -58,7 +58,7 @@ public:
   }
 
 private:
-  // Past the ends of the segment it goes on straight, as the spring does: a step that will be cut there finds no corner.
+  // Continued linearly beyond the ends of the segment, like the spring, so that a step beyond the end meets no corner.
   template <class S> [[nodiscard]] S bound_at(const Evaluated<S>& e) const {
     const S value = evaluate_row<false>(row, e.motion[row.a], e.motion[row.b]).value;
     return bound.value(value - S(free), TabulatedSpring::spring_segment(e.mode[unit]));
@@ -68,7 +68,7 @@ private:
   }
 };
 
-// Straight between its points, and on beyond the last.
+// Linear interpolation, continued beyond the last point.
 double value_at(const std::vector<Vec2>& curve, double depth) {
   const auto next = std::find_if(curve.begin() + 1, curve.end() - 1, [depth](const Vec2& p) { return depth <= p.x(); });
   const Vec2 &low = *std::prev(next), &high = *next;
@@ -79,12 +79,12 @@ struct Curves {
   const std::vector<Vec2>&loading, &unloading;
 
   [[nodiscard]] double pressed_in(double depth) const { return value_at(loading, depth); }
-  /// Beyond its last point it keeps its distance from the loading curve, so that they do not cross there.
+  /// Beyond its last point the unloading curve keeps its distance from the loading curve, so that they do not cross.
   [[nodiscard]] double let_go(double depth) const {
     const Vec2& last = unloading.back();
     return depth > last.x() ? pressed_in(depth) - (pressed_in(last.x()) - last.y()) : value_at(unloading, depth);
   }
-  /// The depths at which one of them has a corner, from one beyond the deepest to that of touching.
+  /// Returns the depths of the corners of both curves, from beyond the deepest to first contact.
   [[nodiscard]] std::vector<double> corners() const {
     std::vector<double> depths;
     for (const std::vector<Vec2>* curve : {&loading, &unloading})
@@ -96,7 +96,7 @@ struct Curves {
   }
 };
 
-// As a table of the elongation −d: its last segment is that of the open buffer, without force.
+// Returns a table over the elongation −d. Its last segment is the open buffer, with zero force.
 template <class Force> PiecewiseLinear table(const std::vector<double>& depths, const Force& force) {
   std::vector<Vec2> points;
   for (const double depth : depths) points.emplace_back(-depth, depth > 0.0 ? force(depth) : 0.0);
@@ -127,7 +127,7 @@ bool check(const Buffer& e, const std::vector<Vec2>& unloading, SystemBuilder& b
   }
   if (!is_curve(e.loading, "loading", builder) || !is_curve(unloading, "unloading", builder)) return false;
   const Curves curves{e.loading, unloading};
-  for (const double depth : curves.corners()) // between them both are straight
+  for (const double depth : curves.corners()) // both are linear between corners
     if (!(curves.let_go(depth) <= curves.pressed_in(depth))) {
       builder.error("'unloading' lies above 'loading' at a depth of " + rounded_text(depth) +
                     " m, where it would give back more than it took");
@@ -147,7 +147,7 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
   const double free = now - e.gap, n = static_cast<double>(e.count);
   const Curves curves{e.loading, unloading};
   const std::vector<double> depths = curves.corners();
-  // A spring's force is minus its table's value.
+  // The force of a spring is the negative value of its table.
   const PiecewiseLinear middle = table(depths, [&](double d) { return -0.5 * n * (curves.pressed_in(d) + curves.let_go(d)); });
   const PiecewiseLinear without({{-1.0, 0.0}, {1.0, 0.0}});
 

@@ -1,9 +1,10 @@
-// Buffer or draw gear of a railway vehicle: pressed in it follows one curve, let go a lower one, and between the two it sticks.
+// Buffer or draw gear of a railway vehicle: its force follows one curve during compression, a lower one during release, and it sticks in
+// between.
 //
-// With d the depth, L(d) the loading and U(d) ≤ L(d) the unloading curve, it is the spring (L + U)/2 beside dry friction whose bound
-// is (L − U)/2: pressing, the force is L; let go, U; at rest it takes whatever lies between, exactly. So a wagon stands still between
-// its buffers under loads that change within these bounds, as ring springs and rubber do. The spring's energy counts as stored; the
-// friction's work is what a cycle loses, the area between the curves.
+// With d the compression, L(d) the loading and U(d) ≤ L(d) the unloading curve, it is a spring (L + U)/2 in parallel with dry friction of
+// bound (L − U)/2. The force is L during compression, U during release, and at rest exactly what equilibrium requires between them. A wagon
+// therefore stays at rest between its buffers under loads that vary within these bounds, as with ring springs and rubber. The spring's
+// energy is stored; the work of friction in a cycle is the area between the curves.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -14,10 +15,10 @@ namespace steplap {
 
 struct Buffer : Element {
   std::string a, b = "ground";
-  Vec2 axis{1.0, 0.0};         ///< in marker b's axes: the way in which a is pushed off
-  std::vector<Vec2> loading;   ///< (d, force), m and N, from (0, 0)
-  std::vector<Vec2> unloading; ///< the same while d falls; empty: as loading
-  double gap = 0.0;            ///< m, in the reference pose; negative: pressed in
+  Vec2 axis{1.0, 0.0};         ///< in marker b's axes: direction in which a is pushed away
+  std::vector<Vec2> loading;   ///< (d, force), m and N, beginning with (0, 0)
+  std::vector<Vec2> unloading; ///< the same for decreasing d; empty: as loading
+  double gap = 0.0;            ///< m, in the reference pose; negative: compressed
   long count = 1;
 };
 

@@ -19,9 +19,9 @@ namespace {
 
 struct CamEntry {
   int a = k_ground, b = k_ground, cam = k_ground;
-  AxisMeasure measure; ///< of a in b
+  AxisMeasure measure; ///< of a relative to b
   LiftCurve curve;
-  double zero = 0.0; ///< φ where θ_cam = θ_b
+  double zero = 0.0; ///< φ for θ_cam = θ_b
   KelvinVoigtContact law = {};
   bool holds = false;
   int unit = 0, watch = 0;
@@ -29,10 +29,10 @@ struct CamEntry {
   [[nodiscard]] std::array<int, 3> bodies() const { return {a, b, cam}; }
 };
 
-/// Gap and its rate, and what a unit force does.
+/// Gap, its rate, and the effect of a unit force.
 template <class S> struct CamGap {
   MeasureValue<S> m;             ///< of the follower alone
-  S value{0}, rate{0}, slope{0}; ///< slope: h'
+  S value{0}, rate{0}, slope{0}; ///< slope is h'
 };
 
 double with_slope(double, double value, double) { return value; }
@@ -136,7 +136,7 @@ public:
 private:
   [[nodiscard]] const Entry& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
   static UnitMode mode_of(const Entry& entry, const Evaluation& e) { return entry.holds ? k_contact_pressed : e.mode[entry.unit]; }
-  // The lift is as exact as its angle is, of many turns.
+  // The rounding error of the lift is that of the angle, which may be many turns.
   static double rounding_of(const Entry& entry, const CamGap<double>& gap, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b], &cam = e.motion[entry.cam];
     return value_rounding(gap.m, a, b) +
@@ -144,11 +144,11 @@ private:
   }
 };
 
-// The last point, where the first comes again a whole turn later, is often left out: of a table in even intervals, which has it one
-// interval after its last point, and of one that ends with the lift with which it begins, if what is left out is no wider than the
-// intervals that it has. Nothing where that is not so.
+// Adds the last point of a periodic table, which repeats the first after a whole turn and is often omitted: for a table in equal intervals
+// with one interval missing, and for a table whose last lift equals the first if the gap is no wider than its intervals. Returns nothing
+// otherwise.
 std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
-  constexpr double k_digits = 1e-3; // angles and lifts are written with three digits or more
+  constexpr double k_digits = 1e-3; // angles and lifts are given with at least three digits
   double widest = 0.0, narrowest = std::numeric_limits<double>::infinity(), low = points.front().y(), high = low;
   for (std::size_t i = 1; i < points.size(); ++i) {
     widest = std::max(widest, points[i].x() - points[i - 1].x());
@@ -165,7 +165,7 @@ std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
   return points;
 }
 
-// Nothing where something is wrong with it.
+// Returns the lift curve, or nothing after an error.
 std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   const auto fail = [&](const std::string& message) -> std::optional<LiftCurve> {
     builder.error(message);

@@ -1,10 +1,12 @@
-// Cam and follower: a marker is lifted along an axis by a curve of another body's angle.
+// Cam and follower: a marker is lifted along an axis by a function of another body's angle.
 //
 //   δ = e·(p_a − p_b) − h(φ) − c_0,   φ = θ_cam − θ_b + φ_0
-// is the gap between follower and cam, e fixed in b, which carries both. The force f ≥ 0 along e at a, its opposite at the same place of b, the
-// couple −f h' on the cam and its opposite on b: no power but f δ̇. f = max(0, −k δ − c δ̇) while δ < 0 (contact_laws.h), so that the follower
-// leaves the cam where its force ends, and comes back to it; with `holds` a groove holds it both ways and f = −k δ − c δ̇. h is the lift diagram:
-// what shape of cam and follower gives it is not asked, nor where on the cam the force acts. Friction on it is left out.
+//
+// is the gap between follower and cam, with e fixed in b, which supports both. The force f ≥ 0 acts along e on a at marker a, and in the
+// opposite direction on b at the same point; the moment −f h' acts on the cam and its opposite on b. The power of all forces is f δ̇. f =
+// max(0, −k δ − c δ̇) for δ < 0 (contact_laws.h), so that the follower separates when the force becomes zero. With `holds` (a groove) the
+// constraint acts in both directions, f = −k δ − c δ̇. h is the lift diagram; the shapes of cam and follower and the position of the
+// contact point are not considered, nor is friction.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -12,12 +14,12 @@
 namespace steplap {
 
 struct Cam : Element {
-  std::string a, b = "ground", cam; ///< follower; frame; body that turns
+  std::string a, b = "ground", cam; ///< follower; frame; rotating body
   Vec2 axis = Vec2::UnitY();        ///< in b's axes
-  std::vector<Vec2> lift;           ///< [angle, lift], rad, m
-  std::string formula;              ///< lift over the angle `value`; instead of points
-  double start_angle = 0.0;         ///< rad: φ in the reference pose
-  double gap = 0.0;                 ///< m, in the reference pose; negative: pressed
+  std::vector<Vec2> lift;           ///< [angle, lift], rad and m
+  std::string formula;              ///< lift as a formula of the angle, called `value`; replaces points
+  double start_angle = 0.0;         ///< φ in the reference pose, rad
+  double gap = 0.0;                 ///< m, in the reference pose; negative: compressed
   bool holds = false;
   double stiffness = 0.0, damping = 0.0; ///< N/m, N s/m
 };

@@ -13,7 +13,7 @@ namespace {
 constexpr double k_turn = 2.0 * std::numbers::pi;
 constexpr double k_turn_digits = 1e-9; // rad: digits of a file
 
-// h'' at the points from the continuity of h' at each; of a periodic curve the last point is the first again.
+// Computes h'' at the points from the continuity of h' at each. For a periodic curve the last point is the first one.
 std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
   const auto n = static_cast<Eigen::Index>(p.size()), count = is_periodic ? n - 1 : n;
   std::vector<Eigen::Triplet<double>> entries;
@@ -85,7 +85,7 @@ Lift LiftCurve::of_formula(double angle) const {
     const D operand = D::variable(x, 0);
     return formula_->evaluate(&operand, D(0.0), 0, room.data(), static_cast<D*>(nullptr));
   };
-  constexpr double k_step = 1e-5; // rad: half of the digits of a slope are left
+  constexpr double k_step = 1e-5; // rad: half of the digits of a slope remain
   const D now = with_slope(angle);
   return {now.v, now.d[0], (with_slope(angle + k_step).d[0] - with_slope(angle - k_step).d[0]) / (2.0 * k_step)};
 }

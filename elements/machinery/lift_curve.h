@@ -1,7 +1,7 @@
-// The lift of a cam over its angle: a smooth curve through points, or a formula.
+// Lift of a cam as a function of its angle: a smooth curve through points, or a formula.
 //
-// Through points the cubic spline with two continuous derivatives. Points over one whole turn whose lifts at its ends agree make a
-// periodic curve; else its ends have no curvature, and beyond them it goes on straight.
+// The curve through points is the cubic spline with continuous second derivative. Points over exactly one turn with equal lifts at both
+// ends make a periodic curve; otherwise the curvature at the ends is zero, and the curve continues linearly.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -12,24 +12,27 @@
 
 namespace steplap {
 
-/// h, h', h'' at one angle.
+/// h, h' and h'' at one angle.
 struct Lift {
   double value = 0.0, slope = 0.0, curvature = 0.0;
 };
 
+/// The lift curve of one cam.
 class LiftCurve {
 public:
   LiftCurve() = default;
-  /// At least two points [angle, lift], ascending in angle; three at least, and the last lift that of the first, for one whole turn.
+  /// Curve through at least two points [angle, lift] in ascending order of angle. A whole turn requires at least three, with the last lift
+  /// equal to the first.
   explicit LiftCurve(std::vector<Vec2> points);
-  /// A formula of its one operand, the angle, without switches. Its second derivative, which only Jacobians ask for, is a difference of
-  /// first ones.
+  /// Curve given by a formula with the angle as its only operand, without switches. Its second derivative, used only in Jacobians, is a
+  /// difference of first derivatives.
   explicit LiftCurve(FormulaProgram formula);
 
+  /// Returns the lift and its derivatives at an angle, rad.
   [[nodiscard]] Lift at(double angle) const;
-  /// Angles of the points; none of a formula.
+  /// Returns the angles of the points; empty for a formula.
   [[nodiscard]] std::vector<double> knots() const;
-  /// Do the points span one whole turn?
+  /// Returns true if the points span one whole turn.
   [[nodiscard]] static bool is_whole_turn(const std::vector<Vec2>& points);
 
 private:

@@ -16,8 +16,8 @@ namespace {
 struct MeshEntry {
   int a = k_ground, b = k_ground, carrier = k_ground;
   double ratio = 1.0, k = 0.0, c = 0.0;
-  double start = 0.0; ///< δ as angles have it in the reference pose
-  double band = 0.0;  ///< N m: a load that is less is none
+  double start = 0.0; ///< δ of the angles in the reference pose
+  double band = 0.0;  ///< N m: smaller loads count as zero
   int unit = 0, watch = 0;
 
   template <class S> [[nodiscard]] S twist(const Motion<S>* motion) const {
@@ -29,7 +29,7 @@ struct MeshEntry {
   template <class S> [[nodiscard]] S couple(const Motion<S>* motion) const { return k * twist(motion) + c * rate(motion); }
 };
 
-// Modes: which way the teeth are loaded, so that friction has no corner within one.
+// Modes: direction of the load on the teeth, so that friction is smooth within a mode.
 class MeshGroup final : public ForceGroup {
 public:
   static constexpr UnitMode k_forwards = 0, k_backwards = 1;
@@ -49,7 +49,7 @@ public:
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries) {
       const int bodies[3] = {entry.a, entry.b, entry.carrier};
-      const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0}; // ∂δ; couples are −M times the same
+      const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0}; // ∂δ by the three angles; the moments are −M times these
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
           if (bodies[row] == k_ground || bodies[column] == k_ground) continue;
@@ -67,7 +67,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
   }
-  void enter_turns(TurnTable&) const override {} // a gear is linear in its angles
+  void enter_turns(TurnTable&) const override {} // nothing to add: a gear is linear in its angles
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return entries[static_cast<std::size_t>(element)].couple(e.motion) < 0.0 ? k_backwards : k_forwards;
   }
@@ -128,7 +128,7 @@ public:
   }
 
 private:
-  // In the unit's band past zero it is still a bound.
+  // The bound must remain positive in the unit's dead band around zero.
   template <class S> [[nodiscard]] S bound(const Evaluated<S>& e) const {
     const S couple = mesh.couple(e.motion);
     return loss * ((e.mode[mesh.unit] == MeshGroup::k_forwards ? couple : -couple) + S(mesh.band));
@@ -136,7 +136,7 @@ private:
 };
 
 void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
-  constexpr double k_no_twist = 1e-12; // rad: what joints hold at zero is known no better
+  constexpr double k_no_twist = 1e-12; // rad: a smaller initial twist is a residual of the joints
   const auto& e = static_cast<const LossyGear&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), carrier = builder.marker(e.carrier);
   if (a.body == b.body || a.body == carrier.body || b.body == carrier.body)

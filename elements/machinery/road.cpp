@@ -10,12 +10,12 @@ namespace steplap {
 namespace {
 
 constexpr int k_most_tries = 100;
-constexpr double k_settled = 4.0 * std::numeric_limits<double>::epsilon(); // of places: rounding
+constexpr double k_settled = 4.0 * std::numeric_limits<double>::epsilon(); // relative: rounding error of positions
 
 } // namespace
 
-// Where ½ d/dx of the squared distance, f = (s − x) + h′ (h − y), changes its sign first, downhill from s = x. In hollows steps of
-// −f/(1 + h′²) are too short, so that none passes over the place; on crests they may be too long, and then enclose it.
+// Finds the first sign change of f = (s − x) + h′ (h − y), half the derivative of the squared distance, downhill from s = x. In hollows the
+// steps −f/(1 + h′²) are too short, so none passes the root; on crests they may be too long and then bracket it.
 double Road::nearest_x(double x, double y) const {
   const auto slope_at = [&](double s, CurveJet<double>& jet) {
     jet = curve_.jet(s);
@@ -40,8 +40,8 @@ double Road::nearest_x(double x, double y) const {
   return here;
 }
 
-// x grows with the place z that is touched: x = z − r sin φ(z), x′ = 1 − r κ > 0. Where a step of Newton's method leaves what encloses z,
-// it is halved.
+// x is a monotonic function of the contact position z: x = z − r sin φ(z), x′ = 1 − r κ > 0. Newton's method, with bisection where it
+// leaves the bracket of z.
 double Road::touched_below(double x, double radius, double near) const {
   double low = x - radius, high = x + radius, here = std::clamp(near, low, high); // |z − x| ≤ r
   for (int i = 0; i < k_most_tries; ++i) {
@@ -67,7 +67,7 @@ void Road::find_pieces() {
     if (i > 0) piece.length = pieces_.back().length + pieces_.back().length_over(points[i].x() - points[i - 1].x());
     pieces_.push_back(piece);
   }
-  pieces_.back().bend = 0.0; // of the end, but for rounding
+  pieces_.back().bend = 0.0; // zero at the end, up to rounding
 }
 
 double Road::length_to(double x) const {
@@ -79,7 +79,7 @@ double Road::length_to(double x) const {
   return pieces_[i].length + pieces_[i].length_over(x - points[i].x());
 }
 
-// By the rule of Gauss with ten nodes: the slope is a parabola.
+// Gauss quadrature with ten nodes; the slope is a quadratic function.
 double Road::Piece::length_over(double d) const {
   constexpr std::array<double, 5> k_node = {0.14887433898163122, 0.43339539412924719, 0.67940956829902441, 0.86506336668898451,
                                             0.97390652851717172};
@@ -95,7 +95,9 @@ double Road::Piece::length_over(double d) const {
   return half * sum;
 }
 
-// h″ is straight between the points. What the slope takes from it is found by samples.
+// Finds the largest upward curvature κ = h″/(1 + h′²)^{3/2} of the road. h″ is linear between the points, but the effect of the slope h′
+// has
+// no simple maximum and is therefore sampled.
 void Road::find_hollowest() {
   constexpr int k_samples = 16;
   const std::vector<Vec2>& points = curve_.points();

@@ -1,9 +1,8 @@
-// Rolling resistance of what presses with a round thing on another: a couple against the turning of a over b, which holds exactly at
-// rest.
+// Rolling resistance of a round body in contact: a moment against the rotation of a relative to b, which sticks exactly at rest.
 //
-// The resultant of the pressure of a contact that rolls lies ahead of its middle by `arm`, so that it takes a couple of at most arm·N,
-// N the normal force: Coulomb's law of rolling. Beside a coefficient f of rolling resistance, arm = f r. It is friction on the angle of
-// a against b (coulomb_friction.h) whose bound follows the normal force.
+// The resultant of the contact pressure of a rolling body is ahead of the centre by `arm`, so the moment is at most arm·N with N the normal
+// force (Coulomb's law of rolling). For a coefficient f of rolling resistance, arm = f r. It is friction (coulomb_friction.h) on the angle
+// of a relative to b with a bound that follows the normal force.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -14,7 +13,7 @@
 namespace steplap {
 
 struct RollingResistance : Element {
-  std::vector<std::string> contacts; ///< one: a tyre, or a contact of something round
+  std::vector<std::string> contacts; ///< one tyre, or one contact of a round body
   double arm = 0.0;                  ///< m
 };
 

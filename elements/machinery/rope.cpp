@@ -20,27 +20,28 @@ namespace {
 
 using D12 = Dual<12>;
 
-// A straight part between points of two bodies; parts within one body only add to the length.
+// A straight part between points of two bodies. Parts within one body only add to the length.
 struct RopePart {
   int a = k_ground, b = k_ground;
   DistanceMeasure measure;
-  double given = 0.0;         ///< its length in the reference pose, m
-  std::string name_a, name_b; ///< of its markers
+  double given = 0.0;         ///< length in the reference pose, m
+  std::string name_a, name_b; ///< names of its markers
 };
 
-// A contact of the coordinate −L: taut is pressed, slack is open, and a rope let out faster than its spring follows is
-// released. The contact's force is the tension. Over pulleys one more watch value tells whether a part is left between
-// any two points while it is taut: by less than what the rest of the rope would be taut without, of a part that was a
-// thousand times as long, what hangs on it is jammed in its pulley; and no part has a direction at no length.
+// A contact with the coordinate −L: taut is pressed, slack is open, and a rope released faster than its damped spring recovers is
+// released. The contact force is the tension. A rope over pulleys has one more event function while it is taut: the length of its
+// shortest part in excess of the length that counts as none. That is the elongation of the rope, without which the rest of it would be
+// slack, but at most k_run_in of the part's given length: the load has then reached its pulley. It is at least k_least_part of the
+// rope's length, because a part of zero length has no direction.
 class RopeGroup final : public ForceGroup {
 public:
   static constexpr int k_watches = KelvinVoigtContact::k_watches + 1, k_on_pulley = KelvinVoigtContact::k_watches;
-  static constexpr double k_run_in = 1e-3; ///< of a part's length as given
+  static constexpr double k_run_in = 1e-3; ///< relative to the given length of a part
 
   struct Entry {
     std::vector<RopePart> parts;
     KelvinVoigtContact law;
-    double fixed_length = 0.0; ///< of parts within one body
+    double fixed_length = 0.0; ///< length of parts within one body, m
     std::string name;
     int unit = 0, watch = 0;
   };
@@ -49,7 +50,7 @@ public:
   };
   struct Left {
     const RopePart* part = nullptr;
-    double length = std::numeric_limits<double>::infinity(); ///< beyond what counts as none, m
+    double length = std::numeric_limits<double>::infinity(); ///< length in excess of what counts as none, m
   };
   std::vector<Entry> entries;
 
@@ -62,7 +63,7 @@ public:
     }
     return way;
   }
-  /// Of the length: that of all parts.
+  /// The length is the sum of all parts.
   static double rounding_of(const Entry& entry, const Motion<double>* motion) {
     double sum = k_rounded_sum * entry.fixed_length;
     for (const RopePart& part : entry.parts) {
@@ -71,7 +72,7 @@ public:
     }
     return sum;
   }
-  /// Of the part that is nearest to having run onto its pulley.
+  /// Returns the part nearest to having run onto its pulley.
   static Left least_left(const Entry& entry, double stretch, const Motion<double>* motion) {
     Left least;
     for (const RopePart& part : entry.parts) {
@@ -111,7 +112,7 @@ public:
     return sum;
   }
 
-  // −T ∂²L/∂q² of each part by itself, and −∂L/∂q (k ∂L + c ∂L̇) of each part with every other.
+  // Adds −T ∂²L/∂q² of each part alone, and −∂L/∂q (k ∂L + c ∂L̇) for each pair of parts.
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries) {
       const Way way = way_of(entry, e.motion);
@@ -122,7 +123,7 @@ public:
         for (const RopePart& other : entry.parts) {
           const bool is_same = &one == &other;
           const Gradient h = is_same ? g : gradient_of(other, e.motion);
-          // Of the tension by the other part's length, its own share of the rate included.
+          // Derivative of the tension by the length of the other part, including its contribution to the rate.
           const D12 length = h.length + D12(way.length - h.length.v), rate = h.rate + D12(way.rate - h.rate.v);
           const D12 change = entry.law.force(-length, -rate, mode);
           if (is_same) add_whole(one, g, f, change, out);
@@ -187,7 +188,7 @@ private:
         j.damping(i, l) = -g.j[i].v * change.d[6 + l];
       }
   }
-  // Forces of one part by the motion of the other's bodies.
+  // Adds the derivatives of the forces of one part by the motion of the other part's bodies.
   static void add_blocks(const RopePart& one, const RopePart& other, const Gradient& g, const D12& change, std::vector<PairJacobian>& out) {
     for (int row = 0; row < 2; ++row)
       for (int column = 0; column < 2; ++column) {
@@ -257,10 +258,10 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
   return rows;
 }
 
-// `entry`: as of an elastic rope, `now` its way in the reference pose.
+// `entry`: as for an elastic rope; `now`: length of the way in the reference pose.
 void add_inextensible(const RopeGroup::Entry& entry, double now, double length, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11;              // m/s²: a tension that gives less to the lightest body is rounding
-  constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // of the length; m, above what projection leaves
+  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that accelerates the lightest body by less counts as rounding
+  constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // relative to the length; m, larger than the residuals after projection
   refuse_time_stepping(builder);
   if (now > length * (1.0 + OneSidedRow::k_too_long))
     return builder.error("its 'length' of " + rounded_text(length) + " m is less than the way over its points, " + rounded_text(now) +

@@ -1,15 +1,17 @@
-// Rope: tension only, from marker a over any number of others to marker b.
+// Rope: tension only, from marker a over any number of other markers to marker b.
 //
-// Its length is the way over its points, L = Σ |p_{i+1} − p_i|; a point that it runs over is a pulley without size or
-// friction, fixed in its body, so that the tension is the same all along:
-//   T = max(0, k (L − L₀) + c L̇) while L > L₀, else 0.
-// Each straight part pulls its two points towards each other with T. Potential ½ k (L − L₀)²; the damper dissipates
-// T L̇ less the change of that. Points keep their order, whether or not the rope would leave a pulley. What is pulled up
-// to its pulley ends the run, with a word (mbd/system/rope_end.h).
+// Its length is the sum of its straight parts, L = Σ |p_{i+1} − p_i|. Intermediate points are pulleys without size and friction, fixed to
+// their bodies, so that the tension is the same in all parts:
 //
-// An inextensible rope is a row that comes and goes (mbd/system/one_sided_row.h): L ≤ L₀, T ≥ 0, T (L₀ − L) = 0. It
-// becomes taut by a blow without restitution (mbd/events/blow.h). Straight parts within one body only add to its
-// length; those between different ones are the row's parts (RowSpec::next), all with the same tension.
+//   T = max(0, k (L − L₀) + c L̇) while L > L₀, otherwise 0.
+//
+// Each part pulls its two points towards each other with T. Potential energy ½ k (L − L₀)²; the damper dissipates T L̇ minus the change of
+// this energy. The order of the points is fixed, even if a real rope would leave a pulley. If a load reaches its pulley the run ends with
+// an error (mbd/system/rope_end.h).
+//
+// An inextensible rope is a unilateral constraint (mbd/system/one_sided_row.h): L ≤ L₀, T ≥ 0, T (L₀ − L) = 0. It becomes taut by an
+// impulse without restitution (mbd/events/blow.h). Straight parts within one body only add to the length; those between different bodies
+// are the parts of the row (RowSpec::next), with the same tension.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -22,9 +24,9 @@ struct Rope : Element {
   std::optional<double> stiffness;
   bool inextensible = false;
   double damping = 0.0;
-  std::optional<double> length;     ///< without load
-  std::optional<double> pretension; ///< in the reference pose
-  std::optional<double> slack;      ///< in the reference pose: length less the way
+  std::optional<double> length;     ///< length without load, m
+  std::optional<double> pretension; ///< tension in the reference pose, N
+  std::optional<double> slack;      ///< length minus distance along the points in the reference pose, m
 };
 
 [[nodiscard]] const ElementKind& rope_kind();

@@ -1,19 +1,25 @@
-// A rope, band or belt whose two free parts are joined where it lies round a drum, on which it sticks or slides.
+// A rope, band or belt with two free parts that are connected on a drum, where it sticks or slides.
 //
-// Tensions T_0, T_1 of the parts, springs with dampers that have one time τ = c/k:
+// Tensions T_0, T_1 of the free parts, which are springs with dampers of equal time constant τ = c/k:
+//
 //   T_i = τ_i ± c_i ṡ,   τ_i = k_i e_i + c_i ρ_i,   e_0 = g_0 + s,  e_1 = g_1 − s,   ρ_i = ġ_i
-// with g_i what the motion of drum and ends stretches part i by (wound_measure.h), and s the way that the band has slid over the drum from
-// part 0 to part 1. Round an angle α of the drum with the coefficient μ the tensions may differ by a factor (Euler 1762, Eytelwein 1808)
-//   E^{-1} ≤ T_1/T_0 ≤ E,   E = e^{μ α},
-// and with several drums the least E of all counts, for the band slides where it is held least. It sticks, ṡ = 0, while they do; when
-// a bound is reached it slides, and then the ratio is at the bound:
-//   T_1 = E T_0:  ṡ = (τ_1 − E τ_0)/(c_1 + E c_0),        T_0 = E T_1:  ṡ = (E τ_1 − τ_0)/(c_0 + E c_1)
-// so that s is an inner state with a rate of its own, which begins and ends at zero. Without tension (e_0 + e_1 and the same of the rates
-// times τ, in which s is not, are not above zero) the band is loose; s is then where both parts would have one tension. The part on the drum
-// has no mass and does not stretch; its coefficient does not hang on the velocity.
 //
-// Energy: ½ Σ k_i e_i², taut; ½ k_0 k_1/(k_0 + k_1) (e_0 + e_1)² where it is let go of faster than it follows. Dissipated are
-// Σ (T_i − k_i e_i) ė_i in the dampers and (T_1 − T_0) ṡ on the drum.
+// g_i is the elongation of part i by the motion of drum and ends (wound_measure.h), s the distance that the band has slid over the drum
+// from part 0 to part 1. For a wrap angle α and a coefficient of friction μ (Euler 1762, Eytelwein 1808)
+//
+//   E^{-1} ≤ T_1/T_0 ≤ E,   E = e^{μ α}.
+//
+// With several drums the smallest E applies to all, because the band slides where it is held least. While the ratio is within the bounds
+// the band sticks, ṡ = 0; when a bound is reached it slides with the ratio at the bound:
+//
+//   T_1 = E T_0:  ṡ = (τ_1 − E τ_0)/(c_1 + E c_0),        T_0 = E T_1:  ṡ = (E τ_1 − τ_0)/(c_0 + E c_1)
+//
+// s is an inner state whose rate starts and ends at zero. Without tension the band is loose (e_0 + e_1 plus τ times its rate, in which s
+// cancels, is not positive); s then has the value for equal tensions of both parts. The part on the drum has no mass and no elasticity;
+// friction does not depend on velocity.
+//
+// Energy: ½ Σ k_i e_i² while taut; ½ k_0 k_1/(k_0 + k_1) (e_0 + e_1)² if it is released faster than the dampers recover. Dissipation: Σ
+// (T_i − k_i e_i) ė_i in the dampers and (T_1 − T_0) ṡ on the drum.
 #pragma once
 
 #include "elements/body_blocks.h"
@@ -26,41 +32,43 @@
 
 namespace steplap {
 
+/// All bands and belts, as one force group.
 class SlidingBandGroup final : public ForceGroup, public StateReader {
 public:
   static constexpr int k_watches = 2;
-  static constexpr double k_place = 1e-12; ///< m: to which places are known; a bound is no bound to less than what that stretches
+  static constexpr double k_place = 1e-12; ///< m: accuracy of positions; forces below the corresponding tension are not distinguished from
+                                           ///< the bound
   static constexpr UnitMode k_loose = 0, k_let_go = 1, k_sticks = 2, k_to_second = 3, k_to_first = 4;
 
-  /// One free part: from the drum to the body of its other end.
+  /// A free part, from the drum to the body at its other end.
   struct Part {
     int end = k_ground;
     WoundMeasure measure;
     double stiffness = 0.0;
-    double free = 0.0;     ///< e as the measure has it, without load
-    double shortest = 0.0; ///< m: less than that is none
+    double free = 0.0;     ///< elongation of the measure at zero load, m
+    double shortest = 0.0; ///< shortest length, m; below it the part does not exist
   };
   struct Entry {
     int drum = k_ground;
     std::array<Part, 2> parts;
     double time = 0.0; ///< τ, s
-    /// Friction of the drum, and of the wheel at the other ends; an angle α = angle + sense·(turned_1 − turned_0), or of a belt
-    /// π ± 2 atan(c/length).
+    /// Friction of the drum and of the wheel at the other ends. Wrap angle α = angle + sense·(turned_1 − turned_0), or for a belt π ± 2
+    /// atan(c/length).
     std::array<double, 2> friction{0.0, 0.0};
     double angle = 0.0, sense = 1.0;
     bool is_belt = false;
-    double far_sign = -1.0; ///< of the belt's other wheel
+    double far_sign = -1.0; ///< sign for the belt's other wheel
     std::string name;
     int inner = 0, unit = 0, watch = 0;
 
     [[nodiscard]] std::array<int, 3> bodies() const { return {drum, parts[0].end, parts[1].end}; }
   };
-  /// All that hangs on the motion and s.
+  /// All quantities that depend on the motion and on s.
   template <class S> struct Flow {
     std::array<typename WoundMeasure::Straight<S>, 2> straight;
     std::array<MeasureValue<S>, 2> measured;
     std::array<S, 2> stretch, rate, resting, tension; ///< e_i, ρ_i, τ_i, T_i
-    std::array<S, 2> angles;                          ///< α of the drum, of a belt's other wheel
+    std::array<S, 2> angles;                          ///< α of the drum, and of a belt's other wheel
     S ratio{1.0};                                     ///< E
     S slip{0.0};                                      ///< ṡ
   };
@@ -72,7 +80,7 @@ public:
     return flow_of(entries[static_cast<std::size_t>(i)], e.motion, e.inner[entries[static_cast<std::size_t>(i)].inner],
                    e.mode[entries[static_cast<std::size_t>(i)].unit]);
   }
-  /// s with one tension in both parts.
+  /// Returns the s for which both parts have the same tension.
   [[nodiscard]] static double balanced(const Entry& entry, const Flow<double>& flow, double s);
 
   void add_forces(Evaluation& e) const override;
@@ -94,7 +102,7 @@ private:
   [[nodiscard]] static bool is_taut(UnitMode mode) { return mode >= k_sticks; }
   [[nodiscard]] static UnitMode contact_mode(UnitMode mode);
   [[nodiscard]] static UnitMode mode_by_ratio(const Entry& entry, const Flow<double>& flow);
-  /// N by which tensions may be beyond the ratio: a slide that has died away to rounding sticks there.
+  /// Returns the force, N, by which the tensions may exceed the ratio, so that a slide that has decayed to rounding sticks.
   [[nodiscard]] static double slack_of(const Entry& entry, const Flow<double>& flow) {
     return k_place * (1.0 + flow.ratio) * (entry.parts[0].stiffness + entry.parts[1].stiffness);
   }

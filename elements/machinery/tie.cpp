@@ -12,15 +12,15 @@ namespace steplap {
 
 namespace {
 
-// Modes: 0 slack; 1, 2 pulls, pulled but without force; 3, 4 the same pressed; 5 acts both ways without slack; 6
+// Modes: 0 slack; 1, 2 in tension, elongated without force; 3, 4 the same in compression; 5 acts in both directions without slack; 6
 // broken.
 constexpr UnitMode k_slack = 0, k_pulls = 1, k_presses = 3, k_linear = 5, k_broken = 6;
 
 struct TieLaw {
   static constexpr int k_watches = 3;
-  KelvinVoigtContact pull, push; ///< of −δ, of δ; an offset of −∞ where it does not act
+  KelvinVoigtContact pull, push; ///< for −δ and δ; offset −∞ if it does not act
   double k = 0.0, c = 0.0, free = 0.0;
-  double strength = std::numeric_limits<double>::infinity(); ///< of all
+  double strength = std::numeric_limits<double>::infinity(); ///< total strength
   bool is_linear = false;
 
   static UnitMode contact_mode(UnitMode mode) { return mode == k_pulls || mode == k_presses ? k_contact_pressed : k_contact_released; }
@@ -31,7 +31,7 @@ struct TieLaw {
     return contact == k_contact_pressed ? side : side + 1;
   }
 
-  /// On a along the measure; tension is negative.
+  /// Returns the force on a along the measure; tension is negative.
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     const S d = value - S(free);
     if (is_pull(mode)) return -pull.force(-d, -rate, contact_mode(mode));
@@ -91,7 +91,7 @@ public:
     int a = k_ground, b = k_ground;
     Measure measure;
     TieLaw law;
-    int inner = -1; ///< 1 once it has broken; of one that can
+    int inner = -1; ///< 1 after it has broken, for a tie with a strength
     bool stops = false;
     int link = 0, unit = 0, watch = 0;
   };
@@ -165,7 +165,7 @@ public:
     const Entry& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
-  /// Tension positive.
+  /// Returns the force, tension positive.
   [[nodiscard]] double force_of(int element, const Evaluation& e) const {
     const auto m = measured(element, e);
     return -entries[element].law.force(m.value, m.rate, e.mode[entries[element].unit]);
@@ -243,7 +243,7 @@ void compile_tie(const Element& element, SystemBuilder& builder) {
   add(e, builder, a.body, b.body, DistanceMeasure{a.point, b.point});
 }
 
-// Of a tie that has a strength: that it does not break.
+// Judges a tie with a strength: it must not break.
 ElementJudgement judge_tie(const Element& element, const Model&, const RunResult& run) {
   const auto& tie = static_cast<const Tie&>(element);
   if (!tie.strength || tie.consequence == "none") return {};
@@ -264,7 +264,7 @@ ElementJudgement judge_tie(const Element& element, const Model&, const RunResult
     if (event.kind == EventKind::breaks && event.element == tie.name) {
       result.outcome = result.consequence;
       result.t = event.t;
-      result.reserve.reset(); // that it broke is no matter of digits
+      result.reserve.reset(); // accuracy does not matter once it has broken
     }
   return {{std::move(result)}, {}, ""};
 }

@@ -1,8 +1,8 @@
-// The forces of tyres (tyre.h): normal force and tread together, as force elements with modes and an inner state.
+// Forces of tyres (tyre.h): normal force and tread as force elements with modes and one inner state.
 //
-// The inner state is p, with u = s − p and s the way of the centre along the road (RoadWay; of a flat one the coordinate along it) + r (θ_A − θ_B):
-// a function of the pose whose gradient is the direction in which the tread acts, so that at rest the tread is a spring between places.
-// Its rate is that of s less that of u.
+// The inner state is p, with u = s − p, and s the distance travelled by the centre along the road (RoadWay; for a flat road the coordinate
+// along it) + r (θ_A − θ_B). s is a function of the pose whose gradient is the direction of the tread force, so that at rest the tread is a
+// spring between positions. ṗ is ṡ − u̇.
 #pragma once
 
 #include "elements/contact_laws.h"
@@ -14,7 +14,7 @@
 
 namespace steplap {
 
-/// What a wheel does on its road at one instant.
+/// Motion of a wheel relative to its road.
 template <class S> struct WheelMotion {
   MeasureValue<S> gap;   ///< distance of the centre from the road, along its normal
   MeasureValue<S> tread; ///< s; its direction is that of the road
@@ -22,8 +22,9 @@ template <class S> struct WheelMotion {
   S rolling{0.0};        ///< r ω, m/s
 };
 
+/// Geometry of a wheel on its road.
 struct WheelMeasure {
-  Vec2 centre, origin, level; ///< in the frames of a, b, b
+  Vec2 centre, origin, level; ///< centre in the frame of a; origin and direction of the road in that of b
   double radius = 0.0;        ///< m
   std::shared_ptr<const Road> road;
 
@@ -31,7 +32,7 @@ struct WheelMeasure {
     using std::sqrt;
     const Pair<S> ra = to_ground(a, centre), e = to_ground(b, level), up = perp(e);
     const Pair<S> reach = offset(a, b) + ra, from_origin = reach - Pair<S>(to_ground(b, origin));
-    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // seen from b
+    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // as seen from b
     const S x = dot(e, from_origin), y = dot(up, from_origin);
     const RoadPoint<S> foot = road->nearest(x, y);
     const S inverse = S(1.0) / sqrt(S(1.0) + foot.slope * foot.slope);
@@ -53,36 +54,38 @@ struct WheelMeasure {
   }
 };
 
+/// Parameters of the tread.
 struct TreadLaw {
   double friction = 0.0;   ///< μ
   double stiffness = 0.0;  ///< C/σ, N/m
   double damping = 0.0;    ///< b, N s/m
   double relaxation = 1.0; ///< σ, m
 
-  /// V up to which bristles with b dissipate, 4 C/b, m/s. Beyond it they have 4 C/V.
+  /// Returns the rolling velocity V up to which the damping b is used, 4 C/b, m/s; above it the damping is 4 C/V.
   [[nodiscard]] double slow() const { return 4.0 * stiffness * relaxation / damping; }
 };
 
-/// Bristles at one instant: N, N, m, m/s.
+/// Forces, N, and deflection, m and m/s, of the bristles at one time.
 template <class S> struct TreadState {
   S most{0.0};  ///< μ N
-  S trial{0.0}; ///< what it takes to adhere
+  S trial{0.0}; ///< T required for adhesion
   S force{0.0}; ///< T
   S bent{0.0};  ///< u
   S rate{0.0};  ///< u̇
 };
 
+/// All tyres, as one force group.
 class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
     WheelMeasure measure;
-    KelvinVoigtContact press; ///< of the distance of the centre
+    KelvinVoigtContact press; ///< law for the distance of the centre
     TreadLaw tread;
-    int inner = 0; ///< p
+    int inner = 0; ///< index of p
     int link = 0, unit = 0, watch = 0, contact = 0;
   };
-  static constexpr int k_watches = 6; ///< two of the contact, two of the tread, of the sense in which the wheel turns, of how fast
+  static constexpr int k_watches = 6; ///< two of the contact, two of the tread, one for the direction of rotation, one for its speed
   std::vector<Entry> entries;
 
   void add_forces(Evaluation& e) const override;
@@ -102,15 +105,15 @@ public:
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
   [[nodiscard]] EventKind sliding_in(UnitMode mode) const override;
 
-  /// For channels.
+  /// The following functions are for channels.
   [[nodiscard]] WheelMotion<double> measured(int element, const Evaluation& e) const;
   [[nodiscard]] double normal_force(int element, const Evaluation& e) const;
   [[nodiscard]] TreadState<double> tread_state(int element, const Evaluation& e) const;
 };
 
-/// Does the tyre press in this mode?
+/// Returns true if the tyre is pressed in this mode.
 [[nodiscard]] inline bool tyre_presses(UnitMode mode) { return (mode & 3U) == k_contact_pressed; }
-/// Does its tread slide, if it presses?
+/// Returns true if its tread slides in this mode. Precondition: it is pressed.
 [[nodiscard]] inline bool tread_slides(UnitMode mode) { return (mode >> 2U & 3U) != 0; }
 
 } // namespace steplap

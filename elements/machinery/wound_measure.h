@@ -1,5 +1,4 @@
-// What is taken up of a rope between two wheels on which it is wound, or between a wheel and a point: e of wound_rope.h, where it is
-// derived.
+// Elongation e of a rope between two wheels on which it is wound, or between a wheel and a point. It is derived in wound_rope.h.
 #pragma once
 
 #include "mbd/system/turn_table.h"
@@ -8,15 +7,15 @@
 
 namespace steplap {
 
-/// −e, so that a taut rope presses as a contact does; ground axes, for θ is that of many turns.
+/// Value −e, so that a taut rope is a pressed contact. Ground axes, because θ may be many turns.
 struct WoundMeasure {
   Vec2 point_a, point_b; ///< centres of the wheels
   double radius_a = 0.0, radius_b = 0.0;
-  Vec2 start = Vec2::UnitX(); ///< u in the reference pose
-  double taken = 0.0;         ///< e as it stands there
+  Vec2 start = Vec2::UnitX(); ///< direction u of the straight part in the reference pose
+  double taken = 0.0;         ///< value of e there, m
 
   template <class S> struct Straight {
-    Pair<S> u, lever_a, lever_b; ///< levers of the points where it leaves the wheels
+    Pair<S> u, lever_a, lever_b; ///< levers of the points at which the rope leaves the wheels
     S length{0};
   };
   template <class S> [[nodiscard]] Straight<S> straight(const Motion<S>& a, const Motion<S>& b) const {
@@ -51,7 +50,7 @@ struct WoundMeasure {
 
 [[nodiscard]] inline Turning turning_of(const WoundMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 
-/// rad: beyond, the angle of the straight part against the reference pose would soon jump by a turn.
+/// Largest angle, rad, between the straight part and its direction in the reference pose; beyond π the angle would jump by a turn.
 inline constexpr double k_most_turned = 3.0;
 
 } // namespace steplap

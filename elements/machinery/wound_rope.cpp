@@ -14,7 +14,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-6; // of its straight part in the reference pose, as of a rope's parts
+constexpr double k_shortest = 1e-6; // of the straight part in the reference pose, m, as for parts of a rope
 
 class WoundRopeGroup final : public ForceGroup {
 public:
@@ -23,7 +23,7 @@ public:
     WoundMeasure measure;
     KelvinVoigtContact law;
     std::string name;
-    double shortest = 0.0; ///< m: a straight part that is no more, with a direction that is rounding
+    double shortest = 0.0; ///< m: a shorter straight part has vanished, and its direction is rounding
     int unit = 0, watch = 0;
   };
   std::vector<Entry> entries;
@@ -87,7 +87,7 @@ public:
   }
 
 private:
-  // What is wound on the wheels is in the value, beside what the measure's terms are.
+  // The value contains the wound length in addition to the terms of the measure.
   static double rounding_of(const Entry& entry, const MeasureValue<double>& m, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
     const double wound =
@@ -109,7 +109,7 @@ private:
   }
 };
 
-// The centres must be so far apart that there is a tangent.
+// Checks that the distance of the centres allows a tangent.
 bool has_tangent(const WoundRope& e, const CompiledMarker& a, const CompiledMarker& b, SystemBuilder& builder) {
   const double apart = (builder.marker_position(b) - builder.marker_position(a)).norm(), c = std::abs(e.radius_a + e.radius_b);
   if (apart > c && apart > 1e-12) return true;

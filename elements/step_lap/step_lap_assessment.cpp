@@ -59,10 +59,10 @@ void read_events(const std::vector<Event>& events, JointAssessment& result) {
   }
 }
 
-// Beyond this share of the limb's weight a change of the force on it is a load, and not what the machine settles by.
+// Change of the force on the limb relative to its weight above which it counts as a load and not as settling of the machine.
 constexpr double k_least_load = 1e-3;
 
-// Has anything been asked of the joint but to bear what it bears at rest?
+// Determines whether the joint was loaded beyond its load at rest.
 void read_load(const RunResult& result, const Model& model, const StepLapJoint& joint, JointAssessment& a) {
   const Body* const limb = model.find_body(joint.limb);
   a.weight = limb ? limb->mass * model.header.gravity.norm() : 0.0;
@@ -72,7 +72,7 @@ void read_load(const RunResult& result, const Model& model, const StepLapJoint& 
   }
 }
 
-// The mode at the ends of steps counts as well as events do: a slip of either is one.
+// The mode at the ends of steps counts as well as events: a slip may appear in either.
 void read_modes(const RunResult& result, JointAssessment& a) {
   const ChannelRange* mode = find_range(result, a.joint + ".mode");
   const double slip = static_cast<double>(FrictionPhase::slip);
@@ -82,7 +82,7 @@ void read_modes(const RunResult& result, JointAssessment& a) {
   if (mode->high.value > slip) a.has_come_apart = true;
 }
 
-// Do the element's fields name these two bodies, by themselves or by markers on them, and no others?
+// Returns true if the fields of the element refer to these two bodies, directly or by markers, and to no others.
 bool acts_between(const ElementEntry& entry, const Model& model, const std::string& a, const std::string& b) {
   bool has_a = false, has_b = false;
   for (const Field& field : entry.kind->fields.fields()) {

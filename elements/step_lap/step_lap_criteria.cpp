@@ -28,7 +28,7 @@ CriterionResult judge_holding(const JointAssessment& joint) {
     result.t = joint.time_of_smallest;
   }
   if (joint.first_slip) result.t = joint.first_slip;
-  if (joint.has_slipped) result.reserve.reset(); // that it slipped is no matter of digits
+  if (joint.has_slipped) result.reserve.reset(); // accuracy does not matter once it has slipped
   if (joint.verdict == JointVerdict::not_assessed || joint.verdict == JointVerdict::not_known) result.outcome = Verdict::open;
   else if (joint.has_slipped || joint.smallest_margin < joint.least_margin) result.outcome = Verdict::inspect;
   if (joint.has_come_apart) result.consequence = result.outcome = Verdict::reject;
@@ -37,7 +37,7 @@ CriterionResult judge_holding(const JointAssessment& joint) {
 
 void judge_least(const JointAssessment& joint, const Extreme& least, const char* channel, const std::string& text, double limit,
                  Verdict below, std::vector<CriterionResult>& criteria) {
-  if (std::isnan(least.value)) return; // there is but one corner, or one packet
+  if (std::isnan(least.value)) return; // only one corner or packet
   CriterionResult result = joint_result(joint, text);
   result.value = least.value;
   result.limit = limit;
@@ -49,7 +49,7 @@ void judge_least(const JointAssessment& joint, const Extreme& least, const char*
   criteria.push_back(result);
 }
 
-// Each corner and packet by itself: what one of them lacks is not made good by the others.
+// Judges each corner and packet by itself; the others do not compensate for it.
 void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
   if (joint.verdict == JointVerdict::not_assessed) return;
   judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject,
@@ -61,7 +61,7 @@ void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& cr
               Verdict::inspect, criteria);
 }
 
-// Only of a joint whose sheets are known.
+// Applies only to joints with known sheets.
 void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
   if (joint.verdict == JointVerdict::not_assessed) return;
   CriterionResult slid = joint_result(joint, "displacement of its corners, of the overlap's width <= " + limit_text(joint.most_slide));
@@ -108,8 +108,8 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   criteria.push_back(closed);
 }
 
-// A joint that holds although it cannot: of a method that locates no events, or that steps over a storm of them, whether it
-// slips is not known then.
+// Returns the message for a joint that sticks beyond its capacity. This occurs if a method does not locate events, or steps over a storm of
+// them; whether the joint slips is then unknown.
 std::string contradiction_of(const JointAssessment& joint, const SimulationSettings& settings) {
   const char* does = joint.contradicts_itself() ? "holds" : joint.bears_too_much() ? "slides" : "";
   const std::string then = joint.contradicts_itself() ? "it has to slip" : "nothing bears what it is said to bear";

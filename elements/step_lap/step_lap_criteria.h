@@ -1,17 +1,16 @@
-// What every step-lap joint is held to, whatever its model asks.
+// Criteria for every step-lap joint, in addition to those of the model.
 //
-// A joint that slipped, or would have where it is only monitored, or that has less margin than the model asks for, means
-// inspect: the core's magnetic circuit is not as it was built. One that came apart, lost a whole corner or slid further than it
-// bears means reject; one whose edges were crushed, too.
+// Result "inspect": the joint slipped, or would have slipped if only monitored, or has less margin than the model requires; the core is
+// then no longer as built. Result "reject": it came apart, lost a whole corner, slid farther than allowed, or its edges were crushed.
 #pragma once
 
 #include "mbd/trust/element_judgement.h"
 
 namespace steplap {
 
-/// ElementKind::judge of step_lap_joint.
+/// Implements ElementKind::judge for step_lap_joint.
 [[nodiscard]] ElementJudgement judge_step_lap_joint(const Element& element, const Model& model, const RunResult& result);
-/// ElementKind::channels_of_trust of step_lap_joint.
+/// Implements ElementKind::channels_of_trust for step_lap_joint.
 [[nodiscard]] std::vector<std::string> trust_of_step_lap_joint(const Element& element);
 
 } // namespace steplap

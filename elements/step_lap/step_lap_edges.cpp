@@ -12,13 +12,13 @@ namespace {
 
 using D12 = Dual<12>;
 
-// A side of the overlap belongs to the limb's end if its outward normal is within 60° of the way to the yoke.
+// A side of the overlap belongs to the end of the limb if its outward normal is within 60° of the direction to the yoke (cosine).
 constexpr double k_facing = 0.5;
 
 bool is_whole(double d1, double d2) { return d1 >= 0.0 && d2 >= 0.0; }
 
-/// ∂U/∂d of a line. A bed that bears wholly goes on as if all of it were pressed, whatever the sign of d: the smooth piece that an
-/// integrator sees until the event.
+/// Returns ∂U/∂d of a line. A bed with all ends closed uses the law for closed ends whatever the sign of d, so that the force is smooth
+/// until the event.
 template <class S> EdgePress<S> press(const S& d1, const S& d2, double k, double length, UnitMode mode) {
   EdgePress<S> out;
   const S unit(k * length / 6.0);
@@ -31,7 +31,7 @@ template <class S> EdgePress<S> press(const S& d1, const S& d2, double k, double
   const S& d = near == 0 ? d1 : d2;
   const S& far = near == 0 ? d2 : d1;
   if (value_of(d) <= 0.0) return out;
-  const S share = d / (d - far); // of the length that bears
+  const S share = d / (d - far); // fraction of the length in contact
   out.force[near] = unit * share * share * (S(2) * d - S(3) * far);
   out.force[1 - near] = unit * share * share * d;
   return out;
@@ -44,7 +44,7 @@ double energy(double d1, double d2, double k, double length) {
   return k * length * high * high * high / (6.0 * (high - low));
 }
 
-// Gap and its rate at the end of a bed that is pressed in most, and at the one that is least.
+// Gap and rate at the ends of a bed with the smallest and the largest gap.
 struct BedGaps {
   double least = std::numeric_limits<double>::infinity(), least_rate = 0.0;
   double most = -std::numeric_limits<double>::infinity(), most_rate = 0.0;
@@ -130,10 +130,10 @@ UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
   return gaps.most < 0.0 ? k_bed_whole : gaps.least < 0.0 ? k_bed_partly : k_bed_open;
 }
 
-// A gap that is zero now is pressed if it closes. A bed that comes or goes parallel to its yoke changes both at one instant, in
-// either order: what is found here is the same whichever is asked about.
+// A gap of zero counts as closed if it decreases. A bed that closes parallel to its yoke changes by both event functions at once, in either
+// order; the result is the same for both.
 UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation& e) const {
-  constexpr double k_parallel = 1e-9; // rad
+  constexpr double k_parallel = 1e-9; // rad: a bed at a smaller angle to its yoke counts as parallel
   const Entry& entry = entries[element];
   double length = 0.0;
   for (const Line& line : entry.lines) length = std::max(length, line.length);
@@ -156,7 +156,8 @@ EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion)
   for (const Line& line : entry.lines) {
     double depth[2];
     for (int end = 0; end < 2; ++end) depth[end] = -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
-    const auto p = press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // by the sign of the depths
+    const auto p =
+        press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // the mode does not matter: the penetrations decide
     bearing.force += p.force[0] + p.force[1];
     for (int end = 0; end < 2; ++end) bearing.load[end] += line.stiffness * std::max(0.0, depth[end]);
   }

@@ -1,22 +1,21 @@
-// Edges of core sheets that bear on each other: a limb drawn towards its yoke by more than the clearance of a layer
-// butts along the mitre.
+// Contact of the edges of core sheets: a limb that moves towards its yoke by more than the clearance of a layer butts along the mitre.
 //
-// One *edge line* for each interface that states its clearance: the side of its overlap where the limb's sheet ends,
-// fixed in the limb, against a parallel line fixed in the active part that lies the clearance beyond it in the
-// reference pose. The sheets' edges are a Winkler bed: a line load q = k d where they are pressed in by d ≥ 0, k in N/m
-// per metre of line, of all sheets at the corner together, shared among the interfaces of a corner as they are counted.
-// With the depths d₁, d₂ at the line's ends (straight in between, length l; negative where it is open) the stored
-// energy is
+// Each interface with a given clearance has one edge line: the side of its overlap at which the limb's sheet ends, fixed in the limb, and a
+// parallel line fixed in the active part, one clearance away in the reference pose. The sheet edges are a Winkler foundation: line load q =
+// k d for penetration d ≥ 0, with k in N/m per metre of line for all sheets at the corner together, distributed over the interfaces of a
+// corner by their numbers. With the penetrations d₁, d₂ at the ends of the line (linear in between, length l; negative where open) the
+// stored energy is
+//
 //   both pressed:      U = k l (d₁² + d₁d₂ + d₂²)/6
 //   only end 1:        U = k l d₁³/(6 (d₁ − d₂)),   over the length l d₁/(d₁ − d₂)
-// and the force on the limb −∂U/∂(pose): exactly conservative, whatever the limb turns by. Nothing is lost, no force
-// acts along the line (friction of edges is left out: it would hold the limb back), and edges never pull.
 //
-// Lines of a corner that are parallel and have the same clearance are one *bed*. The gap of such lines is linear along
-// the mitre whatever the limb turns by, so that all of them close within the time in which the longest one does. Events
-// are those of the bed: its first end begins or its last end ceases to bear (closes, opens), all ends bear (passes a
-// kink). In between each line follows from its own depths: with one end alone its force grows as d₁², without a jump of
-// its slope, so that no event is needed there.
+// and the force on the limb −∂U/∂(pose), exactly conservative for any rotation. There is no dissipation and no friction along the line (it
+// would support the limb, so neglecting it is conservative), and edges do not pull.
+//
+// Parallel lines of a corner with the same clearance form one bed. Their gap is linear along the mitre, so all of them close within the
+// time in which the longest one does. Events belong to the bed: its first end closes or its last end opens (closes, opens), and all ends
+// are closed (passes a kink). In between each line depends on its own penetrations: with one end closed its force grows with d₁², without a
+// jump of slope, so no event is needed.
 #pragma once
 
 #include "elements/step_lap/step_lap_interface.h"
@@ -26,24 +25,26 @@
 
 namespace steplap {
 
-/// Depths at both ends of a line and the forces ∂U/∂d there.
+/// Forces ∂U/∂d at both ends of a line.
 template <class S> struct EdgePress {
   S force[2] = {S(0), S(0)};
 };
 
-/// Of a bed: nothing of it bears, something does, all ends of all lines do.
+/// Modes of a bed: no end is closed; some are; all ends of all lines are.
 inline constexpr UnitMode k_bed_open = 0, k_bed_partly = 1, k_bed_whole = 2;
 
+/// All beds of edges, as one force group.
 class EdgeGroup final : public ForceGroup {
 public:
+  /// A line along which two edges can touch.
   struct Line {
-    AxisMeasure gap[2];     ///< of its ends, m; pressed where negative
+    AxisMeasure gap[2];     ///< gaps at its ends, m; closed if negative
     double stiffness = 0.0; ///< k, N/m²
     double length = 0.0;    ///< m
   };
-  /// A bed.
+  /// One bed.
   struct Entry {
-    int a = k_ground, b = k_ground; ///< limb, active part
+    int a = k_ground, b = k_ground; ///< limb and active part
     double clearance = 0.0;         ///< m, of all its lines
     std::vector<Line> lines;
     int link = 0, unit = 0, watch = 0;
@@ -60,19 +61,22 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
 
-  /// Of one bed, at a motion: force on the limb off the yoke, N; line loads at both ends, N/m, of its lines together.
+  /// Load of one bed: force on the limb away from the yoke, N; line loads at both ends, N/m, as sums over its lines.
   struct Bearing {
     double force = 0.0, load[2] = {0.0, 0.0};
   };
+  /// Returns the load of bed `element` for the given motion.
   [[nodiscard]] Bearing bearing(int element, const Motion<double>* motion) const;
 };
 
-/// The side of an overlap where the limb's sheet ends. Points in the active part's axes; `off`: normal, off the yoke.
+/// Side of an overlap at which the limb's sheet ends. Points in the axes of the active part; `off`: unit normal away from the yoke, zero if
+/// unknown.
 struct EdgeLine {
   Vec2 ends[2] = {Vec2::Zero(), Vec2::Zero()};
   Vec2 off = Vec2::Zero();
   [[nodiscard]] bool is_known() const { return off != Vec2::Zero(); }
 };
+/// Returns the edge line of one interface in the reference pose.
 [[nodiscard]] EdgeLine find_edge_line(const SheetPair& sheets, const Pose& reference);
 
 } // namespace steplap

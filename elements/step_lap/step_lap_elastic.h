@@ -1,13 +1,13 @@
-// The force of elastic step-lap joints: springs in series with friction (step_lap_friction.h), as force elements with
-// modes and an inner state p, the relative pose as far as the sheets have slid.
+// Elastic step-lap joints: springs in series with friction (step_lap_friction.h), as force elements with modes and an inner state p, the
+// slid part of the relative pose s.
 //
-//   W = −K (s − p) on the limb about its centre of gravity, active part's axes; stored ½ (s − p)ᵀK (s − p).
-// Holding, p stands and the mode is valid while the wrench is within the limit surface; yielding, p flows along the
-// surface's normal. The wrench is continuous everywhere, so that neither velocities nor accelerations jump: K is
-// bounded, and nothing has to be decided together with other friction. Integration leaves u = 1 + its error while it
-// yields: settle_inner() moves p along the strain onto the surface (radial return) and books what that dissipates,
-// F·Δp. At a corner of the limit surface the direction of slip is a state, too, and p follows it: the direction tells the wrench
-// however sharp the corner is. It comes apart where its overlaps have a hundredth of the capacity left that they had in the reference pose.
+//   W = −K (s − p) on the limb about its centre of gravity, in the axes of the active part; stored energy ½ (s − p)ᵀK (s − p).
+//
+// Holding: p is constant, valid while W is within the limit surface. Yielding: p moves along the normal of the surface. W is continuous,
+// and K finite, so that velocities and accelerations do not jump, and the mode does not depend on other friction elements. While it yields,
+// integration leaves u = 1 + error; settle_inner() moves p along the strain onto the surface (radial return) and counts F·Δp as dissipated.
+// At a corner of the limit surface the slip direction is a state, too, and p follows it; the wrench is a well-defined function of the
+// direction even there. The joint comes apart when its overlaps have 1/100 of the capacity that they had in the reference pose.
 #pragma once
 
 #include "elements/step_lap/step_lap_friction.h"
@@ -15,12 +15,12 @@
 
 namespace steplap {
 
-/// Modes: holds, yields as its wrench tells, comes apart, yields along a direction that is a state; above them a bit for each
-/// interface that has parted.
+/// Modes: holds; yields in the direction given by its wrench; has come apart; yields in the direction that is a state. The higher bits mark
+/// the interfaces that have separated.
 inline constexpr UnitMode k_elastic_holds = 0, k_elastic_yields = 1, k_elastic_apart = 2, k_elastic_follows = 3;
-inline constexpr int k_elastic_parted = 2; ///< first of these bits
+inline constexpr int k_elastic_parted = 2; ///< index of the first of these bits
 
-/// Which of the four it is.
+/// Returns which of the four modes it is, without these bits.
 [[nodiscard]] inline UnitMode elastic_state(UnitMode mode) { return mode & 3U; }
 
 [[nodiscard]] inline FrictionPhase phase_of_elastic(UnitMode mode) {
@@ -28,15 +28,17 @@ inline constexpr int k_elastic_parted = 2; ///< first of these bits
   return elastic_state(mode) == k_elastic_holds ? FrictionPhase::stick : FrictionPhase::slip;
 }
 
+/// All elastic joints, as one force group.
 class ElasticGripGroup final : public ForceGroup, public StateReader {
 public:
   struct Entry {
-    int a = k_ground, b = k_ground;            ///< limb, active part
-    const StepLapFriction* friction = nullptr; ///< of the system, which owns both
-    int inner = 0;                             ///< first of seven: p, the direction of slip, and 1 once it has come apart
+    int a = k_ground, b = k_ground;            ///< limb and active part
+    const StepLapFriction* friction = nullptr; ///< belongs to the system, which owns both
+    int inner = 0;                             ///< index of the first of seven numbers: p (3), direction of slip (3), and 1 after it has
+                                               ///< come apart
     int link = 0, unit = 0, watch = 0;
   };
-  static constexpr int k_watches = 3; ///< bound or flow; interfaces parted; how sharp the corner is
+  static constexpr int k_watches = 3; ///< bound or flow; separation of interfaces; sharpness of the corner
   std::vector<Entry> entries;
 
   void add_forces(Evaluation& e) const override;

@@ -1,34 +1,37 @@
-// The friction of a step-lap joint: three rows that hold the limb, the limit surface of the overlapping
-// sheets that bounds their wrench, and the slip law (physics.md §4).
+// Friction of a step-lap joint: three rows that hold the limb, the limit surface of the overlapping sheets, which bounds their wrench, and
+// the slip law (physics.md §4).
 //
-// Wrench W = (Fx, Fy, M) on the limb about its centre of gravity and slip twist ν = (vx, vy, ω) of the
-// limb relative to the active part, both in the active part's axes; ν is the rate of the rows.
-//   Sticks while u(W) ≤ 1 by the static coefficients; slides with W = −∇h(ν) by the kinetic ones, the
-//   overlap taken at the present pose.
+// Wrench W = (Fx, Fy, M) on the limb about its centre of gravity, slip twist ν = (vx, vy, ω) of the limb relative to the active part, both
+// in the axes of the active part; ν is the rate of the rows.
 //
-// At ν = 0 the law has no value, and near it a stiffness of (grip acceleration)/|ν|. After an onset
-// |ν| grows as the square of time only, so that it matters there. While a slip is *starting*,
-// |ν| below a few times δ = (grip acceleration) × (a time short against all else, after the tolerance: 2.5e-6 s at 1e-6), the law is
-//   W = −∇h(ν + δ (1 − |ν|²/(k δ)²)³ n),  n the normal of the bound at the onset,
-// which is bounded in stiffness, exact at both ends, dissipates what it does work on (no energy is lost
-// from the account), and whose influence is forgotten as the direction settles. Beyond, and for good, it
-// is −∇h(ν) alone.
+//   stick   while u(W) ≤ 1 with the static coefficients
+//   slip    W = −∇h(ν) with the kinetic coefficients, for the overlap at the present pose
 //
-// |ν| reaches zero with no sign change of anything but ν itself; on the way the direction turns as a power of
-// the time left and tends to a limit. A slip is *ending* below |ν| = ε = (grip acceleration) × (1e-8 s at 1e-6, 1e-11 s from 1e-9 on): the law is
-// −∇h(ν + ε n), n the direction there, and the slip is at rest where ν·n passes zero. If |ν| grows again instead, the
-// slip goes on. So that a step may pass through ν = 0, the law is continued there with the wrench it
-// had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
-// about n: n is taken anew and the slip goes on. All of this is derived in docs/explanation/limit_surface.md, section 7; methods
-// learn how fine velocities have to be known from slip_scale() and decay_rate().
+// At ν = 0 the slip law is undefined, and near it its stiffness is (grip acceleration)/|ν|. This matters at the onset, after which |ν|
+// grows only with the square of time. While a slip is starting, with |ν| below a few times δ = (grip acceleration) × (a time short compared
+// with all others and set by the tolerance: 2.5e-6 s at 1e-6), the law is
 //
-// An *elastic* joint (make_elastic) neither sticks nor slides by these laws: it is a spring, W = −K (s − p), s the
-// relative pose and p the pose as far as the sheets have slid, an inner state. p moves only while u(W) = 1, along the
-// normal n of the limit surface and as fast as keeps W on it (associated flow, rate-independent):
+//   W = −∇h(ν + δ (1 − |ν|²/(k δ)²)³ n),  n the normal of the limit surface at the onset.
+//
+// It has bounded stiffness, is exact at both ends of this range, dissipates energy consistently, and its influence vanishes as the
+// direction settles. Afterwards the law is −∇h(ν).
+//
+// At the end of a slip |ν| becomes zero without a change of sign of any other quantity; the direction turns as a power of the remaining
+// time and tends to a limit. A slip is ending below |ν| = ε = (grip acceleration) × (1e-8 s at tolerance 1e-6, 1e-11 s from 1e-9 on). There
+// the law is −∇h(ν + ε n), with n the direction when it was last updated, and the slip ends when ν·n passes zero. If |ν| grows again, the
+// slip continues. To allow steps through ν = 0, the law is continued to ν·n < 0 with constant wrench. Another event is ν leaving the cone
+// of 60° about n; then n is updated and the slip continues. Derivation: docs/explanation/limit_surface.md, section 7. Methods get the
+// required accuracy of velocities from slip_scale() and decay_rate().
+//
+// An elastic joint (make_elastic) does not use these laws. It is a spring, W = −K (s − p), with s the relative pose and p the slid part of
+// it, an inner state. p moves only while u(W) = 1, along the normal n of the limit surface, at the rate that keeps W on it (associated,
+// rate-independent flow):
+//
 //   ṗ = γ n,  γ (n·K n + u ∂h/∂p·n) = n·K ṡ,  h = h(n; p),
-// the overlap being the one at p: what the sheets are sheared by is no slip. It *yields* (slips) while γ ≥ 0, holds while
-// u ≤ 1. At a corner of the limit surface, where the wrench hardly tells n, n is a state beside p and follows from the same
-// condition (flow_along). The force is that of step_lap_elastic.h. Derived in docs/explanation/theory.md, "Elastic step-lap joints".
+//
+// with the overlap at p, since elastic shear of the sheets is not slip. It yields while γ ≥ 0 and holds while u ≤ 1. At a corner of the
+// limit surface n is not determined by the wrench; n is then a state in addition to p and follows from the same condition (flow_along). The
+// force is computed in step_lap_elastic.h. Derivation: docs/explanation/theory.md, "Elastic step-lap joints".
 #pragma once
 
 #include "elements/step_lap/patch/required_pressure.h"
@@ -38,106 +41,112 @@
 
 namespace steplap {
 
-/// What the clamping pressures are like at a time: all are multiplied by `factor`, each once more by
-/// 1 + transverse · tilt (SheetPair::transverse), at least 0.
+/// Clamping pressures at one time: each is multiplied by `factor` and by max(0, 1 + transverse · tilt) (SheetPair::transverse).
 struct PressureState {
   double factor = 1.0, tilt = 0.0;
   double factor_rate = 0.0, tilt_rate = 0.0;
   [[nodiscard]] bool operator==(const PressureState&) const = default;
 };
 
-/// Which coefficients count.
+/// Coefficients of friction: static or kinetic.
 enum class GripLaw { holding, sliding };
 
+/// Friction element of one step-lap joint.
 class StepLapFriction final : public FrictionElement {
 public:
-  /// `index` among the friction elements, `row` its slot in Snapshot::friction_force. Without sheets,
-  /// or as a monitor, it holds whatever it takes.
+  /// `index`: its number among the friction elements; `row`: its first index in Snapshot::friction_force. Without sheets, or as a monitor,
+  /// it never slips.
   StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor, bool stops_when_apart);
 
-  RowSpec hold[3]; ///< x and y in the active part's axes, angle
-  /// Signals of PressureState: factor (1 − loss) · `factor`, acceleration across the sheets; null where there is none.
+  RowSpec hold[3]; ///< x and y in the axes of the active part, and the angle
+  /// Sets the signals of PressureState: factor (1 − loss) · `factor`, and the acceleration across the sheets; null if there is none.
   void set_pressure(const Signal* factor, double loss, const Signal* acceleration);
+  /// Returns the pressure factor and the transverse acceleration at time t. Throws NumericalFailure if the factor is not positive.
   [[nodiscard]] PressureState pressure_at(double t) const;
   [[nodiscard]] bool has_changing_pressure() const { return pressure_signal_ || acceleration_ || kept_ != 1.0; }
-  /// Where linear pressures are what their interfaces say: at the middles of the overlaps at this pose.
+  /// Sets the points at which linear pressures have their nominal values: the centroids of the overlaps at this pose.
   void centre_pressures(const Pose& reference);
-  /// To be called when the rows are complete: scales of lengths and accelerations at this pose, of which `at_reference` is
-  /// patch_at() for what holds.
+  /// Computes the scales of lengths and accelerations at the reference pose. Precondition: the rows are complete. `at_reference` is
+  /// patch_at() there for GripLaw::holding.
   void set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part);
 
-  /// K about the limb's centre of gravity in the active part's axes; `inner`: first of seven inner states: p, the direction of slip, whether it is apart; `unit`: of
-  /// the force element that gives its wrench.
+  /// Makes the joint elastic with stiffness K about the limb's centre of gravity, axes of the active part. `inner`: first of its seven
+  /// inner states (p, direction of slip, whether it has come apart); `unit`: unit of the force element.
   void make_elastic(const Mat3& stiffness, int inner, int unit);
-  /// Of springs spread evenly over all interfaces at a pose (each as often as it is counted), `total` N/m in translation.
+  /// Returns the stiffness of springs distributed uniformly over all interfaces at a pose (each counted with its number), with `total` N/m
+  /// in translation.
   [[nodiscard]] Mat3 spread_stiffness(const Pose& pose, double total) const;
 
-  // --- what the joint is like now -------------------------------------------------------------------
+  // --- present state ----------------------------------------------------------------------------------
   [[nodiscard]] bool has_sheets() const { return !sheets_.empty(); }
-  /// One pair for each interface, in the order of the model.
+  /// Returns one pair of sheets for each interface, in the order of the model.
   [[nodiscard]] const std::vector<SheetPair>& sheets() const { return sheets_; }
+  /// Returns the pose of the limb relative to the active part.
   [[nodiscard]] Pose pose_of(const Motion<double>* motion) const;
-  /// The overlapping area with its tractions at a pose.
+  /// Returns the overlap area with its tractions at a pose.
   [[nodiscard]] Patch patch_at(const Pose& pose, GripLaw law) const;
-  /// Of the wrench in `s`: share of the capacity, direction, centre of rotation.
+  /// Returns, for the wrench in `s`, the utilisation of the capacity, the slip direction and the centre of rotation.
   [[nodiscard]] const RequiredPressure& usage(const Snapshot& s) const;
-  /// Bounds of its share, which cost little.
+  /// Returns cheap bounds of the utilisation.
   [[nodiscard]] ValueBounds usage_between(const Snapshot& s) const;
-  /// Throws NumericalFailure, naming the joint, where an iteration has ended too far from its solution.
+  /// Returns the required pressure. Throws NumericalFailure, naming the joint, if the iteration does not converge.
   [[nodiscard]] RequiredPressure required(const Patch& patch, const Vec3& wrench, double t) const;
+  /// Returns the sum of the overlap areas, m²; equal interfaces count once.
   [[nodiscard]] double area(const Snapshot& s) const;
   [[nodiscard]] const OverlapReference& overlaps() const { return overlaps_; }
+  /// Returns the loss of overlap since the reference pose.
   [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
-  /// On the limb about its centre of gravity, active part's axes.
+  /// Returns the wrench on the limb about its centre of gravity, axes of the active part.
   [[nodiscard]] Vec3 wrench(const Snapshot& s) const;
-  /// By how much it has slid: the pose, of an elastic joint without what it is strained by.
+  /// Returns the slid pose; for an elastic joint without the elastic strain.
   [[nodiscard]] Pose slid_pose(const Snapshot& s) const;
+  /// Returns whether the joint is free, sticks or slips.
   [[nodiscard]] FrictionPhase phase(const Snapshot& s) const;
 
-  // --- of an elastic joint ------------------------------------------------------------------------------
-  /// How it yields: the rate ṗ, and γ, the speed of slip at the joint's centre.
+  // --- elastic joints -----------------------------------------------------------------------------------
+  /// Yielding of an elastic joint: the rate ṗ, and the slip speed γ at the centre of the joint.
   struct Flow {
     Vec3 rate = Vec3::Zero();
     double speed = 0.0;
     Vec3 direction = Vec3::Zero(); ///< n
     double resistance = 1.0;       ///< n·K n + u ∂h/∂p·n
-    double roundness = 1.0;        ///< of the limit surface there
-    // Along a direction y that is given:
+    double roundness = 1.0;        ///< roundness of the limit surface there
+    // For a given direction y:
     Vec3 turning = Vec3::Zero();  ///< ẏ
-    Mat3 turn = Mat3::Zero();     ///< from wrenches that are left over to ẏ
-    Vec3 by_speed = Vec3::Zero(); ///< such a wrench, of a unit of speed
-    double relaxation = 0.0;      ///< rate at which |y| goes back to 1
+    Mat3 turn = Mat3::Zero();     ///< maps a residual wrench to ẏ
+    Vec3 by_speed = Vec3::Zero(); ///< residual wrench per unit of speed
+    double relaxation = 0.0;      ///< rate at which |y| returns to 1
   };
-  /// In the direction that the force K (s − p) tells; `rate`: ṡ.
+  /// Returns the flow in the direction given by the force K (s − p); `rate` is ṡ.
   [[nodiscard]] Flow flow_under(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
-  /// Along y (scaled, |y| about 1), of which that force is the bound's.
+  /// Returns the flow in direction y (scaled, |y| about 1) for this force.
   [[nodiscard]] Flow flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction, const Vec3& rate) const;
-  /// What ṗ (first three rows) and ẏ of that change by.
+  /// Derivatives of ṗ (first three rows) and ẏ of the latter.
   struct FlowSlopes {
     using Block = Eigen::Matrix<double, 6, 3>;
     Block by_slid = Block::Zero(), by_direction = Block::Zero(), by_rate = Block::Zero();
   };
   [[nodiscard]] FlowSlopes flow_slopes(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
                                        const Vec3& rate) const;
-  /// The unit direction y in which a force on the bound makes it yield; zero where it is as good as parted.
+  /// Returns the unit direction y in which the joint yields under a force on the limit surface; zero if it has almost come apart.
   [[nodiscard]] Vec3 direction_of(const Evaluation& e, const Pose& slid, const Vec3& force) const;
-  /// By how much, of what it can bear, the wrench turns at least as y does: the radius of the limit surface there, small at a corner.
+  /// Returns the radius of curvature of the limit surface at direction y, relative to the capacity; small at a corner.
   [[nodiscard]] double roundness(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
-  /// The force on the bound that makes it yield along y.
+  /// Returns the force on the limit surface for which the joint yields along y.
   [[nodiscard]] Vec3 bound_along(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
-  /// 1 − u or, far from the bound, less that is certain.
+  /// Returns 1 − u, or, far from the limit surface, a positive lower bound of it.
   [[nodiscard]] double spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
-  /// u of a joint that yields; 1 where it is as good as parted.
+  /// Returns u of a joint that yields; 1 if it has almost come apart.
   [[nodiscard]] double yield_usage(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
-  /// Watch value of the interfaces that are parted (bits) or not.
+  /// Returns the event function for the separation of interfaces; the set bits of `parted` have already separated.
   [[nodiscard]] double parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const;
-  /// Of an elastic joint: share of its capacity that overlaps leave, less that at which it has come apart.
+  /// Returns, for an elastic joint, the remaining fraction of the capacity of its overlaps minus the one at which it comes apart.
   [[nodiscard]] double grip_beyond_last(const Evaluation& e, const Pose& slid) const;
-  /// Those that are, as bits; `is_any_left`: do sheets overlap anywhere?
+  /// Returns the separated interfaces as bits; `is_any_left`: some sheets overlap.
   [[nodiscard]] std::uint32_t parted_at(const Pose& pose, bool& is_any_left) const;
   [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
   [[nodiscard]] double gyration() const { return gyration_; }
-  /// A twist as velocity of the joint's centre, and ω as a velocity at the gyration radius.
+  /// Returns a twist as the velocity of the joint's centre and ω times the radius of gyration.
   [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
 
   // --- FrictionElement --------------------------------------------------------------------------------
@@ -193,27 +202,27 @@ private:
   [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double end_speed(const Evaluation& e) const;
 
-  static constexpr std::size_t k_tracked = 30; ///< interfaces whose parting is an event of its own
+  static constexpr std::size_t k_tracked = 30; ///< number of interfaces whose separation is an event
 
-  std::shared_ptr<const Fit> reference_; ///< in the reference pose, where most joints stay: made once
+  std::shared_ptr<const Fit> reference_; ///< data in the reference pose, where most joints stay; shared
   std::string name_;
   int index_ = 0, row_ = 0;
   std::vector<SheetPair> sheets_;
-  OverlapReference overlaps_; ///< in the reference pose
+  OverlapReference overlaps_; ///< overlaps in the reference pose
   bool is_monitor_ = false, stops_when_apart_ = true;
-  bool is_one_law_ = true;               ///< static and kinetic coefficients are the same
-  Vec2 arm_ = Vec2::Zero();              ///< from the limb's centre of gravity to the joint's centre, m
-  double gyration_ = 1.0;                ///< of the traction about the joint's centre, m
-  double grip_acceleration_ = 1.0;       ///< about the largest that it can give, m/s²
+  bool is_one_law_ = true;               ///< static and kinetic coefficients are equal
+  Vec2 arm_ = Vec2::Zero();              ///< from the limb's centre of gravity to the centre of the joint, m
+  double gyration_ = 1.0;                ///< radius of gyration of the traction about the centre of the joint, m
+  double grip_acceleration_ = 1.0;       ///< approximate largest acceleration by friction, m/s²
   double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/inertia
   double part_mobility_[2] = {0.0, 0.0};
   const Signal* pressure_signal_ = nullptr;
   const Signal* acceleration_ = nullptr;
-  double kept_ = 1.0;                                               ///< share of the pressures that relaxation leaves
-  int inner_ = -1, unit_ = -1;                                      ///< of an elastic joint
-  Mat3 stiffness_ = Mat3::Zero(), scaled_stiffness_ = Mat3::Zero(); ///< the second by scaled twists
-  double slip_usage_ = 1.0;       ///< u of what slides: the ratio of its coefficients; not-a-number where interfaces differ in it
-  std::vector<DepthBound> depth_; ///< by interface, from the reference pose
+  double kept_ = 1.0;                                               ///< fraction of the pressures that remains after relaxation
+  int inner_ = -1, unit_ = -1;                                      ///< inner states and unit of an elastic joint; −1: not elastic
+  Mat3 stiffness_ = Mat3::Zero(), scaled_stiffness_ = Mat3::Zero(); ///< scaled_stiffness_: for scaled twists
+  double slip_usage_ = 1.0;       ///< u while sliding: the ratio of the coefficients; NaN if interfaces have different ratios
+  std::vector<DepthBound> depth_; ///< per interface, relative to the reference pose
 };
 
 } // namespace steplap

@@ -36,7 +36,7 @@ void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction
                       [self](const Snapshot& s) { return self->wrench(s)[2]; });
 }
 
-// Signals that the pressures follow. They may not jump during a run: what held would have to let go within no time.
+// Returns a signal for the pressures. It may not jump during a run, since a sticking joint would have to slip instantaneously.
 const Signal* steady_signal(SystemBuilder& builder, const std::string& name, const char* field) {
   const Signal* signal = builder.signal(name);
   if (!signal) return nullptr;
@@ -51,7 +51,7 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
 
 void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, const StepLapInterface& first) {
   const auto* self = &friction;
-  // What the first interface is pressed by now, at the middle of its overlap.
+  // Pressure of the first interface at the centroid of its overlap.
   const auto pressure_at = [self, nominal = first.pressure, share = first.transverse_pressure / first.pressure](double t) {
     const PressureState now = self->pressure_at(t);
     return nominal * now.factor * std::max(0.0, 1.0 + share * now.tilt);
@@ -90,11 +90,11 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
                        const auto& centre = self->usage(s).centre;
                        return centre ? (*centre)[axis] : k_nan;
                      })
-        .has_extremes = false; // it passes through infinity
+        .has_extremes = false; // it can be infinite
   builder.add_channel("area", "m^2", "overlap of one interface of each kind, added", [self](const Snapshot& s) { return self->area(s); });
 }
 
-// What sliding has done to the overlaps, against the reference pose.
+// Adds channels for the change of the overlaps relative to the reference pose.
 void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, bool has_clearance) {
   const auto* self = &friction;
   builder.add_channel("area_lost", "m^2", "overlap lost, summed over the interfaces that lost some, times their number",
@@ -117,7 +117,7 @@ void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction)
   static constexpr const char* names[] = {"dx", "dy", "theta_acc"};
   for (int r = 0; r < 3; ++r) {
     const double start = evaluate_row<false>(hold[r], &builder.reference(0)).value;
-    const double sign = r < 2 ? 1.0 : -1.0; // θ_acc is the active part's angle against the limb's (23)
+    const double sign = r < 2 ? 1.0 : -1.0; // θ_acc is the angle of the active part relative to the limb (23)
     builder.add_channel(names[r], r < 2 ? "m" : "rad",
                         {"slid since the reference pose", r == 0   ? "of the limb, along x of the active part's axes"
                                                           : r == 1 ? "of the limb, along y of the active part's axes"
@@ -141,12 +141,12 @@ void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction)
         [self, r](const Snapshot& s) { return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r); });
 }
 
-// The interfaces that name this joint. What is wrong with an outline is reported at the interface.
+// Returns the interfaces that name this joint. Errors in outlines are reported at the interface.
 std::vector<const StepLapInterface*> interfaces_of(const StepLapJoint& joint, const SystemBuilder& builder) {
   std::vector<const StepLapInterface*> found;
   for (const ElementEntry& entry : builder.model().elements) {
     const Element& element = *entry.element;
-    if (typeid(element) != typeid(StepLapInterface)) continue; // nothing is made of it: quicker than a cast
+    if (typeid(element) != typeid(StepLapInterface)) continue; // a type comparison is faster than a cast
     const auto& interface = static_cast<const StepLapInterface&>(element);
     if (interface.joint == joint.name) found.push_back(&interface);
   }
@@ -177,7 +177,7 @@ BodyData mass_of(const std::string& name, const SystemBuilder& builder) {
   return data;
 }
 
-// Of sheets in shear and contact, in series: 1/(1/k + t/G) for a square metre of one interface.
+// Returns the stiffness of sheets in shear and contact in series: 1/(1/k + t/G) per area of one interface.
 double stiffness_of(const StepLapJoint& e, const StepLapFriction& friction, const Pose& reference) {
   if (e.tangential_stiffness) return *e.tangential_stiffness;
   double compliance = 1.0 / *e.contact_stiffness;
@@ -226,14 +226,14 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   return true;
 }
 
-// The edges of one corner, as indices of EdgeGroup's beds.
+// The edges of one corner, as indices of beds in EdgeGroup.
 struct EdgeCorner {
   std::vector<int> beds;
   double count = 0.0;
-  Vec2 middle = Vec2::Zero(); ///< of its first line, active part's axes
+  Vec2 middle = Vec2::Zero(); ///< centre of its first line, axes of the active part
 };
 
-// Along bands of a corner that lie side by side the loads are taken to act on one line.
+// Loads along adjacent bands of a corner are added as if on one line.
 EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, const Motion<double>* motion) {
   EdgeGroup::Bearing sum;
   for (const int bed : corner.beds) {
@@ -280,10 +280,10 @@ void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const Edge
         [&group, corners, allowed = *e.allowed_line_load](const Snapshot& s) { return largest_load(group, corners, s.motion) / allowed; });
 }
 
-// The bed of a corner that a line with this clearance belongs to: parallel lines of one clearance close together.
+// Returns the bed of a corner for a line with this clearance: parallel lines of equal clearance close together.
 EdgeGroup::Entry& bed_of(EdgeCorner& corner, const EdgeLine& line, double clearance, const StepLapFriction& friction,
                          SystemBuilder& builder, EdgeGroup& group) {
-  constexpr double k_parallel = 1e-9; // rad: what rounding leaves of the directions of parallel lines
+  constexpr double k_parallel = 1e-9; // rad: rounding error of the directions of parallel lines
   for (const int bed : corner.beds)
     if (EdgeGroup::Entry& entry = group.entries[bed];
         entry.clearance == clearance && std::abs(cross(entry.lines.front().gap[0].axis, line.off)) < k_parallel)
@@ -341,7 +341,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   try {
     for (const StepLapInterface* i : interfaces) {
       sheets.push_back(make_sheets(*i, e.limb, e.active_part, builder));
-      if (!std::isfinite(sheets.back().static_traction)) return; // its interface says so, as it does of polygons
+      if (!std::isfinite(sheets.back().static_traction)) return; // reported at the interface, like errors of polygons
     }
   } catch (const PolygonError&) {
     return;
@@ -371,8 +371,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, *interfaces.front());
-    constexpr double k_standard_gravity =
-        9.80665; // m/s²: of a model that shows the limb from above, whose gravity has no part in its plane
+    constexpr double k_standard_gravity = 9.80665; // m/s²: for a model that shows the limb from above, without gravity in its plane
     const double gravity = builder.model().header.gravity.norm();
     add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * (gravity > 0.0 ? gravity : k_standard_gravity));
     add_loss_channels(builder, *friction,
@@ -383,7 +382,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   builder.add_friction(std::move(friction));
 }
 
-// A joint that sticks exactly and one with everything that may be given.
+// A rigid joint, and one with all optional fields.
 constexpr const char* k_example = R"([[signal]]
 name = 'press'
 kind = 'constant'
@@ -433,7 +432,7 @@ static_friction = 0.3
 clearance = 0.001
 )";
 
-// What makes it elastic before it slides.
+// Fields for the elasticity before sliding.
 void add_elastic_fields(FieldTable& f) {
   using T = StepLapJoint;
   f.add("tangential_stiffness", &T::tangential_stiffness)
@@ -450,7 +449,7 @@ void add_elastic_fields(FieldTable& f) {
   f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
 }
 
-// What its sheets' edges bear, once a clearance has closed.
+// Fields for the contact of sheet edges after a clearance has closed.
 void add_edge_fields(FieldTable& f) {
   using T = StepLapJoint;
   f.add("edge_stiffness", &T::edge_stiffness)

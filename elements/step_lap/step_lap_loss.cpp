@@ -55,8 +55,8 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
     if (const double length = o.across.norm(); length > 0.0) o.across /= length;
     middle[i] = centroid(region);
   }
-  // Bands of one corner: the middle of one lies on the limb sheet of the other, and that of one on the yoke sheet of
-  // the other. Limb sheets alone would not tell one side of a T-joint's point from the other.
+  // Bands belong to one corner if the centroid of each is on the limb sheet and on the yoke sheet of the other. Limb sheets alone would not
+  // distinguish the two sides of a T-joint's point.
   for (std::size_t i = 0; i < sheets.size(); ++i)
     for (std::size_t j = 0; j < i && overlaps_[i].corner == i; ++j) {
       const bool is_over = overlaps_[i].area > 0.0 && overlaps_[j].area > 0.0 &&

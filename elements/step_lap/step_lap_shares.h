@@ -1,12 +1,12 @@
-// What each corner and each packet of a step-lap joint could hold by itself.
+// Capacity of each corner and each packet of a step-lap joint by itself.
 //
-// The limit surface is one of the whole joint: a corner that is not clamped, or a packet of sheets that nothing presses, is made
-// up for by the others in a sum, while its own sheets rest on nothing. So each has to hold its own share as well: a packet, of the
-// limb's weight and of the force on the limb, whichever is larger, the share that its sheets have of its mass
-// (StepLapInterface::part_share), since it moves as the limb does and nothing but its own friction moves it. Of n corners each has to hold
-// 1/n of the weight: how stiff sheets share what the motion asks beyond it is no matter of statics, and is judged of the whole joint.
-// A limb has its weight in a model without gravity, too, which shows it from above. The capacity is that in translation, Σ n μ p A over the interfaces in the reference pose, μ static, which no wrench
-// exceeds. A corner without overlap and interfaces without pressure have no capacity: their margin is zero.
+// The limit surface is that of the whole joint: a corner without clamping, or a packet of sheets without pressure, is compensated by the
+// others in the sum although its own sheets are not held. Each must therefore hold its own share as well. A packet moves with the limb and
+// is moved by its own friction only; it must hold its mass fraction (StepLapInterface::part_share) of the limb's weight or of the force on
+// the limb, whichever is larger. Each of n corners must hold 1/n of the weight; how the stiff sheets share dynamic loads is not determined
+// by statics and is judged for the whole joint. The weight also counts in a model without gravity, which shows the core from above. The
+// capacity is that in translation, Σ n μ p A over the interfaces in the reference pose with static μ, an upper limit for all wrenches.
+// Corners without overlap and interfaces without pressure have zero capacity, hence zero margin.
 #pragma once
 
 #include "elements/step_lap/step_lap_friction.h"
@@ -16,16 +16,17 @@
 
 namespace steplap {
 
+/// Capacities of the corners and packets of one joint.
 class GripShares {
 public:
-  /// `interfaces` as the friction's sheets, `weight` of the limb, N, > 0.
+  /// `interfaces` in the order of the friction's sheets; `weight` of the limb, N, > 0.
   GripShares(const StepLapFriction& friction, const std::vector<const StepLapInterface*>& interfaces, double weight);
 
-  /// Pa: the least that any interface has anywhere in its overlap; zero where tilting has lifted it off.
+  /// Returns the smallest pressure of any interface anywhere in its overlap, Pa; zero if tilting has relieved it.
   [[nodiscard]] double least_pressure(const PressureState& now) const;
-  /// Capacity over what it has to hold, of the corner that has least.
+  /// Returns the smallest ratio of capacity to share over all corners.
   [[nodiscard]] double corner_margin(const PressureState& now) const { return least_margin(corners_, now, weight_); }
-  /// The same of packets; only where has_parts(). `demand`: N, size of the force on the limb.
+  /// Returns the same for packets. Precondition: has_parts(). `demand`: magnitude of the force on the limb, N.
   [[nodiscard]] double part_margin(const PressureState& now, double demand) const {
     return least_margin(parts_, now, std::max(weight_, demand));
   }
@@ -34,15 +35,15 @@ public:
 
 private:
   struct Sheet {
-    double pressure = 0.0;   ///< Pa, least in its overlap
+    double pressure = 0.0;   ///< smallest pressure in its overlap, Pa
     double capacity = 0.0;   ///< N
-    double transverse = 0.0; ///< as SheetPair
-    double spread = 0.0;     ///< as much more or less at the outermost of its sheets
+    double transverse = 0.0; ///< as in SheetPair
+    double spread = 0.0;     ///< relative difference at the outermost of its sheets, ±
   };
   struct Group {
     double share = 0.0;
-    std::vector<Sheet> tilting; ///< whose pressure changes with the acceleration across the sheets
-    double capacity = 0.0;      ///< N, of the others
+    std::vector<Sheet> tilting; ///< sheets whose pressure changes with the transverse acceleration
+    double capacity = 0.0;      ///< capacity of the others, N
     void add(const Sheet& sheet);
     [[nodiscard]] double capacity_at(const PressureState& now) const;
   };
@@ -53,7 +54,7 @@ private:
   std::vector<Group> corners_, parts_;
 };
 
-/// "least_pressure", "corner_margin", "part_margin", "demand".
+/// Adds the channels "least_pressure", "corner_margin", "part_margin" and "demand".
 void add_share_channels(SystemBuilder& builder, const StepLapFriction& friction, const std::vector<const StepLapInterface*>& interfaces,
                         double weight);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr DoubleDouble k_pi{0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
 constexpr DoubleDouble k_half_pi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
-// atan(k/8).
+// atan(k/8), k = 0 … 8.
 constexpr DoubleDouble k_arc[9] = {{0.0, 0.0},
                                    {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
                                    {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
@@ -26,8 +26,8 @@ constexpr DoubleDouble k_arc[9] = {{0.0, 0.0},
                                    {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56},
                                    {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55}};
 
-// atan(a/b) for 2⁻¹⁰⁰ ≤ a ≤ b, b in [1, 4): atan(k/8) + atan u with u = (8a − kb)/(8b + ka), |u| ≤
-// 1/15. The first term left out of the series is u¹⁹/19.
+// Returns atan(a/b) for 2⁻¹⁰⁰ ≤ a ≤ b, b in [1, 4), as atan(k/8) + atan u with u = (8a − kb)/(8b + ka), |u| ≤ 1/15. The first omitted term
+// of the series is u¹⁹/19.
 DoubleDouble arc_of(double a, double b) {
   const double k = static_cast<double>(static_cast<int>(8.0 * a / b + 0.5));
   const DoubleDouble kb = two_product(k, b), ka = two_product(k, a);
@@ -46,13 +46,13 @@ double from(const DoubleDouble& c, double sign, const DoubleDouble& a) { // c ±
   return sum.hi + (sum.lo + (c.lo + sign * a.lo));
 }
 
-// 2^−e of a normal x in [2^e, 2^(e+1)), where that is normal.
+// Returns 2^−e for a normal x in [2^e, 2^(e+1)), limited to normal results.
 double binary_scale(double x) {
   const auto e = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x) >> 52);
   return std::bit_cast<double>(std::clamp<std::int64_t>(2046 - e, 1, 2046) << 52);
 }
 
-// Angle of (x, y), both positive and finite.
+// Returns the angle of (|x|, y), both positive and finite; the supplementary angle if `is_left` (x < 0).
 double first_quadrant(double y, double x, bool is_left) {
   double large = std::max(x, y), small = std::min(x, y);
   if (large < 0x1p-1000) large *= 0x1p80, small *= 0x1p80;
@@ -67,7 +67,7 @@ double first_quadrant(double y, double x, bool is_left) {
   return from(k_half_pi, is_left ? 1.0 : -1.0, arc);
 }
 
-// A coordinate is zero or infinite.
+// Returns the angle if a coordinate is zero or infinite.
 double along_axes(double y, double x, bool is_left) {
   if (std::isinf(x) && std::isinf(y)) return is_left ? 3.0 * (k_half_pi.hi / 2.0) : k_half_pi.hi / 2.0;
   if (y == 0.0 || std::isinf(x)) return is_left ? k_pi.hi : 0.0;
@@ -84,7 +84,7 @@ double atan2(double y, double x) {
   return std::copysign(angle, y);
 }
 
-// √s of s = x² + y² with its rounding, once improved by Newton.
+// √s of s = x² + y² in double-double arithmetic: the rounded root with one Newton correction.
 double hypot(double x, double y) {
   if (std::isinf(x) || std::isinf(y)) return std::numeric_limits<double>::infinity();
   double large = std::abs(x), small = std::abs(y);

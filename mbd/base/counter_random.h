@@ -1,5 +1,6 @@
-// Random numbers by counter: the k-th number of the n-th sample of a stream is a function of (seed, stream, n, k) and
-// of nothing that came before. Philox 4x32-10 of Salmon, Moraes, Dror and Shaw, SC 2011, by their library Random123.
+// Counter-based random numbers: number k of sample n of a stream is a function of (seed, stream, n, k) only. Samples can therefore be drawn
+// in any order and by any number of threads with the same result. Generator: Philox 4x32-10 (J. Salmon, M. Moraes, R. Dror, D. Shaw, SC
+// 2011), as in their library Random123.
 #pragma once
 
 #include <array>
@@ -8,9 +9,11 @@
 namespace steplap {
 
 using PhiloxBlock = std::array<std::uint32_t, 4>;
+/// Returns the Philox 4x32-10 block (128 random bits) for a counter and a key.
 [[nodiscard]] PhiloxBlock philox(PhiloxBlock counter, std::array<std::uint32_t, 2> key);
 
-/// In (0, 1), never an end of it; `index` < 2³¹. Streams keep apart what is drawn for different purposes.
+/// Returns a uniformly distributed number in the open interval (0, 1). Use a different `stream` for each purpose. Precondition: `index` <
+/// 2³¹.
 [[nodiscard]] double counter_uniform(std::uint64_t seed, std::uint32_t stream, std::uint64_t sample, std::uint32_t index);
 
 } // namespace steplap

@@ -1,8 +1,10 @@
-// Decompositions of dense matrices, each compiled in one place. Eigen's are templates: a file that uses one of them compiles it
-// anew, which takes from three (LU) to fifteen seconds (eigenvalues). Whoever needs one calls it here and includes none of Eigen's
-// headers but Core.
+// Decompositions of dense matrices (QR, LU, Cholesky, eigenvalues, singular values), as wrappers of Eigen.
 //
-// All allocate unless said otherwise: nothing here but DenseLu::factor and solve of a size seen before is for a step.
+// Eigen's decompositions are templates, and each file that uses one takes three (LU) to fifteen seconds (eigenvalues) longer to compile.
+// They are therefore compiled once, here; other files include only Eigen/Core.
+//
+// All functions allocate memory, except DenseLu::factor() and DenseLu::solve(right, x) for a size that was factored before. Only these two
+// may be used inside a time step.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -13,39 +15,44 @@
 
 namespace steplap {
 
-/// a = Q R with as many columns of Q as asked for; R has as many rows as a has columns.
+/// Thin QR decomposition a = Q R. Q has the requested number of columns, R is square with as many rows as a has columns.
 struct Qr {
   MatX q, r;
 };
+/// Returns the decomposition of a, with `columns_of_q` columns in Q.
 [[nodiscard]] Qr qr_of(const MatX& a, Eigen::Index columns_of_q);
-/// The first columns of Q alone.
+/// Returns only the first `columns` columns of Q.
 [[nodiscard]] MatX orthonormal(const MatX& a, Eigen::Index columns);
 
-/// a Π = Q R, each column of a at the place where it is the longest beyond those before it. Takes matrices without rows or columns.
+/// QR decomposition with column pivoting, a Π = Q R, |R_ii| not increasing. Also accepts matrices without rows or columns.
 class PivotedQr {
 public:
-  /// Columns that are beyond the others by less than `threshold` of the longest depend on them; as rounding has it if it is 0.
+  /// The rank is the number of |R_ii| > `threshold` · max |R_ii|. Threshold 0: Eigen's default, a few roundings.
   explicit PivotedQr(const MatX& a, double threshold = 0.0);
   ~PivotedQr();
   PivotedQr(const PivotedQr&) = delete;
   PivotedQr& operator=(const PivotedQr&) = delete;
 
   [[nodiscard]] Eigen::Index rank() const { return rank_; }
+  /// Returns the index in a of the column that was chosen as pivot number `place`.
   [[nodiscard]] int column(Eigen::Index place) const;
-  /// |R_ii|, length of the i-th column beyond those before.
+  /// Returns |R_ii| for i = `place`: the distance of that column from the span of the columns chosen before it.
   [[nodiscard]] double length(Eigen::Index place) const;
+  /// Returns the first `columns` columns of Q.
   [[nodiscard]] MatX q(Eigen::Index columns) const;
-  /// What no column reaches: orthonormal.
+  /// Returns an orthonormal basis of the orthogonal complement of the columns of a: rows × (rows − rank).
   [[nodiscard]] MatX complement() const;
-  /// Null vectors of a, each with the only entry of one of the columns ("pivot"); entries below `least` are zero.
+  /// Basis of the null space of a, cols × (cols − rank). Vector j has 1 at its own column pivots[j] and 0 at those of the other vectors;
+  /// entries with absolute values below `least` are set to zero.
   struct NullSpace {
     MatX vectors;
     std::vector<int> pivots;
   };
+  /// Returns the null space; `least` as above.
   [[nodiscard]] NullSpace null_space(double least) const;
-  /// x of the columns that span what there is with a x = right, as nearly as can be: of rank() columns, zero elsewhere.
+  /// Returns a solution x of a x ≈ right (least squares) that uses only the rank() pivot columns; other entries of x are zero.
   [[nodiscard]] MatX solve_by_rank(const MatX& right) const;
-  /// The same with every column that is not exactly zero beyond the others.
+  /// The same least-squares problem, using all columns with a nonzero pivot, however small.
   [[nodiscard]] MatX solve(const MatX& right) const;
 
 private:
@@ -54,34 +61,40 @@ private:
   std::unique_ptr<Factor> factor_;
 };
 
-/// x with a x = b as nearly as can be, by a Q R with pivots.
+/// Returns the least-squares solution x of a x = b by QR with column pivoting.
 [[nodiscard]] VecX least_squares(const MatX& a, const VecX& b);
-/// Of a x = b by Q R: R and as many rows of Qᵀ b as it has.
+/// Reduces the least-squares problem a x = b, a with n columns, to R x = c. Returns R (n × n) and c, the first n rows of Qᵀ b.
 [[nodiscard]] std::pair<MatX, VecX> triangle_of(const MatX& a, const VecX& b);
-/// The shortest of them; rows and columns that are beyond the others by less than `threshold` of the longest depend on them.
+/// Returns the least-squares solution of minimum norm. The rank is determined with `threshold` relative to the largest pivot.
 [[nodiscard]] VecX shortest_solution(const MatX& a, const VecX& b, double threshold);
-/// By Q R without pivots: what an LU asks of the C library (cabs) hangs on the processor.
+/// Solves a square complex system by QR without pivoting. LU is not used: its pivot search calls cabs of the C library, whose last bit
+/// depends on the processor.
 [[nodiscard]] Eigen::VectorXcd solve_complex(const Eigen::MatrixXcd& a, const Eigen::VectorXcd& b);
 
-/// a = L Lᵀ: L⁻¹ right.
+/// Returns L⁻¹ right, with a = L Lᵀ the Cholesky decomposition of a symmetric positive definite matrix.
 [[nodiscard]] MatX solve_lower(const MatX& a, const MatX& right);
-/// a = Lᵀ D L with pivots, a symmetric.
+/// Returns a⁻¹ right for symmetric a, by LDLᵀ with pivoting.
 [[nodiscard]] VecX solve_symmetric(const MatX& a, const VecX& right);
+/// The same for several right sides, one per column.
 [[nodiscard]] MatX solve_symmetric(const MatX& a, const MatX& right);
 
-/// Π a = L U. Nothing allocates where a matrix of the same size was factored before.
+/// LU decomposition with row pivoting, Π a = L U, of a square regular matrix. factor() and solve(right, x) do not allocate if a matrix of
+/// the same size was factored before.
 class DenseLu {
 public:
   DenseLu();
+  /// Factorises a.
   explicit DenseLu(const MatX& a);
   ~DenseLu();
   DenseLu(DenseLu&&) noexcept;
   DenseLu& operator=(DenseLu&&) noexcept;
 
+  /// Factorises a in place of the previous matrix.
   void factor(const MatX& a);
-  [[nodiscard]] double least_pivot() const;     ///< |U_ii|
-  void solve(const VecX& right, VecX& x) const; ///< two vectors
+  [[nodiscard]] double least_pivot() const;     ///< min |U_ii|
+  void solve(const VecX& right, VecX& x) const; ///< x = a⁻¹ right; `right` and `x` must be different vectors
   [[nodiscard]] VecX solve(const VecX& right) const;
+  /// Returns a⁻ᵀ right.
   [[nodiscard]] VecX solve_transposed(const VecX& right) const;
 
 private:
@@ -89,9 +102,10 @@ private:
   std::unique_ptr<Factor> factor_;
 };
 
-/// a x = right for several in turn, a of any rank: Π a Π' = L U.
+/// LU decomposition with full pivoting, Π a Π' = L U, for matrices of any rank. solve() may be called repeatedly.
 class RankLu {
 public:
+  /// Factorises a.
   explicit RankLu(const MatX& a);
   ~RankLu();
   RankLu(const RankLu&) = delete;
@@ -103,27 +117,31 @@ private:
   std::unique_ptr<Factor> factor_;
 };
 
-/// Of a symmetric matrix; values in increasing order, vectors orthonormal.
+/// Eigenvalues of a symmetric matrix in ascending order, and orthonormal eigenvectors (columns).
 struct SymmetricEigen {
   VecX values;
   MatX vectors;
 };
+/// Returns the eigenvalues and eigenvectors of a symmetric matrix.
 [[nodiscard]] SymmetricEigen symmetric_eigen(const MatX& a);
-/// Of any square one.
+/// Eigenvalues and eigenvectors of a general square matrix; valid only if `is_converged`.
 struct Eigenpairs {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd vectors;
   bool is_converged = false;
 };
+/// Returns the eigenvalues and eigenvectors of a square matrix.
 [[nodiscard]] Eigenpairs eigenpairs(const MatX& a);
 [[nodiscard]] Eigen::VectorXcd eigenvalues(const MatX& a);
 
-/// a = U Σ Vᵀ: singular values in decreasing order and V with a column for each of them, by Jacobi's rotations (Eigen's other way
-/// takes 20 s more of compiling, is quicker from some hundred columns on and less exact for small values).
+/// Singular values in decreasing order and the right singular vectors V of a = U Σ Vᵀ, one column for each value. Jacobi's rotations are
+/// used rather than bidiagonalisation: they compute small singular values more accurately and compile 20 s faster; they are slower from
+/// some hundred columns on.
 struct RightSingular {
   VecX values;
   MatX v;
 };
+/// Returns the singular values and right singular vectors of a.
 [[nodiscard]] RightSingular right_singular(const MatX& a);
 
 } // namespace steplap

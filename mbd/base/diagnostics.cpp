@@ -14,7 +14,7 @@ std::string Diagnostic::text() const {
     if (where.line > 0) place += std::to_string(where.line) + ":" + std::to_string(where.column) + ":";
     place += " ";
   }
-  return shown(place) + "error: " + shown(message); // names come from files
+  return shown(place) + "error: " + shown(message); // names may contain control characters, as they come from files
 }
 
 ModelError::ModelError(std::vector<Diagnostic> diagnostics) : diagnostics_(std::move(diagnostics)) {
@@ -25,7 +25,7 @@ ModelError::ModelError(const Location& where, std::string message) : ModelError(
 
 namespace {
 
-// Levenshtein distance: insertions, deletions, substitutions.
+// Returns the Levenshtein distance: number of insertions, deletions and substitutions.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

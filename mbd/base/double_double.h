@@ -1,36 +1,36 @@
-// Sums and products without their rounding: a number as an unevaluated sum of two doubles, about
-// 106 bits.
+// Double-double arithmetic: a number is the unevaluated sum of two doubles, which gives about 106 bits.
 //
-// The error of a sum is a double (O. Møller 1965, D. Knuth), that of a product too (T. J. Dekker,
-// Numer. Math. 18 (1971) 224). Needs rounding to nearest and no contraction; products hold for
-// factors below 2^995 whose product's last bits do not underflow.
+// The rounding error of a sum of doubles is a double (O. Møller 1965, D. Knuth), and so is that of a product (T. J. Dekker, Numer. Math. 18
+// (1971) 224). Preconditions: rounding to nearest and compilation without contraction to fused multiply-add. Products are exact for factors
+// below 2^995 unless the last bits of the product underflow.
 #pragma once
 
 namespace steplap {
 
+/// The number hi + lo.
 struct DoubleDouble {
   double hi = 0.0, lo = 0.0; ///< |lo| ≤ half a unit in the last place of hi
 };
 
-/// a + b exactly.
+/// Returns a + b exactly.
 constexpr DoubleDouble two_sum(double a, double b) {
   const double s = a + b, b_seen = s - a;
   return {s, (a - (s - b_seen)) + (b - b_seen)};
 }
 
-/// a + b exactly, for |a| ≥ |b| or a = 0.
+/// Returns a + b exactly, for |a| ≥ |b| or a = 0. Cheaper than two_sum().
 constexpr DoubleDouble quick_two_sum(double a, double b) {
   const double s = a + b;
   return {s, b - (s - a)};
 }
 
-/// a as two numbers of 26 bits.
+/// Splits a into the sum of two numbers of at most 26 significant bits (Dekker).
 constexpr DoubleDouble halves(double a) {
   const double spread = 134217729.0 * a, high = spread - (spread - a); // 2²⁷ + 1
   return {high, a - high};
 }
 
-/// a b exactly.
+/// Returns a b exactly.
 constexpr DoubleDouble two_product(double a, double b) {
   const DoubleDouble x = halves(a), y = halves(b);
   const double p = a * b;

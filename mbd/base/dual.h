@@ -1,8 +1,7 @@
-// A number that carries its derivatives by N variables: the exact Jacobian of any templated element
-// law, without a second hand-written copy of it.
+// Dual numbers for forward automatic differentiation: a value with its derivatives by N variables. Element laws are templates over the
+// number type, so their Jacobians are exact without a second hand-written version.
 //
-// Eigen's own AutoDiffScalar is not used: its expression templates defeat template deduction in
-// Pair<S> and MeasureValue<S>.
+// Eigen's AutoDiffScalar is not used, because its expression templates defeat template argument deduction in Pair<S> and MeasureValue<S>.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -13,6 +12,7 @@
 
 namespace steplap {
 
+/// Value v and gradient d. Comparisons use the value only.
 template <int N> struct Dual {
   double v = 0.0;
   Eigen::Array<double, N, 1> d = Eigen::Array<double, N, 1>::Zero();
@@ -20,6 +20,7 @@ template <int N> struct Dual {
   Dual() = default;
   Dual(double value) : v(value) {} // NOLINT: a constant is a Dual
   Dual(double value, const Eigen::Array<double, N, 1>& derivative) : v(value), d(derivative) {}
+  /// Returns independent variable number `index`: derivative 1 by itself, 0 by the others.
   static Dual variable(double value, int index) {
     Dual x(value);
     x.d[index] = 1.0;
@@ -58,7 +59,7 @@ template <int N> struct Dual {
   friend Dual abs(const Dual& a) { return a.v < 0.0 ? -a : a; }
 };
 
-/// The value without its derivatives, for branching and table look-ups.
+/// Returns the value without derivatives, for branches and table look-ups.
 inline double value_of(double x) { return x; }
 template <int N> double value_of(const Dual<N>& x) { return x.v; }
 

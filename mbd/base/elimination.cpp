@@ -1,4 +1,4 @@
-// Decompositions into triangles.
+// Triangular decompositions: Cholesky, LDLᵀ and LU.
 #include "mbd/base/decompositions.h"
 
 #include <Eigen/Cholesky>

@@ -1,7 +1,7 @@
-// What an event is: the one list of kinds, and the words that people read for each.
+// List of the kinds of events, and the text for each.
 //
-// Code compares kinds. Words are made where an event is written (events.csv, the screen, a page) and read where a person
-// wrote them: in the criteria of a model, in the files of results.
+// Code compares kinds. Texts are made when an event is written (events.csv, screen, pages), and parsed when they are read (criteria of a
+// model, result files).
 #pragma once
 
 #include <bitset>
@@ -14,7 +14,7 @@
 namespace steplap {
 
 enum class EventKind : std::uint8_t {
-  none, ///< a change that is no event
+  none, ///< change of mode that is not reported as an event
   opens,
   closes,
   force_reaches_zero,
@@ -38,35 +38,36 @@ enum class EventKind : std::uint8_t {
   storm_over,
   happens,
   breaks,
-  comes_apart ///< the last one: new kinds go before it
+  comes_apart ///< last; add new kinds before it
 };
 
 inline constexpr std::size_t k_event_kinds = static_cast<std::size_t>(EventKind::comes_apart) + 1;
 
-/// "slips forward"; nothing for `none`.
+/// Returns the text of a kind, such as "slips forward"; "" for `none`.
 [[nodiscard]] const char* words_of(EventKind kind);
-/// What has happened, in a line.
+/// Returns one line that explains what has happened.
 [[nodiscard]] const char* doc_of(EventKind kind);
 
-/// The kind that is written with these words, if there is one.
+/// Returns the kind whose text is exactly `words`, or nothing.
 [[nodiscard]] std::optional<EventKind> event_kind_called(std::string_view words);
-/// The same of a whole entry, in which a detail may follow the words ("… time stepping" "for 2 ms").
+/// Returns the kind at the beginning of `entry`; a detail such as "for 2 ms" may follow the text. Nothing if no kind fits.
 [[nodiscard]] std::optional<EventKind> event_kind_of_entry(std::string_view entry);
-/// Those whose words match a pattern with * and ?, a bit for each kind.
+/// Set of kinds, one bit each.
 using EventKinds = std::bitset<k_event_kinds>;
+/// Returns the kinds whose text matches a pattern with * and ?.
 [[nodiscard]] EventKinds event_kinds_matching(const std::string& pattern);
 
-/// Friction begins to slide, or turns to slide another way.
+/// Returns true if friction starts to slip or the slip changes direction.
 [[nodiscard]] constexpr bool is_slip(EventKind kind) {
   return kind == EventKind::slips || kind == EventKind::slips_forward || kind == EventKind::slips_backward ||
          kind == EventKind::slips_another_way;
 }
 
-/// Of a characteristic: no force jumps.
+/// Returns true for a kink of a force law. The force is continuous there.
 [[nodiscard]] constexpr bool is_kink(EventKind kind) { return kind == EventKind::passes_kink; }
 
-/// Slips, sticks, lift-offs and touch-downs: what a reader looks for first. The rest (a change of the last contact foot,
-/// a kink of a contact's force) matters to the integrator.
+/// Returns true for events that are listed first: slip, stick, lift-off, touch-down and the like. The others (a change of contact foot, a
+/// kink of a contact force) matter only to the integrator.
 [[nodiscard]] constexpr bool is_main(EventKind kind) {
   return kind != EventKind::changes_foot && kind != EventKind::force_reaches_zero && kind != EventKind::force_returns;
 }

@@ -1,5 +1,5 @@
-// A number of 64 bits that tells whether data has changed. Each step is one to one, so that a change within one word
-// never goes unnoticed; of other changes one in 2⁶⁴ does. It guards against accidents, not against forgery.
+// 64-bit hash for detecting accidental changes of data. Every step is invertible, so a change within a single word always changes the hash.
+// Other changes go unnoticed with probability 2⁻⁶⁴. Not cryptographic: it does not protect against forgery.
 #pragma once
 
 #include <bit>
@@ -12,15 +12,16 @@
 
 namespace steplap {
 
+/// Hash of all data added so far, in their order.
 class Fingerprint {
 public:
   void add(std::uint64_t word) {
-    hash_ = (hash_ ^ word) * 0x100000001b3; // FNV's prime
-    hash_ ^= hash_ >> 32;                   // brings what has changed in high bits down
+    hash_ = (hash_ ^ word) * 0x100000001b3; // multiplication by the prime of the FNV hash
+    hash_ ^= hash_ >> 32;                   // mixes the high bits into the low ones
     hash_ *= 0x9e3779b97f4a7c15;
   }
   void add(long number) { add(static_cast<std::uint64_t>(number)); }
-  /// All that are not a number are alike, and so are both zeros.
+  /// All NaN count as equal, and so do +0 and −0.
   void add(double x) { add(x != x ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(x == 0.0 ? 0.0 : x)); }
   void add(std::string_view text) {
     add(static_cast<std::uint64_t>(text.size()));

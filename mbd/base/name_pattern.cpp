@@ -3,7 +3,7 @@
 namespace steplap {
 
 bool matches_pattern(const std::string& name, const std::string& pattern) {
-  // Greedy with one point to come back to: linear for patterns with few stars.
+  // Greedy matching that backtracks to the last * only. This is sufficient, and takes linear time for few stars.
   std::size_t n = 0, p = 0, star = std::string::npos, resume = 0;
   while (n < name.size()) {
     if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {

@@ -1,11 +1,11 @@
-// Patterns of names, as models write them for channels and events.
+// Name patterns with wildcards, as used in models for channels and events.
 #pragma once
 
 #include <string>
 
 namespace steplap {
 
-/// Does `name` match the pattern, * any text, ? any one character?
+/// Returns true if all of `name` matches `pattern`: * stands for any text, ? for one character.
 [[nodiscard]] bool matches_pattern(const std::string& name, const std::string& pattern);
 
 } // namespace steplap

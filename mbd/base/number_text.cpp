@@ -1,11 +1,11 @@
-// The text is that of std::to_chars: of fixed and scientific notation the shorter, fixed if both are as long. Its
-// digits are found as in Schubfach (R. Giulietti, The Schubfach way to render doubles, 2020) from one product alone, to 2^-60 of the
-// seventeenth digit; where that does not decide, which nearly never happens, fmt's Dragonbox does.
+// The text is the same as that of std::to_chars: fixed or scientific notation, whichever is shorter, fixed if equal. The digits are found
+// as in Schubfach (R. Giulietti, The Schubfach way to render doubles, 2020), but with a single product that is accurate to 2^-60 of the
+// seventeenth digit. In the rare cases in which this is not accurate enough, fmt's Dragonbox is used.
 #include "mbd/base/number_text.h"
 
 #define FMT_HEADER_ONLY // its shared object would be loaded at every start
 #define FMT_USE_FULL_CACHE_DRAGONBOX 1
-// A namespace of its own: spdlog brings fmt with a smaller table of the same name, and the linker would take one of them for both.
+// Own namespace for fmt: spdlog contains another fmt with a smaller table of the same name, and the linker would keep only one of the two.
 #define FMT_BEGIN_NAMESPACE                                                                                                                \
   namespace fmt {                                                                                                                          \
   inline namespace full_cache {
@@ -42,14 +42,14 @@ constexpr auto k_powers = [] {
 static_assert(std::endian::native == std::endian::little, "characters are put together in words");
 __extension__ typedef unsigned __int128 Sixteen;
 
-/// A number above zero, digit by digit.
+/// Decimal digits of a positive number.
 struct Decimal {
-  std::uint64_t first; ///< sixteen of its digits, the first of which is not 0
-  unsigned last;       ///< the seventeenth: no double needs any behind that
-  int exponent;        ///< of the first
+  std::uint64_t first; ///< first sixteen digits; the leading one is not 0
+  unsigned last;       ///< seventeenth digit; no double needs more
+  int exponent;        ///< decimal exponent of the leading digit
 };
 
-/// How many digits; of 0 none.
+/// Returns the number of decimal digits; 0 for 0.
 int digit_count(std::uint64_t value) {
   const int bits = 64 - __builtin_clzll(value | 1);
   const int about = bits * 1233 >> 12; // log₁₀ 2, rounded down
@@ -63,43 +63,45 @@ int digit_count(std::uint64_t value) {
   return {digits * k_powers[static_cast<std::size_t>(16 - count)], 0, exponent + count - 1};
 }
 
-/// The shortest decimal number between those doubles' halfway points that enclose the value, of several the nearest one.
+/// Returns the shortest decimal number in the rounding interval of `value` (between the midpoints to its neighbouring doubles); of several,
+/// the nearest to `value`.
 Decimal decimal_of(double value) {
   constexpr std::uint64_t k_fraction = (std::uint64_t{1} << 52) - 1, k_one = std::uint64_t{1} << 60, k_half = std::uint64_t{1} << 63;
-  constexpr std::uint64_t k_sure = 8, k_sure_of_half = 64; // what products may be off by is a third of that, and less
+  constexpr std::uint64_t k_sure = 8, k_sure_of_half = 64; // at least three times the error of the products below
   constexpr std::uint64_t k_sixteen_digits = 1000000000000000;
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const int biased = static_cast<int>(bits >> 52);
-  // Powers of two, below which doubles lie closer, and what has fewer bits.
+  // Powers of two, where the spacing of doubles changes, and subnormal numbers need the general algorithm.
   if ((bits & k_fraction) == 0 || biased == 0) return decimal_by_dragonbox(value);
   const int q = biased - 1075;
   const int k = q * 1262611 >> 22;            // ⌊log₁₀ 2^q⌋
-  const int h = q + (-k * 1741647 >> 19) + 1; // 2^q 10^-k = 2^h g / 2^128, from 1 on and below 10; 1 ≤ h ≤ 4
+  const int h = q + (-k * 1741647 >> 19) + 1; // 2^q 10^-k = 2^h g / 2^128 lies in [1, 10); 1 ≤ h ≤ 4
   const auto g = fmt::detail::dragonbox::cache_accessor<double>::get_cached_power(-k);
   const std::uint64_t c = ((bits & k_fraction) | (k_fraction + 1)) << h;
-  const Sixteen scaled = Sixteen(g.high()) * c + static_cast<std::uint64_t>(Sixteen(g.low()) * c >> 64);  // 10^-k value, in 2^-64
+  const Sixteen scaled = Sixteen(g.high()) * c + static_cast<std::uint64_t>(Sixteen(g.low()) * c >> 64);  // 10^-k value, in units of 2^-64
   const auto whole = static_cast<std::uint64_t>(scaled >> 64), part = static_cast<std::uint64_t>(scaled); // sixteen or seventeen digits
   std::uint64_t tens = whole / 10;
   const std::uint64_t ones = whole - 10 * tens;
-  // Of the last digit, in 2^-60: to the halfway point, and to the next multiples of ten. One of these lies within halfway points at most.
+  // Distances within the last digit, in units of 2^-60: to the midpoint of neighbouring doubles (reach), and to the next multiples of ten
+  // below and above. At most one of these multiples lies within reach.
   const std::uint64_t reach = g.high() >> (5 - h), down = ones * k_one + (part >> 4), up = 10 * k_one - down;
   const bool is_down = down < reach, is_up = up < reach;
   if (down - reach + k_sure < 2 * k_sure || up - reach + k_sure < 2 * k_sure || part - k_half + k_sure_of_half < 2 * k_sure_of_half)
       [[unlikely]]
     return decimal_by_dragonbox(value);
-  const unsigned last = is_down || is_up ? 0U : static_cast<unsigned>(ones + (part >> 63)); // 9.5 is near 10, which lies within reach
+  const unsigned last = is_down || is_up ? 0U : static_cast<unsigned>(ones + (part >> 63)); // 9.5 rounds up to 10, which lies within reach
   tens += is_up ? 1 : 0;
   if (tens >= k_sixteen_digits) return {tens, last, k + 16};
   return {10 * tens + last, 0, k + 15};
 }
 
-/// The characters of sixteen digits: the first is the lowest byte of `low`.
+/// Sixteen digits, one byte each; the first digit is the lowest byte of `low`.
 struct Digits {
   std::uint64_t low, high;
 };
 
 #if defined(__SSE2__)
-// All at once: two numbers of eight digits become four of four, eight of two and sixteen of one.
+// Splits all digits in parallel: two groups of eight digits become four of four, eight of two and sixteen of one.
 Digits digits_of(std::uint64_t value) {
   const auto all = [](int x) { return _mm_set1_epi32(x); };
   const auto each = [](short x) { return _mm_set1_epi16(x); };
@@ -117,10 +119,10 @@ Digits digits_of(std::uint64_t value) {
           static_cast<std::uint64_t>(_mm_cvtsi128_si64(_mm_unpackhi_epi64(text, text)))};
 }
 #else
-/// Of eight digits: two numbers of four in one word, four of two, eight of one.
+/// Splits eight digits: two groups of four in one word, four of two, eight of one.
 std::uint64_t eight(std::uint64_t value) {
   const std::uint64_t high = value / 10000, fours = high | (value - high * 10000) << 32;
-  const std::uint64_t hundreds = (fours * 10486 >> 20) & 0x0000007f0000007f; // of each four, two digits
+  const std::uint64_t hundreds = (fours * 10486 >> 20) & 0x0000007f0000007f; // for each four digits, the upper two
   const std::uint64_t twos = hundreds | (fours - hundreds * 100) << 16;
   const std::uint64_t tens = (twos * 103 >> 10) & 0x000f000f000f000f, ones = tens | (twos - tens * 10) << 8;
   return ones + 0x3030303030303030;
@@ -130,23 +132,23 @@ Digits digits_of(std::uint64_t value) { return {eight(value / 100000000), eight(
 
 constexpr std::uint64_t k_zeros = 0x3030303030303030;
 
-/// How many are left without the zeros at the end; the first is none.
+/// Returns the number of digits without trailing zeros; the first digit must not be 0.
 int without_zeros(const Digits& d) {
   const std::uint64_t high = d.high ^ k_zeros;
   return high != 0 ? 16 - (__builtin_clzll(high) >> 3) : 8 - (__builtin_clzll(d.low ^ k_zeros) >> 3);
 }
 
-/// Seventeen bytes.
+/// Writes seventeen digits.
 void put_digits(char* at, const Digits& d, unsigned last) {
   std::memcpy(at, &d.low, sizeof d.low);
   std::memcpy(at + 8, &d.high, sizeof d.high);
   at[16] = static_cast<char>('0' + last);
 }
 
-/// With a point behind the first few of them; eighteen bytes. 0 < before < 17. By stores alone: loading again what was just stored in other
-/// pieces would wait for it.
+/// Writes seventeen digits with a decimal point after the first `before` of them (0 < before < 17); eighteen bytes. Uses stores only:
+/// loading bytes just stored with another width would stall the processor.
 void put_with_point(char* at, const Digits& d, unsigned last, int before) {
-  put_digits(at + 1, d, last); // those behind the point are in their places
+  put_digits(at + 1, d, last); // digits after the point are now in place
   std::uint64_t word = d.low;
   if (before < 8) {
     const std::uint64_t bit = std::uint64_t{1} << (8 * before), mask = bit - 1;
@@ -177,7 +179,7 @@ char* put_scientific(char* at, const Digits& d, unsigned last, int count, int ex
 } // namespace
 
 char* write_number(char* at, double value) {
-  constexpr int k_exact = 15; // digits of whole numbers below 2⁵³
+  constexpr int k_exact = 15; // whole numbers below 2⁵³ have at most this many digits
   const auto as_always = [&] { return std::to_chars(at, at + k_number_room, value).ptr; };
   if (!std::isfinite(value)) return as_always();
   if (std::signbit(value)) {
@@ -191,17 +193,17 @@ char* write_number(char* at, double value) {
   const auto [first, last, exponent] = decimal_of(value);
   const Digits digits = digits_of(first);
   const int count = last != 0 ? 17 : without_zeros(digits);
-  const int scientific = (count > 1 ? count + 1 : 1) + 2 + (std::abs(exponent) >= 100 ? 3 : 2); // characters of that notation
-  const int whole = exponent + 1;                                                               // digits before the point
+  const int scientific = (count > 1 ? count + 1 : 1) + 2 + (std::abs(exponent) >= 100 ? 3 : 2); // length of the text in scientific notation
+  const int whole = exponent + 1;                                                               // number of digits before the decimal point
   const int fixed = whole >= count ? whole : (whole > 0 ? count + 1 : count + 2 - whole);
   if (fixed > scientific) return put_scientific(at, digits, last, count, exponent);
   if (whole >= count) {
-    if (fixed > k_exact) return as_always(); // all digits of a whole number, more than the shortest
+    if (fixed > k_exact) return as_always(); // fixed notation of large whole numbers shows all digits, more than the shortest text has
     put_digits(at, digits, last);
   } else if (whole > 0) {
     put_with_point(at, digits, last, whole);
   } else {
-    std::memcpy(at, "0.000000", 8); // no more zeros than scientific notation takes for its exponent
+    std::memcpy(at, "0.000000", 8); // more leading zeros would be longer than scientific notation
     put_digits(at + 2 - whole, digits, last);
   }
   return at + fixed;

@@ -1,5 +1,4 @@
-// Numbers as text: the shortest digits that read back as the same double, the same on every
-// machine.
+// Converts numbers to text: the shortest decimal text that reads back as the same double, identical on every machine.
 #pragma once
 
 #include <cstddef>
@@ -7,14 +6,14 @@
 
 namespace steplap {
 
-/// "0.1", "1e-05", "nan", "inf".
+/// Returns the shortest text, for example "0.1", "1e-05", "nan", "inf".
 [[nodiscard]] std::string number_text(double value);
-/// The same, appended to `text`; for writing many.
+/// Appends the text to `text`. Faster when many numbers are written.
 void append_number(std::string& text, double value);
 
-/// Bytes that write_number() may touch: more than the longest number has.
+/// Buffer size for write_number(), larger than the longest text, because it writes in blocks.
 inline constexpr std::size_t k_number_room = 48;
-/// The same at `at`, where k_number_room bytes are free; returns the end of the text.
+/// Writes the text to `at`, where k_number_room bytes must be writable. Returns the end of the text.
 [[nodiscard]] char* write_number(char* at, double value);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Decompositions by orthogonal matrices: they share Eigen's Householder sequences, and so a file.
+// Orthogonal decompositions (QR, SVD), in one file because they share Eigen's Householder templates.
 #include "mbd/base/decompositions.h"
 
 #include <Eigen/QR>
@@ -23,7 +23,7 @@ struct PivotedQr::Factor : Eigen::ColPivHouseholderQR<MatX> {
   using ColPivHouseholderQR::ColPivHouseholderQR;
 };
 
-// Eigen's own does not take matrices without rows or columns.
+// Eigen does not accept matrices without rows or columns; these are treated here.
 PivotedQr::PivotedQr(const MatX& a, double threshold)
     : rows_(a.rows()), cols_(a.cols()),
       factor_(std::make_unique<Factor>(std::max<Eigen::Index>(rows_, 1), std::max<Eigen::Index>(cols_, 1))) {
@@ -49,13 +49,13 @@ PivotedQr::NullSpace PivotedQr::null_space(double least) const {
   const Eigen::Index k = cols_ - rank_;
   NullSpace found;
   MatX vectors = MatX::Zero(cols_, k);
-  if (k > 0) vectors.bottomRows(k).setIdentity(); // of an empty matrix it would be an offset from null
+  if (k > 0) vectors.bottomRows(k).setIdentity(); // for an empty matrix Eigen would compute an offset from a null pointer
   if (rank_ == 0) {
     for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(static_cast<int>(j));
     found.vectors = vectors;
     return found;
   }
-  if (k == 0) { // nothing is left open
+  if (k == 0) { // full column rank: the null space is {0}
     found.vectors = vectors;
     return found;
   }

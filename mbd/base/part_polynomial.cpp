@@ -13,23 +13,23 @@ namespace {
 constexpr std::size_t k_order = PartPolynomial::k_order;
 using Values = PartPolynomial::Values;
 
-// Coefficients of a kink, the gap to a pin that is passed, fall as 1/j², and the rest of them sum up to so many of the last
-// two; those of what is smooth fall much faster.
+// Factor of E. The Chebyshev coefficients of a function with a kink, such as the gap to a pin that is passed, decrease as 1/j²; the sum of
+// the omitted ones is then at most this multiple of the last two. Those of a smooth function decrease much faster.
 constexpr double k_tail = 4.0;
-// What T_j leaves beside the polynomial through its places is T_j − T_{12−j}, whose slope is j² − (12 − j)² at most on [−1, 1]: 24 and 48
-// for j = 7 and 8. Twice that on [0, 1], for a coefficient that E counts twice at least.
+// E′/E. At the nodes T_j coincides with T_{12−j}, so the error contributed by T_j is T_j − T_{12−j}. Its slope on [−1, 1] is at most j² −
+// (12 − j)²: 24 and 48 for j = 7 and 8. On [0, 1] it is twice that, for a coefficient that E counts at least twice.
 constexpr double k_tail_slope = 48.0;
-constexpr double k_rounding = 1e-15; // of a value's largest: coefficients below it are rounding
-// Of a gap, until it is decided: each halving brings Bernstein's coefficients four times as near to the polynomial, and
-// at this depth to 1e-12 of its bend. What is nearer is divided in earnest.
+constexpr double k_rounding = 1e-15; // relative to the largest value: smaller coefficients are rounding errors
+// Largest number of bisections of a gap. Each one reduces the distance between Bernstein coefficients and polynomial by four, so at this
+// depth it is 1e-12 of the curvature term. If the sign is still open then, the caller divides the interval.
 constexpr int k_depth = 20;
-constexpr int k_samples_of_gap = 8; // from which the least value is found
-constexpr int k_sections = 40;      // golden ones: to the rounding of the place
+constexpr int k_samples_of_gap = 8; // samples for bracketing the minimum
+constexpr int k_sections = 40;      // golden-section steps, enough for the rounding error of the position
 
 struct Table {
   Values place{}, between{};
-  std::array<Values, k_order + 1> transform{}; // Chebyshev coefficients from values
-  std::array<Values, k_order + 1> bernstein{}; // of T_j on [0, 1]
+  std::array<Values, k_order + 1> transform{}; // matrix from values to Chebyshev coefficients
+  std::array<Values, k_order + 1> bernstein{}; // Bernstein coefficients of T_j on [0, 1]
 
   Table() {
     const double pi = std::numbers::pi;
@@ -58,7 +58,7 @@ struct Table {
     for (std::size_t i = 0; i <= n; ++i) c[i] = ((n - i) % 2 == 0 ? 1.0 : -1.0) * choose(2 * n, 2 * i) / choose(n, i);
     return c;
   }
-  // The same polynomial with coefficients of degree k_order.
+  // Degree elevation of Bernstein coefficients to degree k_order.
   static Values raised(Values c, std::size_t degree) {
     for (std::size_t n = degree; n < k_order; ++n) {
       Values up{};
@@ -72,16 +72,16 @@ struct Table {
   }
 };
 
-const Table k_table; // made before main(): threads that run side by side find it made
+const Table k_table; // constructed before main(), so threads need no synchronisation
 
-// A stretch of a gap, as long as `length` of the part.
+// Part of a gap; `length` is its length relative to [0, 1].
 struct Stretch {
-  Values c; // Bernstein's coefficients
+  Values c; // Bernstein coefficients of p
   double length;
   bool begins_at_place, ends_at_place;
 };
 
-// De Casteljau: what is left of `share` of it, which is taken away from `rest`.
+// De Casteljau subdivision at `share`: returns the coefficients of the left part; `rest` becomes the right part.
 Values take_away(Values& rest, double share) {
   Values left;
   for (std::size_t n = 0; n <= k_order; ++n) {
@@ -127,7 +127,7 @@ bool is_above(const Stretch& s, double floor, double error, int depth) {
   return is_above(left, floor, error, depth - 1) && is_above(right, floor, error, depth - 1);
 }
 
-// How far a walk along a gap has come that is to fall below the floor and not before.
+// State of a walk along a gap from left to right that checks whether f falls below the floor exactly once.
 enum class Fall { above, falling, below, in_doubt };
 
 Fall walk(const Stretch& s, Fall so_far, double floor, double error, int depth) {
@@ -165,7 +165,7 @@ void PartPolynomial::fit(const Values& values) {
   for (std::size_t gap = 0; gap < k_order; ++gap) {
     const double from = k_table.place[gap], to = k_table.place[gap + 1];
     bernstein_[gap] = gap + 1 < k_order ? take_away(rest, (to - from) / (1.0 - from)) : rest;
-    bernstein_[gap][0] = values[gap]; // but for rounding
+    bernstein_[gap][0] = values[gap]; // the value itself, without the rounding errors of the transform
     bernstein_[gap][k_order] = values[gap + 1];
   }
 }

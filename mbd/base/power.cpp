@@ -16,22 +16,21 @@ constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr DoubleDouble k_ln2{0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
-// ln 2 as a multiple of a small power of two, which is exact times the integers that come, and the
-// rest.
+// ln 2 as a multiple of a small power of two plus a remainder. The product of the multiple with the integers used is exact.
 constexpr DoubleDouble k_ln2_times_17_bits{0x1.62e42fefap-1, 0x1.cf79abc9e3b3ap-40};
 constexpr DoubleDouble k_ln2_on_grid{0x1.62e42fefa3800p-1, 0x1.ef35793c76730p-45};
 constexpr double k_grid = 0x1p-42;
 constexpr DoubleDouble k_per_ln10{0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
 
-/// For numbers in [1 + i/128, 1 + (i+1)/128), or half of them from √2 on: a number of nine bits
-/// next to their reciprocal, and −log of it, hi a multiple of 2⁻⁴².
+/// Table entry for numbers in [1 + i/128, 1 + (i+1)/128), or half of them from √2 on: a 9-bit approximation of the reciprocal, and the
+/// logarithm of that reciprocal with opposite sign, whose `hi` is a multiple of 2⁻⁴².
 struct LogEntry {
   double inverse = 1.0;
   DoubleDouble log;
 };
 constexpr int k_first_halved = 53;
 
-// 2 atanh s by its series.
+// Returns 2 atanh s by its series.
 constexpr DoubleDouble twice_atanh(const DoubleDouble& s) {
   const DoubleDouble square = s * s;
   DoubleDouble sum, power = s;
@@ -44,7 +43,7 @@ constexpr DoubleDouble twice_atanh(const DoubleDouble& s) {
 
 constexpr std::array<LogEntry, 128> make_logs() {
   std::array<LogEntry, 128> table;
-  for (int i = 1; i < 127; ++i) { // at both ends the reciprocal is 1, so that nothing cancels next to x = 1
+  for (int i = 1; i < 127; ++i) { // at both ends the reciprocal is 1, so that nothing cancels for x near 1
     const double middle = (1.0 + (i + 0.5) / 128) * (i < k_first_halved ? 1.0 : 0.5);
     const int n = static_cast<int>(512.0 / middle + 0.5);
     table[i].inverse = n / 512.0;
@@ -56,7 +55,7 @@ constexpr std::array<LogEntry, 128> make_logs() {
   return table;
 }
 
-// 2^(j/64) by the exponential series.
+// Table of 2^(j/64), by the exponential series.
 constexpr std::array<DoubleDouble, 64> make_powers() {
   std::array<DoubleDouble, 64> table;
   for (int j = 0; j < 64; ++j) {
@@ -74,16 +73,15 @@ constexpr std::array<DoubleDouble, 64> make_powers() {
 constexpr std::array<LogEntry, 128> k_logs = make_logs();
 constexpr std::array<DoubleDouble, 64> k_powers = make_powers();
 
-// x without its last N bits, rounded.
+// Returns x rounded to 53 − N bits.
 template <int N> double without_last(double x) {
   constexpr std::uint64_t half = std::uint64_t{1} << (N - 1);
   return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + half) & ~std::uint64_t{0} << N);
 }
 
-// log x of a positive finite x to 2⁻⁶⁷ of itself. x = 2^e z, and z times the table's reciprocal is
-// 1 + r, r = h + l exactly with h of 20 bits, |r| < 2⁻⁷. e ln 2, the table's logarithm and h are
-// multiples of 2⁻⁴² whose sum is exact, h² is exact, and what rounding leaves of the sum with h²/2
-// and l is kept. Of the series r¹¹/11 is the first left out.
+// Returns log x for positive finite x with relative error 2⁻⁶⁷. With x = 2^e z, z times the table's reciprocal is 1 + r, where r = h + l
+// exactly, h has 20 bits and |r| < 2⁻⁷. The terms e ln 2, table logarithm and h are multiples of 2⁻⁴² with an exact sum; h² is exact; the
+// rounding errors of the sum with h²/2 and l are kept. The first omitted term of the series is r¹¹/11.
 DoubleDouble log_of(double x) {
   auto bits = std::bit_cast<std::uint64_t>(x);
   int e = -1023;
@@ -108,8 +106,8 @@ DoubleDouble log_of(double x) {
   return quick_two_sum(second.hi, small);
 }
 
-// e^(hi + lo), |lo| ≤ 2⁻²⁴ |hi|: k ln 2/64 + r, |r| ≤ ln 2/128 and a little; e^r − 1 = r + r²/2 …,
-// of which r⁷/7! is left out. Where the result is subnormal it is rounded once more.
+// Returns e^(hi + lo), |lo| ≤ 2⁻²⁴ |hi|. The exponent is k ln 2/64 + r with |r| slightly above ln 2/128 at most; the first omitted term of
+// e^r − 1 = r + r²/2 + … is r⁷/7!. Subnormal results are rounded twice.
 double exp_of(double hi, double lo) {
   if (hi > 710.0) return k_infinity;
   if (hi < -746.0) return 0.0;
@@ -126,7 +124,7 @@ double exp_of(double hi, double lo) {
   return value * two_to(half) * two_to(e - half);
 }
 
-// x^y of ordinary numbers: the product of y and the logarithm in two parts, the larger exact.
+// Returns x^y for ordinary arguments. y log x is computed in two parts, of which the larger is exact.
 double positive_power(double x, double y) {
   const DoubleDouble log = log_of(x);
   const double y_high = without_last<27>(y), log_high = without_last<27>(log.hi);
@@ -137,13 +135,13 @@ double positive_power(double x, double y) {
 bool is_integer(double y) { return std::floor(y) == y; }
 bool is_odd(double y) { return std::abs(y) < 0x1p53 && is_integer(y) && !is_integer(0.5 * y); }
 
-// x is zero or infinite, y a finite number other than zero or infinite.
+// Returns x^y for x zero or infinite and y finite, not zero.
 double power_of_extreme(double x, double y) {
   const bool becomes_infinite = (x == 0.0) == (y < 0.0);
   return std::copysign(becomes_infinite ? k_infinity : 0.0, is_odd(y) ? x : 1.0);
 }
 
-double power_to_infinity(double x, double y) { // x finite, neither 0 nor ±1
+double power_to_infinity(double x, double y) { // |x| not 0, 1 or ∞
   return (std::abs(x) > 1.0) == (y > 0.0) ? k_infinity : 0.0;
 }
 
@@ -159,7 +157,7 @@ double pow(double x, double y) {
   if (x < 0.0 && !is_integer(y)) return k_nan;
   double power = 0.0;
   if (std::abs(y) > 0x1p70) {
-    power = power_to_infinity(x, y); // the logarithm of no double but 1 is below 2⁻⁵³
+    power = power_to_infinity(x, y); // no logarithm of a double except that of 1 is below 2⁻⁵³
   } else {
     power = positive_power(size, y);
   }

@@ -11,7 +11,7 @@ constexpr int k_max_iterations = 60;
 
 } // namespace
 
-// Adds a row to the table of divided differences: last_[k] = f[x_{n−k}, …, x_n].
+// Appends a row to the table of divided differences: last_[k] = f[x_{n−k}, …, x_n].
 void RootEstimate::append(double x, double value) {
   double difference = value;
   for (int k = 0; k < n_; ++k) {
@@ -28,7 +28,7 @@ void RootEstimate::add(double x, double value) {
   if (n_ < k_capacity) append(x, value);
 }
 
-// The same place a second time: the first difference between the two is the slope.
+// Hermite interpolation: the node is entered twice, and the first divided difference between the two is the slope.
 void RootEstimate::add(double x, double value, double slope) {
   if (n_ + 2 > k_capacity) return add(x, value);
   append(x, value);
@@ -53,7 +53,7 @@ RootEstimate::Value RootEstimate::at(double x) const {
   return p;
 }
 
-// Newton's method, halving where it would leave the bracket.
+// Newton's method, with bisection where it would leave the bracket.
 double RootEstimate::root(double low, double high, double resolution) const {
   const double at_low = at(low).value, at_high = at(high).value;
   double x = low + (high - low) * at_low / (at_low - at_high);

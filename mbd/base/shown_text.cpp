@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// Also the second byte of U+0080 … U+009F, control characters of eight-bit terminals.
+// Returns true for ASCII control characters and for the second byte of U+0080 … U+009F, the control characters of eight-bit terminals.
 bool is_control(std::string_view text, std::size_t i) {
   const auto c = static_cast<unsigned char>(text[i]);
   if (c < 0x20 || c == 0x7f) return true;
@@ -35,7 +35,7 @@ std::string shown(std::string_view text, bool keeps_lines) {
     else if (c == '\t') result += "\\t";
     else if (c == '\r') result += "\\r";
     else {
-      if (static_cast<unsigned char>(c) >= 0x80) result.pop_back(); // the first byte of the two
+      if (static_cast<unsigned char>(c) >= 0x80) result.pop_back(); // removes the first byte of the two-byte character
       char code[8];
       std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
       result += code;

@@ -1,5 +1,4 @@
-// Text as people are shown it: what a terminal would take for a command is spelled out, numbers have the digits that matter,
-// and one of a thing is not called several.
+// Text for people: control characters escaped, numbers rounded to the digits that matter, singular and plural.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +7,16 @@
 
 namespace steplap {
 
-/// Does the text hold a control character (line break, tab, escape, delete, …)?
+/// Returns true if the text contains a control character (line break, tab, escape, delete, …).
 [[nodiscard]] bool has_control_character(std::string_view text);
-/// The text with control characters spelled out: "\n", "\t", "\x1b". `keeps_lines`: line breaks stay.
+/// Returns the text with control characters escaped as "\n", "\t", "\x1b", so that names from files cannot control a terminal.
+/// `keeps_lines`: line breaks are not escaped.
 [[nodiscard]] std::string shown(std::string_view text, bool keeps_lines = false);
 
-/// At most so many digits: "1e-11", where all that a double holds would be 1.0000000000000001e-11.
+/// Returns `value` with at most `digits` significant digits: "1e-11" rather than 1.0000000000000001e-11.
 [[nodiscard]] std::string rounded_text(double value, int digits = 6);
 
-/// "1 body", "2 bodies"
+/// Returns the count with the noun in the right number: "1 body", "2 bodies".
 [[nodiscard]] std::string counted(std::size_t count, std::string_view one, std::string_view several);
 
 } // namespace steplap

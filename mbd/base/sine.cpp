@@ -13,8 +13,7 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-/// What is left of x beyond the nearest multiple of π/2, |hi| ≤ π/4, and that multiple (mod 4 it
-/// counts).
+/// Result of argument reduction: x = (hi + lo) + quarter · π/2 with |hi| ≤ π/4. Only `quarter` mod 4 matters.
 struct Remainder {
   double hi, lo;
   unsigned quarter;
@@ -29,21 +28,21 @@ Remainder reduce(double x) {
   return {rest.hi, rest.lo, static_cast<unsigned>(static_cast<int>(k))};
 }
 
-// 2/π = 0.101000101…b behind 64 zeros, 1344 bits.
+// 2/π = 0.101000101…b after 64 zeros, 1344 bits.
 constexpr std::uint64_t k_two_over_pi_bits[22] = {
     0x0000000000000000, 0xa2f9836e4e441529, 0xfc2757d1f534ddc0, 0xdb6295993c439041, 0xfe5163abdebbc561, 0xb7246e3a424dd2e0,
     0x06492eea09d1921c, 0xfe1deb1cb129a73e, 0xe88235f52ebb4484, 0xe99c7026b45f7e41, 0x3991d639835339f4, 0x9c845f8bbdf9283b,
     0x1ff897ffde05980f, 0xef2f118b5a0a6d1f, 0x6d367ecf27cb09b7, 0x4f463f669e5fea2d, 0x7527bac7ebe5f17b, 0x3d0739f78a5292ea,
     0x6bfb5fb11f8d5d08, 0x56033046fc7b6bab, 0xf0cfbc209af4361d, 0xa9e391615ee61b08};
 
-// 64 of these bits from the one of the given number on.
+// Returns 64 of these bits, beginning with bit number `first`.
 std::uint64_t bits_from(int first) {
   const int word = first / 64, shift = first % 64;
   const std::uint64_t* w = k_two_over_pi_bits + word;
   return shift == 0 ? w[0] : (w[0] << shift) | (w[1] >> (64 - shift));
 }
 
-// f 2⁻¹²⁸ as a sum of two doubles; the topmost 64 bits of f are not all zero.
+// Returns f 2⁻¹²⁸ as a sum of two doubles. Precondition: the upper 64 bits of f are not all zero.
 DoubleDouble fraction_of(Wide f) {
   const int zeros = std::countl_zero(static_cast<std::uint64_t>(f >> 64));
   const Wide aligned = f << zeros;
@@ -52,9 +51,8 @@ DoubleDouble fraction_of(Wide f) {
   return {std::ldexp(high, -53 - zeros), std::ldexp(low, -106 - zeros)};
 }
 
-// x = m 2^e, m an integer. Digits of 2/π that make multiples of four of the product fall away, the
-// next 192 count: x 2/π mod 4 is then known to 2⁻¹³⁶, and no double comes nearer to a multiple of
-// π/2 than 2⁻⁶².
+// Payne–Hanek reduction of x = m 2^e, m an integer. Leading digits of 2/π that contribute multiples of four to the product are skipped; the
+// next 192 bits give x 2/π mod 4 to 2⁻¹³⁶. This suffices, since no double is nearer to a multiple of π/2 than 2⁻⁶².
 Remainder reduce_far(double x) {
   const auto bits = std::bit_cast<std::uint64_t>(std::abs(x));
   const int e = static_cast<int>(bits >> 52) - 1075;
@@ -69,7 +67,7 @@ Remainder reduce_far(double x) {
   const Wide upper = static_cast<Wide>(product[0]) << 64 | product[1];
   const Wide f = upper << 2 | product[2] >> 62;
   const bool is_past_half = f >> 127 != 0;
-  if (is_past_half) ++quarter; // and 1 − f away from it
+  if (is_past_half) ++quarter; // the remainder is then −(1 − f) quarters
   const bool is_negative = is_past_half != (x < 0.0);
   const DoubleDouble r = fraction_of(is_past_half ? Wide{0} - f : f) * k_half_pi_sum;
   return {is_negative ? -r.hi : r.hi, is_negative ? -r.lo : r.lo, x < 0.0 ? 0u - quarter : quarter};
@@ -86,7 +84,7 @@ Remainder remainder_of(double x) { return std::abs(x) < k_far ? reduce(x) : std:
 
 SinCos sin_cos(double x) {
   if (std::abs(x) <= k_quarter_pi) {
-    if (std::abs(x) < 0x1p-28) return {x, 1.0}; // and −0 stays −0
+    if (std::abs(x) < 0x1p-28) return {x, 1.0}; // keeps −0
     return series(x, 0.0);
   }
   const Remainder r = remainder_of(x);

@@ -66,7 +66,7 @@ STEPLAP_INLINE void ConstraintSolution::respond(Mechanism& m, double* a) {
   m.add_response(right, a + m.first_coordinate);
 }
 
-// What rows that move with time are to accelerate by.
+// Adds the prescribed accelerations of driven rows to γ, and stores their prescribed rates.
 STEPLAP_INLINE void ConstraintSolution::drive(double t) {
   for (const int r : layout_->driven_rows) {
     const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
@@ -94,7 +94,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
     add_part_responses(right, a);
 }
 
-// --- a projection -------------------------------------------------------------------------------------
+// --- projection ---------------------------------------------------------------------------------------
 
 STEPLAP_INLINE void ConstraintSolution::compare_row(std::size_t r, double t) {
   const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
@@ -112,7 +112,7 @@ void ConstraintSolution::compare(double t) {
 
 namespace {
 
-// What is no number is no less than anything.
+// Takes the maximum; NaN counts as infinite.
 void take_larger(double value, double& largest) {
   if (!(value <= largest)) largest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
 }

@@ -1,11 +1,11 @@
-// The rows that hold, the second of the three parts of Dynamics: their gradients, what they are off their targets by,
-// and the multipliers
-//   J (a_f + W Jᵀλ) = γ,  A = J W Jᵀ   (29)–(31)
-// for the clusters in absolute coordinates, the same with M⁻¹ for each mechanism (mechanism.h).
+// Active constraint rows, the second of the three parts of Dynamics: gradients J, residuals, and the multipliers λ from
 //
-// The pattern (which rows, between which clusters, what is constant) is the layout's. Multipliers are those of the last
-// solve() until the next one: nothing else writes them. What rows are off by has members of its own, and what is solved
-// for on the way to a projection is scratch.
+//   J (a_f + W Jᵀλ) = γ,  A = J W Jᵀ   (29)–(31)
+//
+// with W = M⁻¹ for clusters in absolute coordinates; for mechanisms (mechanism.h) the same with their full M⁻¹.
+//
+// The layout contains the pattern: which rows exist between which clusters, and all constants. multipliers() keeps the result of the last
+// solve(); projections use separate arrays.
 #pragma once
 
 #include "mbd/dynamics/kinematics.h"
@@ -20,41 +20,47 @@ struct Residual {
   double velocity = 0.0;
 };
 
+/// Computes multipliers and projections for the rows of a layout. solve() and take_away() do not allocate.
 class ConstraintSolution {
 public:
+  /// `kinematics` provides the motions, and must outlive it.
   explicit ConstraintSolution(const Kinematics& kinematics);
 
-  /// Both must outlive the use of this object or be set anew.
+  /// Sets layout and state; both must outlive their use here.
   void use(Layout& layout, const State& state);
 
-  // --- of an evaluation: at the motion placed, t that of the evaluation -----------------------------
-  /// Gradients, biases and factors, which do not hang on forces: what is found before them is there when they are.
+  // --- evaluation: at the motion placed, for the time of the evaluation ------------------------------
+  /// Computes gradients, bias terms and the factorisation of A, none of which depends on the applied forces.
   void prepare();
-  /// After prepare(). Adds W Jᵀλ to the accelerations `a` that forces alone give; those of mechanisms are found from
+  /// Precondition: prepare(). Solves for λ and adds W Jᵀλ to `a`, the accelerations by forces alone. For mechanisms both are computed from
   /// `force`.
   void solve(double t, const BodyForce* force, double* a);
-  /// Of the layout's active rows.
+  /// Returns λ, one number per active row of the layout, N or N m.
   [[nodiscard]] const std::vector<double>& multipliers() const { return multiplier_; }
-  /// Of the targets of active rows that are driven, at the time of the last solve().
+  /// Returns the prescribed rates of the driven active rows at the time of the last solve(); entries of other rows are undefined.
   [[nodiscard]] const std::vector<double>& target_rates() const { return target_rate_; }
 
-  // --- of a projection ------------------------------------------------------------------------------
-  /// Gradients, values and rates against the targets at the motion placed.
+  // --- projection ------------------------------------------------------------------------------------
+  /// Computes gradients and residuals of all rows at the motion placed.
   void compare(double t);
+  /// Return value − target and rate − target rate, per active row.
   [[nodiscard]] const std::vector<double>& off() const { return off_; }
   [[nodiscard]] const std::vector<double>& rate_off() const { return rate_off_; }
-  /// Largest of them. What friction that shares its rows with others is off by is a watch value (LoadSharing::discord).
+  /// Returns the largest absolute residuals. Rows left out as dependent are not included; their residual is an event function
+  /// (LoadSharing::discord).
   [[nodiscard]] Residual residual() const;
+  /// Factorises A, with its diagonal increased by the fraction `shift` (damping).
   void factor(double shift = 0.0);
   [[nodiscard]] bool is_factored() const { return is_factored_; }
   void forget_factors() { is_factored_ = false; }
-  /// change −= W Jᵀ A⁻¹ r, for a number r per row: `change` then has r less of what the rows measure.
+  /// Computes change −= W Jᵀ A⁻¹ r with one number r per row, so that J change decreases by r.
   void take_away(const double* r, double* change);
-  /// J change, along a row.
+  /// Returns J change for one row.
   [[nodiscard]] double along(std::size_t row, const double* change) const;
 
-  // --- of a row that is not active ------------------------------------------------------------------
-  /// Gradient in the clusters' coordinates; returns the measure, its bias that of the clusters. Of one part of a longer row.
+  // --- single rows that need not be active -----------------------------------------------------------
+  /// Fills in gradient and inverse masses of one row, or of one part of a longer row, in the coordinates of the clusters. Returns the
+  /// measure, with the bias that belongs to these coordinates.
   MeasureValue<double> load(const RowSpec& spec, SchurRow& row) const;
 
 private:
@@ -63,8 +69,8 @@ private:
   void respond(Mechanism& m, double* a);
   void drive(double t);
   void compare_row(std::size_t r, double t);
-  // Of rows over more than two bodies what their parts add (row_parts.cpp): to γ, to what they are off by, to what is left
-  // of `right` at the accelerations `a`, to the accelerations, and along a row.
+  // Contributions of the further parts of rows over more than two bodies (row_parts.cpp): to γ and gradients, to the residuals, to `right`
+  // −= J a, to the accelerations, and to J change.
   void pull_parts();
   void compare_parts();
   void take_part_accelerations(const double* a, double* right) const;
@@ -75,9 +81,9 @@ private:
   Layout* layout_ = nullptr;
   const State* state_ = nullptr;
   bool is_factored_ = false;
-  std::vector<double> multiplier_, target_rate_; ///< per active row; the latter of those that are driven
+  std::vector<double> multiplier_, target_rate_; ///< per active row; target_rate_ only for driven rows
   std::vector<double> off_, rate_off_, response_;
-  std::vector<double> cluster_a_; ///< scratch, where some are in mechanisms
+  std::vector<double> cluster_a_; ///< scratch for clusters in mechanisms
 };
 
 } // namespace steplap

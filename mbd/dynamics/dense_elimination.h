@@ -1,12 +1,13 @@
-// Small dense symmetric systems, of numbers or of what is written down.
+// Factorisation of small dense symmetric systems, on doubles or recorded numbers (mbd/tape).
 #pragma once
 
 #include "mbd/system/motion.h"
 
 namespace steplap {
 
-/// L D Lᵀ of the matrix m, row by row: below the diagonal first L D, then L. `invert(i, d, diagonal)` gives 1/d, or 0 where
-/// row i is left out. N: the number of rows if it is small enough to be unrolled, else 0.
+/// Computes m = L D Lᵀ row by row, in place: below the diagonal first L D, then L. `raise(diagonal)` may add damping. `invert(i, d,
+/// diagonal)` returns 1/d, or 0 if row i is to be left out. N is the number of rows if it is known at compile time (loops are unrolled),
+/// otherwise 0.
 template <int N, class S, class Raise, class Invert>
 STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& raise, const Invert& invert) {
   const int n = N > 0 ? N : count;
@@ -28,7 +29,7 @@ STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& r
   }
 }
 
-/// x = (L D Lᵀ)⁻¹ x
+/// x = (L D Lᵀ)⁻¹ x.
 template <int N, class S> STEPLAP_INLINE void substitute(const S* m, const S* inverse_d, int count, S* x) {
   const int n = N > 0 ? N : count;
   for (int i = 1; i < n; ++i)

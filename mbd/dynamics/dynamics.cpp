@@ -8,10 +8,10 @@ namespace steplap {
 
 namespace {
 
-// Below this smallest pivot the rates of a stage are those of the nearest state on the constraints.
+// Relative pivot below which the rates of a stage are those of the nearest state on the constraints (rates_nearby()).
 constexpr double k_placed_pivot = 1e-4;
 
-// Clusters of several bodies have slots behind those of links.
+// Clusters of several bodies have their force slots after those of links.
 EvaluationArrays arrays_with_clusters(const System& system) {
   EvaluationArrays arrays(system);
   arrays.force.resize(system.bodies.size() + static_cast<std::size_t>(system.links.slot_count()));
@@ -39,9 +39,10 @@ void Dynamics::set_state(const State& state) {
   pending_.end();
   stage_programs_.leave();
   std::fill(arrays_.watch.begin(), arrays_.watch.end(), 1.0);
-  std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // of bodies that none acts on in the new layout
+  std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // bodies on which nothing acts in the new layout keep zero
   const auto [layout, is_new] = layouts_.at(state, choice_);
-  // A layout that comes back may have been given up in between: it remembers nothing of the last time.
+  // A layout may have been discarded and computed again in between. It must therefore not keep its load sharing, or results would depend on
+  // the size of the cache.
   if (layout_ != &layout) layout.forget_sharing();
   layout_ = &layout;
   kinematics_.use(*layout_, state);
@@ -70,7 +71,7 @@ void Dynamics::decide_rank() {
   for (Mechanism& m : layout_->mechanisms) m.decide_rank(layout_->is_friction_row.data() + m.first_row, was_out_.data() + m.first_row);
 }
 
-// Rows whose rank was not asked for since set_state() are as they were.
+// Rows whose rank was not decided since set_state() keep their entry.
 void Dynamics::record_rank(State& state) const {
   if (layout_->held_rows.empty()) return;
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
@@ -102,11 +103,11 @@ STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i) {
   unit.friction->watch_slip(evaluation_, friction, rows.rate, &arrays_.watch[unit.watch]);
 }
 
-// Forces of all elements, on clusters and on the bodies that ride on them.
+// Computes the forces of all elements on clusters and on their bodies.
 void Dynamics::apply_forces() {
   const Layout& layout = *layout_;
   BodyForce* const force = arrays_.force.data();
-  // Those that are added to, one by one: a call to clear them all at once takes longer than they do.
+  // Only slots that are added to are cleared, one by one; a single call for all would take longer.
   force[k_ground] = {};
   for (const int slot : layout.slots) force[slot] = {};
   for (const ActiveLink& link : layout.links) force[link.slot] = {};
@@ -131,7 +132,7 @@ void Dynamics::finish_watches() {
     find_sharing();
     is_rank_new_ = false;
   }
-  const LoadSharing* const shared = sharing(); // elements that share a load are watched at a step's ends
+  const LoadSharing* const shared = sharing(); // event functions of elements that share a load are evaluated at the ends of steps
   const auto watch_place = [this](int f) {
     const FrictionUnit& unit = system_.frictions[f];
     arrays_.watch[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
@@ -192,7 +193,7 @@ STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy)
   }
 }
 
-// Those of coordinates: what y says, or drives.
+// Writes the rates of the coordinates: from y, or as drives prescribe.
 STEPLAP_INLINE void Dynamics::put_place_rates(const double* y, double* dy) const {
   std::copy_n(y + coordinate_count(), coordinate_count(), dy);
   for (std::size_t i = 0; i < layout_->locks.size(); ++i)
@@ -216,7 +217,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   finish_rates(y, dy);
 }
 
-// Of rows that move with time, few scenes have any.
+// Not inlined: few scenes have driven rows.
 [[gnu::noinline]] static void take_row_inputs(const Layout& layout, const double* memory, double t, double* into) {
   for (const int r : layout.driven_rows) {
     const SignalJet target = row_target(*layout.active[r].spec, memory, t);
@@ -235,8 +236,8 @@ void Dynamics::take_time_inputs(double t, double* into) {
   if (!layout_->driven_rows.empty()) take_row_inputs(*layout_, state_->memory.data(), t, into);
 }
 
-// Rates, power and watch values, and if `all`, what look_by_code() and defer_byproducts() take. Returns false if there is no code
-// that holds here; then nothing was changed.
+// Computes rates, powers and event functions by machine code; with `all` also the data for look_by_code() and defer_byproducts(). Returns
+// false, without any change, if no code is valid here.
 bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
@@ -257,14 +258,15 @@ void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
 
 void Dynamics::evaluate_stage_without_code(double t, const double* y, double* dy) {
   rates(t, y, dy);
-  // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
+  // A projection starts with the factors of the last evaluation. They are discarded so that results do not depend on whether that was made
+  // by code.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
   count_stage(t, y, dy);
 }
 
 void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, bool always) {
   if (!looks_at_merged(always)) {
-    if (run_code(t, y, dy, false)) return; // no loads are shared where code holds
+    if (run_code(t, y, dy, false)) return; // where code is valid no loads are shared
     evaluate_stage_without_code(t, y, dy);
     watch_merged_if_near(dy, always);
   } else if (may_look_by_code() && run_code(t, y, dy, true)) {
@@ -296,15 +298,15 @@ bool Dynamics::may_look_by_code() const {
   return program && program->is_ready() && program->can_look() && !sharing();
 }
 
-// After a stage made by code: the watch values of merged joints. Is any near its limit?
+// After a stage by code: computes the event functions of merged joints. Returns true if one is near its limit.
 bool Dynamics::look_by_code(const StageProgram& program, double t) {
-  // What holds in a cluster is judged by its wrench, the time and what is remembered.
+  // A stick in a cluster is judged by its wrench, the time and the friction state.
   evaluation_.t = std::min(t, time_cap_);
   program.put_wrenches(friction_force_);
   return watch_wrenches();
 }
 
-// After a stage that was evaluated without code: counts it, and records it where code will pay.
+// Counts a stage evaluated without code, and records it if code will pay.
 void Dynamics::count_stage(double t, const double* y, const double* dy) {
   StageProgram* const program = stage_programs_.now();
   if (!program) return;
@@ -322,7 +324,7 @@ void Dynamics::defer_byproducts(const StageProgram& program, double t, const dou
   pending_.begin(std::min(t, time_cap_), y, dimension(), program.smallest_pivot());
 }
 
-// Not one more of evaluations(): results must not hang on which way it was made.
+// Not counted in evaluations(), because the count must not depend on the use of code.
 void Dynamics::evaluate_byproducts() {
   --evaluations_;
   rates_at(pending_.t(), pending_.y(), pending_.dy());
@@ -342,7 +344,7 @@ double Dynamics::mechanical_energy(double t, const double* y) {
   return kinetic + potential;
 }
 
-// --- what follows from it -----------------------------------------------------------------------
+// --- results of an evaluation --------------------------------------------------------------------
 
 void Dynamics::watch_merged(const double* dy) {
   if (!layout_->is_merged_watched) return;
@@ -356,21 +358,21 @@ void Dynamics::watch_merged_if_near(const double* dy, bool always) {
 
 bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
-// Is any near its limit?
+// Computes the event functions of merged joints and groups. Returns true if one is near its limit.
 bool Dynamics::watch_joints(const double* dy) {
   ensure_byproducts();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
   if (layout_->sharing) {
     take_solved_friction();
-    reactions_.find_accelerations(cluster_a); // for the discord of groups
+    reactions_.find_accelerations(cluster_a); // needed by LoadSharing::discord()
   }
   reactions_.find_joints(cluster_a, multipliers().data());
   const bool is_group_near = watch_groups();
   return watch_wrenches() || is_group_near;
 }
 
-// By the wrenches that joints inside clusters bear.
+// Computes the event functions of merged joints from their wrenches. Returns true if one is near its limit.
 bool Dynamics::watch_wrenches() {
   bool is_near = false;
   for (const int f : layout_->merged) {

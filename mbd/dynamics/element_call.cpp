@@ -10,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Of what a call does not hand over: an element that reads it finds no numbers, and the code is not used (StageProgram::record).
+// Motion of bodies that the call does not transfer. An element that reads one nevertheless gets NaN; the recorded results then differ, and
+// the code is not used (StageProgram::record).
 Motion<double> unknown_motion() {
   constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
   return {k_nan, k_nan, k_nan, k_nan, k_nan, k_nan, k_nan, k_nan};
@@ -26,7 +27,7 @@ ElementCall::ElementCall(const System& system, const Evaluation& live)
   own_.inner = inner_.data();
 }
 
-// A constant of the scene stays where it is put here; all else is an argument.
+// Passes a number to the call: a constant is stored once, a variable becomes an argument.
 void ElementCall::take(const Traced& x, double& place) {
   place = value_of(x);
   if (x.is_constant()) return;
@@ -50,14 +51,14 @@ void ElementCall::give(Traced& x, const double& place) {
   found_.push_back(&place);
 }
 
-// A sum goes on from what it was: in the order of an evaluation.
+// A sum is passed with its previous value, so that terms are added in the same order as without code.
 void ElementCall::add_to(Traced& x, double& place) {
   take(x, place);
   if (x.is_constant()) constants_.push_back({&place, place});
   give(x, place);
 }
 
-// Of these bodies, and of the links among them.
+// Returns the slots of these bodies, and of the links between them.
 std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
   std::vector<int> slots;
   for (int body = 0; body < system_.body_count(); ++body)
@@ -70,7 +71,7 @@ std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
   return slots;
 }
 
-// With the time among them, no call's arguments are constants alone.
+// Time is always an argument, so that no call has only constant arguments.
 void ElementCall::take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
   take(e.of_time({&clock_signal()}), own_.t);
   for (const int slot : slots_of(is_used)) take(e.motion[slot], motion_[static_cast<std::size_t>(slot)]);
@@ -104,7 +105,8 @@ void ElementCall::trace(const ForceGroup& group, TracedEvaluation& e) {
   put_down();
 }
 
-// Elements of a group write their normal forces in each evaluation, or never: those that are not what they were are its own.
+// Finds the contacts of the group: those whose force is changed by an evaluation. Elements write their normal forces in every evaluation or
+// never.
 std::vector<std::size_t> ElementCall::contacts_of_group() {
   constexpr double k_untouched = std::numeric_limits<double>::lowest();
   std::fill(arrays_.contact_force.begin(), arrays_.contact_force.end(), k_untouched);
@@ -150,7 +152,7 @@ void ElementCall::put_down() {
   results_.clear();
 }
 
-// The code has no way for what is thrown: whoever runs it asks has_failed().
+// Compiled code cannot pass exceptions on; the caller must check has_failed().
 void ElementCall::run(const double* arguments, double* results) {
   ElementCall& call = *std::bit_cast<ElementCall*>(arguments[1]);
   arguments += 2;

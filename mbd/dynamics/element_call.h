@@ -1,9 +1,9 @@
-// Elements without a template of their equations, on a tape: what is written down is a call of the functions that evaluate them.
+// Elements whose laws are not templates, on a tape: the tape contains a call of the element's own function for doubles.
 //
-// A call takes the motions of the element's bodies, what it adds to, and the time, puts them where an evaluation of doubles would
-// find them, and lets the element do what it does there (ForceGroup::add_forces(), or FrictionElement's functions). So one odd
-// element costs itself only, and its numbers are those of an evaluation without code, to the bit. What an element remembers
-// (modes, friction states, anchors, scratch) is read where the evaluation of the thread has it at the time of the call.
+// The call copies the motions of the element's bodies, the sums that it adds to, and the time to the arrays of an Evaluation, and calls
+// ForceGroup::add_forces() or the functions of FrictionElement. One such element therefore does not prevent machine code for the rest of
+// the scene, and its results are bit-identical to those without code. Modes, friction states, anchors and scratch are read from the current
+// evaluation of the thread.
 #pragma once
 
 #include "mbd/system/evaluation_arrays.h"
@@ -13,19 +13,21 @@
 
 namespace steplap {
 
+/// One recorded call of one element, or of one group.
 class ElementCall {
 public:
-  /// `live` must outlive the call: the evaluation whose modes and memory count. A trace is under way (Traced::start).
+  /// Precondition: a trace has been started (Traced::start). `live` is the evaluation whose modes and memory are read; it must outlive the
+  /// call.
   ElementCall(const System& system, const Evaluation& live);
   ElementCall(const ElementCall&) = delete; // the tape's constants point to it
   ElementCall& operator=(const ElementCall&) = delete;
 
-  /// What group.add_forces() does, into `e`.
+  /// Records group.add_forces(), adding to `e`.
   void trace(const ForceGroup& group, TracedEvaluation& e);
-  /// What FrictionElement::trace_friction() is to do, of friction element f.
+  /// Records FrictionElement::trace_friction() for friction element f.
   void trace(int f, TracedEvaluation& e, const Traced* rate, Traced* wrench, Traced* watch);
 
-  /// Did the element throw at the last run? Then nothing that was found counts. Forgets it.
+  /// Returns whether the element threw an exception in the last run, and resets this flag. If it did, the results of the run are invalid.
   [[nodiscard]] bool has_failed() { return std::exchange(has_failed_, false); }
 
 private:
@@ -55,10 +57,10 @@ private:
   EvaluationArrays arrays_;
   std::vector<double> inner_;
   double rate_[3] = {0, 0, 0}, wrench_[3] = {0, 0, 0};
-  std::vector<double*> places_;      ///< of the arguments, behind its own address
-  std::vector<Constant> constants_;  ///< what is added to begins with these
-  std::vector<const double*> found_; ///< the results
-  std::vector<Traced> arguments_;    ///< while it is written down, as `results_`
+  std::vector<double*> places_;      ///< addresses of the arguments; the first argument of the call is the address of this object
+  std::vector<Constant> constants_;  ///< initial values of the sums that are constants
+  std::vector<const double*> found_; ///< addresses of the results
+  std::vector<Traced> arguments_;    ///< only while recording, as `results_`
   std::vector<Traced*> results_;
   bool has_failed_ = false;
 };

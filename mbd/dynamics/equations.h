@@ -1,10 +1,10 @@
-// The equations of an evaluation, each once: on doubles, or on numbers that are written down (mbd/tape).
+// The equations of one evaluation as templates, on doubles or on recorded numbers (mbd/tape):
 //
 //   M a = Q(q, v, t) + Jᵀλ,  J a = γ            (27), (29)–(31)
-// The functions stand in the order in which Dynamics::rates_at and the tracer (traced_evaluation.cpp) go through them. A layout says
-// what is where, arrays of the caller's hold what is being found: per slot motions and forces, per active row gradients, γ and then
-// multipliers, per coordinate accelerations. Which pivots are taken and which factors are kept is the caller's, who solves
-// for the multipliers (schur.h, mechanism.h).
+//
+// The functions are listed in the order in which Dynamics::rates_at and the tracer (traced_evaluation.cpp) call them. The layout defines
+// the indices; the caller owns the arrays: motions and forces per slot, gradients, γ and multipliers per active row, accelerations per
+// coordinate. The caller also solves for the multipliers and manages factorisations (schur.h, mechanism.h).
 #pragma once
 
 #include "mbd/dynamics/row_pull.h"
@@ -14,9 +14,9 @@
 
 namespace steplap {
 
-// --- where everything is ------------------------------------------------------------------------------
+// --- positions and velocities --------------------------------------------------------------------------
 
-/// A body that moves with its cluster k, at a place of it.
+/// Computes the motion m of a body from the motion k of its cluster.
 template <class S> STEPLAP_INLINE void place_in_cluster(const Placement& place, const Motion<S>& k, Motion<S>& m) {
   const Pair<S> lever = to_ground(k, place.offset);
   m.x = k.x + lever.x;
@@ -29,7 +29,7 @@ template <class S> STEPLAP_INLINE void place_in_cluster(const Placement& place, 
   m.omega = k.omega;
 }
 
-/// Bodies that ride on their clusters, of those listed.
+/// Computes the motions of those listed bodies whose motion differs from that of their cluster.
 template <class S> STEPLAP_INLINE void place_members(const Layout& layout, const std::vector<int>& members, Motion<S>* motion) {
   for (const int i : members) {
     const Placement& place = layout.placements[i];
@@ -37,7 +37,7 @@ template <class S> STEPLAP_INLINE void place_members(const Layout& layout, const
   }
 }
 
-/// A cluster in absolute coordinates: 3 numbers of each.
+/// Computes the motion of a cluster in absolute coordinates; q and v have 3 numbers each.
 template <class S> STEPLAP_INLINE void place_cluster(const S* q, const S* v, Motion<S>& m) {
   m.x = q[0];
   m.y = q[1];
@@ -47,15 +47,15 @@ template <class S> STEPLAP_INLINE void place_cluster(const S* q, const S* v, Mot
   set_angle(m, q[2]);
 }
 
-/// A coordinate that a drive prescribes.
+/// Sets a coordinate that a drive prescribes.
 template <class S> STEPLAP_INLINE void place_locked(int coordinate, const S& value, const S& rate, Motion<S>& m) {
   if (coordinate == 2) set_angle(m, value);
   else (coordinate == 0 ? m.x : m.y) = value;
   (coordinate == 0 ? m.vx : coordinate == 1 ? m.vy : m.omega) = rate;
 }
 
-/// All that forces and rows ask for, from coordinates q and rates v of the layout; mechanisms have been placed. `target(i)`: value, rate
-/// and acceleration of lock i.
+/// Computes all motions that forces and rows need from coordinates q and rates v of the layout. Precondition: mechanisms are placed.
+/// `target(i)` returns value, rate and acceleration of lock i.
 template <class S, class F>
 STEPLAP_INLINE void place_all(const Layout& layout, const S* q, const S* v, const F& target, Motion<S>* motion) {
   for (int k = 0; k < layout.absolute_count; ++k) place_cluster(q + 3 * k, v + 3 * k, motion[layout.slots[k]]);
@@ -70,20 +70,20 @@ STEPLAP_INLINE void place_all(const Layout& layout, const S* q, const S* v, cons
 
 // --- forces -------------------------------------------------------------------------------------------
 
-/// The rows of a friction element, one or three, and the velocities at which it slides along them.
+/// The rows of a sliding friction element, one or three, with the slip velocities along them.
 template <class S> struct SlidingRows {
   int count = 0;
   MeasureValue<S> measure[3];
   S rate[3];
 
-  /// `motion` of the rows' body a, seen from b.
+  /// `motion`: of body a relative to b.
   STEPLAP_INLINE SlidingRows(const RowSpec* rows, int count_, const Motion<S>& motion) : count(count_) {
     for (int r = 0; r < count; ++r) {
       measure[r] = evaluate_row<false>(rows[r], motion, Origin{});
       rate[r] = measure[r].rate;
     }
   }
-  /// The wrench of the slip law acts on the link and dissipates −w·rate.
+  /// Adds the wrench of the slip law to the link, and the dissipated power −w·rate.
   STEPLAP_INLINE void pull(const S* wrench, BodyForceOf<S>& link_force, S& dissipation) const {
     for (int r = 0; r < count; ++r) {
       apply_force(link_force, measure[r], wrench[r]);
@@ -92,8 +92,8 @@ template <class S> struct SlidingRows {
   }
 };
 
-/// From links to their bodies, and from bodies that ride to their clusters. What is surely none is passed over: rows alone, or contacts
-/// that are open.
+/// Adds the forces on links to their bodies, and those on bodies to their clusters. Forces that are certainly zero are skipped: links used
+/// only by rows, or with open contacts only.
 template <class S> STEPLAP_INLINE void gather_forces(const Layout& layout, const Motion<S>* motion, BodyForceOf<S>* force) {
   for (const ActiveLink& link : layout.links) {
     const BodyForceOf<S>& f = force[link.slot];
@@ -108,7 +108,7 @@ template <class S> STEPLAP_INLINE void gather_forces(const Layout& layout, const
 
 // --- accelerations ------------------------------------------------------------------------------------
 
-/// W (m g + Q) of the clusters in absolute coordinates, (27) without rows; and what drives prescribe.
+/// Computes a = W (m g + Q) for clusters in absolute coordinates, (27) without rows, and sets the prescribed accelerations.
 template <class S, class F>
 STEPLAP_INLINE void accelerate_clusters(const Layout& layout, const BodyForceOf<S>* force, const F& target, S* a) {
   const double *weight = layout.weight.data(), *w = layout.inverse_mass.data();
@@ -123,14 +123,14 @@ STEPLAP_INLINE void accelerate_clusters(const Layout& layout, const BodyForceOf<
     a[3 * layout.locks[i].cluster + layout.locks[i].coordinate] = target(i).acceleration;
 }
 
-/// γ of the rows from `first` to before `end`, whose gradients it fills in (29).
+/// Fills in the gradients of the rows `first` ≤ r < `end` and computes their γ (29).
 template <class S>
 STEPLAP_INLINE void pull_rows(const Layout& layout, std::size_t first, std::size_t end, const Motion<S>* motion, SchurRowOf<S>* rows,
                               S* gamma) {
   for (std::size_t r = first; r < end; ++r) gamma[r] = pull_row(layout, layout.active[r], motion, rows[r]);
 }
 
-/// What of γ the accelerations of clusters have left (30).
+/// Subtracts J a from γ, with `cluster_a` the accelerations without rows (30).
 template <class S>
 STEPLAP_INLINE void take_accelerations(const SchurRowOf<S>* rows, std::size_t first, std::size_t end, const S* cluster_a, S* gamma) {
   for (std::size_t r = first; r < end; ++r) gamma[r] = less_accelerations(rows[r], gamma[r], cluster_a);
@@ -138,8 +138,8 @@ STEPLAP_INLINE void take_accelerations(const SchurRowOf<S>* rows, std::size_t fi
 
 // --- power --------------------------------------------------------------------------------------------
 
-/// What is missing in the equation of motion of a locked coordinate of a cluster. `f`: on the cluster;
-/// `lambda`, `rows`: per active row.
+/// Returns the driving force of a locked coordinate, from the equation of motion of its cluster. `f` is the force on the cluster; `lambda`
+/// and `rows` are per active row.
 template <class S>
 [[nodiscard]] STEPLAP_INLINE S missing_force(const Layout& layout, const Lock& lock, const BodyForceOf<S>& f, const S* a,
                                              const SchurRowOf<S>* rows, const S* lambda) {
@@ -153,7 +153,7 @@ template <class S>
   return force;
 }
 
-/// Work of drives, W: multiplier times the rate of the target. `row_rate(i)`: of driven row i; `target(i)`: of lock i.
+/// Adds the power of drives to `work`: multiplier times prescribed rate. `row_rate(i)` is that of driven row i, `target(i)` that of lock i.
 template <class S, class R, class F>
 STEPLAP_INLINE void add_power_of_drives(const Layout& layout, const BodyForceOf<S>* force, const SchurRowOf<S>* rows, const S* lambda,
                                         const S* a, const R& row_rate, const F& target, S& work) {

@@ -9,10 +9,11 @@ namespace steplap {
 
 namespace {
 
-// Below so many rows in one body A is not dear. What may be written down (SchurSolver::can_be_traced) is solved one way only.
+// With fewer rows at one body A is cheap. The limit also excludes all systems that can be recorded (SchurSolver::can_be_traced), which must
+// have a single way of solution.
 constexpr int k_fewest_rows = 32;
-// Pivots below this are for SchurSolver: B loses no more than a digit or two against A, and nobody takes the pose for one beside
-// a singular position.
+// Smaller relative pivots are left to SchurSolver. Above it B loses at most two digits compared with A, and the pose is not near a singular
+// position.
 constexpr double k_least_pivot = 0.05;
 
 std::vector<int> rows_at_bodies(const std::vector<SchurRow>& rows, int count) {
@@ -42,7 +43,7 @@ std::unique_ptr<HubSolver> HubSolver::of(const std::vector<SchurRow>& rows, int 
   if (hubs == 0 || hubs > k_most_hubs) return nullptr;
   const auto is_hub = [&](int body) { return body < 0 || hub_of[body] >= 0; };
   for (int r = 0; r < count; ++r) {
-    if (rows[r].body[0] == rows[r].body[1]) return nullptr; // of one piece: it depends on nothing
+    if (rows[r].body[0] == rows[r].body[1]) return nullptr; // within one body: coupled to nothing
     if (is_hub(rows[r].body[0]) && is_hub(rows[r].body[1])) ++outer;
   }
   if (outer > k_most_outer) return nullptr;
@@ -72,7 +73,7 @@ HubSolver::HubSolver(const std::vector<SchurRow>& rows, int count, const std::ve
   right_.assign(inner_.size(), 0.0);
 }
 
-// What the row sees of the hubs.
+// Writes the row's gradient by the coordinates of the hubs, a row of U.
 void HubSolver::add_sides(const SchurRow& row, double* of_coordinates) const {
   for (int side = 0; side < 2; ++side) {
     const int hub = row.body[side] < 0 ? -1 : hub_of_[row.body[side]];
@@ -81,7 +82,7 @@ void HubSolver::add_sides(const SchurRow& row, double* of_coordinates) const {
   }
 }
 
-// The least share of A that B has on the diagonal.
+// Fills in B and U. Returns the smallest ratio of the diagonals of B and A.
 double HubSolver::take_numbers(const std::vector<SchurRow>& rows) {
   const std::size_t n = inner_.size();
   double least = 1.0;
@@ -124,7 +125,7 @@ bool HubSolver::factor(const std::vector<SchurRow>& rows) {
   return smallest_pivot_ >= k_least_pivot;
 }
 
-// W⁻¹ + Uᵀ B⁻¹ U, and below it the outer rows.
+// Computes the end system: W⁻¹ + Uᵀ B⁻¹ U, and below it the outer rows.
 void HubSolver::fill_end() {
   const std::size_t n = inner_.size();
   const int hubs = 3 * hub_count_, ends = hubs + static_cast<int>(outer_.size());
@@ -138,7 +139,7 @@ void HubSolver::fill_end() {
     for (int d = 0; d <= o; ++d) end_[o * ends + d] = d < hubs ? outer_seen_[o - hubs][d] : 0.0;
 }
 
-// The least pivot of an outer row, as a share of its entry of A.
+// Factorises the end system. Returns the smallest pivot of an outer row, relative to its diagonal element of A.
 double HubSolver::eliminate_end() {
   const int hubs = 3 * hub_count_, ends = hubs + static_cast<int>(outer_.size());
   double least = 1.0;

@@ -1,17 +1,16 @@
-// The constraint equations where many rows meet in one body: all that stands on one deck.
+// Constraint equations for scenes in which many rows meet at few bodies, for example all elements on one deck.
 //
-// There A = J W Jᵀ is full, and its factors cost the cube of the number of rows. But without the few bodies in which many rows
-// meet, the *hubs*, hardly any two rows have to do with each other: A = B + U W Uᵀ with B of the other bodies alone and U, a few
-// columns, what the rows see of the hubs. With z = W Uᵀ λ, the hubs' own answer to λ,
+// Such a body makes A = J W Jᵀ dense, and factorisation costs O(rows³). Call these few bodies hubs. Without them few rows are coupled: A =
+// B + U W Uᵀ, where B is the matrix for the other bodies and the few columns of U are the gradients by the coordinates of the hubs. With z
+// = W Uᵀ λ, the accelerations of the hubs due to λ,
 //
 //   B λ + U z = r,    W⁻¹ z = Uᵀ λ,    so that    (W⁻¹ + Uᵀ B⁻¹ U) z = Uᵀ B⁻¹ r,    λ = B⁻¹ (r − U z),
 //
-// which costs as much as there are rows. Rows between hubs and the ground alone are zero in B: they stay, with z, in the small
-// system at the end.
+// at a cost proportional to the number of rows. Rows between hubs and the ground only have zero entries in B; they are solved together with
+// z in the small dense system at the end ("outer" rows).
 //
-// B λ = r − U z loses as many digits as B is smaller than A. Rows that the hubs answer far more than the other bodies do, rows that
-// are near to others once hubs are held, and rows that are left out are therefore not for this: their pivots would mean
-// something else, too. SchurSolver takes its own way for them.
+// The accuracy of B λ = r − U z decreases with the ratio of B to A. The method is therefore refused, and SchurSolver solves for A itself,
+// if the hubs dominate the diagonal of a row, if rows become nearly dependent once the hubs are fixed, or if rows are left out.
 #pragma once
 
 #include "mbd/dynamics/schur.h"
@@ -22,16 +21,17 @@
 
 namespace steplap {
 
-/// As SchurSolver, of which it is a part, for rows of which many meet in few bodies.
+/// Solver for rows of which many meet at few bodies; a part of SchurSolver.
 class HubSolver {
 public:
-  /// Null: there are no hubs, or too many.
+  /// Returns null if there are no hubs, or too many.
   [[nodiscard]] static std::unique_ptr<HubSolver> of(const std::vector<SchurRow>& rows, int count);
-  /// False: these numbers are not for it. Allocates nothing.
+  /// Factorises. Returns false if the numbers make the method inaccurate. Does not allocate.
   [[nodiscard]] bool factor(const std::vector<SchurRow>& rows);
-  /// In place: x = A⁻¹ x, after factor().
+  /// In place: x = A⁻¹ x. Precondition: factor() returned true.
   void solve(double* x) const;
-  /// No pivot of A is below this, as SchurSolver::smallest_pivot() counts them, if rows are eliminated in B's order and the outer ones last.
+  /// Returns a lower bound of all relative pivots of A, as SchurSolver::smallest_pivot(), for elimination in B's order with outer rows
+  /// last.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
 
 private:
@@ -45,14 +45,14 @@ private:
   [[nodiscard]] double eliminate_end();
 
   int hub_count_ = 0;
-  std::vector<int> hub_of_;                             ///< per body: which hub it is, or −1
-  std::vector<int> inner_, outer_;                      ///< rows with another body than hubs and the ground, and those without
-  std::vector<SchurRow> numbers_;                       ///< of the inner rows, without the hubs
+  std::vector<int> hub_of_;                             ///< per body: index of the hub, or −1
+  std::vector<int> inner_, outer_;                      ///< inner: rows that involve another body than hubs and ground; outer: all others
+  std::vector<SchurRow> numbers_;                       ///< inner rows without their hub side
   SchurSolver solver_;                                  ///< B
-  std::vector<double> seen_, moved_;                    ///< U and B⁻¹ U: a number for each inner row, column after column
-  std::array<double, 3 * k_most_hubs> stiffness_{};     ///< W⁻¹; 1 of a locked coordinate, which nothing sees
-  std::array<double, k_most_ends * k_most_ends> end_{}; ///< what is left, and its factors: z, then outer rows
-  std::array<double, k_most_ends> inverse_d_{}, own_{}; ///< own: of an outer row, its entry of A
+  std::vector<double> seen_, moved_;                    ///< U and B⁻¹ U, one number per inner row, stored by columns
+  std::array<double, 3 * k_most_hubs> stiffness_{};     ///< W⁻¹; 1 for a locked coordinate, whose column in U is zero
+  std::array<double, k_most_ends * k_most_ends> end_{}; ///< dense system for z and the outer rows, and its factors
+  std::array<double, k_most_ends> inverse_d_{}, own_{}; ///< own_: diagonal entries of A for outer rows
   std::array<std::array<double, 3 * k_most_hubs>, k_most_outer> outer_seen_{}; ///< U of the outer rows
   double smallest_pivot_ = 1.0;
   mutable std::vector<double> right_;

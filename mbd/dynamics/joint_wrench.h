@@ -1,5 +1,6 @@
-// What joints inside clusters bear, by Newton and Euler from the leaves of each cluster, in its axes: what an edge carries
-// is what its subtree lacks. On doubles, or on numbers that are written down (mbd/tape).
+// Wrenches in the rigid joints inside clusters, by the Newton–Euler method from the leaves of each cluster to its root, in its axes: a
+// joint carries the wrench missing in the equations of motion of the bodies beyond it. Templates over double and recorded numbers
+// (mbd/tape).
 #pragma once
 
 #include "mbd/dynamics/layout.h"
@@ -8,12 +9,11 @@
 
 namespace steplap {
 
-/// Where the joints inside clusters lie in the present places (rows of friction move to another foot, or anchor), per
-/// edge.
+/// Computes the geometry of all joints inside clusters for the present contact points and anchors, one entry per edge.
 void place_edges(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges);
 
-/// What a member of a cluster lacks: m (R a_c + α ẑ×r − ω² r − g) less the forces on it, R the same for all. `k`, `a`:
-/// motion and accelerations of the cluster; `f`: on the member.
+/// Returns the wrench missing in the equation of motion of a member of a cluster: m (R a_c + α ẑ×r − ω² r − g) minus the forces on it, with
+/// R the rotation to the cluster's axes. `k` and `a` are motion and accelerations of the cluster, `f` is the force on the member.
 template <class S>
 STEPLAP_INLINE BodyForceOf<S> member_lack(const BodyData& body, const Placement& place, const Vec2& gravity, const Motion<S>& k, const S* a,
                                           const BodyForceOf<S>& f) {
@@ -24,7 +24,7 @@ STEPLAP_INLINE BodyForceOf<S> member_lack(const BodyData& body, const Placement&
   return {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y, body.inertia * a[2] - f.m};
 }
 
-/// Takes what a row, or a part of one, bears from the lack of the members of clusters that it acts on.
+/// Subtracts the force of an active row, or of a part of one, from the missing wrenches of its bodies.
 template <class S>
 void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, const Motion<S>* motion, BodyForceOf<S>* lack) {
   const int body[2] = {spec.a, spec.b};
@@ -42,8 +42,8 @@ void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, co
   }
 }
 
-/// What every member of a cluster lacks that a joint carries, per body: on it act the forces and what the rows of its cluster bear.
-/// `cluster_a`: 3 per cluster; `lambda`: per active row.
+/// Computes the missing wrench of each member of a cluster that a joint carries, per body: inertia minus forces minus active rows.
+/// `cluster_a` has 3 numbers per cluster, `lambda` one per active row.
 template <class S>
 void find_lacks(const System& system, const Layout& layout, const Motion<S>* motion, const BodyForceOf<S>* force, const S* cluster_a,
                 const S* lambda, BodyForceOf<S>* lack) {
@@ -56,8 +56,8 @@ void find_lacks(const System& system, const Layout& layout, const Motion<S>* mot
     for (const RowSpec* part = layout.active[r].spec; part; part = part->next) take_carried(layout, *part, lambda[r], motion, lack);
 }
 
-/// Hands on what members lack from child to parent. `bears(edge, along)`: the wrench on the rows' body a about the
-/// joint's point, along the rows (two axes fixed in b, then the angle).
+/// Passes the missing wrenches from children to parents. Calls bears(edge, along) with the wrench of each joint on the rows' body a about
+/// the joint's point, along its rows (two axes fixed in b, then the angle).
 template <class S, class F>
 STEPLAP_INLINE void hand_on_lack(const Layout& layout, const std::vector<EdgeGeometry>& edges, BodyForceOf<S>* lack, const F& bears) {
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
@@ -65,7 +65,7 @@ STEPLAP_INLINE void hand_on_lack(const Layout& layout, const std::vector<EdgeGeo
     const EdgeGeometry& geometry = edges[e];
     const BodyForceOf<S>& on_child = lack[edge.child];
     const Pair<S> force{on_child.fx, on_child.fy};
-    const S at_parent = on_child.m + cross<S>(geometry.lever, force); // its couple about the parent's centre
+    const S at_parent = on_child.m + cross<S>(geometry.lever, force); // moment about the parent's centre
     if (layout.is_carried[edge.parent]) {
       BodyForceOf<S>& w = lack[edge.parent];
       w.fx += force.x;

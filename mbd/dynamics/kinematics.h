@@ -1,9 +1,7 @@
-// Where everything is, the first of the three parts of Dynamics: motions of clusters, links and bodies at one time and
-// one set of coordinates.
+// Motions of clusters, links and bodies at one time for one set of coordinates, the first of the three parts of Dynamics.
 //
-// What a layout fixes (which cluster has which slot, which bodies ride on others, which links there are) is read from
-// it; what changes are the motions. place() finds those that forces and rows ask for; bodies that only ride along, as
-// parts of a core that hold to each other, wait for complete(), which whoever looks at every body calls.
+// place() computes only the motions that forces and rows need. The other bodies of clusters, for example parts of a core that stick
+// together, are computed by complete(), which must be called before all bodies are read.
 #pragma once
 
 #include "mbd/dynamics/equations.h"
@@ -14,30 +12,32 @@
 
 namespace steplap {
 
+/// Computes motions from the coordinates of a layout. It does not allocate after construction.
 class Kinematics {
 public:
+  /// `system` must outlive it. use() must be called before any other function.
   explicit Kinematics(const System& system);
-  Kinematics(const Kinematics&) = delete; // what it places is pointed into
+  Kinematics(const Kinematics&) = delete; // others keep pointers into its arrays
   Kinematics& operator=(const Kinematics&) = delete;
 
-  /// Both must outlive the use of this object or be set anew. What was placed before is forgotten.
+  /// Sets layout and state, which must outlive their use here. Motions placed before become invalid.
   void use(Layout& layout, const State& state);
 
-  /// At time t, coordinates q and rates v of the layout.
+  /// Computes motions at time t from the layout's coordinates q and rates v.
   void place(double t, const double* q, const double* v);
-  /// Are those the ones that were placed last? y: q, then v.
+  /// Returns true if these arguments were the last given to place(). y contains q, then v.
   [[nodiscard]] bool is_placed(double t, const double* y) const;
-  /// Bodies that place() has left out.
+  /// Computes the motions of bodies that place() has omitted.
   void complete() {
     if (!is_complete_) place_rest();
   }
 
-  /// Targets of the driven coordinates at t: several evaluations of a step are at the same time.
+  /// Computes the prescribed values of locked coordinates at t; a repeated call with the same t costs nothing.
   void aim_locks(double t);
   [[nodiscard]] const SignalJet& lock_target(std::size_t lock) const { return lock_target_[lock]; }
   [[nodiscard]] std::span<const SignalJet> lock_targets() const { return {lock_target_.data(), layout_->locks.size()}; }
 
-  /// Bodies, links (of a, seen from b), clusters of several bodies; the same memory for the life of this object.
+  /// Returns the motions of bodies, links (a relative to b) and clusters of several bodies, by slot. The address never changes.
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
 
 private:
@@ -49,7 +49,7 @@ private:
   std::vector<Motion<double>> motion_;
   std::vector<SignalJet> lock_target_; ///< per lock, at lock_time_
   double lock_time_ = std::numeric_limits<double>::quiet_NaN();
-  double time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_
+  double time_ = std::numeric_limits<double>::quiet_NaN(); ///< time of motion_
   bool is_complete_ = false;
 };
 

@@ -1,12 +1,11 @@
-// The layout of a mode: which bodies move as one, which coordinates are driven, which rows hold.
+// The layout of a mode: bodies merged to clusters, locked coordinates, and active rows.
 //
-// Bodies held rigidly together (welds, sticking step-lap joints) are merged into *clusters* that are
-// integrated as one body about their common centre of gravity; a coordinate that a drive prescribes is
-// locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
+// Bodies held rigidly together (welds, sticking step-lap joints) are merged into clusters, each integrated as one body about its common
+// centre of gravity. A coordinate that a drive prescribes is locked (zero inverse mass). The remaining constraints are rows. One layout
+// serves all states with the same modes.
 //
-// Coordinates are the clusters' own, x, y and θ of each, or, in small islands with pins, joint coordinates
-// (mechanism.h). Clusters and active rows are numbered so that those in absolute coordinates come first, then those
-// of mechanisms; coordinates likewise.
+// Coordinates are x, y and θ of each cluster, or, in small islands with pins, joint coordinates (mechanism.h). Clusters, rows and
+// coordinates in absolute coordinates are numbered first, then those of each mechanism.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"
@@ -23,90 +22,91 @@ namespace steplap {
 
 class StageProgram;
 
-/// What describes islands for which there is a choice; `automatic`: joint coordinates where they pay.
+/// Type of coordinates for islands that allow both; `automatic`: joint coordinates where they are cheaper.
 enum class Coordinates : unsigned char { automatic, joint, absolute };
 
-/// Several bodies moving as one; coordinates are those of its centre of gravity.
+/// Several bodies that move as one; coordinates are those of the common centre of gravity.
 struct Cluster {
   double mass = 0.0, inertia = 0.0;
   double w[3] = {0, 0, 0}; ///< 1/m, 1/m, 1/J; 0 where locked
-  int root = 0;            ///< the body whose angle it carries
-  int motion = 0;          ///< slot of its motion: the body's own if it is alone, else an extra one
+  int root = 0;            ///< body whose angle is the cluster's angle
+  int motion = 0;          ///< slot of its motion: that of the body if it is alone, otherwise an additional one
 };
 
-/// Place of a body in its cluster.
+/// Pose of a body in its cluster.
 struct Placement {
-  int cluster = -1;                     ///< −1: the ground
-  bool is_alone = true;                 ///< the only body of its cluster
-  bool is_trivial = true;               ///< it moves as its cluster does: alone, or placed at its centre of gravity
-  Vec2 offset = Vec2::Zero();           ///< centre of gravity in the cluster's axes
-  double angle = 0.0, c = 1.0, s = 0.0; ///< against the cluster's
+  int cluster = -1;                     ///< −1: ground
+  bool is_alone = true;                 ///< only body of its cluster
+  bool is_trivial = true;               ///< moves exactly as its cluster: alone, or at its centre of gravity
+  Vec2 offset = Vec2::Zero();           ///< centre of gravity in the axes of the cluster, m
+  double angle = 0.0, c = 1.0, s = 0.0; ///< angle relative to the cluster, with cosine and sine
 };
 
-/// Rows of a cluster against another or the ground that have a way of their own in Dynamics: with bodies alone
-/// in their clusters, or for angles.
+/// Kinds of rows that Dynamics evaluates by specialised functions: rows between bodies that are alone in their clusters, or the ground, and
+/// angle rows. All others are `other`.
 enum class RowPullKind : unsigned char { other, angle, axis, slide };
 
-/// Where the row comes from.
+/// An active constraint row and its origin.
 struct ActiveRow {
   const RowSpec* spec = nullptr;
-  int row = -1;      ///< bilateral row, or −1
-  int friction = -1; ///< friction element and which of its rows, or −1
+  int row = -1;      ///< index of the bilateral row, or −1
+  int friction = -1; ///< friction element (or −1), and index of the row in it
   int friction_row = 0;
-  int link = 0;          ///< slot of the row's bodies
-  bool is_simple = true; ///< both bodies are clusters of their own, or the ground
+  int link = 0;          ///< slot of the link between its bodies
+  bool is_simple = true; ///< both bodies are alone in their clusters, or the ground
   RowPullKind pull = RowPullKind::other;
 };
 
-/// Row `row` of the layout's schur_rows acts with its side `side` on a locked coordinate.
+/// A row's entry at a locked coordinate: side `side` of Layout::schur_rows[row].
 struct LockedTerm {
   int row = 0, side = 0;
-  int multiplier = 0; ///< the active row that it is, or is a part of
+  int multiplier = 0; ///< index of the active row that it is, or is a part of
 };
 
 /// A driven coordinate of a cluster that consists of one body.
 struct Lock {
   int cluster = 0, coordinate = 0;
-  int row = 0;                   ///< the bilateral row it stands for
-  double offset = 0.0;           ///< m: of the coordinate against what the row measures, which is seen from a point of the ground
+  int row = 0;                   ///< bilateral row that prescribes it
+  double offset = 0.0;           ///< difference between the coordinate and the measure, which refers to a point of the ground, m
   std::vector<LockedTerm> terms; ///< active rows that act on its cluster
 };
 
-/// A link between two bodies that an evaluation needs.
+/// A link that an evaluation needs.
 struct ActiveLink {
   int slot = 0, a = 0, b = 0;
 };
 
-/// The multiplier of an active row is the force of a friction element.
+/// Assignment of an active row's multiplier to the force of a friction element.
 struct HeldRow {
   int row = 0;
-  int friction_row = 0; ///< slot in Snapshot::friction_force
+  int friction_row = 0; ///< index in Snapshot::friction_force
 };
 
-/// A rigid joint inside a cluster: `child` hangs on `parent`; leaves first.
+/// A rigid joint in the spanning tree of a cluster; leaves come first.
 struct RigidEdge {
   int parent = 0, child = 0;
   int block = -1;    ///< row block, or −1
   int friction = -1; ///< friction element, or −1
 };
 
-/// Where a rigid joint lies in the axes of its cluster, which do not change while it sticks.
+/// Geometry of a rigid joint in the axes of its cluster, constant while it sticks.
 struct EdgeGeometry {
-  Pair<double> lever;      ///< from the parent's centre of gravity to the child's
-  Pair<double> axis[2];    ///< of the joint's rows
-  Pair<double> point;      ///< of the joint, from the centre of gravity of the rows' body a
+  Pair<double> lever;      ///< from the parent's centre of gravity to the child's, m
+  Pair<double> axis[2];    ///< unit vectors of the joint's rows
+  Pair<double> point;      ///< the joint's point, relative to the centre of gravity of the rows' body a, m
   bool is_child_a = false; ///< the child is the rows' body a
 };
 
-/// A coordinate as error scales see it.
+/// Scale of a coordinate for error control.
 struct CoordinateScale {
-  bool is_place = true; ///< m, else rad
-  double reach = 0.0;   ///< m: how far what an angle turns, beside its own body, is from its pin
+  bool is_place = true; ///< a length in m, otherwise an angle in rad
+  double reach = 0.0;   ///< for an angle: largest distance from its pin of anything that it rotates, apart from its own body, m
 };
 
-/// Phases and places of friction, and the choice of coordinates, by which layouts are told apart.
+/// Friction phases, contact points and choice of coordinates; identifies a layout.
 using LayoutKey = std::vector<std::uint64_t>;
 
+/// All quantities that depend on the modes only.
 struct Layout {
   Layout();
   ~Layout();
@@ -115,54 +115,54 @@ struct Layout {
 
   LayoutKey key;
   std::vector<Cluster> clusters;
-  int absolute_count = 0;            ///< clusters in absolute coordinates, the first ones
-  std::vector<Mechanism> mechanisms; ///< of the others
+  int absolute_count = 0;            ///< number of clusters in absolute coordinates, which come first
+  std::vector<Mechanism> mechanisms; ///< mechanisms formed by the other clusters
   int coordinate_count = 0;
   std::vector<CoordinateScale> scales; ///< per coordinate
   std::vector<Placement> placements;   ///< per body
-  std::vector<int> riding;             ///< bodies whose motion is not their cluster's, that forces or rows act on
-  std::vector<int> riding_along;       ///< the others whose motion is not their cluster's
-  std::vector<int> slots;              ///< of the clusters' motions and forces
-  int slot_count = 0;                  ///< those in use: bodies, links, clusters of several bodies
+  std::vector<int> riding;             ///< bodies with forces or rows whose motion differs from their cluster's
+  std::vector<int> riding_along;       ///< other bodies whose motion differs from their cluster's
+  std::vector<int> slots;              ///< slots of the motions and forces of clusters
+  int slot_count = 0;                  ///< number of slots in use: bodies, links, clusters of several bodies
 
-  std::vector<ActiveRow> active; ///< of clusters in absolute coordinates first, then of each mechanism
+  std::vector<ActiveRow> active; ///< rows between clusters in absolute coordinates first, then those of each mechanism
   std::vector<Lock> locks;
-  std::vector<double> weight;       ///< m g, per coordinate of the absolute clusters
-  std::vector<double> inverse_mass; ///< W of those; 1 for a joint coordinate
+  std::vector<double> weight;       ///< m g per coordinate of absolute clusters, N
+  std::vector<double> inverse_mass; ///< W of absolute clusters; 1 for a joint coordinate
   std::vector<RigidEdge> edges;
-  std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
-  std::vector<int> carried_rows;     ///< active rows that act on such a body
-  bool is_carried_by_pins = false;   ///< pins of mechanisms do
-  std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
+  std::vector<char> is_carried;      ///< per body: child of an edge whose wrench is computed
+  std::vector<int> carried_rows;     ///< active rows that act on such bodies
+  bool is_carried_by_pins = false;   ///< pins of mechanisms act on such bodies
+  std::vector<int> redundant_blocks; ///< rigid row blocks inside one cluster that close a loop
   std::vector<ActiveLink> links;
   std::vector<int> sliding;                            ///< friction elements in phase slip
-  std::vector<int> sliding_link;                       ///< slot of each of those
-  std::vector<int> holding;                            ///< friction elements in phase stick that are not merged
-  std::vector<int> merged;                             ///< friction elements in phase stick that are merged
-  bool can_merged_slip = false;                        ///< some of those can
-  bool is_merged_watched = false;                      ///< and are watched, as sticking elements that share a load are
-  std::unique_ptr<LoadSharing> sharing;                ///< null until rows have been met that depend on each other
+  std::vector<int> sliding_link;                       ///< slot of the link of each of these
+  std::vector<int> holding;                            ///< friction elements in phase stick that are rows
+  std::vector<int> merged;                             ///< friction elements in phase stick that merge their bodies
+  bool can_merged_slip = false;                        ///< some of the merged ones can slip
+  bool is_merged_watched = false;                      ///< their event functions are evaluated, as for sticking elements that share a load
+  std::unique_ptr<LoadSharing> sharing;                ///< null until dependent rows have occurred
   std::vector<double> reference;                       ///< coordinates in the reference pose, for error scales
-  std::vector<HeldRow> held_rows;                      ///< of the elements in `holding`
-  std::vector<char> is_friction_row;                   ///< per active row: it holds friction that can slip
-  std::vector<int> driven_rows;                        ///< active rows that move with time
-  SchurSolver schur;                                   ///< of the rows between absolute clusters
-  std::vector<SchurRow> schur_rows;                    ///< per active row, then per part: bodies filled in, numbers are scratch
-  std::vector<SchurPart> parts;                        ///< of rows over more than two bodies; those are between absolute clusters
-  std::vector<const RowSpec*> part_specs;              ///< of each of those
-  std::vector<std::unique_ptr<StageProgram>> programs; ///< of sets of modes that have this layout (stage_program.h)
+  std::vector<HeldRow> held_rows;                      ///< rows of the elements in `holding`
+  std::vector<char> is_friction_row;                   ///< per active row: friction that can slip
+  std::vector<int> driven_rows;                        ///< active rows with time-dependent targets
+  SchurSolver schur;                                   ///< solver for rows between absolute clusters
+  std::vector<SchurRow> schur_rows;                    ///< per active row, then per part; the bodies are constant, the numbers scratch
+  std::vector<SchurPart> parts;                        ///< further parts of rows over more than two bodies, between absolute clusters only
+  std::vector<const RowSpec*> part_specs;              ///< row specification of each part
+  std::vector<std::unique_ptr<StageProgram>> programs; ///< compiled stages for sets of modes with this layout (stage_program.h)
 
-  /// As when it was made: what rows share hangs on the pose in which that was first asked for.
+  /// Discards the load sharing, as in a new layout. It depends on the pose in which it was first computed.
   void forget_sharing() {
     sharing.reset();
     is_merged_watched = can_merged_slip;
   }
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
-  /// Some rows that hold are over more than two bodies.
+  /// Returns true if an active row is over more than two bodies.
   [[nodiscard]] bool has_long_rows() const { return !parts.empty(); }
-  /// Some clusters are in joint coordinates.
+  /// Returns true if some clusters are in joint coordinates.
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
-  /// The mechanism of a cluster or row that is not absolute.
+  /// Returns the mechanism that contains a cluster or row that is not in absolute coordinates.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
     return *std::prev(
         std::upper_bound(mechanisms.begin(), mechanisms.end(), cluster, [](int k, const Mechanism& m) { return k < m.first_cluster; }));
@@ -172,7 +172,7 @@ struct Layout {
         std::upper_bound(mechanisms.begin(), mechanisms.end(), row, [](int r, const Mechanism& m) { return r < m.first_row; }));
   }
 
-  // Of all constraint equations, as SchurSolver says of its own.
+  // The following functions combine SchurSolver's and those of all mechanisms.
   [[nodiscard]] bool is_singular() const {
     bool is_any = schur.is_singular();
     for (const Mechanism& m : mechanisms) is_any = is_any || m.is_singular();
@@ -198,20 +198,22 @@ struct Layout {
   }
 };
 
+/// Writes the key of the layout for `state`.
 void layout_key(const State& state, Coordinates coordinates, LayoutKey& key);
 
-/// Which bodies move as one, and where they are held against each other.
+/// Bodies merged to clusters, and their relative poses.
 struct MergedBodies {
-  std::vector<int> frictions; ///< sticking joints that merge bodies, beside all welds
+  std::vector<int> frictions; ///< sticking joints that merge bodies, in addition to welds
   std::vector<Cluster> clusters;
   std::vector<Placement> placements; ///< per body
 };
-/// Elements that stick and merge their two bodies while they do.
+/// Returns the friction elements that stick and merge their two bodies.
 [[nodiscard]] std::vector<int> merging_frictions(const System& system, const State& state);
-/// In the friction phases and poses of `state`.
+/// Merges bodies for the friction phases and poses of `state`.
 [[nodiscard]] MergedBodies merge_bodies(const System& system, const State& state);
 
-/// The layout for the friction phases in `state`, with bodies merged where they are held in `merged`, or in `state`.
+/// Returns the layout for the friction phases of `state`. The relative poses of merged bodies are those of `merged`; without it, those of
+/// `state`.
 [[nodiscard]] Layout make_layout(const System& system, const State& state, Coordinates coordinates, const MergedBodies& merged);
 [[nodiscard]] Layout make_layout(const System& system, const State& state, Coordinates coordinates = Coordinates::absolute);
 

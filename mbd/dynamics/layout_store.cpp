@@ -8,13 +8,14 @@ namespace steplap {
 
 namespace {
 
-// All layouts together are meant to take about this much memory: below what else a run of a large scene needs, and for scenes of some
-// bodies all sets of modes that ever come back.
+// Intended memory of the whole cache: less than the rest of a run of a large scene needs, and enough for all recurring modes of a scene
+// with some bodies.
 constexpr std::size_t k_store_bytes = 32U << 20U;
-// Bytes of a layout for each body and each row that may hold, an estimate: 374 MB after 6300 sets of modes of 300 landing blocks,
-// when all were kept, are 0.2 kB a body.
+// Estimated bytes of a layout for each body and each possible row. (Measured: 374 MB for 6300 sets of modes of 300 landing blocks, 0.2 kB
+// per body.)
 constexpr std::size_t k_bytes_per_member = 512;
-// A run that goes back and forth between two sets of modes never finds one anew; a dozen contacts have some hundred of them.
+// Lower limit: a run that alternates between few sets of modes never computes one again. Upper limit: a dozen contacts have some hundred
+// sets.
 constexpr std::size_t k_fewest = 16, k_most = 1024;
 
 std::size_t usual_count(const System& system) {

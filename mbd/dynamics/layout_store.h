@@ -1,9 +1,9 @@
-// The layouts that a run keeps, at most so many: modes come back, and to find a layout anew costs as much as dozens of
-// evaluations; but a scene with many contacts has more sets of modes than memory has room for.
+// Cache of layouts with a limited size. Modes recur, and computing a layout costs as much as dozens of evaluations, but a scene with many
+// contacts has more sets of modes than memory can hold.
 //
-// A layout that was given up and is found anew is the same one, to the bit: it hangs on the modes, and on where merged bodies
-// are held against each other. The latter is found once for each set of joints that merge, at the poses in which it comes
-// first, and kept until clear(): at later poses the bodies have moved against each other by rounding.
+// A layout that was discarded and is computed again is bit-identical: it depends on the modes and on the relative poses of merged bodies.
+// The latter are computed once for each set of merging joints, when it first occurs, and kept until clear(); at later times rounding errors
+// have changed the relative poses.
 #pragma once
 
 #include "mbd/dynamics/layout.h"
@@ -14,25 +14,29 @@
 
 namespace steplap {
 
+/// Cache of the layouts used most recently.
 class LayoutStore {
 public:
+  /// `system` must outlive it.
   explicit LayoutStore(const System& system);
 
-  /// That of the modes in `state`. Valid until another one is asked for that is not kept, or clear().
+  /// The layout for the modes of `state`. The reference is valid until the next call of at() or clear().
   struct Found {
     Layout& layout;
     bool is_new;
   };
+  /// Returns that layout, which is made if it is not stored.
   [[nodiscard]] Found at(const State& state, Coordinates coordinates);
-  /// Gives all up: merged bodies have moved against each other.
+  /// Discards all layouts. Required when merged bodies have moved relative to each other.
   void clear();
-  /// Keeps `count` ≥ 1 layouts from now on. Results do not hang on it.
+  /// Sets the capacity, ≥ 1. Results do not depend on it.
   void keep_at_most(std::size_t count);
   [[nodiscard]] std::size_t size() const { return layouts_.size(); }
-  /// Of all layouts kept.
+  /// Returns the number of compiled stages of all layouts.
   [[nodiscard]] std::size_t program_count() const { return program_count_; }
-  /// One of them has got one more: a run asks for their number at every event.
+  /// To be called when a layout has got a compiled stage. The number is counted because it is needed at every event.
   void count_program() { ++program_count_; }
+  /// Discards the compiled stages of all layouts.
   void clear_programs();
 
 private:
@@ -42,9 +46,9 @@ private:
   void give_up_beyond(std::size_t count);
 
   const System& system_;
-  std::list<Layout> layouts_;      ///< the last one used first
-  std::vector<Place> by_key_;      ///< in the order of their keys: a run looks for one at every event
-  std::list<MergedBodies> merged_; ///< as many as joints that let go since clear(), at most
+  std::list<Layout> layouts_;      ///< most recently used first
+  std::vector<Place> by_key_;      ///< sorted by key, for the look-up at every event
+  std::list<MergedBodies> merged_; ///< at most as many as joints that have become free since clear()
   LayoutKey key_;
   std::size_t most_, program_count_ = 0;
 };

@@ -1,16 +1,19 @@
-// The least overloaded way to share a load: among all wrenches λ + N z that carry the same load, those whose
-// largest share of a capacity is least,
-//   u = min_z max_e g_e(λ_e + N_e z),
-// g_e the gauge of the convex set that part e can bear. As long as u ≤ 1 some admissible sharing exists, and the
-// parts hold together whatever the single sharings are (static theorem of limit analysis; W. Prager, P. G. Hodge,
-// Theory of Perfectly Plastic Solids, 1951). Where u passes 1 they give way, along the mechanism that the dual
-// solution is:
-//   u = max Σ y_i n_i·λ  over y ≥ 0, Σ y_i = 1, Σ y_i N_eᵀ n_i = 0,   n_i supporting normals of the gauges,
-// with the slip rates Σ y_i n_i of each part, which N does no work on.
+// Least utilisation of a statically indeterminate group of friction elements: among all wrenches λ + N z in equilibrium with the same load,
+// those with the smallest maximal utilisation,
 //
-// Revised simplex method on the dual: a basis of k + 1 normals, the next one where a gauge is largest at the
-// present z. For intervals this ends at the exact answer; for curved sets it is Kelley's cutting-plane method,
-// with certified bounds from both sides.
+//   u = min_z max_e g_e(λ_e + N_e z),
+//
+// with g_e the gauge of the convex set of admissible wrenches of element e. For u ≤ 1 an admissible distribution exists, and the group
+// sticks, whatever the actual distribution (static theorem of limit analysis; W. Prager, P. G. Hodge, Theory of Perfectly Plastic Solids,
+// 1951). When u exceeds 1 the group slips in the mechanism given by the dual solution,
+//
+//   u = max Σ y_i n_i·λ  over y ≥ 0, Σ y_i = 1, Σ y_i N_eᵀ n_i = 0,   n_i supporting normals of the gauges,
+//
+// with slip rates Σ y_i n_i, on which the self-stresses N do no work.
+//
+// Solved by the revised simplex method on the dual, with a basis of k + 1 normals; the entering normal is that of the largest gauge at the
+// present z. For intervals this terminates with the exact solution; for curved sets it is Kelley's cutting-plane method with certified
+// bounds from both sides.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -19,39 +22,39 @@
 
 namespace steplap {
 
-/// What the parts of a shared load can bear.
+/// Admissible sets of the elements.
 class Gauges {
 public:
   virtual ~Gauges() = default;
-  /// Support function: the largest power that an admissible wrench of `part` takes from `rate`.
+  /// Returns the support function, max over admissible w of −w·rate.
   [[nodiscard]] virtual double support(int part, const double* rate) const = 0;
-  /// Share of the capacity that `wrench` uses, and n with n·w ≤ share of w for any w, equal for `wrench`. Asked
-  /// of parts of more than one dimension only.
+  /// Returns the gauge of `wrench` (1 on the boundary of the admissible set), and `normal` n with n·w ≤ gauge(w) for all w, equal for
+  /// `wrench`. Called only for elements of dimension > 1.
   virtual double gauge(int part, const double* wrench, double* normal) const = 0;
 };
 
+/// Least utilisation u of one group of elements, with the distribution of wrenches that attains it.
 class LeastUsage {
 public:
-  /// `dimension`: of each part's wrench, 1 or 3, one after the other in the rows. `basis`: rows × k, of full
-  /// column rank; row pivots[j] of it has its only entry in column j. `length` per row, m: 1 for a force; that
-  /// by which a couple counts as a force.
+  /// `dimension`: 1 or 3 for each element, whose rows are consecutive. `basis`: N, rows × k, of full column rank; row pivots[j] is zero
+  /// except in column j. `length`: one per row, m; 1 for a force row, the lever that converts a moment to a force for an angle row.
   LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> pivots, std::vector<double> length);
 
-  /// For the sharing `wrench`, one value per row.
+  /// Solves for the wrenches λ = `wrench`, one value per row.
   void solve(const Gauges& gauges, const VecX& wrench);
 
-  /// u; below k_surely_holds only an upper bound of it.
+  /// Returns u; below k_surely_holds only an upper bound of it.
   [[nodiscard]] double usage() const { return usage_; }
-  /// Certified lower bound of u.
+  /// Returns a certified lower bound of u.
   [[nodiscard]] double lower() const { return lower_; }
-  /// The sharing that uses least, per row.
+  /// Returns the optimal wrenches λ + N z, per row.
   [[nodiscard]] const VecX& wrench() const { return best_; }
-  /// Its z. One may move on to any other.
+  /// Returns z of wrench(). Any other admissible z is physically possible, too.
   [[nodiscard]] const VecX& coefficients() const { return z_; }
-  /// Slip rates of the mechanism that limits it, per row, scaled to dissipate 1; zero for what stays at rest.
+  /// Returns the slip rates of the limiting mechanism, per row, scaled to dissipate 1 W; zero for elements that do not move.
   [[nodiscard]] const VecX& rates() const { return rates_; }
-  /// A smooth sharing that is admissible as long as one exists: each wrench squared over its capacity, the
-  /// least sum; where that overloads a part, moved towards wrench() as far as it takes. Returns its z.
+  /// Returns z of a distribution that depends smoothly on λ and is admissible if one exists: the one with least Σ wrench²/capacity, moved
+  /// towards wrench() as far as needed if it overloads an element.
   [[nodiscard]] const VecX& settled() const { return settled_; }
 
   static constexpr double k_surely_holds = 0.5;
@@ -76,7 +79,7 @@ private:
   MatX basis_;
   double usage_ = 0.0, lower_ = 0.0, scale_ = 1.0;
   VecX capacity_, best_, z_, rates_, settled_, trial_;
-  std::vector<Normal> normals_; ///< of the simplex basis
+  std::vector<Normal> normals_; ///< normals in the simplex basis
   MatX columns_, normal_matrix_, weighted_;
 };
 

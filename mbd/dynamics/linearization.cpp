@@ -15,12 +15,12 @@ namespace {
 
 using D12 = Dual<12>;
 
-// Steps of the slip law's central differences: cube root of rounding, relative to what is moved.
+// Steps of the central differences of slip laws: the cube root of the rounding error, relative to the quantity changed.
 constexpr double k_relative_step = 6e-6;
-constexpr double k_pose_step = 1e-7;  // m, rad: sheets are metres long
-constexpr double k_least_rate = 1e-9; // m/s, rad/s
+constexpr double k_pose_step = 1e-7;  // step for m and for rad; suits bodies of about one metre
+constexpr double k_least_rate = 1e-9; // smallest magnitude assumed for rates, m/s or rad/s
 
-// A body on the cluster that moves as k.
+// Returns the motion of a body on a cluster with motion k.
 Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
   if (place.is_trivial) return k;
   Motion<D12> m;
@@ -28,11 +28,11 @@ Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
   return m;
 }
 
-// A row as a function of the poses (indices 0–5) and velocities (6–11) of the clusters on either side.
+// A row as a function of the poses (derivative indices 0–5) and velocities (6–11) of the clusters on either side.
 struct DualRow {
   int cluster[2];
   D12 rate, bias;
-  D12 j[6]; ///< gradient by the coordinates of either side
+  D12 j[6]; ///< gradient by the coordinates on either side
 };
 
 template <bool WithBias> DualRow differentiate(const RowSpec& spec, const Layout& layout, const std::vector<Motion<double>>& motion) {
@@ -42,7 +42,7 @@ template <bool WithBias> DualRow differentiate(const RowSpec& spec, const Layout
   for (int side = 0; side < 2; ++side) {
     const Placement& place = layout.placements[body[side]];
     row.cluster[side] = place.cluster;
-    if (place.cluster < 0) continue; // the ground rests at the origin
+    if (place.cluster < 0) continue; // the ground is at rest at the origin
     cluster[side] = seeded(motion[layout.clusters[place.cluster].motion], 3 * side);
     member[side] = placed(cluster[side], place);
   }
@@ -89,7 +89,7 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   if (layout_->has_mechanisms()) reduce();
 }
 
-// ∂(force on a body)/∂(motion of a body), both moved to their clusters' coordinates.
+// Adds ∂(force on a body)/∂(motion of a body), converted to the coordinates of their clusters.
 void Linearization::add_body_block(int row_body, int column_body, const Mat3& by_pose, const Mat3& by_velocity) {
   const Placement& row = layout_->placements[row_body];
   const Placement& column = layout_->placements[column_body];
@@ -99,7 +99,7 @@ void Linearization::add_body_block(int row_body, int column_body, const Mat3& by
   if (!column.is_trivial) {
     const Motion<double>& centre = motion[layout_->clusters[column.cluster].motion];
     const double x = motion[column_body].x - centre.x, y = motion[column_body].y - centre.y;
-    // v_body = v + ω ẑ×lever, and the lever turns with θ.
+    // v_body = v + ω ẑ×lever, and the lever rotates with θ.
     k.col(2) += -y * by_pose.col(0) + x * by_pose.col(1) - centre.omega * (x * by_velocity.col(0) + y * by_velocity.col(1));
     d.col(2) += -y * by_velocity.col(0) + x * by_velocity.col(1);
   }
@@ -187,20 +187,20 @@ void Linearization::add_states() {
   }
 }
 
-// The lever of a force on a body off its cluster's centre turns with the cluster: ∂(l × F)/∂θ = −l·F.
+// Adds the term by which the moment of a force on a body off its cluster's centre changes with θ: ∂(l × F)/∂θ = −l·F.
 void Linearization::add_transport() {
   const std::vector<Motion<double>>& motion = dynamics_->motion();
   for (const int i : layout_->riding) {
     const Placement& place = layout_->placements[i];
     const Motion<double>& centre = motion[layout_->clusters[place.cluster].motion];
     const BodyForce& f = dynamics_->evaluation().force[i];
-    // Sliding wrenches are in `force` too: add_sliding takes their part out again.
+    // `force` also contains sliding wrenches; take_out_transport() removes their part.
     const int k = 3 * place.cluster + 2;
     put(stiffness_, k, k, -((motion[i].x - centre.x) * f.fx + (motion[i].y - centre.y) * f.fy));
   }
 }
 
-// Part by part of a row over more than two bodies: all that is asked for is linear in the row.
+// Adds a row part by part; all terms are linear in the row.
 void Linearization::add_row(std::size_t r) {
   for (const RowSpec* part = layout_->active[r].spec; part; part = part->next) add_part(r, *part);
 }
@@ -209,7 +209,7 @@ void Linearization::add_part(std::size_t r, const RowSpec& spec) {
   const DualRow row = differentiate<true>(spec, *layout_, dynamics_->motion());
   const double lambda = dynamics_->multipliers()[r];
   const int i = static_cast<int>(r);
-  D12 slack = -row.bias; // γ − J a, but for the drive, which the state does not change
+  D12 slack = -row.bias; // γ − J a without the prescribed acceleration, which does not depend on the state
   for (int k = 0; k < 6; ++k)
     if (const int c = row.cluster[k / 3]; c >= 0) slack -= row.j[k] * D12(acceleration_[3 * c + k % 3]);
   for (int k = 0; k < 6; ++k) {
@@ -246,22 +246,22 @@ void Linearization::acceleration_by_state(MatX& by_pose, MatX& by_velocity) cons
     wj.setZero();
     for (const Triplet& e : response_) wj(e.row(), e.col()) += e.value();
   }
-  const RankLu schur(j * wj); // rank-revealing: redundant rows
+  const RankLu schur(j * wj); // rank-revealing, because rows may be redundant
   by_pose += wj * schur.solve(dense(bias_q_, m_) - j * by_pose);
   by_velocity += wj * schur.solve(dense(bias_v_, m_) - j * by_velocity);
 }
 
-// One sliding friction: forces w_r J_rᵀ with w = w(relative velocity, relative pose, normal forces), whose derivatives are
-// central differences.
+// One sliding friction element: forces w_r J_rᵀ with w = w(relative velocity, relative pose, normal forces), differentiated by central
+// differences.
 struct Linearization::Sliding {
   const FrictionElement& friction;
   const FrictionState& state;
   const RowSpec* specs;
-  int count;        ///< rows: 1 or 3
-  Evaluation moved; ///< what the slip law looks at, changed one number at a time
+  int count;        ///< number of rows, 1 or 3
+  Evaluation moved; ///< input of the slip law, changed one number at a time
   DualRow rows[3] = {};
   double rate[3] = {0, 0, 0}, wrench[3] = {0, 0, 0};
-  double by_state[3][12] = {}; ///< of the wrench, by the clusters' coordinates: 12 columns as in DualRow
+  double by_state[3][12] = {}; ///< derivatives of the wrench by the coordinates of the clusters; 12 columns as in DualRow
 
   void difference(double& x, double step, double* slope) {
     const double before = x;
@@ -273,7 +273,7 @@ struct Linearization::Sliding {
     x = before;
     for (int r = 0; r < count; ++r) slope[r] = (ahead[r] - behind[r]) / (2.0 * step);
   }
-  /// Of a force along coordinate k of its rows, by the slopes of the wrench.
+  /// Returns the derivative of the generalised force on coordinate k, Σ_r J_rk ∂w_r/∂x.
   [[nodiscard]] double along(int k, const double* slope) const {
     double sum = 0.0;
     for (int r = 0; r < count; ++r) sum += rows[r].j[k].v * slope[r];
@@ -309,8 +309,8 @@ void Linearization::differentiate_by_rate(Sliding& sliding) const {
   }
 }
 
-// Rows of a rigid hold: their values are the relative pose, their gradients exact. Values (x, y along b's axes, then the angle) are
-// changed one at a time by moving a.
+// For three rows: their values are the relative pose, with exact gradients. The values (x, y along b's axes, angle) are changed one at a
+// time by moving a.
 void Linearization::differentiate_by_pose(Sliding& sliding) {
   const RowSpec* const specs = sliding.specs;
   sliding.moved.motion = motion_.data();
@@ -341,7 +341,7 @@ void Linearization::differentiate_by_pose(Sliding& sliding) {
   sliding.moved.motion = dynamics_->evaluation().motion;
 }
 
-// Of one row the wrench may hang on the row's own value, as that of a buffer does on its depth: a is moved along the gradient.
+// For one row: the wrench may depend on the row's value, as that of a buffer on its depth. a is moved along the gradient.
 void Linearization::differentiate_by_value(Sliding& sliding) {
   const RowSpec& spec = *sliding.specs;
   sliding.moved.motion = motion_.data();
@@ -364,7 +364,7 @@ void Linearization::differentiate_by_value(Sliding& sliding) {
   sliding.moved.motion = dynamics_->evaluation().motion;
 }
 
-// Into the equation of coordinate k of the rows: derivatives by a coordinate of a cluster and by its rate.
+// Adds, to the equation of coordinate k of the rows, the derivatives by a coordinate of a cluster and by its rate.
 void Linearization::put_along(const Sliding& sliding, int k, int cluster, int coordinate, double by_pose, double by_velocity) {
   const int own = sliding.rows[0].cluster[k / 3];
   if (own < 0 || cluster < 0) return;
@@ -373,7 +373,7 @@ void Linearization::put_along(const Sliding& sliding, int k, int cluster, int co
   put(damping_, row, column, by_velocity);
 }
 
-// The rows' own turning, and what the wrench does along them.
+// Adds the terms due to the rotation of the rows, and those due to the change of the wrench along them.
 void Linearization::add_sliding_rows(const Sliding& sliding) {
   const DualRow* const rows = sliding.rows;
   for (int k = 0; k < 6; ++k)
@@ -387,8 +387,8 @@ void Linearization::add_sliding_rows(const Sliding& sliding) {
     }
 }
 
-// add_transport has counted the wrench's force on bodies off their clusters' centres; the gradients of the rows hold the
-// whole of it.
+// add_transport() has included this wrench for bodies off their clusters' centres. The gradients of the rows contain the whole term, so
+// that part is subtracted.
 void Linearization::take_out_transport(const Sliding& sliding) {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? sliding.specs[0].a : sliding.specs[0].b;
@@ -404,7 +404,7 @@ void Linearization::take_out_transport(const Sliding& sliding) {
   }
 }
 
-// Normal forces, through the contacts that feel the motion.
+// Adds the derivatives by normal forces, through the contacts that depend on the motion.
 void Linearization::add_normal_forces(Sliding& sliding) {
   normal_.assign(sliding.moved.contact_force, sliding.moved.contact_force + dynamics_->system().contact_count);
   sliding.moved.contact_force = normal_.data();
@@ -417,7 +417,7 @@ void Linearization::add_normal_forces(Sliding& sliding) {
   }
 }
 
-// To body coordinates of the contact, then to its clusters'.
+// Adds the derivatives of one contact force: by the coordinates of its bodies, converted to those of their clusters.
 void Linearization::add_normal_force(const Sliding& sliding, const PairJacobian& contact, int k, double along) {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? contact.a : contact.b;

@@ -1,28 +1,32 @@
-// The equations of motion linearised at a state, in the coordinates of the present layout.
+// Linearisation of the equations of motion at a state, in the coordinates of the present layout.
 //
-// With the generalised forces Q(q, v, t), the multipliers λ of the layout's active rows and J their
-// gradients, M a = Q + Jᵀλ, J a = γ (27), a small change of state changes the accelerations by
+// With generalised forces Q(q, v, t), multipliers λ of the active rows and their gradients J, M a = Q + Jᵀλ, J a = γ (27), a small change
+// of state changes the accelerations by
+//
 //   M δa − Jᵀ δλ = K δq + D δv,   K = ∂(Q + Jᵀλ)/∂q at constant λ,  D = ∂Q/∂v,
 //   J δa         = G_q δq + G_v δv,   G = ∂(γ − J a)/∂(q, v) at constant a.
-// K and D have the sign of the force: a spring's K is negative. They are exact: elements and rows are
-// differentiated by dual numbers (dual.h). The one exception is the slip law of friction, whose wrench
-// along its rows is differenced by the relative velocity, the relative pose and the normal forces of its
-// own pair of bodies, one at a time; all that follows from geometry is exact there too. (Coulomb's law
-// depends on the normal forces alone, linearly: exact up to rounding.)
 //
-// In mechanisms (mechanism.h) M is not diagonal: there K and D are given as M⁻¹K and M⁻¹D, with inverse masses of 1,
-// and M⁻¹Jᵀ apart. They follow from those of the clusters, T being their velocities by the coordinates' rates, by
+// K and D have the sign of the force: K of a spring is negative. They are exact, by dual numbers (dual.h), with one exception: the
+// derivatives of slip laws by relative velocity, relative pose and normal forces are central differences. (Coulomb's law is linear in the
+// normal forces, so there they are exact up to rounding.)
+//
+// In mechanisms (mechanism.h) M is not diagonal. There M⁻¹K and M⁻¹D are given instead, with inverse masses 1, and M⁻¹Jᵀ separately. With T
+// the Jacobian of cluster velocities by coordinate rates and a = T s̈ + b at constant s̈, they follow from the matrices of the clusters:
+//
 //   δv = T δṡ + (∂(T ṡ)/∂s) δs,   D_s = Tᵀ(D T − m ∂a/∂ṡ)
 //   K_s = Tᵀ(K T + D ∂(T ṡ)/∂s − m ∂a/∂s) + (∂Tᵀ/∂s)(Q + Jᵀλ − m a)
-// with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors.
 //
-// Inner states of force elements (roles.h) bring forces of their own and follow rates of their own,
+// These are closed forms, because a coordinate rotates only the vectors of its own member.
+//
+// Inner states z of force elements (roles.h) contribute
+//
 //   δQ += F_z δz,   δż = P δq + V δv + Z δz,
-// each between one pair of clusters: kept as small blocks (InnerBlock), for methods that eliminate them. Own states of the model may
-// follow any motion and each other, and act anywhere: kept as lists (StateParts).
 //
-// Locked coordinates (drives) do not follow the state: their columns are left out, their rows have zero
-// inverse mass. Modes are those of the state; the linearisation holds while no watch value crosses zero.
+// each between two clusters. They are stored as small blocks (InnerBlock), so that methods can eliminate them. Own states of the model can
+// depend on any motion and on each other, and are stored as lists (StateParts).
+//
+// Locked coordinates do not depend on the state: their columns are omitted, their rows have zero inverse mass. The linearisation is valid
+// while no event function crosses zero.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -32,29 +36,31 @@
 
 namespace steplap {
 
+/// Matrices of the linearised equations of motion at one state.
 class Linearization {
 public:
   using Triplet = Eigen::Triplet<double, int>;
 
-  /// At (t, y) packed; evaluates the rates there. The modes are those last given to `dynamics`. Entries
-  /// come in the same order for every state of one layout, so that a sparse pattern can be kept.
+  /// Computes all matrices at time t and packed state y, for the modes last set in `dynamics`. For one layout the entries always have the
+  /// same order, so that a sparsity pattern can be reused.
   void evaluate(Dynamics& dynamics, double t, const double* y);
 
-  [[nodiscard]] int coordinates() const { return n_; } ///< of the layout
-  [[nodiscard]] int rows() const { return m_; }        ///< active constraint rows
-  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked, 1 in mechanisms. n entries.
+  [[nodiscard]] int coordinates() const { return n_; } ///< number of coordinates n of the layout
+  [[nodiscard]] int rows() const { return m_; }        ///< number of active constraint rows m
+  /// Returns n inverse masses and inertias, 1/kg and 1/(kg m²); zero for locked coordinates, 1 in mechanisms.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return *inverse_mass_; }
 
-  // Sparse: duplicates add up. SI units, rad.
+  // Sparse matrices in SI units and rad; entries at the same place are to be added.
   [[nodiscard]] const std::vector<Triplet>& stiffness() const { return stiffness_; } ///< K, n × n
   [[nodiscard]] const std::vector<Triplet>& damping() const { return damping_; }     ///< D, n × n
   [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
-  /// M⁻¹ Jᵀ, n × m; empty where all clusters are in absolute coordinates.
+  /// M⁻¹ Jᵀ, n × m; empty if there are no mechanisms.
   [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }
   [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; }     ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
 
-  /// An inner state between two clusters: columns and rows of either side in turn, zero for the ground and locked columns.
+  /// Inner states of one element between two clusters. Columns and rows refer to the coordinates of either cluster in turn; those of the
+  /// ground and locked ones are zero.
   struct InnerBlock {
     int cluster[2] = {-1, -1};
     int first = 0, count = 0;
@@ -63,17 +69,17 @@ public:
     Mat3 by_inner;
   };
   [[nodiscard]] const std::vector<InnerBlock>& inner() const { return inner_; }
-  /// Own states (own_states.h), which are no part of such blocks: columns are coordinates or, by_state, inner states; rows are inner
-  /// states or, forces, coordinates. Locked columns are left out.
+  /// Own states (own_states.h). Rows are inner states, columns coordinates (by_pose, by_velocity) or inner states (by_state); for `forces`
+  /// rows are coordinates and columns inner states. Locked columns are omitted.
   struct StateParts {
     std::vector<Triplet> by_pose, by_velocity, by_state, forces;
   };
   [[nodiscard]] const StateParts& states() const { return states_; }
   [[nodiscard]] int inner_count() const { return dynamics_->inner_count(); }
 
-  /// Any of them as a dense matrix of `rows` rows.
+  /// Returns one of these lists as a dense matrix with the given number of rows.
   [[nodiscard]] MatX dense(const std::vector<Triplet>& entries, int rows) const;
-  /// ∂a/∂q and ∂a/∂v (n × n each) of free coordinates, constraints eliminated: for small scenes.
+  /// Computes ∂a/∂q and ∂a/∂v (n × n each) of free coordinates with constraints eliminated, by dense algebra.
   void acceleration_by_state(MatX& by_pose, MatX& by_velocity) const;
 
 private:
@@ -114,27 +120,26 @@ private:
   StateJacobian state_jacobian_;
   StateParts states_;
   std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_, response_;
-  /// A coordinate of a mechanism that moves a cluster.
+  /// Describes how a coordinate of a mechanism moves a cluster.
   struct Lever {
     int coordinate = 0;
-    int axis = -1;       ///< of a place: 0 x, 1 y
-    bool is_own = false; ///< it is the cluster's angle
+    int axis = -1;       ///< for a translation: 0 x, 1 y; −1: rotation
+    bool is_own = false; ///< the coordinate is the angle of the cluster itself
     double omega = 0.0, alpha = 0.0;
-    Pair<double> arm; ///< what it turns
+    Pair<double> arm; ///< vector that it rotates: from its pin to the cluster's centre
   };
-  /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by
-  /// the coordinate, its acceleration by the rate.
+  /// Derivatives of a cluster coordinate c: of ċ by the rate of the lever's coordinate, of ċ and c̈ by the coordinate, of c̈ by its rate.
   struct LeverRates {
     double rate, rate_by_pose, acceleration_by_pose, acceleration_by_rate;
   };
   [[nodiscard]] static Lever place_lever(int coordinate, int axis);
   [[nodiscard]] static LeverRates rates_of(const Lever& lever, int c);
   template <class F> void for_levers(int at, const F& f) const;
-  std::vector<std::vector<Lever>> levers_;                     ///< per cluster; empty: absolute
-  std::vector<Triplet> kept_gradient_, kept_pose_, kept_rate_; ///< scratch of reduce
+  std::vector<std::vector<Lever>> levers_;                     ///< per cluster; empty if in absolute coordinates
+  std::vector<Triplet> kept_gradient_, kept_pose_, kept_rate_; ///< scratch of reduce()
   MatX by_pose_, by_rate_;                                     ///< of one mechanism
-  std::vector<char> is_touched_;                               ///< per coordinate: they have entries there
-  std::vector<Motion<double>> motion_;                         ///< scratch of the slip law's differences
+  std::vector<char> is_touched_;                               ///< per coordinate: these matrices have entries there
+  std::vector<Motion<double>> motion_;                         ///< scratch for the differences of slip laws
   std::vector<double> normal_;
 };
 

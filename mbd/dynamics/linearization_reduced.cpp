@@ -1,4 +1,4 @@
-// Linearization: from the clusters' coordinates to those of mechanisms.
+// Linearization: conversion from the coordinates of clusters to those of mechanisms.
 #include "mbd/dynamics/linearization.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void Linearization::find_levers() {
     }
 }
 
-// Calls f(coordinate, rates) for whatever moves a cluster's coordinate; one that is absolute moves itself.
+// Calls f(coordinate, rates) for each coordinate that moves the cluster coordinate `at`; an absolute one moves only itself.
 template <class F> void Linearization::for_levers(int at, const F& f) const {
   if (at < 3 * layout_->absolute_count) return f(at, LeverRates{1.0, 0.0, 0.0, 0.0});
   for (const Lever& lever : levers_[at / 3]) f(lever.coordinate, rates_of(lever, at % 3));
@@ -67,7 +67,7 @@ void Linearization::reduce() {
   for (auto* entries : all) entries->reserve(room);
 }
 
-// Gradients, and what the rows' slack changes by: the clusters' accelerations at constant s̈ change with the state.
+// Converts gradients and bias derivatives. The accelerations of clusters at constant s̈ depend on the state, which adds terms.
 void Linearization::reduce_rows() {
   const int absolute = 3 * layout_->absolute_count;
   for (auto* entries : {&kept_gradient_, &kept_pose_, &kept_rate_}) entries->clear();
@@ -110,7 +110,7 @@ void Linearization::start_columns() {
   is_touched_.assign(n_, 0);
 }
 
-// M⁻¹ K_s and M⁻¹ D_s of one mechanism, column by column.
+// Computes M⁻¹ K_s and M⁻¹ D_s of one mechanism, column by column.
 void Linearization::reduce_forces(const Mechanism& m) {
   start_columns();
   const auto is_here = [&m](int row) { return row / 3 >= m.first_cluster && row / 3 < m.first_cluster + m.cluster_count(); };
@@ -141,7 +141,7 @@ void Linearization::reduce_forces(const Mechanism& m) {
   }
 }
 
-// −Tᵀ m ∂a/∂s and (∂Tᵀ/∂s)(Q + Jᵀλ − m a) of one cluster: what an angle turns changes its direction by the angle.
+// Adds −Tᵀ m ∂a/∂s and (∂Tᵀ/∂s)(Q + Jᵀλ − m a) of one cluster. An angle changes only the direction of the vectors that it rotates.
 void Linearization::add_inertia(const Mechanism& m, const Member& member) {
   const BodyForce& f = dynamics_->evaluation().force[member.slot];
   const double* const a = acceleration_ + 3 * member.cluster;

@@ -1,17 +1,17 @@
-// Constraints that depend on each other, and the loads that they can share in more than one way.
+// Linearly dependent constraints, whose loads are statically indeterminate.
 //
-// While Jᵀ of all rows that hold (joints, drives, sticking friction) has null vectors n, λ + n moves nothing: the
-// motion is unique, the single multipliers are not. Found here, in the bodies' own coordinates, whatever a layout
-// merges or locks:
-//   groups   of sticking elements whose wrenches are not unique: such a group holds as long as some sharing is
-//            admissible (least_usage.h), and is watched as one;
-//   reports  one sharing out of many: friction bears what joints cannot, in proportion to its capacities
-//            (LeastUsage::settled); joints share with the least Σ A_rr λ_r², A_rr = J_r M⁻¹ J_rᵀ the acceleration
-//            that a multiplier gives alone.
-// Null vectors hold for a pose; while the bodies that take part do not move against each other they stay, and
-// whoever asks checks that (holds_at). Which rows of friction depend on others is not decided here but where the equations
-// leave them out (SchurSolver): each row that is left out there has one null vector, and no other row of friction but those of
-// joints that are merged beside bilateral ones, which depend exactly.
+// If Jᵀ of all active rows (joints, drives, sticking friction) has null vectors n, then λ + n gives the same motion: accelerations are
+// unique, single multipliers are not. This class finds the null vectors in the coordinates of the bodies, independently of merging and
+// locking, and provides
+//
+//   groups   sticking elements whose wrenches are not unique. A group sticks as long as an admissible distribution exists (least_usage.h);
+//            it has common event functions.
+//   reports  one distribution of many: friction carries what joints cannot, in proportion to its capacities (LeastUsage::settled); joints
+//            have the least Σ A_rr λ_r², where A_rr = J_r M⁻¹ J_rᵀ is the acceleration by a unit multiplier.
+//
+// Null vectors depend on the pose, but remain valid while the bodies do not move relative to each other; callers check this by holds_at().
+// Which friction rows count as dependent is decided by SchurSolver, which leaves them out of the equations. Each row left out there has one
+// null vector. Other friction rows have none, except those of merged joints parallel to bilateral rows, which are exactly dependent.
 #pragma once
 
 #include "mbd/dynamics/least_usage.h"
@@ -25,58 +25,59 @@ namespace steplap {
 /// Sticking elements that share a load.
 struct SharingGroup {
   std::vector<int> frictions;
-  std::vector<int> slot; ///< per row: in Snapshot::friction_force
+  std::vector<int> slot; ///< per row: index in Snapshot::friction_force
   LeastUsage least;
 };
 
-/// What an element of a group does when the group gives way.
+/// Wrench of an element at the moment when its group starts to slip.
 struct Release {
   int friction = 0;
-  double wrench[3] = {0, 0, 0}; ///< at the bound
+  double wrench[3] = {0, 0, 0}; ///< on the boundary of the admissible set
 };
 
+/// Groups of sticking elements that share a load in a statically indeterminate way, for one set of modes.
 class LoadSharing {
 public:
-  /// With `motion` of all bodies, in the phases of `state`. `left_out`: per slot of Snapshot::friction_force, the row is not
-  /// in the equations.
+  /// Finds the null vectors for the poses `motion` of all bodies and the phases of `state`. `left_out`: per index of
+  /// Snapshot::friction_force, the row is left out of the equations.
   LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion, std::vector<char> left_out);
 
   [[nodiscard]] const std::vector<SharingGroup>& groups() const { return groups_; }
-  /// Does anything stick that can slip? If not, there will be no groups in any pose.
+  /// Returns true if an element sticks that can slip; if not, no pose has groups.
   [[nodiscard]] bool has_friction() const { return has_friction_; }
-  /// Index of the group of a friction element; −1: its wrench is its own.
+  /// Returns the index of the group of a friction element; −1 if its wrench is unique.
   [[nodiscard]] int group_of(int friction) const { return group_of_[friction]; }
-  /// Are the null vectors still null vectors, and all there are?
+  /// Returns true if the null vectors are still null vectors, and the same rows are left out.
   [[nodiscard]] bool holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const;
 
-  /// Can the elements of `group` stick together? Rows that depend on each other hold together only if what they are
-  /// held at does too, Σ n_r (J_r v − target) = 0 and the same of accelerations for every null vector n: the feet of a
-  /// rocking box, or a drive and friction on one coordinate, do not. Above 1: they do not, by more than rounding.
+  /// Returns a measure of incompatible motion: dependent rows can stick together only if Σ n_r (J_r v − target) = 0 for each null vector n,
+  /// and the same for accelerations. This is violated for the feet of a rocking box, or for a drive and friction on the same coordinate.
+  /// Above 1: violated by more than rounding, so the elements cannot all stick.
   [[nodiscard]] double discord(int group, const Evaluation& evaluation, const double* acceleration) const;
-  /// Solves every group for the wrenches in `friction_force`.
+  /// Computes the least utilisation of every group for the wrenches in `friction_force`.
   void solve(const Evaluation& evaluation, const double* friction_force);
-  /// Elements that slip when `group`, solved, gives way.
+  /// Returns the elements of `group` that slip when it gives way. Precondition: solve().
   [[nodiscard]] std::vector<Release> releases(int group) const;
-  /// After solve(): of all sharings the one to report, in place. Both arrays must hold one sharing.
+  /// Replaces the multipliers by the distribution to be reported. Precondition: solve(); both arrays contain one valid distribution.
   void settle(double* row_force, double* friction_force) const;
 
 private:
-  /// One row that holds; `slot` in row_force, or in friction_force if it is friction's.
+  /// An active row; `slot` is an index in row_force, or in friction_force for friction.
   struct HeldRow {
     const RowSpec* spec = nullptr;
     int friction = -1, slot = 0;
     bool is_bounded = false;
     double norm = 0.0, mobility = 0.0;
   };
-  /// Rows between bodies that are connected, with their null vectors: first those that load friction.
+  /// Connected bodies with the rows between them and the null vectors; those that load friction come first.
   struct ConnectedRows {
-    std::vector<HeldRow> rows;             ///< bounded ones last
-    int free_count = 0;                    ///< rows that are not
+    std::vector<HeldRow> rows;             ///< rows with bounds (friction) last
+    int free_count = 0;                    ///< number of rows without bounds
     MatX null;                             ///< rows × vectors
-    VecX off;                              ///< per vector: what it moved in the pose that it was found in, of its terms
-    int shared_count = 0;                  ///< vectors that load friction
-    MatX settle;                           ///< of the others: coefficients that take multipliers of the free rows to the least
-    std::vector<int> groups;               ///< of this part
+    VecX off;                              ///< per vector: relative residual of Jᵀ n in the pose in which it was found
+    int shared_count = 0;                  ///< number of vectors that load friction
+    MatX settle;                           ///< for the other vectors: coefficients that minimise the multipliers of unbounded rows
+    std::vector<int> groups;               ///< groups in this part
     std::vector<std::vector<int>> columns; ///< per group: its vectors
   };
   void analyze(ConnectedRows& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index);

@@ -78,7 +78,7 @@ void Mechanism::close(int cluster_count, const Vec2& gravity, const SchurRow* ro
     if (m.parent < 0 && !m.is_free) link.o = m.pin;
     w.links.push_back(link);
   }
-  // Inward; `beyond`: how far what hangs on a member can be from its pin.
+  // From the leaves to the root; `beyond`: largest distance from its pin of anything attached to a member.
   std::vector<double> beyond(members.size(), 0.0);
   for (std::size_t i = members.size(); i-- > 0;) {
     const Link& link = w.links[i];
@@ -135,7 +135,7 @@ void Mechanism::pack(const double* cluster_q, const double* cluster_v, double* q
       }
     } else {
       q[k] = v[k] = 0.0;
-      MechanismWork::turn(links[i], links, q, v); // for the place of its pin
+      MechanismWork::turn(links[i], links, q, v); // required for the position of its pin
       const Member& end = members[i + 1];
       const double* const bq = cluster_q + 3 * end.cluster;
       const double* const bv = cluster_v + 3 * end.cluster;

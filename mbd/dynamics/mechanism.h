@@ -1,22 +1,21 @@
-// A small mechanism in joint coordinates: clusters pinned to one another or to the ground, described by the angles
-// that pins leave them.
+// A small mechanism in joint coordinates: clusters connected by pins, described by their angles.
 //
-// Its *members* hang on each other as a forest: each on one pin of another member or of the ground, or it is free and
-// the root of its tree. A distance joint is a member without mass, pinned at both its ends. Coordinates s are the
-// members' angles against the ground (so a pin passes no couple on), of a free member the place of its centre before
-// it. With R_k the turn of member k, e the member that k hangs on, d_k its pin there and c_k its own centre, both from
-// pins and fixed:
+// The members form a forest. Each is attached by one pin to its parent, another member or the ground, or it is free and the root of a tree.
+// A distance joint is a massless member with a pin at both ends (a rod). Coordinates s are the angles of the members relative to the ground
+// (so that pins transmit no moment); a free member also has the position of its centre, numbered before its angle. With R_k the rotation of
+// member k, e its parent, and two constant vectors, d_k from e's pin to its own pin and c_k from its pin to its centre:
+//
 //   o_k = o_e + R_e d_k,   centre = o_k + R_k c_k
 //   v = T(s) ṡ,  a = T s̈ + b,   M s̈ = Tᵀ(Q − m b) + Jᵀλ,  M = Tᵀ m T
 //   M_ee = J_e + m_e c_e² + Σ m_below d²      constant
-//   M_fe = (R_e d) · (R_f p_f),  e above f, d the pin on e by which f hangs, p_f = m_f c_f + Σ m_below d   fixed in f
-// M couples a member with those above it alone: M = Lᵀ D L has no fill if the outermost are eliminated first
-// (R. Featherstone, Rigid Body Dynamics Algorithms, §6.5).
+//   M_fe = (R_e d) · (R_f p_f),  e above f, d from e's pin to the pin that carries f, p_f = m_f c_f + Σ m_below d   constant in f
 //
-// What closes loops, and friction that sticks, are rows in these coordinates: J s̈ = γ − J_c b with the rows' gradients
-// J_c by the clusters' coordinates, J = J_c T. They are solved as SchurSolver does it, and mean the same: pivots count
-// against the diagonal of the bodies on their own, J_c W J_cᵀ, so that they tell of the distance from singular
-// positions in the same measure, with the pins eliminated before all other rows.
+// M couples a member only with those above it. M = Lᵀ D L therefore has no fill-in if the outermost members are eliminated first (R.
+// Featherstone, Rigid Body Dynamics Algorithms, §6.5).
+//
+// Joints that close loops and sticking friction are rows, J s̈ = γ − J_c b with J = J_c T and J_c the gradients by the coordinates of the
+// clusters. They are solved as in SchurSolver. Pivots are taken relative to the diagonal for free bodies, J_c W J_cᵀ, so that they measure
+// the distance from singular positions in the same way as with absolute coordinates and the pins eliminated first.
 #pragma once
 
 #include "mbd/dynamics/schur.h"
@@ -28,22 +27,23 @@
 
 namespace steplap {
 
-/// A cluster, or a rod without mass, and what it hangs on.
+/// A cluster, or a massless rod, and its attachment.
 struct Member {
-  int cluster = -1; ///< −1: a rod
-  int slot = -1;    ///< of its motion and force
-  int parent = -1;  ///< member that it hangs on, −1: the ground or nothing
+  int cluster = -1; ///< −1: rod
+  int slot = -1;    ///< slot of its motion and force
+  int parent = -1;  ///< parent; −1: the ground, or free
   bool is_free = false;
-  int coordinate = 0;      ///< of its angle; of a free one x and y are the two before
-  int block = -1;          ///< rows of the joint by which it hangs, −1: none (free, or a rod, which leaves them to its end)
-  bool is_rod_end = false; ///< that is a distance, its parent the rod
+  int coordinate = 0;      ///< index of its angle; x and y of a free member are the two before
+  int block = -1;          ///< row block of the joint to its parent; −1: none (a free member, or a rod, whose row is that of its end)
+  bool is_rod_end = false; ///< attached to a rod (its parent) by a distance joint
   double mass = 0.0, inertia = 0.0;
-  Pair<double> pin;    ///< from its parent's pin, in the parent's axes; a place of the ground
-  Pair<double> centre; ///< from its pin, in its axes
+  Pair<double> pin;    ///< from the parent's pin to its own, in the parent's axes; a position if the parent is the ground
+  Pair<double> centre; ///< from its pin to its centre, in its axes
 };
 
 struct MechanismWork;
 
+/// Kinematics and dynamics of one mechanism. It does not allocate after close().
 class Mechanism {
 public:
   Mechanism();
@@ -51,61 +51,64 @@ public:
   Mechanism(Mechanism&&) noexcept;
   Mechanism& operator=(Mechanism&&) noexcept;
 
-  static constexpr int k_most = 16; ///< coordinates, and rows
+  static constexpr int k_most = 16; ///< largest number of coordinates and of rows
 
-  // --- made by the layout ---------------------------------------------------------------------------
-  std::vector<Member> members; ///< after those that they hang on
-  int first_coordinate = 0;    ///< in the packed coordinates
+  // --- set by the layout ----------------------------------------------------------------------------
+  std::vector<Member> members; ///< each after its parent
+  int first_coordinate = 0;    ///< index in the packed coordinates
   int first_cluster = 0;
-  int first_row = 0, row_count = 0; ///< of the layout's active rows
-  /// Constants of the members, coordinates, sizes. Members, first_cluster and its rows, of which the bodies are filled
-  /// in, must be known.
+  int first_row = 0, row_count = 0; ///< range in the layout's active rows
+  /// Computes constants and sizes. Preconditions: members, first_cluster and the row range are set, and the bodies of `rows` are filled in.
   void close(int cluster_count, const Vec2& gravity, const SchurRow* rows);
 
   [[nodiscard]] int size() const { return n_; }
   [[nodiscard]] int cluster_count() const { return static_cast<int>(member_of_.size()); }
-  /// How far at most anything that coordinate i turns is from its pin, m; 0 for a place.
+  /// Returns the largest distance from its pin of anything that coordinate i rotates, m; 0 for a translation.
   [[nodiscard]] double reach(int i) const { return reach_[i]; }
+  /// Returns true if coordinate i is a length in m, false if it is an angle in rad.
   [[nodiscard]] bool is_place(int i) const { return is_place_[i] != 0; }
-  /// Bit i: coordinate i moves the cluster.
+  /// Returns a bit mask: bit i is set if coordinate i moves the cluster.
   [[nodiscard]] unsigned moved_by(int cluster) const { return path_[member_of_[cluster - first_cluster]]; }
 
   // --- poses and rates ------------------------------------------------------------------------------
-  /// From the clusters' (3 numbers each, all clusters of the layout).
+  /// Computes q and v of the mechanism from those of the clusters (3 numbers per cluster of the layout).
   void pack(const double* cluster_q, const double* cluster_v, double* q, double* v) const;
-  /// To its clusters'.
+  /// Computes q and v of its clusters from its coordinates.
   void unpack(const double* q, const double* v, double* cluster_q, double* cluster_v) const;
-  /// Places its clusters.
+  /// Computes the motions of its clusters.
   void place(const double* q, const double* v, Motion<double>* motion);
+  /// Returns true if these were the last arguments of place().
   [[nodiscard]] bool is_at(const double* q, const double* v) const;
 
-  // --- at the pose last placed ----------------------------------------------------------------------
-  /// M = Lᵀ D L.
+  // --- at the last pose given to place() --------------------------------------------------------------
+  /// Computes M and its factors Lᵀ D L.
   void factor_mass();
-  /// s̈ without rows, `force` per slot.
+  /// Computes s̈ without rows; `force` is per slot.
   void accelerate(const BodyForce* force, double* s) const;
-  /// The clusters' accelerations, 3 each, that belong to s̈.
+  /// Computes the accelerations (x, y, θ) of all clusters for given s̈, including centripetal terms.
   void expand(const double* s, double* cluster_a) const;
   /// In place: x = M⁻¹ x.
   void solve_mass(double* x) const;
-  /// Gradient by the coordinates.
+  /// Converts the gradient of a row to the coordinates s.
   void reduce(const SchurRow& row, double* gradient) const;
-  /// Force on every member from what it hangs on: `cluster_a` expanded, `lambda` of its rows.
+  /// Computes the force on every member from its parent. `cluster_a` as by expand(), `lambda` of its rows.
   void pin_forces(const double* cluster_a, const BodyForce* force, const SchurRow* rows, const double* lambda,
                   std::vector<Pair<double>>& on_member) const;
-  /// From the pin of the member that it hangs on to its own, and from there to its centre, ground axes.
+  /// Return the vectors from the parent's pin to the member's pin, and from there to its centre, ground axes, m.
   [[nodiscard]] Pair<double> arm(int member) const;
   [[nodiscard]] Pair<double> lever(int member) const;
+  /// Returns the angular velocity of the member, rad/s.
   [[nodiscard]] double spin(int member) const;
+  /// Returns the index of the member for a cluster of the layout.
   [[nodiscard]] int member_of(int cluster) const { return member_of_[cluster - first_cluster]; }
 
-  // --- rows: as of SchurSolver ----------------------------------------------------------------------
-  /// Gradients of the rows, whose numbers are filled in.
+  // --- rows: as in SchurSolver ------------------------------------------------------------------------
+  /// Converts the gradients of its rows to coordinates s. Precondition: the rows are filled in.
   void reduce_rows(const SchurRow* rows);
-  /// Factors of J M⁻¹ Jᵀ; mass and rows must be.
+  /// Factorises J M⁻¹ Jᵀ. Preconditions: factor_mass(), reduce_rows().
   void factor_rows(const SchurRow* rows, double shift);
   void solve_rows(double* x) const;
-  /// Σ J change.
+  /// Returns J change for one row.
   [[nodiscard]] double along(int row, const double* change) const;
   /// change += M⁻¹ Jᵀ λ.
   void add_response(const double* lambda, double* change) const;
@@ -113,10 +116,12 @@ public:
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const;
+  /// Returns true if the row is dependent on others and left out of the equations.
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
+  /// Returns the gradient of a row by the coordinates s, size() numbers.
   [[nodiscard]] const double* gradient(int row) const;
-  /// Its constants, for who writes an evaluation down (traced_mechanism.h).
+  /// Returns its constants, for recording an evaluation (traced_mechanism.h).
   [[nodiscard]] const MechanismWork& work() const { return *work_; }
 
 private:
@@ -125,15 +130,15 @@ private:
   void keep_rank(double shift);
 
   int n_ = 0;
-  std::vector<int> member_of_; ///< of its clusters
-  std::vector<unsigned> path_; ///< per member: coordinates that move it, by bits
+  std::vector<int> member_of_; ///< member of each of its clusters
+  std::vector<unsigned> path_; ///< per member: bit mask of the coordinates that move it
   std::array<double, k_most> reach_{};
   std::array<char, k_most> is_place_{};
   std::vector<char> can_stay_out_, out_, was_out_; ///< per row, as in SchurSolver
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
-  std::unique_ptr<MechanismWork> work_; ///< what an evaluation changes, and its constants side by side
+  std::unique_ptr<MechanismWork> work_; ///< variables of an evaluation, with copies of the constants for locality
 };
 
 } // namespace steplap

@@ -11,12 +11,12 @@ namespace steplap {
 
 namespace {
 
-// A pin or a distance between two clusters.
+// A pin or a distance joint between two clusters.
 struct Hinge {
   int block = 0;
   int cluster[2] = {-1, -1};
-  Vec2 point[2];       // from the clusters' centres in their axes; of the ground
-  double length = 0.0; // of a distance, 0: a pin
+  Vec2 point[2];       // relative to the centres of the clusters, in their axes; a position for the ground
+  double length = 0.0; // length of a distance joint; 0: pin
 };
 
 class Islands {
@@ -115,10 +115,9 @@ private:
         if (k >= 0) hinges_at_[k].pop_back();
   }
 
-  // Outward over pins, breadth first, from the ground; then by a rod, or from a member that is free, what pins do not
-  // reach.
+  // Builds the tree: breadth-first over pins from the ground, then over a rod, or from a free member, to clusters that pins do not reach.
   void consider(const std::vector<int>& island) {
-    if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each has a coordinate at least
+    if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each cluster needs at least one coordinate
     for (const int k : island)
       if (is_driven_[k] != 0 || is_long_[k] != 0) return;
     tree_ = Mechanism();
@@ -138,8 +137,9 @@ private:
     for (const int k : island) rows += rows_[k];
     for (const int block : used_) rows -= system_.row_blocks[block].count;
     if (used_.empty() || coordinates > Mechanism::k_most || rows > Mechanism::k_most) return;
-    // As many rows as coordinates, and yet it moves: some say the same, and how they share a load hangs on rounding the
-    // more, the fewer of them are left. (redundant_loop: reactions at 1e-5 instead of 1e-6 between a step's ends.)
+    // There are at least as many rows as coordinates, and yet the mechanism moves. Some rows are then redundant, and the distribution of
+    // loads becomes more sensitive to rounding the fewer rows remain. (Model redundant_loop: reactions accurate to 1e-5 instead of 1e-6
+    // within a step.)
     if (rows >= coordinates && choice_ == Coordinates::automatic) return;
     tree_.row_count = rows;
     for (const int k : island) found_.mechanism_of[k] = static_cast<int>(found_.mechanisms.size());
@@ -200,7 +200,7 @@ private:
     tree_.members.push_back(m);
   }
 
-  // The cluster on `side` on the other one, or on the ground.
+  // Attaches the cluster on `side` to the other one, or to the ground.
   void hang(const Hinge& hinge, int side) {
     const int on = hinge.cluster[1 - side];
     Pair<double> pin{hinge.point[1 - side].x(), hinge.point[1 - side].y()};
@@ -236,9 +236,9 @@ private:
   std::vector<Hinge> hinges_;
   std::vector<std::vector<int>> hinges_at_;
   std::vector<char> is_driven_;
-  std::vector<char> is_long_;       // of a row over more than two bodies
-  std::vector<int> member_;         // of a cluster
-  std::vector<int> reached_, used_; // clusters and blocks of tree_
+  std::vector<char> is_long_;       // per cluster: a row over more than two bodies acts on it
+  std::vector<int> member_;         // member index of each cluster
+  std::vector<int> reached_, used_; // clusters and row blocks in tree_
   Mechanism tree_;
   JointCoordinates found_;
 };

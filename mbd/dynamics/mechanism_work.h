@@ -1,5 +1,5 @@
-// What an evaluation of a mechanism changes, beside the constants that it reads, and what it does with it: on doubles, or on
-// numbers that are written down (mbd/tape). To be included by the sources of mechanisms and by those that trace alone.
+// Variables and operations of a mechanism's evaluation, as a template over double and recorded numbers (mbd/tape). To be included only by
+// the sources of mechanisms and of tracing.
 #pragma once
 
 #include "mbd/dynamics/mechanism.h"
@@ -11,7 +11,7 @@ namespace steplap {
 template <class S> struct MechanismWorkOf {
   static constexpr int k_most = Mechanism::k_most;
 
-  /// A member's constants, and its motion.
+  /// Constants and motion of a member.
   struct Link {
     int parent = -1, coordinate = 0, slot = -1, cluster = -1;
     bool is_free = false;
@@ -19,9 +19,9 @@ template <class S> struct MechanismWorkOf {
     Pair<double> pin, centre, moment;
 
     S c{1.0}, s{0.0}, omega{0.0};
-    Pair<S> o, v, bias; ///< of its pin; bias: its acceleration at s̈ = 0
+    Pair<S> o, v, bias; ///< o, v: position and velocity of its pin; bias: acceleration of the pin for s̈ = 0
     Pair<S> arm, lever, turned_moment;
-    Pair<S> force; ///< scratch: of all that hangs on it
+    Pair<S> force; ///< scratch: total force of everything attached to it
     S couple{0.0};
   };
 
@@ -31,9 +31,9 @@ template <class S> struct MechanismWorkOf {
     to.y += p.y;
   }
 
-  /// q and v of the coordinates to the link's own motion; `all`: those before it are placed.
+  /// Computes the motion of one link from q and v. Precondition: the links before it in `all` are placed.
   STEPLAP_INLINE static void turn(Link& now, const Link* all, const S* q, const S* v) {
-    find_sin_cos(q[now.coordinate], now.s, now.c); // what hangs on a pin turns far: the series of set_angle would seldom do
+    find_sin_cos(q[now.coordinate], now.s, now.c); // not set_angle(): pinned members rotate too far for its series
     now.omega = v[now.coordinate];
     if (now.parent >= 0) {
       const Link& above = all[now.parent];
@@ -49,7 +49,7 @@ template <class S> struct MechanismWorkOf {
     now.lever = {now.c * now.centre.x - now.s * now.centre.y, now.s * now.centre.x + now.c * now.centre.y};
   }
 
-  /// Places all links, and the motions of those that are clusters.
+  /// Computes all links, and the motions of those that are clusters.
   STEPLAP_INLINE void place(const S* q, const S* v, Motion<S>* motion) {
     Link* const first = links.data();
     Link* const end = first + links.size();
@@ -68,7 +68,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// x = L⁻ᵀ x, where x is zero but for the coordinates of `pattern`, the outermost first.
+  /// x = L⁻ᵀ x, for x that is nonzero only at the coordinates of `pattern`, outermost first.
   STEPLAP_INLINE void whiten(S* x, const std::uint8_t* pattern, int count) const {
     for (int p = 0; p < count; ++p) {
       const int i = pattern[p];
@@ -78,7 +78,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  // M = Lᵀ D L and M⁻¹ x where every coordinate but the first is below the one before it, so that M is full.
+  // M = Lᵀ D L and M⁻¹ x for a chain, in which each coordinate is below the one before it, so that M is full.
   template <int N> STEPLAP_INLINE void factor_chain() {
     const int size = N > 0 ? N : n;
     S* const h = mass.data();
@@ -105,7 +105,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// M of the links as placed, below the diagonal.
+  /// Computes M below the diagonal for the placed links.
   STEPLAP_INLINE void fill_mass() {
     S* const h = mass.data();
     constexpr int k = k_most;
@@ -125,7 +125,7 @@ template <class S> struct MechanismWorkOf {
       h[y * k + x] = 0.0;
     }
   }
-  /// Lᵀ D L of it, in general.
+  /// Computes Lᵀ D L of M for a general tree.
   STEPLAP_INLINE void factor_tree() {
     S* const h = mass.data();
     for (int r = n - 1; r >= 0; --r) {
@@ -149,7 +149,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// Tᵀ(Q − m b), `force` per slot.
+  /// Computes Tᵀ(Q − m b); `force` is per slot.
   STEPLAP_INLINE void load(const BodyForceOf<S>* body_force, S* s) {
     Link* const first = links.data();
     Link* const end = first + links.size();
@@ -176,11 +176,11 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// The clusters' accelerations, 3 each, that belong to s̈.
+  /// Computes the accelerations (x, y, θ) of all clusters for given s̈, including centripetal terms.
   STEPLAP_INLINE void expand(const S* s, S* cluster_a) {
     Link* const first = links.data();
     Link* const end = first + links.size();
-    for (Link* now = first; now != end; ++now) { // `force`: the acceleration of its pin
+    for (Link* now = first; now != end; ++now) { // `force` is used for the acceleration of its pin
       if (now->parent >= 0) {
         const Link& above = first[now->parent];
         const S alpha = s[above.coordinate], w2 = above.omega * above.omega;
@@ -200,7 +200,7 @@ template <class S> struct MechanismWorkOf {
   }
 
   // --- rows -----------------------------------------------------------------------------------------
-  /// Gradient of a row by the coordinates. `member_of` its clusters, per side.
+  /// Converts the gradient of a row to the coordinates s. `member_of`: member index of its clusters, per side.
   STEPLAP_INLINE void reduce(const SchurRowOf<S>& row, const int* member_of, S* out) const {
     const Link* const first = links.data();
     for (int side = 0; side < 2; ++side) {
@@ -219,7 +219,7 @@ template <class S> struct MechanismWorkOf {
     for (int p = 0; p < patterns[r].count; ++p) gradient[r * k_most + patterns[r].at[p]] = 0.0;
   }
 
-  /// L⁻ᵀJᵀ, that over D, and J_c W J_cᵀ of row r.
+  /// Computes L⁻ᵀJᵀ, D⁻¹L⁻ᵀJᵀ and J_c W J_cᵀ of row r.
   STEPLAP_INLINE void whiten_row(std::size_t r, const SchurRowOf<S>& row) {
     const S* const j = gradient.data() + r * k_most;
     S* const w = white.data() + r * k_most;
@@ -235,8 +235,8 @@ template <class S> struct MechanismWorkOf {
     own[r] = sum;
   }
 
-  /// A = J M⁻¹ Jᵀ row by row: below the diagonal first L D, then L. `raise(d, own)` damps a pivot, `invert(r, d, own)` gives its
-  /// inverse, or 0 where row r stays out. N: the number of rows if it is small, else 0.
+  /// Factorises A = J M⁻¹ Jᵀ row by row: below the diagonal first L D, then L. `raise(d, own)` adds damping to a pivot, `invert(r, d, own)`
+  /// returns its inverse, or 0 to leave out row r. N is the number of rows if it is known at compile time, otherwise 0.
   template <int N, class Raise, class Invert> STEPLAP_INLINE void factor_rows(int count, const Raise& raise, const Invert& invert) {
     const int m = N > 0 ? N : count;
     const Shared* pair = shared.data();
@@ -279,7 +279,7 @@ template <class S> struct MechanismWorkOf {
     for (int i = m - 1; i > 0; --i)
       for (int j = 0; j < i; ++j) x[j] -= l[i * m + j] * x[i];
   }
-  /// Jᵀ λ.
+  /// Computes Jᵀ λ.
   STEPLAP_INLINE void pull_rows(int count, const S* lambda, S* pull) const {
     for (int i = 0; i < n; ++i) pull[i] = 0.0;
     for (int r = 0; r < count; ++r) {
@@ -291,29 +291,29 @@ template <class S> struct MechanismWorkOf {
 
   int n = 0;
   bool is_chain = false;
-  bool is_constant = false; ///< M: nothing couples one member's turning with another's
-  bool is_factored = false; ///< M has been once
+  bool is_constant = false; ///< M is diagonal
+  bool is_factored = false; ///< M has been factorised
   Pair<double> gravity;
   std::vector<Link> links;
-  mutable std::vector<Link> packed; ///< scratch of pack and unpack, which leave the pose placed as it is
+  mutable std::vector<Link> packed; ///< scratch of pack() and unpack(), which do not change the placed pose
   std::array<S, k_most> placed_q{}, placed_v{};
-  std::array<std::int8_t, k_most> up{};   ///< the coordinate next above
-  std::array<std::uint8_t, k_most> all{}; ///< coordinates, the last first
+  std::array<std::int8_t, k_most> up{};   ///< next coordinate above; −1: none
+  std::array<std::uint8_t, k_most> all{}; ///< all coordinates, the last first
   std::array<S, k_most * k_most> mass{};  ///< M, then L below the diagonal
-  std::array<S, k_most> inverse_d{};      ///< of M
+  std::array<S, k_most> inverse_d{};      ///< 1/D of M
 
-  // Rows, k_most numbers each.
+  // Rows have k_most numbers each.
   struct RowPattern {
     std::uint8_t count = 0;
-    std::array<std::uint8_t, k_most> at{}; ///< coordinates that it depends on or that are above those, the last first
+    std::array<std::uint8_t, k_most> at{}; ///< coordinates that it depends on, or that are above those, the last first
   };
   std::vector<RowPattern> patterns;
   struct Shared {
-    std::uint16_t begin = 0, count = 0; ///< of shared_at
+    std::uint16_t begin = 0, count = 0; ///< range in shared_at
   };
-  std::vector<Shared> shared;                ///< per pair of rows (r, t ≤ r): r (r + 1)/2 + t
+  std::vector<Shared> shared;                ///< per pair of rows (r, t ≤ r): index r (r + 1)/2 + t
   std::vector<std::uint8_t> shared_at;       ///< coordinates in both patterns
-  std::vector<S> gradient, white, scaled;    ///< J, L⁻ᵀJᵀ and that over D
+  std::vector<S> gradient, white, scaled;    ///< J, L⁻ᵀJᵀ and D⁻¹L⁻ᵀJᵀ
   std::vector<S> factor, inverse_pivot, own; ///< own: J_c W J_cᵀ of each row
   double shift = 0.0;
 };

@@ -1,11 +1,11 @@
-// Dynamics: from the poses and rates of bodies to the coordinates that are integrated, those of clusters, and back.
+// Dynamics: conversion between the poses and velocities of bodies and the coordinates that are integrated.
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
 
 namespace steplap {
 
-// Coordinates of clusters; those in mechanisms of their own by way of `all_q`, `all_v`, 3 for each cluster.
+// Computes the coordinates of clusters. Those in mechanisms are converted from `all_q` and `all_v`, 3 numbers for each cluster.
 void Dynamics::pack(const State& state, double* y) const {
   const int n = coordinate_count();
   std::fill(y, y + 2 * n, 0.0);
@@ -30,7 +30,7 @@ void Dynamics::pack(const State& state, double* y) const {
       std::copy(bv, bv + 3, v);
       continue;
     }
-    // The root's angle turns the cluster; momentum decides its rates (exact for a rigid motion).
+    // The cluster's angle is that of its root. Its velocity conserves the momentum of the bodies (exact for a rigid motion).
     if (static_cast<int>(i) == cluster.root) q[2] = bq[2];
     const double share = system_.bodies[i].mass / cluster.mass;
     const Vec2 lever = rotated(place.offset, state.q[3 * cluster.root + 2]);
@@ -40,7 +40,7 @@ void Dynamics::pack(const State& state, double* y) const {
     v[1] += share * bv[1];
     v[2] += (system_.bodies[i].inertia * bv[2] + system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
   }
-  // Angular momentum was taken about the cluster's centre, where Σ m lever = 0: no correction is due.
+  // The angular momentum refers to the cluster's centre, where Σ m lever = 0, so no further term is needed.
   if (layout_->has_mechanisms()) {
     std::copy_n(all_q, 3 * layout_->absolute_count, y);
     std::copy_n(all_v, 3 * layout_->absolute_count, y + n);

@@ -1,5 +1,5 @@
-// Dynamics onto its constraints: projection of states, rates near singular positions, and what an error
-// estimate there may leave out.
+// Dynamics: projection of states onto the constraints, rates near singular positions, and removal of the constrained part of error
+// estimates there.
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/dynamics/dynamics.h"
@@ -15,27 +15,27 @@ namespace {
 
 constexpr int k_max_projection_iterations = 60;
 constexpr int k_iterations_per_factorization = 3;
-// Damping of a projection near a singular position, at most this fraction of the diagonal.
+// Upper limit of the damping of a projection near a singular position, as a fraction of the diagonal.
 constexpr double k_largest_damping = 1e-3;
-// Below this smallest pivot an error estimate is freed from what projection will take away: without it
-// tight tolerances are not met beside a flat position, where accelerations across it are mostly rounding.
+// Below this relative pivot the constrained part of error estimates is removed (remove_held). Otherwise tight tolerances could not be
+// reached near a singular position, where accelerations across the constraints are mostly rounding.
 constexpr double k_removal_pivot = 1e-2;
-// A factorisation serves once more if the residual has fallen to this share.
+// A factorisation is used again if it has reduced the residual to this fraction.
 constexpr double k_chord_worth = 0.1;
-// Below this one no factorisation serves twice in a projection, and steps are damped.
+// Below this relative pivot every iteration factorises again, and steps are damped.
 constexpr double k_chord_pivot = 1e-2;
-// What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
+// Rounding error of a residual in units of epsilon times the size of the scene: a position is a sum of a few terms.
 constexpr double k_rounded_terms = 32.0;
-// Of the fastest rate (or 1 m/s): more than this left of a velocity residual is no rounding.
+// A velocity residual above this fraction of the largest rate (or of 1 m/s) is not rounding.
 constexpr double k_rate_left = 1e-6;
-// A projection "as closely as rounding allows" aims at this share of that, and is not content with the first
-// iteration that no longer helps.
+// A projection "as closely as rounding allows" aims at this fraction of the rounding error, and continues for some iterations after the
+// first that brings no improvement.
 constexpr double k_close = 1.0 / 16.0;
 int patience_for(double tolerance, double rounding) { return tolerance <= k_close * rounding ? 3 : 0; }
 
 } // namespace
 
-// Of positions with the coordinates y, and of rates; places of what is in mechanisms are those of the last evaluation.
+// Return the rounding errors of positions for coordinates y, and of rates. Positions in mechanisms are those of the last evaluation.
 double Dynamics::place_rounding(const double* y) const {
   double size = 0.0;
   for (int i = 0; i < coordinate_count(); ++i) size = std::max(size, std::abs(y[i]));
@@ -66,7 +66,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
 
 Residual Dynamics::residual(double t, const double* y) {
   if (layout_->active.empty()) return {};
-  pending_.end(); // nobody asks for by-products behind this
+  pending_.end(); // by-products are invalid from here on
   rows_.forget_factors();
   return constraint_values(t, y);
 }
@@ -96,7 +96,7 @@ void Dynamics::fail_velocities(double t) const {
 }
 
 bool Dynamics::is_near_singular() const {
-  // Not after an evaluation by code, which has no factors: none is made so near.
+  // False after an evaluation by code, which has no factors; code is not used so near to a singular position.
   return !layout_->active.empty() && rows_.is_factored() && layout_->smallest_pivot() < k_removal_pivot;
 }
 
@@ -133,7 +133,7 @@ void Dynamics::settle_inner(double t, double* y) {
 Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
-  if (!layout.active.empty()) ensure_byproducts(); // it begins with the factors of the evaluation before
+  if (!layout.active.empty()) ensure_byproducts(); // the projection starts with the factors of the last evaluation
   kinematics_.aim_locks(std::min(t, time_cap_));
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
@@ -141,7 +141,7 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
     y[n + k] = kinematics_.lock_target(i).rate;
   }
   if (layout.active.empty()) return {};
-  // Kilometres from the origin a position is not known to a picometre.
+  // At a distance of kilometres from the origin a position is not accurate to a picometre.
   const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
   double farthest = 0.0;
@@ -161,10 +161,9 @@ void Dynamics::close_velocities(double t, double* y) {
   }
 }
 
-// The factorisation of the step's last evaluation serves while it converges fast. Near a singular position it
-// does not serve, and Newton's steps would be as long as the residual is to the distance from there: damped
-// by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan, Computing 74
-// (2005) 23, for Levenberg–Marquardt with this choice).
+// Newton iteration that keeps the factorisation of the last evaluation while convergence is fast. Near a singular position it factorises in
+// each iteration. Undamped steps would have the length residual / distance from the singularity; damping by the residual keeps them short
+// and preserves quadratic convergence (J. Fan, Y. Yuan, Computing 74 (2005) 23, for Levenberg–Marquardt with this choice).
 bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& now) {
   Layout& layout = *layout_;
   int patience = patience_for(tolerance, place_rounding(y));
@@ -184,8 +183,8 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& 
   return true;
 }
 
-// The velocities that the constraints allow differ from those at hand by the solution of a linear system: with a
-// few rows that are far from a singularity one step leaves rounding, and is not looked at again.
+// The velocity correction is the solution of a linear system. With few rows far from a singular position one iteration leaves only
+// rounding, and the residual is not computed again.
 void Dynamics::reach_velocities(double t, double* y, Residual now, double tolerance) {
   int patience = patience_for(tolerance, rate_rounding(y));
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
@@ -194,16 +193,16 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
     rows_.take_away(rows_.rate_off().data(), y + coordinate_count());
     if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot && !layout_->is_singular()) return;
     now = constraint_values(t, y);
-    if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
+    if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding errors of fast motions
   }
   double fastest = 0.0;
   for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
   if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest))) fail_velocities(t);
 }
 
-// Near a singular position what a stage is off the constraints by, a power of the step size, is divided by the
-// distance from there: accelerations grow beyond all bounds unless it lies on the constraints. The rates of
-// the nearest state that does are as smooth, and the same where a step begins and ends.
+// Near a singular position the distance of a stage from the constraints, a power of the step size, is divided by the distance from the
+// singularity, so that accelerations at the stage itself would be unbounded. The rates of the nearest state on the constraints are as
+// smooth, and equal to the rates proper at the ends of the step.
 void Dynamics::rates_nearby(double t, const double* y, double* dy) {
   std::copy(y, y + dimension(), placed_.begin());
   Residual off = constraint_values(t, y);
@@ -214,7 +213,7 @@ void Dynamics::rates_nearby(double t, const double* y, double* dy) {
   bool is_placed = reach_positions(t, placed_.data(), place_rounding(y), off);
   try {
     if (is_placed) reach_velocities(t, placed_.data(), off, rate_rounding(y));
-  } catch (const ElementFailure&) { // a stage far off: what its rates are worth, the step's error tells
+  } catch (const ElementFailure&) { // for a stage far off; the error estimate of the step will reject it if necessary
     is_placed = false;
   }
   rates_at(t, is_placed ? placed_.data() : y, dy);

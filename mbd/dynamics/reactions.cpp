@@ -59,7 +59,8 @@ void place_edges(const System& system, const Layout& layout, const State& state,
 
 void Reactions::add_carried(const RowSpec& spec, double lambda) { take_carried(*layout_, spec, lambda, motion_, wrench_.data()); }
 
-// Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
+// Computes the forces of the pins and rods of mechanisms, which are not rows, from the wrenches missing in the equations of motion of the
+// members.
 void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
   for (const Mechanism& mechanism : layout.mechanisms) {
@@ -69,7 +70,7 @@ void Reactions::find_pins(const double* cluster_a, const double* lambda) {
       if (m.block < 0) continue;
       const RowBlock& block = system_.row_blocks[m.block];
       const Pair<double> force = pin_force_[i];
-      if (m.is_rod_end) { // along the rod, whose end stays where it is whichever of the two bodies a is
+      if (m.is_rod_end) { // the force along the rod; which of its two bodies is a does not matter
         const Pair<double> along = mechanism.arm(static_cast<int>(i));
         row_force_[block.first] = dot(force, along) / std::sqrt(dot(along, along));
         continue;

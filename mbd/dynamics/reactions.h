@@ -1,8 +1,8 @@
-// What follows from accelerations, the third of the three parts of Dynamics: wrenches of joints inside clusters, forces
-// of pins of mechanisms, of drives that lock a coordinate, and the accelerations of all bodies.
+// Reactions, the third of the three parts of Dynamics: wrenches in joints inside clusters, forces of the pins of mechanisms and of drives
+// on locked coordinates, and accelerations of all bodies.
 //
-// Nothing here is needed to go on integrating but the forces of locks (their power) and those of merged joints that may
-// give way (their watch values).
+// The integration needs only the forces of locks (for their power) and of merged joints that may slip (for their event functions). All
+// others are results.
 #pragma once
 
 #include "mbd/dynamics/kinematics.h"
@@ -11,28 +11,30 @@
 
 namespace steplap {
 
+/// Computes reactions for one set of motions and forces. It does not allocate.
 class Reactions {
 public:
-  /// `force`: per slot, on clusters and the bodies that ride on them; the same memory for the life of this object.
+  /// `force`: forces per slot, on clusters and their bodies. The pointer must remain valid.
   Reactions(const System& system, const Kinematics& kinematics, const BodyForce* force);
 
-  /// Both must outlive the use of this object or be set anew.
+  /// Sets layout and state; both must outlive their use here.
   void use(const Layout& layout, const State& state);
 
-  /// 3 of every body, from those of the clusters, 3 each.
+  /// Computes the accelerations of all bodies (3 numbers each) from those of the clusters (3 each).
   void find_accelerations(const double* cluster_a);
-  /// Of joints inside clusters, which go to row_force() and friction_force(). `lambda`: per active row.
+  /// Computes the wrenches in joints inside clusters, into row_force() and friction_force(). `lambda` is per active row.
   void find_joints(const double* cluster_a, const double* lambda);
-  /// Of the rows and rods by which members of mechanisms hang.
+  /// Computes the forces of the pins and rods of mechanisms, into row_force() and friction_force().
   void find_pins(const double* cluster_a, const double* lambda);
-  /// Of active rows, of locks, and none where friction does not act. `a`: of the layout's coordinates.
+  /// Copies the multipliers of active rows, computes the forces of locks, and sets inactive friction to zero. `a` are the accelerations of
+  /// the layout's coordinates.
   void take_rows(const double* a, const double* lambda);
-  /// What is missing in the equation of motion of a locked coordinate.
+  /// Returns the force, N or N m, that keeps a locked coordinate on its prescribed motion.
   [[nodiscard]] double of_lock(const Lock& lock, const double* a, const double* lambda) const;
 
   [[nodiscard]] const std::vector<double>& acceleration() const { return acceleration_; }
-  [[nodiscard]] std::vector<double>& row_force() { return row_force_; }           ///< of every bilateral row
-  [[nodiscard]] std::vector<double>& friction_force() { return friction_force_; } ///< of every friction element's
+  [[nodiscard]] std::vector<double>& row_force() { return row_force_; }           ///< per bilateral row
+  [[nodiscard]] std::vector<double>& friction_force() { return friction_force_; } ///< wrenches of all friction elements
 
 private:
   void add_carried(const RowSpec& spec, double lambda);
@@ -43,10 +45,10 @@ private:
   const BodyForce* force_;
   const Layout* layout_ = nullptr;
   const State* state_ = nullptr;
-  std::vector<EdgeGeometry> edges_;     ///< of the layout's, in the present phases
+  std::vector<EdgeGeometry> edges_;     ///< per edge of the layout, for the present phases
   std::vector<double> acceleration_;    ///< 3 per body
-  std::vector<BodyForce> wrench_;       ///< scratch of find_joints, in the clusters' axes
-  std::vector<Pair<double>> pin_force_; ///< scratch of find_pins
+  std::vector<BodyForce> wrench_;       ///< scratch of find_joints(), in the axes of the clusters
+  std::vector<Pair<double>> pin_force_; ///< scratch of find_pins()
   std::vector<double> row_force_, friction_force_;
 };
 

@@ -1,4 +1,4 @@
-// Iterative refinement of a solution near a singular position (SchurSolver, Mechanism).
+// Iterative refinement of linear solutions near singular positions (SchurSolver, Mechanism).
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,9 @@
 
 namespace steplap {
 
-/// x += A⁻¹ (right − A x), n numbers, while that makes the correction less than half as large as the one before.
-/// `find_correction(x)` gives the n numbers of it, found factor by factor, so that its rounding is that of A's factors.
+/// Repeats x += A⁻¹ (right − A x) (n numbers) while each correction is less than half of the one before, at most four times.
+/// `find_correction(x)` returns the correction; it must evaluate A x from the factors of A = J W Jᵀ one after the other, so that its
+/// rounding errors are those of J and not those of A.
 template <class FindCorrection> void refine_solution(int n, double* x, const FindCorrection& find_correction) {
   constexpr int k_max_refinements = 4;
   double previous = std::numeric_limits<double>::infinity();

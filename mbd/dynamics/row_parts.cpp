@@ -1,7 +1,7 @@
-// Rows over more than two bodies: what their parts beyond the first add to the equations (row.h, layout.h).
+// Rows over more than two bodies: contributions of the parts beyond the first to the equations (row.h, layout.h).
 //
-// Such a row's gradient, second rate and value are sums over its parts, and so is everything that is linear in it: each part
-// is filled in as a row of two bodies is, in ground axes, and has its row's multiplier.
+// Gradient, bias and value of such a row are sums over its parts. Each part is filled in like a row between two bodies, in ground axes, and
+// has the multiplier of its row.
 #include "mbd/dynamics/constraint_solution.h"
 #include "mbd/dynamics/row_pull.h"
 
@@ -28,7 +28,7 @@ void ConstraintSolution::add_part_responses(const double* lambda, double* a) con
 }
 
 double ConstraintSolution::along_parts(std::size_t r, const double* change) const {
-  const std::vector<SchurPart>& parts = layout_->parts; // in the order of their rows
+  const std::vector<SchurPart>& parts = layout_->parts; // sorted by row
   auto part = std::lower_bound(parts.begin(), parts.end(), static_cast<int>(r), [](const SchurPart& p, int row) { return p.of < row; });
   double sum = 0.0;
   for (; part != parts.end() && part->of == static_cast<int>(r); ++part)

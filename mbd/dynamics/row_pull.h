@@ -1,8 +1,8 @@
-// What a constraint row does to accelerations: its gradient and bias in the coordinates of the clusters that its bodies belong to.
+// Gradient and bias of constraint rows in the coordinates of clusters, and their use in (29)–(31).
 //
-// load_row() does it for every measure by the functions of row_gradient.h. The most frequent rows, along an axis and along a slide,
-// between bodies that are clusters of their own, have a shorter way: pull_along_axis() and pull_along_slide() see a from b and leave
-// out the value and the rate, which no acceleration needs. tests/mbd/test_row_gradient.cpp holds both ways against each other.
+// load_row() works for every measure, by the functions of row_gradient.h. The most frequent rows, axis and slide rows between bodies that
+// are alone in their clusters, have the faster functions pull_along_axis() and pull_along_slide(), which use the motion of a relative to b
+// and omit value and rate. tests/mbd/test_row_gradient.cpp compares both.
 #pragma once
 
 #include "mbd/dynamics/layout.h"
@@ -10,9 +10,10 @@
 
 namespace steplap {
 
+/// Gradient and bias of a row, in the axes of b.
 template <class S> struct RowPull {
   Pair<S> direction;
-  S couple_a, couple_b; // of the unit force on a, about a's and b's centre of gravity
+  S couple_a, couple_b; // moments of the unit force about the centres of gravity of a and b
   S bias;
 };
 
@@ -26,8 +27,9 @@ template <class S> STEPLAP_INLINE RowPull<S> pull_along_axis(const RowSpec& row,
   return p;
 }
 
-// SlideMeasure. With the shaft s, a unit vector, α = n·s and the gap δ along it, the unit force on a is g = −ẑ×s/α at the tip,
-// r − δ s from a's centre if r is the contact's point; r·s and r×s are fixed in a:
+// SlideMeasure, with unit vector s along the contact axis, α = n·s, gap δ along s and the contact point at r relative to a's centre. The
+// unit force on a is g = −ẑ×s/α at r − δ s. r·s and r×s are constant in a.
+//
 //   couple on a = (δ − r·s)/α,  rate = g·v + ω · couple,  bias = ω (2 (v·s − rate β) + ω r×s)/α,  β = s × n
 template <class S> STEPLAP_INLINE RowPull<S> pull_along_slide(const RowSpec& row, const Motion<S>& link) {
   RowPull<S> p;
@@ -43,7 +45,7 @@ template <class S> STEPLAP_INLINE RowPull<S> pull_along_slide(const RowSpec& row
   return p;
 }
 
-/// Fills one side of a row in the clusters' coordinates.
+/// Sets J and W J for one side of a row.
 template <class S> STEPLAP_INLINE void set_gradient(SchurRowOf<S>& row, int side, const S& fx, const S& fy, const S& couple) {
   const double* const w = row.w[side];
   S* const j = row.j[side];
@@ -57,7 +59,7 @@ template <class S> STEPLAP_INLINE void set_gradient(SchurRowOf<S>& row, int side
   wj[2] = wm;
 }
 
-/// What is left of `right` where the accelerations of the clusters are `a`: right − J a.
+/// Returns right − J a for the accelerations `a` of the clusters.
 template <class S> STEPLAP_INLINE S less_accelerations(const SchurRowOf<S>& row, S right, const S* a) {
   for (int side = 0; side < 2; ++side) {
     if (row.body[side] < 0) continue;
@@ -68,7 +70,7 @@ template <class S> STEPLAP_INLINE S less_accelerations(const SchurRowOf<S>& row,
   return right;
 }
 
-/// Fills in row r, which is between bodies that are clusters of their own or the ground, at the motion placed; returns γ.
+/// Fills in a row between bodies that are alone in their clusters, or the ground. Returns γ.
 template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, SchurRowOf<S>& row, const Motion<S>* motion) {
   const Motion<S>& link = motion[active.link];
   const Motion<S>& b = motion[active.spec->b];
@@ -81,21 +83,21 @@ template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, Sch
 
 // --- rows of any measure, between any clusters --------------------------------------------------------
 
-/// A body `off` from its cluster's centre has the acceleration −ω² off where its cluster has none: what is due to that in the second
-/// rate of a row.
+/// Corrects the bias for a body at distance `off` from its cluster's centre, which has the acceleration −ω² off when the cluster has none.
 template <class S> STEPLAP_INLINE void add_centripetal(int side, const Pair<S>& direction, const S& omega, const Pair<S>& off, S& bias) {
   const S term = omega * omega * dot(direction, off);
   if (side == 0) bias -= term;
   else bias += term;
 }
 
-/// From b's axes into the ground's.
+/// Rotates a measure from b's axes to ground axes.
 template <class S> [[nodiscard]] STEPLAP_INLINE MeasureValue<S> turned(MeasureValue<S> m, const Motion<S>& b) {
   for (Pair<S>* p : {&m.direction, &m.lever_a, &m.lever_b}) *p = {b.c * p->x - b.s * p->y, b.s * p->x + b.c * p->y};
   return m;
 }
 
-/// J and W J of a row, or of a part of one, whose measure is m in ground axes. With `WithBias` the bias becomes that of the clusters.
+/// Sets J and W J of a row, or of a part of one, from its measure m in ground axes. With `WithBias` m.bias becomes the bias in the
+/// coordinates of the clusters.
 template <bool WithBias, class S>
 STEPLAP_INLINE void put_in_clusters(const Layout& layout, const RowSpec& spec, const Motion<S>* motion, MeasureValue<S>& m,
                                     SchurRowOf<S>& row) {
@@ -116,11 +118,11 @@ STEPLAP_INLINE void put_in_clusters(const Layout& layout, const RowSpec& spec, c
   }
 }
 
-/// Fills in an active row at the motion placed, whatever it measures; `row.body` and `row.w` are known.
+/// Fills in an active row with any measure. Precondition: row.body and row.w are set.
 template <bool WithBias, class S>
 STEPLAP_INLINE MeasureValue<S> load_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
   const Motion<S>& link = motion[active.link];
-  if (row.is_constant) { // an angle: make_layout has filled in its gradient
+  if (row.is_constant) { // gradient of an angle, set by make_layout
     MeasureValue<S> m;
     m.value = link.theta;
     m.rate = link.omega;
@@ -140,14 +142,14 @@ STEPLAP_INLINE MeasureValue<S> load_row(const Layout& layout, const ActiveRow& a
   return m;
 }
 
-/// Fills in an active row for an evaluation of accelerations; returns γ.
+/// Fills in an active row for an evaluation of accelerations. Returns γ.
 template <class S> STEPLAP_INLINE S pull_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
   if (active.pull == RowPullKind::angle) return S(0.0);
   if (active.pull == RowPullKind::other) return -load_row<true>(layout, active, motion, row).bias;
   return pull_simple_row(active, row, motion);
 }
 
-/// Fills in part i of the layout's long rows, at the motion placed. With `WithBias` the bias is that of the clusters.
+/// Fills in part i of the rows over more than two bodies. With `WithBias` the bias is that in the coordinates of the clusters.
 template <bool WithBias, class S>
 STEPLAP_INLINE MeasureValue<S> load_part(const Layout& layout, std::size_t i, const Motion<S>* motion, SchurRowOf<S>* rows) {
   const RowSpec& part = *layout.part_specs[i];
@@ -156,17 +158,17 @@ STEPLAP_INLINE MeasureValue<S> load_part(const Layout& layout, std::size_t i, co
   return m;
 }
 
-/// What the parts of long rows add to γ, `right`.
+/// Adds the parts' contributions to γ, `right`.
 template <class S> void pull_parts(const Layout& layout, const Motion<S>* motion, SchurRowOf<S>* rows, S* right) {
   for (std::size_t i = 0; i < layout.parts.size(); ++i) right[layout.parts[i].of] -= load_part<true>(layout, i, motion, rows).bias;
 }
 
-/// What they take of it where the accelerations of the clusters are `a`.
+/// Subtracts the parts' contributions to J a from `right`, for accelerations `a` of the clusters.
 template <class S> void take_part_accelerations(const Layout& layout, const SchurRowOf<S>* rows, const S* a, S* right) {
   for (const SchurPart& part : layout.parts) right[part.of] = less_accelerations(rows[part.row], right[part.of], a);
 }
 
-/// a += W Jᵀ λ of the parts.
+/// a += W Jᵀ λ for the parts.
 template <class S> void add_part_responses(const Layout& layout, const SchurRowOf<S>* rows, const S* lambda, S* a) {
   for (const SchurPart& part : layout.parts) {
     const SchurRowOf<S>& row = rows[part.row];
@@ -176,7 +178,7 @@ template <class S> void add_part_responses(const Layout& layout, const SchurRowO
   }
 }
 
-/// a += W Jᵀ λ: a constant row is zero but for θ.
+/// a += W Jᵀ λ for one side of a row. Only θ is nonzero for a constant row.
 template <class S> STEPLAP_INLINE void add_response(const SchurRowOf<S>& row, int side, const S& lambda, S* a) {
   S* const ak = a + 3 * row.body[side];
   const S x = row.wj[side][0] * lambda, y = row.wj[side][1] * lambda, m = row.wj[side][2] * lambda;

@@ -30,11 +30,11 @@ namespace {
 
 using Pattern = Eigen::SparseMatrix<double>;
 
-// With all pivots above this no row is so near to others that it has to be asked which stay out: the square of
-// SchurSolver::k_dependent, and for a row that enters another's dependence with a hundredth.
+// If all relative pivots are above this limit, no row is nearly dependent on others, and dependent_friction() is not needed. The limit
+// allows for SchurSolver::k_dependent² and for rows that contribute only 1/100 to a dependence.
 constexpr double k_doubtful_pivot = 1e-8;
 
-// A row's gradient in the masses' metric: its length squared is its entry of A.
+// Returns a component of the gradient in the metric of W: the squared length of the gradient is the row's diagonal element of A.
 double weighted(const SchurRow& row, int side, int c) { return row.w[side][c] > 0.0 ? row.j[side][c] * std::sqrt(row.w[side][c]) : 0.0; }
 
 double squared_length(const SchurRow& row) {
@@ -67,7 +67,7 @@ std::vector<SchurCoupling> couplings(const std::vector<SchurRow>& rows, int n, c
   return result;
 }
 
-// Of each row given: the row that it is, or is a part of.
+// Returns for each entry of `rows` the row that it is, or is a part of.
 std::vector<int> rows_of(std::size_t count, const std::vector<SchurPart>& parts) {
   std::vector<int> of(count);
   std::iota(of.begin(), of.end(), 0);
@@ -93,10 +93,10 @@ std::vector<int> fill_reducing_order(int n, const std::vector<SchurCoupling>& co
 
 namespace {
 
-// Where a number of the rows' member stands, as doubles from the first row's start.
+// Returns the index of a member's number as a double from the start of the first row.
 std::uint16_t place_in_rows(int row, std::size_t member, int side) {
   const std::size_t at = (row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side;
-  if (at > std::numeric_limits<std::uint16_t>::max()) // only parts of rows can stand so far behind
+  if (at > std::numeric_limits<std::uint16_t>::max()) // only parts of rows can have such a large index
     throw NumericalFailure("ropes over so many points that move are too much for so few other constraints: give them a 'stiffness'");
   return static_cast<std::uint16_t>(at);
 }
@@ -120,10 +120,10 @@ void SchurSolver::list_dense_products(const std::vector<SchurRow>& rows, const s
   }
 }
 
-// Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
+// Upper triangle of the permuted matrix by columns: the products that make up A(i, k), i ≤ k.
 struct SchurSolver::Columns {
   std::vector<std::vector<Product>> of_rows;
-  std::vector<std::vector<PartProduct>> of_parts; // none without parts
+  std::vector<std::vector<PartProduct>> of_parts; // empty without parts
 };
 
 SchurSolver::Columns SchurSolver::columns_of(const std::vector<SchurCoupling>& coupled, const std::vector<int>& of, bool has_parts) const {
@@ -157,8 +157,8 @@ void SchurSolver::list_products(const Columns& columns) {
   }
 }
 
-// Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
-// Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
+// Computes the elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear Systems, §4.1): row k of L
+// is the union of the paths from each i with A(i, k) ≠ 0 up to k.
 void SchurSolver::find_pattern_of_factors(const Columns& columns) {
   std::vector<int> parent(n_, -1), mark(n_, -1), length(n_, 0);
   pattern_begin_.assign(1, 0);
@@ -236,7 +236,7 @@ void SchurSolver::decide_rank(const std::vector<char>& is_friction, const std::v
 void SchurSolver::keep_rank(const std::vector<SchurRow>& rows, double shift) {
   is_rank_open_ = false;
   if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
-  if (!is_in_doubt(rows)) { // what is out acts on nothing that can move
+  if (!is_in_doubt(rows)) { // rows left out act on nothing that can move
     out_.assign(n_, 0);
     for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
     return;
@@ -275,7 +275,7 @@ void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
     keep_rank(rows, shift);
 }
 
-// One row alone is never near to others.
+// A single row cannot be nearly dependent on others.
 template <> void SchurSolver::factor_dense<1>(const std::vector<SchurRow>& rows) {
   const auto* const first = reinterpret_cast<const double*>(rows.data());
   double sum = dense_constant_[0];
@@ -315,7 +315,7 @@ void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) 
   }
 }
 
-// N: the number of rows if it is small enough to be unrolled, else 0.
+// N is the number of rows if it is known at compile time (loops are unrolled), otherwise 0.
 template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& rows) {
   dependent_count_ = 0;
   smallest_pivot_ = 1.0;
@@ -343,7 +343,7 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
 void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x,
                         std::vector<TracedPivot>& pivots) const {
   if (!is_small()) return trace_sparse(rows, least_pivot, x, pivots);
-  // Places in the rows as doubles: of which row, which side.
+  // Decodes an index of a double in the rows: row and side.
   constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
   const auto side_of = [](std::size_t place, std::size_t member) { return (place % k_row - member / sizeof(double)) / 3; };
   std::array<Traced, k_max_dense * k_max_dense> m;
@@ -357,7 +357,7 @@ void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double leas
   for (const DenseProduct& p : dense_turns_)
     m[p.entry] +=
         rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))][2] * rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))][2];
-  const double least = n_ > 1 ? least_pivot : k_pivot_tolerance; // one row alone is never near to others
+  const double least = n_ > 1 ? least_pivot : k_pivot_tolerance; // a single row cannot be nearly dependent on others
   eliminate_rows<0>(
       m.data(), inverse_d.data(), n_, [](const Traced& diagonal) { return diagonal; },
       [&](int, const Traced& d, const Traced& diagonal) {
@@ -371,7 +371,7 @@ void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double leas
 
 template <int N> void SchurSolver::solve_dense(double* x) const { substitute<N>(dense_.data(), inverse_d_.data(), n_, x); }
 
-// What the further parts of row k add to its entries.
+// Adds the contributions of the further parts of row k to its entries.
 template <class S> void SchurSolver::add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const {
   for (int p = part_begin_[k]; p < part_begin_[k + 1]; ++p) {
     const Product& product = part_products_[p].product;
@@ -381,8 +381,8 @@ template <class S> void SchurSolver::add_part_products(const std::vector<SchurRo
   }
 }
 
-// L D Lᵀ, a row of the pattern after the other. `fill`: room for an index a column; `y`: a number a column, all zero before and
-// after. `invert(k, d, diagonal)` gives 1/d, or 0 where the row that is eliminated as k-th is left out.
+// Computes L D Lᵀ row by row. `fill`: scratch, one index per column; `y`: scratch, one number per column, zero before and after. `invert(k,
+// d, diagonal)` returns 1/d, or 0 if the row eliminated in step k is to be left out.
 template <class S, class Raise, class Invert>
 STEPLAP_INLINE void SchurSolver::eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d,
                                                    const Raise& raise, const Invert& invert) const {
@@ -438,7 +438,7 @@ void SchurSolver::trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, doub
       rows, fill.data(), y.data(), l.data(), inverse_d.data(), [](const Traced& diagonal) { return diagonal; },
       [&](int, const Traced& d, const Traced& diagonal) {
         if (!(d > least_pivot * diagonal)) throw NotTraceable();
-        pivots.push_back({d / diagonal, Traced(1.0)}); // as factor_sparse compares them
+        pivots.push_back({d / diagonal, Traced(1.0)}); // the same comparison as in factor_sparse()
         return Traced(1.0) / d;
       });
   substitute_pattern(l.data(), inverse_d.data(), y.data(), x);
@@ -462,7 +462,7 @@ template <class F> void SchurSolver::for_parts(const F& f, const std::vector<Sch
       if (const SchurRow& row = rows[part.row]; row.body[side] >= 0) f(part, row, side, &response_[3 * row.body[side]]);
 }
 
-// By A⁻¹ (right − J (W Jᵀ x)).
+// Correction: A⁻¹ (right − J (W Jᵀ x)).
 void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right, double* x) const {
   double* const correction = correction_.data();
   refine_solution(n_, x, [&](const double* now) {
@@ -506,7 +506,7 @@ void SchurSolver::eliminate(double* x) const {
   eliminate_sparse(x);
 }
 
-// x = A⁻¹ x by the factors; y: room for a number a row.
+// x = A⁻¹ x by substitution; y: scratch, one number per row.
 template <class S> STEPLAP_INLINE void SchurSolver::substitute_pattern(const S* l, const S* inverse_d, S* y, S* x) const {
   for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
   for (int k = 0; k < n_; ++k)

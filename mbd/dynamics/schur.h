@@ -1,20 +1,18 @@
-// The constraint equations: A λ = r with A = J W Jᵀ, W = diag(1/m, 1/m, 1/J) per moving body.
+// Solver for the constraint equations A λ = r with A = J W Jᵀ, W = diag(1/m, 1/m, 1/J) of each moving body.
 //
-// A is symmetric, positive semidefinite and sparse: two rows meet where they share a moving body.
-// Pattern, fill-reducing order and elimination tree are found once for a set of rows; a factorisation
-// L D Lᵀ then runs over precomputed lists, without allocation; up to eight rows it is dense. A pivot that vanishes against its
-// diagonal marks a row as dependent on the earlier ones: its multiplier is set to zero and the row's
-// index is reported (redundant constraints; least-norm multipliers are found apart, on demand).
+// A is symmetric, positive semidefinite and sparse: two rows are coupled if they share a moving body. Pattern, fill-reducing order and
+// elimination tree are computed once for a set of rows. The factorisation L D Lᵀ then runs over precomputed lists without allocation; for
+// up to eight rows it is dense. If a pivot vanishes relative to its diagonal, the row depends on earlier ones: its multiplier is set to
+// zero, and the row is reported by is_dependent() (LoadSharing computes the distribution of loads on demand).
 //
-// Rows of friction that nearly depend on others (feet of a box that has turned by less than a microradian) would bear
-// forces that say nothing: the load over what is independent of a row, with an error of rounding over its square. Which of
-// them stay out is decided once for a set of modes, by orthogonalisation in the masses' metric: bilateral rows first, then
-// of the friction rows always the one that is farthest from those taken, until what is left is within k_dependent of its length.
-// What they are held at is not met then, and has to be watched (LoadSharing::discord).
+// Friction rows that are nearly dependent on others (feet of a box rotated by less than 1e-6 rad) would get meaningless multipliers: the
+// load divided by the tiny independent part of the row, with a relative error of rounding over its square. Such rows are left out. The
+// choice is made once for a set of modes, by orthogonalisation in the metric of W: bilateral rows first, then always the friction row
+// farthest from the span of those taken, until the remaining distance is below k_dependent of its length. The constraints of rows left out
+// are not enforced and have to be monitored (LoadSharing::discord).
 //
-// Near a singular position a pivot is small without being zero. A carries the square of the rows' own
-// condition, so elimination alone would lose twice the digits that the problem takes: there the solution is
-// refined against J W Jᵀ itself, factor by factor, whose rounding is that of the rows.
+// Near a singular position a pivot is small but not zero. The condition number of A is the square of that of J, so elimination alone would
+// lose twice as many digits as necessary. There the solution is refined iteratively with J W Jᵀ evaluated factor by factor.
 #pragma once
 
 #include "mbd/tape/traced.h"
@@ -26,29 +24,30 @@
 
 namespace steplap {
 
-/// Row in the coordinates of the moving bodies ("clusters") of one layout; S is double, or written down (mbd/tape).
+/// A row in the coordinates of the clusters of one layout. S is double, or a recorded number (mbd/tape).
 template <class S> struct SchurRowOf {
-  int body[2] = {-1, -1};   ///< cluster on either side, −1: the ground
-  bool is_constant = false; ///< j and wj are the same in every pose, and zero but for θ
-  double w[2][3] = {};      ///< inverse masses of either side, 0 where locked
-  S j[2][3] = {};           ///< ∂measure/∂(x, y, θ) of either side
-  S wj[2][3] = {};          ///< W times that
+  int body[2] = {-1, -1};   ///< cluster on either side; −1: the ground
+  bool is_constant = false; ///< j and wj are the same in every pose and nonzero for θ only
+  double w[2][3] = {};      ///< inverse masses on either side; 0 for locked coordinates
+  S j[2][3] = {};           ///< J: ∂measure/∂(x, y, θ) on either side
+  S wj[2][3] = {};          ///< W J
 };
 using SchurRow = SchurRowOf<double>;
 
-/// A pivot that was written down, and what it counts against.
+/// A recorded pivot, and the diagonal element that it is compared with.
 struct TracedPivot {
   Traced pivot, diagonal;
 };
 
-/// Further sides of a row that acts on more than two bodies: rows[row], which is none of its own, is a part of rows[of].
+/// Further part of a row over more than two bodies: rows[row] is not a row itself but a part of rows[of].
 struct SchurPart {
   int row = 0, of = 0;
 };
 
-struct SchurCoupling; ///< of two rows (schur.cpp)
+struct SchurCoupling; ///< coupling of two rows (schur.cpp)
 class HubSolver;
 
+/// Solver for one set of rows.
 class SchurSolver {
 public:
   SchurSolver();
@@ -56,26 +55,25 @@ public:
   SchurSolver(SchurSolver&&) noexcept;
   SchurSolver& operator=(SchurSolver&&) noexcept;
 
-  /// `apart`: bodies in which many rows meet are solved for beside the others, where that is as exact (hub_solver.h). It takes the
-  /// rows' inverse masses.
+  /// `apart`: bodies in which many rows meet are treated separately if this is accurate (hub_solver.h). Requires the inverse masses of the
+  /// rows.
   enum class Hubs : unsigned char { as_others, apart };
-  /// Pattern from the bodies of the first `count` rows, which are all that it solves, and of the parts of some of them that
-  /// stand behind. Body −1 couples nothing.
+  /// Computes the pattern for the first `count` rows, the ones to be solved for, and for their further `parts`, which follow them in
+  /// `rows`. Body −1 couples nothing.
   void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {}, Hubs hubs = Hubs::as_others);
   void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
-  /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing, but the first time that
-  /// hubs cannot be apart.
+  /// Factorises A for the present j and wj, with its diagonal increased by the fraction `shift` (damping). Does not allocate, except the
+  /// first time that HubSolver refuses the numbers.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
-  /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out
-  /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot.
-  /// Rows that `was_out` when it was last decided stay so up to twice the bound.
+  /// Makes the next factorisation decide which of the friction rows are left out. This remains until the next call, because otherwise rows
+  /// could come and go within a step by rounding of a pivot. Rows left out before (`was_out`) stay so up to twice the bound.
   void decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out);
-  /// Has no factorisation followed decide_rank() yet?
+  /// Returns true if no factorisation has followed decide_rank().
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
-  /// What factor() and solve() do for rows that are independent and can_be_traced(), on numbers that are written down: conditions
-  /// are that they stay as far from singular positions as `least_pivot`. x = A⁻¹ x. Adds the pivots that smallest_pivot() is one of.
+  /// Records factor() and solve() on a tape, x = A⁻¹ x, for independent rows with can_be_traced(). The tape is valid while all relative
+  /// pivots are above `least_pivot`. Appends the pivots that smallest_pivot() is computed from.
   void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
-  /// In place: x = A⁻¹ x. `rows`: those factored.
+  /// In place: x = A⁻¹ x. `rows` must be those factorised.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 
   [[nodiscard]] int size() const { return n_; }
@@ -83,19 +81,19 @@ public:
   [[nodiscard]] bool can_be_traced() const { return n_ <= k_usual_rows; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
-  /// Is it one of friction that was decided to stay out?
+  /// Returns true for a friction row that was decided to be left out.
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
-  /// Smallest pivot kept, relative to its diagonal, in the last factorisation: near 0 close to a singularity.
-  /// A chain's falls as one over its length wherever it is: beyond k_usual_rows that is allowed for.
+  /// Returns the smallest pivot that was kept, relative to its diagonal, in the last factorisation; near 0 close to a singular position.
+  /// The pivots of a long chain decrease as 1/length in any position, which is corrected for beyond k_usual_rows.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_ * length_; }
   [[nodiscard]] bool is_near_singular() const { return smallest_pivot() < k_refined_pivot; }
 
-  /// A pivot below this fraction of its diagonal counts as zero.
+  /// A relative pivot below this counts as zero.
   static constexpr double k_pivot_tolerance = 1e-13;
-  /// Below this one a solution is refined: the square root of what elimination can lose.
+  /// Below this relative pivot solutions are refined. It is chosen where elimination has lost about half of the digits.
   static constexpr double k_refined_pivot = 1e-4;
   static constexpr double k_usual_rows = 50.0;
-  /// A row of friction depends on others if what it is beyond them is below this fraction of its length.
+  /// A friction row is dependent if its part orthogonal to the others is below this fraction of its length.
   static constexpr double k_dependent = 1e-6;
 
 private:
@@ -121,12 +119,12 @@ private:
   template <int N> void solve_dense(double* x) const;
 
   static constexpr int k_max_dense = 8;
-  /// wj of one row times j of another, which share a body, makes part of one entry of A.
+  /// Product of one number of wj and one of j of two rows that share a body, a term of one entry of A.
   struct DenseProduct {
-    std::uint16_t entry, wj, j; ///< wj, j: as doubles from the first row's start
+    std::uint16_t entry, wj, j; ///< indices of doubles from the start of the first row
   };
-  std::vector<DenseProduct> dense_products_, dense_turns_;         ///< three terms; that of θ alone
-  std::array<double, k_max_dense * k_max_dense> dense_constant_{}; ///< from constant rows
+  std::vector<DenseProduct> dense_products_, dense_turns_;         ///< products of all three coordinates; of θ only
+  std::array<double, k_max_dense * k_max_dense> dense_constant_{}; ///< contributions of constant rows
   std::array<double, k_max_dense * k_max_dense> dense_{};
 
   struct Product {
@@ -134,18 +132,18 @@ private:
     int position; ///< its position in elimination order
     unsigned char side_k, side_i;
   };
-  /// The same of a part of the later row, which is not the row itself.
+  /// A product with a part of the later row.
   struct PartProduct {
     int part;
     Product product;
   };
   std::vector<SchurPart> parts_;
-  std::vector<PartProduct> part_products_; ///< none without parts
+  std::vector<PartProduct> part_products_; ///< empty without parts
   std::vector<int> part_begin_;
   int n_ = 0;
   int body_count_ = 0;
   double shift_ = 0.0;
-  /// Is the row, whose pivot is `d` of `diagonal`, to be left out?
+  /// Returns true if a row with pivot `d` and diagonal element `diagonal` is left out.
   [[nodiscard]] bool leaves_out(int row, double d, double diagonal) { return is_left_out(row) || !(d > k_pivot_tolerance * diagonal); }
   void keep_rank(const std::vector<SchurRow>& rows, double shift);
   [[nodiscard]] bool is_in_doubt(const std::vector<SchurRow>& rows) const;
@@ -155,20 +153,20 @@ private:
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
-  double length_ = 1.0;       ///< rows over k_usual_rows, at least 1
-  std::vector<int> order_;    ///< order_[k]: row eliminated as k-th
+  double length_ = 1.0;       ///< number of rows over k_usual_rows, at least 1
+  std::vector<int> order_;    ///< order_[k]: row eliminated in step k
   std::vector<int> position_; ///< inverse of order_
   std::vector<int> product_begin_;
   std::vector<Product> products_;
-  std::vector<int> pattern_begin_, pattern_; ///< columns of row k of L, ascending
+  std::vector<int> pattern_begin_, pattern_; ///< column indices of row k of L, ascending
   std::vector<int> column_begin_, column_row_;
   std::vector<int> column_fill_;
   std::vector<double> l_, inverse_d_, work_;
   mutable std::vector<double> permuted_;
-  mutable std::vector<double> right_, correction_, response_; ///< of refine
-  std::unique_ptr<HubSolver> hubs_;                           ///< null: none is apart
-  bool is_by_hubs_ = false;                                   ///< the last factors are theirs
-  bool is_pattern_known_ = false;                             ///< of what is solved without them
+  mutable std::vector<double> right_, correction_, response_; ///< scratch of refine()
+  std::unique_ptr<HubSolver> hubs_;                           ///< null: not used
+  bool is_by_hubs_ = false;                                   ///< the last factorisation is that of hubs_
+  bool is_pattern_known_ = false;                             ///< pattern for the case without hubs_
 };
 
 } // namespace steplap

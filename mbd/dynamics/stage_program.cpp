@@ -18,7 +18,7 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
   look_for_candidate();
 }
 
-// What tells layouts and modes apart, and scenes by their sizes.
+// Hash that identifies a layout with its modes, and the scene by its sizes.
 std::uint64_t StageProgram::key() const {
   std::uint64_t hash = 14695981039346656037ULL;
   const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x ^ x >> 29U) * 1099511628211ULL; };
@@ -49,7 +49,7 @@ void StageProgram::look_for_code() {
   if (code_ || !tape_code_ || !tape_code_->code()) return;
   const MachineCode& made = *tape_code_->code();
   const double *const inputs = traced_.inputs.data(), *const constants = traced_.tape.constants.data();
-  // What elements that are called remember may have changed since.
+  // Friction states read by called elements may have changed since recording.
   const bool is_as_ever = traced_.calls.empty() || replay(tape_code_->tape(), inputs, constants, traced_.outputs.data());
   if (is_as_ever && makes_what_was_traced(made)) {
     code_ = &made;
@@ -59,7 +59,7 @@ void StageProgram::look_for_code() {
   }
 }
 
-// To the bit.
+// Returns true if the code reproduces the recorded stage bit by bit.
 bool StageProgram::makes_what_was_traced(const MachineCode& made) const {
   const Tape& tape = traced_.tape;
   std::size_t size[CodeArrays::k_more + 1] = {};
@@ -94,7 +94,7 @@ bool StageProgram::run(double t, const double* y, double* dy, double* watch, dou
     note_failure();
     return false;
   }
-  if (has_call_failed()) return false; // the evaluation without code throws what the element threw
+  if (has_call_failed()) return false; // the evaluation without code will throw the element's exception
   failures_ = 0;
   return true;
 }
@@ -118,7 +118,8 @@ bool StageProgram::has_call_failed() const {
   return is_any;
 }
 
-// In the order in which the solvers compare.
+// Returns the smallest relative pivot of the constraint solvers. The comparisons are those of the solvers, in the same order, so that the
+// result has the same bits.
 double StageProgram::smallest_pivot_in(const double* rest) const {
   const double* at = rest + traced_.wrenches.size();
   double smallest = 1.0;
@@ -131,7 +132,7 @@ double StageProgram::smallest_pivot_in(const double* rest) const {
   return smallest;
 }
 
-// The stage that was written down, to the bit?
+// Returns true if the results equal those of the recorded stage bit by bit.
 bool StageProgram::has_found(const StageFound& found) const {
   const double* out = traced_.outputs.data();
   const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
@@ -147,7 +148,7 @@ void StageProgram::record(const System& system, const State& state, const Evalua
                           const StageFound& found) {
   ++tapes_;
   const std::shared_ptr<TapeCode> known = std::exchange(candidate_, nullptr);
-  // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
+  // The list of steps is kept by the store only, and its memory is reused for the next tape: a run has dozens of sets of modes.
   static thread_local std::vector<TapeStep> steps;
   traced_.tape.steps.swap(steps);
   struct GiveBack {
@@ -156,9 +157,9 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   } const give_back{traced_.tape.steps};
   const bool is_traced = trace_rates(system, *layout_, state, live, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
                                      known ? &known->tape() : nullptr);
-  // By chance of the same key, or on another branch: it will be written down if it lasts.
+  // The key was equal by chance, or another branch was taken. The stage will be recorded if the modes persist.
   if (known && !is_traced) return;
-  is_hopeless_ = !is_traced || !has_found(found); // to the bit
+  is_hopeless_ = !is_traced || !has_found(found); // compares bit by bit
   if (is_hopeless_) return;
   time_inputs_.resize(time_count_ + traced_.signals.size());
   rest_.resize(traced_.outputs.size() - traced_.usual_outputs());

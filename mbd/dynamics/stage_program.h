@@ -1,10 +1,9 @@
-// Rates at the stages inside steps by machine code.
+// Evaluation of the stages within a step by machine code.
 //
-// Stages are most of a run's evaluations, and nobody asks them for anything but rates and switching values. So where a set of
-// modes lasts, one of its evaluations is written down (traced_evaluation.h), and the stages after it are made by the machine code
-// of that tape (mbd/tape): the same bits without the loops, indices and branches. The tape's
-// conditions tell what is not as it was when the tape was written (a branch, a singular position that comes near): that stage is
-// evaluated without code.
+// Stages are most of the evaluations of a run, and only their rates and event functions are needed. If a set of modes persists, one
+// evaluation is recorded on a tape (traced_evaluation.h), and the following stages are computed by the machine code compiled from it
+// (mbd/tape): bit-identical results without loops, indices and branches. The tape has conditions under which it is valid (branches taken,
+// distance from singular positions). A stage that violates them is evaluated without code.
 #pragma once
 
 #include "mbd/dynamics/traced_evaluation.h"
@@ -16,56 +15,56 @@
 
 namespace steplap {
 
-/// Nearer to a singular position than this, pivot against diagonal, stages are evaluated without code: the integrators ask how
-/// near they came (Dynamics::lowest_pivot), and below 2e-2 it matters.
+/// Relative pivot below which stages are evaluated without code. Integrators need the smallest pivot of a step (Dynamics::lowest_pivot) if
+/// it is below 2e-2, and stages by code do not compute it.
 inline constexpr double k_traced_pivot = 2.5e-2;
 
-/// Whether stages are made by machine code. Results do not hang on it, to the bit.
+/// Use of machine code for stages. The results are bit-identical in all cases.
 enum class StageCode : std::uint8_t {
   never,
-  when_it_pays, ///< once a set of modes has lasted, and code for its tape would have paid
+  when_it_pays, ///< after a set of modes has persisted so long that compilation would have paid
   at_once,      ///< from the second stage on
 };
 
-/// What an evaluation without code has found.
+/// Results of an evaluation without code.
 struct StageFound {
-  const double* dy; ///< accelerations, rates of inner states, dissipation and work
+  const double* dy; ///< accelerations, rates of inner states, dissipated power and power of loads
   const double *watch, *watch_rate, *friction_force;
   double smallest_pivot;
 };
 
-/// Of one layout, which owns it, in one set of modes.
+/// The compiled stage of one layout, which owns it, for one set of modes.
 class StageProgram {
 public:
   StageProgram(const Layout& layout, const State& state, StageCode choice);
-  /// Was it made for these modes, in its layout?
+  /// Returns true if it was made for these modes.
   [[nodiscard]] bool is_of(const State& state) const;
 
-  /// Code may have been made since. It is used if it makes of the stage that was written down what that has made.
+  /// Takes over machine code that has been made since, if it reproduces the recorded stage bit by bit.
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
-  /// For accelerations, rates of inner states, power and switching values at coordinates, rates and inner states y. False: evaluate
-  /// without code; what was found before may be lost.
-  /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
+  /// Computes accelerations, rates of inner states, powers and event functions at coordinates, rates and inner states y. Returns false if
+  /// the stage must be evaluated without code; the outputs are then undefined. `all`: also computes the data for can_look(), put_wrenches()
+  /// and smallest_pivot().
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
-  /// Can merged joints be looked at by what a stage has found? Then: what they bear at the last run(), into their slots.
+  /// can_look() returns true if the event functions of merged joints can be computed from a stage by code. put_wrenches() then writes the
+  /// wrenches of these joints at the last run().
   [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
   void put_wrenches(double* friction_force) const;
-  /// To the bit that of Layout::smallest_pivot, at the last run().
+  /// Returns Layout::smallest_pivot() at the last run(), bit-identical.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(rest_.data()); }
-  /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
+  /// Returns the array from which run() takes the time-dependent numbers of the layout, in the order of traced_evaluation.h.
   [[nodiscard]] double* time_inputs() { return time_inputs_.data(); }
 
-  /// Have the modes lasted, so that the stage that follows is to be written down?
+  /// Returns true if the modes have persisted, so that the next stage should be recorded.
   [[nodiscard]] bool wants_stage() const {
     return !is_hopeless_ && !tape_code_ && (candidate_ || stages_ >= k_settled || choice_ == StageCode::at_once);
   }
-  /// Counts a stage that was evaluated without code.
+  /// Counts a stage evaluated without code.
   void count_stage();
-  /// Where modes come back: was code made for such a tape since?
+  /// To be called when modes recur: looks for code made for such a tape in the meantime.
   void look_for_candidate();
-  /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
-  /// `live`: as trace_rates.
+  /// Records the stage evaluated last, at t, y and time_inputs(), and checks the tape against its results. `live` as for trace_rates().
   void record(const System& system, const State& state, const Evaluation& live, double t, const double* y, const StageFound& found);
 
 private:
@@ -77,11 +76,11 @@ private:
   [[nodiscard]] std::uint64_t key() const;
   [[nodiscard]] bool has_found(const StageFound& found) const;
 
-  /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
-  /// written down anew, but not for ever.
+  /// After this many consecutive failures the recorded branches are no longer the usual ones (for example, angles have left the range of
+  /// the series for sine). The stage is then recorded again, at most k_most_tapes times.
   static constexpr int k_most_failures = 16, k_most_tapes = 8;
-  /// Writing a stage down for the first time takes as long as code saves in so many: in this run, or in others before it.
-  /// A candidate needs nothing but its constants gathered, which most stretches between events are long enough for.
+  /// Number of stages without code, in this run or earlier ones with the same tape, after which recording pays. If code for the same tape
+  /// exists already, only its constants have to be collected, which pays even for short intervals between events.
   static constexpr long k_settled = 120;
 
   struct Friction {
@@ -96,37 +95,37 @@ private:
   std::vector<Friction> frictions_;
   TracedRates traced_;
   std::shared_ptr<TapeFamily> family_;
-  std::shared_ptr<TapeCode> candidate_; ///< a tape that has code, which this one should be; null: none, or it was not
-  std::shared_ptr<TapeCode> tape_code_; ///< null until it is written down
+  std::shared_ptr<TapeCode> candidate_; ///< existing compiled tape that this one probably equals; null: none, or it was different
+  std::shared_ptr<TapeCode> tape_code_; ///< null until the stage is recorded
   const MachineCode* code_ = nullptr;
-  std::vector<double> time_inputs_; ///< the layout's, then those of signals
-  std::vector<double> rest_;        ///< what run() has found for who looks at merged joints
+  std::vector<double> time_inputs_; ///< numbers of the layout, then of signals
+  std::vector<double> rest_;        ///< results of run() for the event functions of merged joints
   CodeArrays arrays_;
   std::size_t coordinate_count_ = 0, inner_count_ = 0, time_count_ = 0;
-  long stages_ = 0;              ///< made without code, in this run and those before it
-  int failures_ = 0, tapes_ = 0; ///< failures: since it last held
+  long stages_ = 0;              ///< stages evaluated without code, in this run and earlier ones
+  int failures_ = 0, tapes_ = 0; ///< failures_: since the last success
   StageCode choice_;
   bool is_hopeless_ = false;
 };
 
 class LayoutStore;
 
-/// The one in use, of those that layouts keep for their sets of modes: these come back.
+/// The compiled stage in use; those of other modes are kept with their layouts.
 class StagePrograms {
 public:
-  /// Those made until now must be given up (LayoutStore::clear_programs).
+  /// Sets the choice. Programs made before must be deleted (LayoutStore::clear_programs).
   void choose(StageCode choice) {
     choice_ = choice;
     leave();
   }
   void leave() { now_ = nullptr; }
-  /// `kept`: all layouts.
+  /// Selects the program for the modes of `state`, making one if there is none. `kept` contains all layouts.
   void enter(Layout& layout, const State& state, LayoutStore& kept);
-  /// Of the modes entered; null: none.
+  /// Returns the program for the present modes; null: none.
   [[nodiscard]] StageProgram* now() const { return now_; }
 
 private:
-  /// Scenes with many contacts have more sets of modes than it pays to keep.
+  /// Scenes with many contacts have more sets of modes than it is useful to keep.
   static constexpr std::size_t k_most_programs = 64;
 
   StageProgram* now_ = nullptr;

@@ -19,14 +19,14 @@ struct LockTarget {
   Traced value, rate, acceleration;
 };
 
-// Beyond these the code of an evaluation, some 80 instructions for each, leaves the cache that loops stay in.
+// Limit of the size: with some 80 instructions per coordinate, longer code would not fit in the instruction cache.
 constexpr int k_most_coordinates = 100;
 
 bool is_plain(const Layout& layout) {
   return layout.coordinate_count <= k_most_coordinates && layout.schur.can_be_traced() && !layout.is_singular() && !layout.sharing;
 }
 
-/// What a trace works on, kept from one to the next: taking memory would take a tenth of its time.
+/// Memory of a trace, kept for the next one: allocation would take a tenth of the time.
 struct TracerMemory {
   std::vector<Motion<Traced>> motion_;
   std::vector<BodyForceOf<Traced>> force_, lack_;
@@ -41,7 +41,7 @@ struct TracerMemory {
   }
 };
 
-// In the order of Dynamics::rates_at and of the parts that it calls.
+// Operations are in the same order as in Dynamics::rates_at and the functions called by it.
 class Tracer : private TracerMemory {
 public:
   Tracer(const Tracer&) = delete;
@@ -70,7 +70,7 @@ public:
     e_.friction = state.friction.data();
   }
 
-  // Throws NotTraceable.
+  // Throws NotTraceable if the scene cannot be recorded.
   void trace(double t, const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
     e_.t = t;
     traced.calls.clear();
@@ -92,7 +92,7 @@ public:
 private:
   ElementCall& call_element() { return *calls_->emplace_back(std::make_unique<ElementCall>(system_, live_)); }
 
-  // As FrictionElement::trace_friction.
+  // Records a friction element, as FrictionElement::trace_friction.
   void trace_friction(int f, const Traced* rate, Traced* wrench) {
     const FrictionUnit& unit = system_.frictions[f];
     Traced* const watch = &watch_[unit.watch];
@@ -131,7 +131,7 @@ private:
     place_all(layout_, q_.data(), v_.data(), target_of_lock(), motion_.data());
   }
 
-  // The parts of long rows stand behind all rows.
+  // The parts of long rows follow all rows.
   void load_rows() {
     for (const SchurRow& known : layout_.schur_rows) {
       SchurRowOf<Traced>& row = rows_.emplace_back();
@@ -190,7 +190,7 @@ private:
     add_part_responses(layout_, rows_.data(), multiplier_.data(), a_.data());
   }
 
-  // Without its rows, and what these lack then.
+  // Accelerations of a mechanism without its rows, and γ − J a of the rows.
   void accelerate(TracedMechanism& m) {
     const Mechanism& of = m.constants();
     Traced* const s = &a_[static_cast<std::size_t>(of.first_coordinate)];
@@ -214,7 +214,7 @@ private:
     }
   }
 
-  // With room for what most layouts have: each vector would grow five times.
+  // Reserves the capacity that most layouts need; otherwise each vector would be reallocated five times.
   void clear(TracedRates& traced) {
     traced.outputs.clear();
     traced.tape.places.clear();
@@ -235,7 +235,7 @@ private:
     put_next(e_.dissipation, 0, traced);
     put_next(e_.work, 0, traced);
     for (std::size_t i = 0; i < watch_.size(); ++i) {
-      if (watch_[i].is_constant()) continue; // as the evaluation before has left it
+      if (watch_[i].is_constant()) continue; // constants remain as the evaluation before has left them
       traced.watches.push_back(static_cast<int>(i));
       put_out(watch_[i], {TracedRates::k_watches, static_cast<std::int32_t>(i)}, traced);
     }
@@ -251,10 +251,10 @@ private:
     for (const TimeInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
   }
 
-  // Of joints inside clusters, if any of them has to be watched: as Reactions::find_joints.
+  // Outputs the wrenches in joints inside clusters if event functions depend on them; the same as Reactions::find_joints.
   void put_out_wrenches(TracedRates& traced) {
     traced.wrenches.clear();
-    traced.has_wrenches = !layout_.is_carried_by_pins; // forces of pins are not traced
+    traced.has_wrenches = !layout_.is_carried_by_pins; // pin forces are not recorded
     if (!traced.has_wrenches || !layout_.is_merged_watched) return;
     lack_.assign(system_.bodies.size(), {});
     find_lacks(system_, layout_, motion_.data(), force_.data(), cluster_accelerations(), multiplier_.data(), lack_.data());
@@ -292,18 +292,18 @@ private:
     traced.tape.places.push_back(place);
   }
 
-  // Behind those put there before.
+  // Appends an output after the previous ones of its array.
   void put_next(const Traced& x, std::int32_t array, TracedRates& traced) { put_out(x, {array, put_[array == 0 ? 0 : 1]++}, traced); }
 
   const System& system_;
   const Layout& layout_;
   const State& state_;
   const Evaluation& live_;
-  std::vector<std::unique_ptr<ElementCall>>* calls_ = nullptr; ///< those made now
+  std::vector<std::unique_ptr<ElementCall>>* calls_ = nullptr; ///< calls made in this trace
   std::vector<TracedMechanism> mechanisms_;
-  std::vector<std::vector<TracedPivot>> pivots_; ///< of each solver
-  std::int32_t put_[2] = {0, 0};                 ///< so many, into the first array and the rest
-  std::int32_t first_inputs_ = 0;                ///< coordinates, rates and inner states
+  std::vector<std::vector<TracedPivot>> pivots_; ///< pivots of each solver
+  std::int32_t put_[2] = {0, 0};                 ///< number of outputs so far in the first array and in the rest
+  std::int32_t first_inputs_ = 0;                ///< number of coordinates, rates and inner states
   TracedEvaluation e_;
 };
 

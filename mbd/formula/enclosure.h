@@ -1,10 +1,10 @@
-// What a formula can be over a short span of time: a polynomial in u, |u| <= 1, and how far from it at most (a Taylor model,
-// K. Makino and M. Berz, Int. J. Pure Appl. Math. 4 (2003) 379), with the interval of its values beside it.
+// Enclosure of a formula over a short time interval: a polynomial in u, |u| ≤ 1, with a bound of its error (a Taylor model, K. Makino and
+// M. Berz, Int. J. Pure Appl. Math. 4 (2003) 379), together with the interval of its values.
 //
-// The polynomial keeps what operands have in common, so that a difference of large ones is not taken for large, and its
-// remainder falls with the power of the degree + 1 as the span becomes shorter. Where a function has a kink, a pole or the end
-// of what it is defined on inside the span, only the interval is kept, of which a shorter span makes more. Degree 0 is for
-// points in time. Roundings count: nothing that the operations say is left out by them.
+// The polynomial preserves correlations between operands, so that a difference of large numbers is not overestimated. Its error decreases
+// with the power degree + 1 of the interval length. If a function has a kink, a pole or a limit of its domain within the interval, only the
+// interval of values is kept, which shrinks with the time interval. Degree 0 is for single points. Rounding errors are included, so the
+// enclosures are rigorous.
 #pragma once
 
 #include "mbd/formula/formula_tree.h"
@@ -16,11 +16,12 @@
 
 namespace steplap {
 
+/// Enclosure with a polynomial of the given degree.
 template <int Degree> struct Enclosure {
   Interval range;
-  std::array<double, Degree + 1> c{}; ///< of 1, u, u² …
-  double rest = 0.0;                  ///< how far from the polynomial at most; infinite where there is none
-  bool is_partial = false;            ///< somewhere in the span it may have no value
+  std::array<double, Degree + 1> c{}; ///< coefficients of 1, u, u² …
+  double rest = 0.0;                  ///< error bound of the polynomial; infinite if there is none
+  bool is_partial = false;            ///< the formula may have no value somewhere in the interval
 
   [[nodiscard]] bool has_polynomial() const { return std::isfinite(rest); }
   [[nodiscard]] double polynomial(double u) const {
@@ -34,10 +35,10 @@ template <int Degree> struct Enclosure {
   [[nodiscard]] static Enclosure of_polynomial(const std::array<double, Degree + 1>& c, double rest);
 };
 
-/// Where in |u| <= 1 the polynomial up to its square is largest.
+/// Returns the u in |u| ≤ 1 at which the polynomial up to its quadratic term, times `sign`, is largest.
 template <int Degree> [[nodiscard]] double place_of_largest(const Enclosure<Degree>& e, double sign);
 
-/// For evaluate (formula_tree.h).
+/// Arithmetic for evaluate() (formula_tree.h).
 template <int Degree> struct EnclosingNumbers {
   using Value = Enclosure<Degree>;
   static Value number(double a) { return Value::of_number(a); }

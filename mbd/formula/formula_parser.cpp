@@ -16,7 +16,7 @@ struct Function {
   std::string_view name;
   FormulaOp op;
   int arguments;
-  bool takes_more = false; ///< it is applied from the left
+  bool takes_more = false; ///< left-associative
 };
 
 constexpr Function k_functions[] = {{"abs", FormulaOp::abs, 1},       {"sqrt", FormulaOp::sqrt, 1},     {"hypot", FormulaOp::hypot, 2},
@@ -25,11 +25,11 @@ constexpr Function k_functions[] = {{"abs", FormulaOp::abs, 1},       {"sqrt", F
                                     {"acos", FormulaOp::acos, 1},     {"atan", FormulaOp::atan, 1},     {"atan2", FormulaOp::atan2, 2},
                                     {"exp", FormulaOp::exp, 1},       {"ln", FormulaOp::ln, 1},         {"log10", FormulaOp::log10, 1}};
 
-constexpr int k_deepest = 64; // of brackets and signs: each is a call of the parser within a call
+constexpr int k_deepest = 64; // largest nesting of brackets and signs; each level is a recursive call
 
 } // namespace
 
-// Recursive descent. Each production returns the node that it has made.
+// Recursive-descent parser. Each production returns the node that it has made.
 class FormulaParser {
 public:
   explicit FormulaParser(Formula& made) : made_(made), text_(made.text_) {}
@@ -46,7 +46,7 @@ private:
     throw ModelError(made_.where_, made_.subject_ + ": the expression '" + text_ + "' " + message);
   }
 
-  // All of its bytes.
+  // Returns the present character with all bytes of its UTF-8 code.
   [[nodiscard]] std::string character() const {
     std::size_t end = at_ + 1;
     while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U) ++end;
@@ -181,7 +181,7 @@ private:
     if (take("+")) return signed_power();
     const int base = value();
     if (!take("^")) return base;
-    const int exponent = signed_power(); // from the right, as written
+    const int exponent = signed_power(); // right-associative
     return add(FormulaOp::power, begin, {base, exponent});
   }
 
@@ -214,7 +214,7 @@ private:
     return value;
   }
 
-  // '12 kN'
+  // Parses a quantity such as '12 kN'.
   int quantity() {
     const std::size_t begin = at_, end = text_.find('\'', at_ + 1);
     if (end == std::string::npos) fail("lacks the second ' of a number with a unit");

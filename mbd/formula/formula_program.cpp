@@ -7,14 +7,15 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_largest_product = 16.0; // exponents up to this are products
+constexpr double k_largest_product = 16.0; // integer exponents up to this are evaluated as products
 
 bool is_switch(FormulaOp op) {
   return op == FormulaOp::abs || op == FormulaOp::min || op == FormulaOp::max || op == FormulaOp::less || op == FormulaOp::less_or_equal;
 }
 
-// How fast a formula changes with the time itself steps cannot know: a narrow pulse of it, or one of many, would be stepped over. They
-// know it of what is straight in the time, and of signals. So the time may be added, compared, and multiplied by what it does not stand in.
+// Restricts the use of time in formulas. Step control cannot know how fast a formula changes with time, so a narrow pulse, or one of many,
+// could be stepped over. It does know this for linear functions of time and for signals. Time may therefore be added, compared, and
+// multiplied by terms that do not contain it.
 void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
   std::vector<char> has_time;
   for (const FormulaProgram::Step& step : steps) {
@@ -34,7 +35,7 @@ void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
     case FormulaOp::multiply: is_plain = !(in(0) && in(1)); break;
     case FormulaOp::divide: is_plain = !in(1); break;
     case FormulaOp::less:
-    case FormulaOp::less_or_equal: stays = false; break; // true or false from here on
+    case FormulaOp::less_or_equal: stays = false; break; // constant between switches
     default: is_plain = !is_any; break;
     }
     if (!is_plain)
@@ -75,7 +76,7 @@ bool FormulaProgram::is_linear() const {
     case FormulaOp::multiply: is_plain = !(in(0) && in(1)); break;
     case FormulaOp::divide: is_plain = !in(1); break;
     case FormulaOp::less:
-    case FormulaOp::less_or_equal: does_vary = false; break; // true or false from here on
+    case FormulaOp::less_or_equal: does_vary = false; break; // constant between switches
     default: is_plain = !is_any; break;
     }
     if (!is_plain) return false;
@@ -108,7 +109,7 @@ int FormulaProgram::add_number(double number) {
   return made;
 }
 
-// True or false for certain: it hangs on comparisons alone.
+// Returns true if the node is a truth value, made of comparisons only.
 bool FormulaProgram::is_boolean(int node) const {
   const Step& step = steps_[static_cast<std::size_t>(node)];
   switch (step.op) {
@@ -129,7 +130,7 @@ void FormulaProgram::require_condition(int node) const {
         "has a condition that compares nothing: an event is where a comparison changes, so write x > 0 instead of x");
 }
 
-// Whole exponents as products: a number of any kind can be multiplied.
+// Integer powers are expanded into products, which all number types have.
 int FormulaProgram::add_power(int base, int exponent) {
   const Step& known = steps_[static_cast<std::size_t>(exponent)];
   const bool is_number = known.op == FormulaOp::number ||
@@ -171,7 +172,7 @@ void FormulaProgram::add_node(const FormulaNode& node, std::vector<int>& place) 
   place.push_back(add(node.op, of(0), of(1), of(2)));
 }
 
-// The guard, or what is around it, whose conditions all stand before the step. −1: none.
+// Returns the innermost guard around `guard`, itself included, all of whose conditions precede the step; −1: none.
 int FormulaProgram::known_before(int guard, int step) const {
   int known = std::max(guard, -1);
   for (int g = known; g >= 0; g = guards_[static_cast<std::size_t>(g)].outer)
@@ -179,7 +180,7 @@ int FormulaProgram::known_before(int guard, int step) const {
   return known;
 }
 
-// From the last step back: a step that is used only behind one side of a choice is needed only where that side is chosen.
+// From the last step backwards: a step used only in one branch of a choice is evaluated only if that branch is selected.
 void FormulaProgram::set_guards() {
   constexpr int k_unused = -2;
   std::vector<int> guard(steps_.size(), k_unused);

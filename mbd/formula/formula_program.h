@@ -1,16 +1,18 @@
-// A formula as the equations of motion need it: in smooth pieces, on numbers of any kind.
+// Evaluation of a formula in the equations of motion: in smooth pieces, for all number types.
 //
-// A formula is smooth but for its switches: |a|, min, max and comparisons. Each switch has a bit that says which of its two
-// pieces holds, and a quantity whose sign tells when that ends:
-//   |a|        a             1: a          0: −a
-//   min(a, b)  b − a         1: a          0: b
-//   max(a, b)  a − b         1: a          0: b
-//   a < b      b − a         1: true       0: false      (a ≤ b as well; they differ where a run begins with a = b)
-// With the bits given, evaluate() makes the same operations whatever the numbers are: doubles, Dual (mbd/base/dual.h), Traced (mbd/tape).
-// What stands behind `?` and `:` is evaluated where it is chosen, and only there. A step that passes a switch goes a little beyond the
-// end of a piece before that is known, and sqrt(max(x, 0)) is asked for the root of what is negative there. So roots and powers with
-// fractions of what is negative are 0 here, and asin and acos of more than 1 as of 1. Powers with whole exponents are products;
-// sqrt(0) has the derivative 0, so that hypot(0, 0) has one.
+// A formula is smooth except for its switches: |a|, min, max and comparisons. Each switch has a bit that selects one of its two pieces, and
+// a quantity whose change of sign ends the piece:
+//
+//   switch     quantity      bit 1         bit 0
+//   |a|        a             a             −a
+//   min(a, b)  b − a         a             b
+//   max(a, b)  a − b         a             b
+//   a < b      b − a         true          false      (also for a ≤ b; they differ only if a run begins with a = b)
+//
+// For given bits evaluate() makes the same operations for all numbers: double, Dual (mbd/base/dual.h) or Traced (mbd/tape). The operands of
+// `?` and `:` are evaluated only if selected. A step may continue slightly beyond the end of a piece before this is detected, and then
+// sqrt(max(x, 0)) has a negative argument. Square roots and fractional powers of negative numbers are therefore 0 here, and asin and acos
+// of arguments above 1 are those of 1. Integer powers are products. The derivative of sqrt(0) is 0, so that hypot(0, 0) has a derivative.
 #pragma once
 
 #include "mbd/base/dual.h"
@@ -26,13 +28,13 @@
 
 namespace steplap {
 
-/// Bits of the switches of a formula, or of several.
+/// Bits of the switches of one or several formulas.
 using SwitchBits = std::uint32_t;
 inline constexpr int k_most_switches = 32;
 
 namespace formula_math {
 
-/// Has a power of a negative number with this exponent no value?
+/// Returns true if a negative number has no power with this exponent.
 inline bool is_fraction(double exponent) { return exponent != std::floor(exponent); }
 inline double power(double a, double b) { return a < 0.0 && is_fraction(b) ? 0.0 : portable::pow(a, b); }
 inline double exponential(double a) { return portable::pow(std::numbers::e, a); }
@@ -66,7 +68,7 @@ template <int N> void turn(const Dual<N>& a, Dual<N>& sine, Dual<N>& cosine) {
   cosine = cos(a);
 }
 
-// What a tape has no operation for is a call of the function of doubles (mbd/tape/traced.h).
+// Functions that a tape has no operation for are recorded as calls (mbd/tape/traced.h).
 template <class S> S power(const S& a, const S& b) {
   const S arguments[] = {a, b};
   S value;
@@ -86,50 +88,51 @@ template <class S> void turn(const S& a, S& sine, S& cosine) { find_sin_cos(a, s
 
 } // namespace formula_math
 
+/// A formula compiled to a list of steps.
 class FormulaProgram {
 public:
   struct Step {
     FormulaOp op = FormulaOp::number;
-    std::array<int, 3> of{-1, -1, -1}; ///< steps that it is made from
+    std::array<int, 3> of{-1, -1, -1}; ///< steps that are its operands
     double number = 0.0;
-    int index = -1; ///< of an operand; of a switch
-    int guard = -1; ///< it is needed only where this one's condition has come out as it says
+    int index = -1; ///< index of the operand or of the switch
+    int guard = -1; ///< guard: the step is evaluated only if its condition is met; −1: always
   };
   struct Guard {
-    int condition = -1; ///< a step
+    int condition = -1; ///< index of a step
     bool is_wanted = true;
-    int outer = -1; ///< another guard that has to hold, too
+    int outer = -1; ///< enclosing guard, which must hold as well; −1: none
   };
-  /// Where switches have their bits from: those given, those given for some and found for others, or all found.
+  /// Bits of the switches: all given, or some given and the others to be determined.
   struct Bits {
     SwitchBits values = 0;
     SwitchBits are_given = ~SwitchBits{0};
   };
 
-  /// Throws std::invalid_argument with what is wrong, in a few words that follow "the formula".
+  /// Compiles the formula. Throws std::invalid_argument with a few words that continue a sentence beginning "the formula".
   explicit FormulaProgram(const FormulaTree& tree);
 
   [[nodiscard]] int size() const { return static_cast<int>(steps_.size()); }
   [[nodiscard]] int operand_count() const { return operand_count_; }
   [[nodiscard]] int switch_count() const { return switch_count_; }
-  /// Has the value a jump where switch `s` changes? False of |a|, min and max.
+  /// Returns true if the value can jump when switch `s` changes: for comparisons, not for |a|, min and max.
   [[nodiscard]] bool is_comparison(int s) const { return comparisons_[static_cast<std::size_t>(s)] != 0; }
   [[nodiscard]] bool has_comparisons() const;
-  /// Is every piece of it, and the quantity of every switch, linear in the operands and the time?
+  /// Returns true if all pieces and all switch quantities are linear in operands and time.
   [[nodiscard]] bool is_linear() const;
   [[nodiscard]] bool uses_time() const { return uses_time_; }
 
-  /// Its value with the bits given. `values` has room for size() numbers. `quantity`: one per switch, what its bit hangs on; untouched
-  /// where that switch does not count now. Null: nobody asks.
+  /// Returns the value for given bits. `values`: scratch for size() numbers. `quantity`: receives the quantity of each switch; those of
+  /// switches that are not evaluated are unchanged; may be null.
   template <class S> S evaluate(const S* operands, const S& t, SwitchBits bits, S* values, S* quantity) const {
     Bits given{bits};
     return run<false>(operands, t, given, values, quantity);
   }
-  /// The same with bits that are found, but for those given; afterwards `bits.values` holds all that count.
+  /// As evaluate(), with all bits determined that are not given; `bits.values` then contains all bits in use.
   double find_bits(const double* operands, double t, Bits& bits, double* values) const {
     return run<true>(operands, t, bits, values, static_cast<double*>(nullptr));
   }
-  /// Which switches count with these bits.
+  /// Returns the switches that are evaluated with these bits.
   [[nodiscard]] SwitchBits counting(SwitchBits bits) const;
 
 private:
@@ -148,7 +151,7 @@ private:
     }
     return true;
   }
-  // Whether a switch's bit is set, which has the quantity `q`; `is_strict`: it has to be found above zero.
+  // Returns the bit of switch `s`, which has the quantity `q`. `is_strict`: when determined, it is set only for q > 0, not for q = 0.
   template <bool Finds, class S> static bool bit_of(int s, const S& q, Bits& bits, S* quantity, bool is_strict = false) {
     const SwitchBits mask = SwitchBits{1} << static_cast<unsigned>(s);
     if constexpr (Finds) {
@@ -216,7 +219,7 @@ template <bool Finds, class S> S FormulaProgram::run(const S* operands, const S&
     case FormulaOp::either: *value = S(is_true(step.of[0]) || is_true(step.of[1]) ? 1.0 : 0.0); break;
     case FormulaOp::negation: *value = S(is_true(step.of[0]) ? 0.0 : 1.0); break;
     case FormulaOp::choice: *value = is_true(step.of[0]) ? of(1) : of(2); break;
-    case FormulaOp::equal: break; // refused
+    case FormulaOp::equal: break; // rejected by the constructor
     case FormulaOp::finite: *value = of(0); break;
     }
     ++value;

@@ -1,7 +1,6 @@
-// The tree of a formula: what it is made of, node by node, each after those that it is made from. The last node is the formula.
-//
-// Whoever needs a formula's value, its bounds over a span of time or its derivatives goes through the same nodes with numbers
-// of another kind (evaluate, below): so all of them are of the same formula. A node may be used more than once.
+// Syntax tree of a formula: a list of nodes, each after its operands. The last node is the formula. Values, bounds over a time interval and
+// derivatives are computed by traversing the same nodes with different number types (evaluate(), below). A node may be an operand of
+// several others.
 #pragma once
 
 #include <array>
@@ -40,24 +39,25 @@ enum class FormulaOp : unsigned char {
   equal,
   both,
   either,
-  negation, ///< true is 1, false is 0; what is not 0 is true
-  choice,   ///< the second where the first is true, else the third
-  finite,   ///< not-a-number where it is infinite
+  negation, ///< true is 1 and false is 0; any nonzero number counts as true
+  choice,   ///< the second operand if the first is true, otherwise the third
+  finite,   ///< NaN for infinite operands
 };
 
+/// One number, operand or operation of a formula.
 struct FormulaNode {
   FormulaOp op = FormulaOp::number;
-  std::array<int, 3> of{-1, -1, -1}; ///< nodes that it is made from
+  std::array<int, 3> of{-1, -1, -1}; ///< nodes that are its operands
   double number = 0.0;               ///< SI
   int operand = 0;
-  std::array<double, 3> powers{}; ///< of a number's unit: kg, m, s
-  std::size_t begin = 0, end = 0; ///< what of the text it and its operands span
+  std::array<double, 3> powers{}; ///< exponents of kg, m, s in the unit of a number
+  std::size_t begin = 0, end = 0; ///< range in the text covered by the node and its operands
 };
 
 using FormulaTree = std::vector<FormulaNode>;
 
-/// Values of all nodes into `values`, which has room for them; the formula's is the last. `Numbers` says what numbers are and
-/// has a static function of every operation's name.
+/// Computes the values of all nodes in `values` and returns that of the formula, the last one. `Numbers` defines the number type, with a
+/// static function for each operation.
 template <class Numbers>
 const typename Numbers::Value& evaluate(const FormulaTree& tree, const typename Numbers::Value* operands, const typename Numbers::Value& t,
                                         typename Numbers::Value* values) {
@@ -103,7 +103,7 @@ const typename Numbers::Value& evaluate(const FormulaTree& tree, const typename 
   return values[tree.size() - 1];
 }
 
-/// Value of a tree for operands in SI; not-a-number where it has no finite one. `values` has room for all nodes.
+/// Returns the value of a tree for operands in SI; NaN if there is no finite value. `values`: scratch, one number per node.
 [[nodiscard]] double value_of(const FormulaTree& tree, const double* operands, double t, double* values);
 
 } // namespace steplap

@@ -6,8 +6,8 @@ namespace steplap {
 
 struct Formula::Typed {
   std::array<double, 3> powers{};
-  bool is_any = false;      ///< zero: of whatever it is added to
-  bool is_constant = false; ///< its value is known
+  bool is_any = false;      ///< zero, which may be added to any dimension
+  bool is_constant = false; ///< known value
   double value = 0.0;
 
   [[nodiscard]] bool is_number() const { return powers == std::array<double, 3>{}; }
@@ -26,14 +26,14 @@ void Formula::fail(const FormulaNode& at, const std::string& message) const {
   throw ModelError(where_, subject_ + ": in '" + text_.substr(at.begin, at.end - at.begin) + "' " + message);
 }
 
-// What has the dimension of both, which have the same one.
+// Returns the common dimension of both operands.
 Formula::Typed Formula::same(const FormulaNode& node, const Typed& a, const Typed& b) const {
   Typed both;
   both.powers = a.is_any ? b.powers : a.powers;
   both.is_any = a.is_any && b.is_any;
   if (a.is_any || b.is_any || a.powers == b.powers) return both;
   std::string hint;
-  if (a.is_constant != b.is_constant) { // a number that lacks its unit
+  if (a.is_constant != b.is_constant) { // a number without unit
     const Typed& other = a.is_constant ? b : a;
     const Typed& bare = a.is_constant ? a : b;
     if (bare.is_number()) hint = "; write it with its unit, '" + number_text(bare.value) + " " + unit_text(other.powers) + "'";
@@ -106,7 +106,7 @@ Formula::Typed Formula::of_operation(const FormulaNode& node, const std::vector<
     for (double& power : a.powers) power *= 0.5;
     a.is_constant = false;
     return a;
-  default: // functions of numbers
+  default: // functions of dimensionless numbers
     if (!a.is_number()) fail(node, "the function takes what has no unit, not " + said(a.powers) + ": divide by some '1 …' first");
     return {};
   }

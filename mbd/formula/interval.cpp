@@ -11,23 +11,23 @@ namespace {
 
 constexpr double k_outward = 0x1p-51;
 constexpr double k_pi = std::numbers::pi;
-constexpr double k_many_turns = 1e8; // beyond, which quarter an angle lies in is left open
+constexpr double k_many_turns = 1e8; // for larger angles the quadrant is treated as unknown
 constexpr double k_whole = 0x1p53;
 
 double outward(double x) { return std::isfinite(x) ? k_outward * std::abs(x) : 0.0; }
 
-// Nothing times infinity is nothing: infinity stands for what is large.
+// Zero times infinity is zero, since infinity represents arbitrarily large finite numbers.
 double product(double a, double b) { return a == 0.0 || b == 0.0 ? 0.0 : a * b; }
 
 double logarithm(double x) { return portable::log10(x) * std::numbers::ln10; }
 
 Interval of_corners(double p, double q, double r, double s) { return widened(std::min({p, q, r, s}), std::max({p, q, r, s})); }
 
-// Least and largest distance from zero.
+// Return the smallest and the largest absolute value in the interval.
 double nearest(const Interval& a) { return a.holds(0.0) ? 0.0 : std::min(std::abs(a.low), std::abs(a.high)); }
 double farthest(const Interval& a) { return std::max(std::abs(a.low), std::abs(a.high)); }
 
-// Does it hold `at` plus some multiple of the period? A little beside counts as well.
+// Returns true if the interval contains `at` plus a multiple of the period, with a tolerance for rounding.
 bool holds_periodic(const Interval& a, double at, double period) {
   const double slack = 1e-15 * (period + farthest(a));
   return std::floor((a.high + slack - at) / period) >= std::ceil((a.low - slack - at) / period);
@@ -37,13 +37,13 @@ Interval reciprocal(const Interval& b, bool& is_partial) {
   if (!b.holds(0.0)) return widened(1.0 / b.high, 1.0 / b.low);
   is_partial = true;
   const double infinite = std::numeric_limits<double>::infinity();
-  if (b.low == 0.0 && b.high == 0.0) return k_all; // infinite: min, max and another quotient make something of it
+  if (b.low == 0.0 && b.high == 0.0) return k_all; // infinite or undefined; min, max or another quotient may still make use of it
   if (b.low == 0.0) return {widened(1.0 / b.high, 1.0 / b.high).low, infinite};
   if (b.high == 0.0) return {-infinite, widened(1.0 / b.low, 1.0 / b.low).high};
   return k_all;
 }
 
-// Of what is not negative, or to a whole exponent that is positive.
+// Power of nonnegative numbers, or with a positive integer exponent.
 Interval positive_power(const Interval& a, double exponent) {
   const bool is_even = std::fmod(exponent, 2.0) == 0.0;
   if (is_even || a.low >= 0.0) {
@@ -61,7 +61,7 @@ Interval swing(const Interval& a, double top, double at_low, double at_high) {
   return common(ends, {-1.0, 1.0});
 }
 
-// The part of it on which the inverse of a sine has a value.
+// Returns the part of the interval in [−1, 1], where asin and acos are defined.
 Interval within_one(const Interval& a, bool& is_partial) {
   is_partial = is_partial || a.low < -1.0 || a.high > 1.0;
   return common(a, {-1.0, 1.0});
@@ -69,7 +69,7 @@ Interval within_one(const Interval& a, bool& is_partial) {
 
 } // namespace
 
-// Of infinities that cancel nothing is known.
+// The difference of infinities can be anything.
 Interval widened(double low, double high) {
   return {std::isnan(low) ? k_all.low : low - outward(low), std::isnan(high) ? k_all.high : high + outward(high)};
 }
@@ -96,7 +96,7 @@ Interval power(const Interval& a, double exponent, bool& is_partial) {
   return exponent > 0.0 ? size : reciprocal(size, is_partial);
 }
 
-// Of what is positive it is monotone in both.
+// For a positive base it is monotonic in both arguments.
 Interval power(const Interval& a, const Interval& b, bool& is_partial) {
   if (b.low == b.high) return power(a, b.low, is_partial);
   if (!(a.low > 0.0)) {
@@ -124,7 +124,7 @@ Interval cos(const Interval& a) { return swing(a, 0.0, portable::cos(a.low), por
 Interval tan(const Interval& a) {
   if (!(a.high - a.low < k_pi) || farthest(a) > k_many_turns || holds_periodic(a, 0.5 * k_pi, k_pi)) return k_all;
   const portable::SinCos low = portable::sin_cos(a.low), high = portable::sin_cos(a.high);
-  const Interval once = widened(low.sin / low.cos, high.sin / high.cos); // of two roundings and a quotient's
+  const Interval once = widened(low.sin / low.cos, high.sin / high.cos); // two rounding errors and that of the quotient
   return widened(once.low, once.high);
 }
 
@@ -144,7 +144,7 @@ Interval acos(const Interval& a, bool& is_partial) {
 
 Interval atan(const Interval& a) { return widened(portable::atan2(a.low, 1.0), portable::atan2(a.high, 1.0)); }
 
-// Where it does not touch the half-axis on which the angle jumps its extremes are at corners.
+// If the interval does not touch the half-axis on which the angle jumps, the extremes are at corners.
 Interval atan2(const Interval& y, const Interval& x) {
   if (y.holds(0.0) && x.low <= 0.0) return {-k_pi, std::nextafter(k_pi, 4.0)};
   return of_corners(portable::atan2(y.low, x.low), portable::atan2(y.low, x.high), portable::atan2(y.high, x.low),

@@ -1,7 +1,6 @@
-// Intervals of numbers, and what the operations of formulas make of them: the interval of all values that they can take,
-// rounded outward (by two units in the last place, more than portable_math.h leaves; what underflows is left as it is).
-//
-// A result may be partial: some of the arguments have no value, as roots of what is negative. What has none anywhere is empty.
+// Interval arithmetic for the operations of formulas. Results contain all possible values and are rounded outward by two units in the last
+// place, more than the errors of portable_math.h (not for results that underflow). A result is partial if some arguments have no value,
+// such as square roots of negative numbers, and empty if none has.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 
 namespace steplap {
 
+/// Closed interval of real numbers; empty if low > high.
 struct Interval {
   double low = 0.0, high = 0.0;
 
@@ -21,14 +21,17 @@ struct Interval {
 
 namespace interval {
 
+/// The empty interval, and all numbers.
 inline constexpr Interval k_none{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 inline constexpr Interval k_all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
+/// Returns [low, high] rounded outward; NaN counts as infinite.
 [[nodiscard]] Interval widened(double low, double high);
 [[nodiscard]] inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
 [[nodiscard]] inline Interval common(const Interval& a, const Interval& b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
 
-// None of these is handed what is empty.
+// Precondition of the following functions: no argument is empty. `is_partial` is set to true if the result is partial, and otherwise left
+// unchanged.
 [[nodiscard]] Interval add(const Interval& a, const Interval& b);
 [[nodiscard]] Interval subtract(const Interval& a, const Interval& b);
 [[nodiscard]] Interval multiply(const Interval& a, const Interval& b);

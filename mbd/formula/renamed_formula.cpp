@@ -32,7 +32,8 @@ std::string with_operands(const std::string& text, const std::function<std::stri
     result.append(text, done, node->begin - done);
     result += renamed(formula->names()[static_cast<std::size_t>(node->operand)]);
     done = node->end;
-    while (done > node->begin && (text[done - 1] == ' ' || text[done - 1] == '\t')) --done; // what a node spans ends where the next begins
+    while (done > node->begin && (text[done - 1] == ' ' || text[done - 1] == '\t'))
+      --done; // the range of a node extends to the beginning of the next
   }
   return result.append(text, done);
 }

@@ -1,4 +1,4 @@
-// Formulas with other names for their operands: what a formula becomes where its file is a part of another, or an index a number.
+// Formulas with renamed operands, needed when a file is used as part of another, or when an index is replaced by a number.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,9 @@
 
 namespace steplap {
 
-/// The text of the formula with what `renamed` gives in place of each operand; nothing else in it changes. A name that is not made
-/// of letters, digits, _ and points has to come back in braces. Text that is no formula stays as it is: whoever reads it says why.
+/// Returns the text of the formula with each operand replaced by `renamed(name)` and no other change. A new name with other characters than
+/// letters, digits, _ and points must be returned in braces. Text that is not a formula is returned unchanged; its error is reported when
+/// it is read.
 [[nodiscard]] std::string with_operands(const std::string& text, const std::function<std::string(const std::string& name)>& renamed);
 
 } // namespace steplap

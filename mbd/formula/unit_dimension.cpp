@@ -35,7 +35,7 @@ constexpr Symbol k_symbols[] = {
     {"min", 60.0, {0, 0, 1}, false},
     {"h", 3600.0, {0, 0, 1}, false},
     {"gravity", 9.80665, {0, 1, -2}, false},
-    // Amperes and kelvins count as numbers, as radians do: what volts times amperes are is watts all the same.
+    // Electric and temperature units are dimensionless here, like radians; volts times amperes still give watts.
     {"A", 1.0, {0, 0, 0}, true},
     {"K", 1.0, {0, 0, 0}, true},
     {"C", 1.0, {0, 0, 1}, true},
@@ -70,7 +70,7 @@ std::optional<UnitDimension> of_symbol(std::string_view name) {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-// "m^2", "m2", "s-1": the symbol and its power, of at most two digits.
+// Splits "m^2", "m2" or "s-1" into symbol and exponent of at most two digits.
 std::optional<UnitDimension> of_factor(std::string_view text) {
   std::size_t end = text.size();
   while (end > 0 && is_digit(text[end - 1])) --end;

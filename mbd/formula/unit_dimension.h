@@ -1,8 +1,9 @@
-// What a unit is made of: a factor and powers of kg, m and s. For formulas of channels, whose operands have few units; what a
-// model file may write for a quantity is read by UDUNITS (mbd/io/units.h), and a test compares the two.
+// Dimensions of units for formulas: a factor and powers of kg, m and s. Units in model files are read by UDUNITS (mbd/io/units.h); a test
+// compares both.
 //
-// Products with a space, quotients of one factor each ("N m/rad", "kg/m/s"), powers as "m^2" or "m2", SI prefixes from nano to
-// giga. Angles count as numbers. "Hz", "rpm" and "g" are no units here: turns or radians, grams or weights is not told.
+// Accepted are products with a space, quotients by one factor each ("N m/rad", "kg/m/s"), powers as "m^2" or "m2", and SI prefixes from
+// nano to giga. Angles are dimensionless. "Hz", "rpm" and "g" are not accepted because they are ambiguous: turns or radians, grams or the
+// acceleration of gravity.
 #pragma once
 
 #include <array>
@@ -12,17 +13,18 @@
 
 namespace steplap {
 
+/// Dimension of a unit, and its size in SI.
 struct UnitDimension {
-  double factor = 1.0;            ///< so many SI units
-  std::array<double, 3> powers{}; ///< of kg, m, s
+  double factor = 1.0;            ///< SI value of one unit
+  std::array<double, 3> powers{}; ///< exponents of kg, m, s
 
   [[nodiscard]] bool is_number() const { return powers == std::array<double, 3>{}; }
 };
 
-/// Nothing for a unit that is not known.
+/// Returns the dimension, or nothing for an unknown unit.
 [[nodiscard]] std::optional<UnitDimension> dimension_of(std::string_view unit);
 
-/// The SI unit of these powers as channels write it; "" for a number.
+/// Returns the SI unit with these exponents as channels write it; "" for a number.
 [[nodiscard]] std::string unit_text(const std::array<double, 3>& powers);
 
 } // namespace steplap

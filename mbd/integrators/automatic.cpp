@@ -1,16 +1,14 @@
-// Explicit until stiffness shows, then implicit, and back.
+// Automatic choice between an explicit and an implicit method.
 //
-// Explicit: dop853, at tolerances above 1e-5 tsit5. Stiffness shows where the step is as long as stability
-// allows, several steps in a row (Integrator::stability_share); Rodas5P goes on from there. After a number
-// of implicit steps, or when they have become little longer than what explicit ones could be, the explicit
-// method is tried again: being wrong costs it a handful of steps, a few percent of the implicit ones.
+// The explicit method is dop853, for tolerances above 1e-5 tsit5. If several consecutive steps are limited by stability
+// (Integrator::stability_share), Rodas5P continues. The explicit method is tried again after a number of implicit steps, or when these are
+// little longer than explicit ones could be. A wrong trial costs a handful of steps, a few percent of the implicit ones.
 //
-// At tight tolerances a stiff scene keeps explicit steps well below that bound: what it leaves of the fast motion, rounding
-// among it, must be damped below the tolerance within each step. Such steps are known by a share that is far above that of
-// an accurate step, on average. Then the implicit method is tried, and keeps its place only where its steps are longer by
-// more than what they cost; after each trial in vain the explicit one has twice as many steps before the next. Where the
-// implicit method gives way after many steps to see whether the explicit one does better by now, it is known what that has
-// to come to.
+// At tight tolerances explicit steps in a stiff scene stay well below the stability limit, because the remaining fast motion, even its
+// rounding errors, must be damped below the tolerance within each step. Such steps are recognised by a stability share that is on average
+// far above that of an accurate step. The implicit method is then tried, and kept only if its longer steps outweigh their higher cost.
+// After each unsuccessful trial the waiting time before the next one is doubled. When the implicit method, after many steps, yields to the
+// explicit one for comparison, the step length to be reached is known.
 #include "mbd/base/portable_math.h"
 #include "mbd/integrators/methods.h"
 
@@ -21,21 +19,21 @@ namespace steplap {
 namespace {
 
 constexpr double k_loose = 1e-5;     // tolerance above which order 5 is cheaper than order 8
-constexpr double k_limited = 0.8;    // share of the stability bound that counts as limited by it
-constexpr int k_steps_limited = 5;   // in a row (each must be; an accurate step is well below)
-constexpr int k_steps_implicit = 60; // before the explicit method is tried again
-constexpr double k_worth = 6.0;      // an implicit step costs about as much as so many explicit ones
-// Share of an accurate step of dop853 along an oscillation, at a tolerance of 1e-8; it goes as the error's eighth root.
+constexpr double k_limited = 0.8;    // stability share from which a step counts as limited by stability
+constexpr int k_steps_limited = 5;   // consecutive limited steps before the change; the share of an accurate step is well below
+constexpr int k_steps_implicit = 60; // implicit steps before the explicit method is tried again
+constexpr double k_worth = 6.0;      // cost of an implicit step relative to an explicit one
+// Stability share of an accurate dop853 step on an oscillation at tolerance 1e-8; proportional to the eighth root of the tolerance.
 constexpr double k_accurate_share = 0.26;
-constexpr double k_suspicious = 2.0;       // times that share, on average: hardly accuracy
-constexpr double k_memory = 1.0 / 16.0;    // weight of a step in averages
-constexpr int k_steps_before_trial = 32;   // the first time, so that the averages are those of these steps
-constexpr long k_most_before_trial = 1024; // a trial in vain costs some 40 explicit steps: 4 % at most
-// However accurate its steps look, after so many the explicit method is compared: what an accurate share is, is known of
-// oscillations alone. After each trial in vain it has four times as many, so that all of them together cost a few percent of a long run.
+constexpr double k_suspicious = 2.0;       // multiple of this share, on average, above which accuracy is unlikely to be the cause
+constexpr double k_memory = 1.0 / 16.0;    // weight of the last step in running averages
+constexpr int k_steps_before_trial = 32;   // initially; long enough for the averages to refer to these steps
+constexpr long k_most_before_trial = 1024; // an unsuccessful trial costs some 40 explicit steps, so at most 4 %
+// The methods are compared after this many steps, however accurate the steps seem, because the accurate share is known for oscillations
+// only. The number is multiplied by four after each unsuccessful trial, so that all trials together cost a few percent of a long run.
 constexpr long k_steps_before_any = 128;
-constexpr int k_steps_to_grow = 8; // of a method taken up again: steps grow sixfold each
-constexpr double k_grows = 1.2;    // from step to step: a trial behind an event begins with short ones
+constexpr int k_steps_to_grow = 8; // steps of a resumed method until its length is representative, with a growth of up to six per step
+constexpr double k_grows = 1.2;    // growth from step to step: after an event a trial begins with short steps
 
 class Automatic final : public Integrator {
 public:
@@ -124,7 +122,7 @@ private:
     rejections_ = explicit_->rejections() + implicit_->rejections();
   }
 
-  // Counts what speaks for the other method; the change itself waits until the step has been used.
+  // Updates the criteria for a change of method. The change itself is made after the step has been used.
   void judge(Dynamics& dynamics) {
     if (active_ == explicit_.get()) {
       const double share = active_->stability_share(dynamics);
@@ -140,7 +138,7 @@ private:
     last_step_ = h_;
   }
 
-  // Is the explicit method slower than accuracy asks for? Then its pace is what the implicit one has to beat.
+  // Returns true if the explicit method is slower than accuracy requires. The implicit method must then be faster than this.
   [[nodiscard]] bool is_trial_due() const {
     if (steps_explicit_ >= k_steps_to_grow && k_worth * h_ < implicit_step_ && k_worth * mean_step_ < implicit_step_) return true;
     if (steps_explicit_ >= steps_before_any_ && mean_share_ > 0.5 * suspicious_share_) return true;
@@ -149,13 +147,14 @@ private:
 
   void choose(Dynamics& dynamics) {
     const bool is_explicit = active_ == explicit_.get();
-    // What is stiff about a slip law comes and goes with its speed, and is over before a trial pays.
+    // The stiffness of a slip law varies with the slip velocity and ends before a trial would pay.
     const bool is_trial = is_explicit && count_ < k_steps_limited && is_trial_due() && !(dynamics.slip_decay_rate() > 0.0);
     if (count_ < (is_explicit ? k_steps_limited : k_steps_implicit) && !is_trial) return;
     count_ = 0;
     is_started_ = false;
     if (!is_explicit) {
-      const bool is_in_vain = implicit_->steps() - implicit_steps_before_ < k_steps_implicit / 2; // a handful of steps
+      const bool is_in_vain = implicit_->steps() - implicit_steps_before_ <
+                              k_steps_implicit / 2; // ended early: each step that was too short counted like several
       if (is_trial_) steps_before_trial_ = is_in_vain ? std::min(2 * steps_before_trial_, k_most_before_trial) : k_steps_before_trial;
       if (is_trial_) steps_before_any_ = is_in_vain ? 4 * steps_before_any_ : k_steps_before_any;
       implicit_step_ = is_in_vain ? 0.0 : h_;
@@ -165,23 +164,24 @@ private:
     }
     is_trial_ = is_trial;
     if (is_trial) explicit_step_ = mean_step_;
-    if (implicit_->steps() == 0) implicit_->propose_step(10.0 * explicit_step_); // what the explicit one has made, ten times
+    if (implicit_->steps() == 0) implicit_->propose_step(10.0 * explicit_step_); // first guess
     active_ = implicit_.get();
     implicit_steps_before_ = implicit_->steps();
   }
 
   std::vector<double> k_;
-  std::unique_ptr<Integrator> explicit_, implicit_; ///< both from the start: a trial may come in any step, which allocates nothing
+  std::unique_ptr<Integrator> explicit_, implicit_; ///< both are created at the start, so that a trial does not allocate
   Integrator* active_;
   bool is_started_ = false, is_warm_ = false;
   int count_ = 0;
-  double explicit_step_ = 0.0; ///< the longest that stability allows, or in a trial what the method came to, s
+  double explicit_step_ = 0.0; ///< longest explicit step allowed by stability, or reached in a trial, s
   double suspicious_share_;
-  double mean_share_ = 0.0, mean_step_ = 0.0;                           ///< of explicit steps; s
-  long steps_explicit_ = 0, steps_before_trial_ = k_steps_before_trial; ///< since the method was taken up again
+  double mean_share_ = 0.0, mean_step_ = 0.0; ///< averages over explicit steps; mean_step_ in s
+  long steps_explicit_ = 0,
+       steps_before_trial_ = k_steps_before_trial; ///< explicit steps since the method was resumed; number of them before the next trial
   long steps_before_any_ = k_steps_before_any;
   double last_step_ = 0.0;     ///< s
-  double implicit_step_ = 0.0; ///< that the explicit method has to beat, s; 0: none known
+  double implicit_step_ = 0.0; ///< implicit step length that the explicit method has to compete with, s; 0: unknown
   bool is_trial_ = false;
   long implicit_steps_before_ = 0;
 };

@@ -1,5 +1,5 @@
-// The explicit pair of order 8 of Dormand and Prince (DOP853) with its dense output of order 7, whose
-// three extra evaluations are made only for steps that are looked into.
+// The explicit pair of order 8 of Dormand and Prince (DOP853). Its dense output of order 7 needs three more evaluations, made only for
+// steps that are evaluated inside.
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/tableau_dop853.h"
@@ -12,16 +12,16 @@ namespace steplap {
 
 namespace {
 
-// Beyond stability a motion that is not there yet but for rounding grows within a step: its end by up to (hρ)¹²/12!, the
-// dense output by (hρ)¹⁵, which is 10⁴ times as much at hρ = 30 and 10⁵ at 60, unseen by the estimate at the end. There
-// the stage at 0.2 departs from the dense output by a 15th to a 60th of what that is off by; in steps that are accurate,
-// where both are right, by a tenth of the tolerance (docs/how-to/choose_a_method.md).
+// Bounds for accepting the dense output. Beyond the stability limit, components that exist only as rounding errors grow within a step: at
+// its end by up to (hρ)¹²/12!, in the dense output by (hρ)¹⁵, which is 10⁴ times as much at hρ = 30 and 10⁵ times at 60, unseen by the
+// error estimate. The difference between the stage at 0.2 and the dense output is then 1/15 to 1/60 of the error of the latter; in accurate
+// steps it is a tenth of the tolerance (docs/how-to/choose_a_method.md).
 constexpr std::size_t k_looked_stage = 14;
 constexpr double k_most_departure = 5.0;
-// Velocities of a slip by which its friction turns may be off by no more there than where they have fallen to a tenth
-// within a step (Integrator::resolves_slips): a 60th of that.
+// The slip velocities on which friction directions depend need an accuracy there that is 1/60 of a tenth: within a step they may decrease
+// to a tenth (Integrator::resolves_slips).
 constexpr double k_most_departure_of_slips = 10.0 / 60.0;
-constexpr double k_most_defect = 10.0; // of accurate steps about 1: an eighth of the polynomial's error, times hρ
+constexpr double k_most_defect = 10.0; // about 1 in accurate steps: an eighth of the polynomial's error, times hρ
 
 class Dop853 final : public ExplicitPair {
 public:
@@ -35,7 +35,7 @@ public:
     if (!is_dense_ready_) prepare_dense(dynamics);
     dense_of_pair(theta, out);
   }
-  // y + s (r0 + u (r1 + s (r2 + u (r3 + s (r4 + u (r5 + s r6))))))
+  // Evaluates y + s (r0 + u (r1 + s (r2 + u (r3 + s (r4 + u (r5 + s r6)))))), s = theta, u = 1 − s.
   void dense_of_pair(double theta, double* out) {
     const double s = theta, u = 1.0 - theta;
     for_numbers(
@@ -56,7 +56,7 @@ public:
     double* const y = scratch_.data();
     combine<dop853::a, 11, 11>(y0_.data(), h_, k_.data(), stride_, n_, y);
     for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];
-    return rate_of_stages(12, 11, y) / 6.1; // stable for hρ up to 6.1 on the negative axis
+    return rate_of_stages(12, 11, y) / 6.1; // stable on the negative real axis for hρ up to 6.1
   }
 
 protected:
@@ -112,7 +112,7 @@ private:
     is_dense_ready_ = true;
   }
 
-  // Of the dense output from a stage that knows its place to order 6.
+  // Returns the error norm of the dense output compared with a stage that is accurate to order 6.
   [[nodiscard]] double stage_departure() {
     double* const y = scratch_.data();
     double* const departure = y + n_;
@@ -122,7 +122,7 @@ private:
     return error_norm(departure);
   }
 
-  // Of the dense output u in the middle of the step: h (u' − f(u)).
+  // Returns the norm of the defect of the dense output u in the middle of the step: h (u' − f(u)).
   [[nodiscard]] double defect(Dynamics& dynamics) {
     double* const y = scratch_.data();
     double* const f = y + n_;
@@ -130,7 +130,7 @@ private:
     const double* const r = r_.data();
     constexpr double s = 0.5;
     for (int i = 0; i < n_; ++i) {
-      double value = r[6 * stride_ + i], slope = 0.0; // of the polynomial from its innermost bracket
+      double value = r[6 * stride_ + i], slope = 0.0; // of the polynomial, evaluated from its innermost bracket
       for (int p = 5; p >= 0; --p) {
         slope = (p % 2 == 1 ? value : -value) + s * slope;
         value = r[p * stride_ + i] + s * value;
@@ -143,8 +143,8 @@ private:
     return error_norm(change);
   }
 
-  // An elastic joint slides: its force turns to the way of the slip within the strain that it bears, however small
-  // that is against the way, and nothing but rounding may have turned it away from there when the step began.
+  // Returns true if an elastic joint slides in the step. Its force turns to the slip direction within its elastic strain, however small
+  // that is compared with the slip, and at the start of the step may deviate from it only by rounding.
   [[nodiscard]] bool flows_inside(const Dynamics& dynamics) {
     for (int i = n_ - 2 - dynamics.inner_count(); i < n_ - 2; ++i)
       if (k(0)[i] != 0.0 || k(12)[i] != 0.0) return true;

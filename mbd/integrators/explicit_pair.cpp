@@ -11,10 +11,10 @@ namespace steplap {
 namespace {
 
 constexpr double k_shortest_retry = 0.1;
-constexpr double k_shorter = 0.2; // after a step that came to nothing
-// Rounding beside a singular position keeps stages from agreeing to tolerances below this one only.
+constexpr double k_shorter = 0.2; // factor for the length after a step with an infinite error
+// Near a singular position rounding prevents agreement of stages only for tolerances below this.
 constexpr double k_near_rounding = 1e-10;
-// Of the way to the position: where the next attempt begins if one fails.
+// Fraction of the distance to the singular position at which the next attempt begins after a failure.
 constexpr double k_closer = 0.5;
 
 } // namespace
@@ -25,7 +25,7 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
   control_.order = order;
 }
 
-// The step size survives an event: what limited it was the motion, which goes on much the same.
+// The step length is kept across an event: it was limited by the motion, which usually changes little.
 void ExplicitPair::on_restart(Dynamics&) {
   control_.previous_error = 1e-4;
   approach_.restart();
@@ -42,7 +42,8 @@ void ExplicitPair::note_end(double pivot) {
   approach_.note_end(pivot);
 }
 
-// Beside a singular position of joints what projection takes away is no error, and most of what stages differ by.
+// Near a singular position most of the difference between stages is constraint violation, which projection removes, so the dense output is
+// not checked.
 double ExplicitPair::error_inside(Dynamics& dynamics) {
   is_inside_known_ = true;
   return is_beside_singular_ ? 0.0 : dense_error(dynamics);
@@ -68,7 +69,7 @@ bool ExplicitPair::withdraw(Dynamics& dynamics, double h) {
   control_.previous_error = before_.error;
   next_h_ = h;
   refuse_shorter_than_rounding(next_h_);
-  dynamics.rates(t0_, y0_.data(), scratch_.data()); // where the next try begins
+  dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
   return true;
 }
 
@@ -77,8 +78,8 @@ void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {
   else dense_of_pair(dynamics, theta, out);
 }
 
-// After a try that came near a singular position: the same way in one step of another kind, the position in
-// its middle. 0 if that step was made, else how long the next try should be.
+// After a try that came near a singular position: crosses it by one step of collocation with the position in its middle. Returns 0 if this
+// succeeded, otherwise the length of the next try.
 double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   if (!crossing_) crossing_ = std::make_unique<SingularCrossing>(stride_);
   const double h_tried = h_;
@@ -112,7 +113,7 @@ void ExplicitPair::begin_step(Dynamics& dynamics, double t_limit) {
 void ExplicitPair::prepare_try() {
   const double h = attempt_.h, left = attempt_.left;
   attempt_.is_last = h >= left * (1.0 - 1e-10);
-  // Two even steps rather than a long one and a sliver.
+  // Two equal steps instead of a long one followed by a tiny one.
   h_ = attempt_.is_last ? left : (2.0 * h > left ? 0.5 * left : h);
   t1_ = attempt_.is_last ? t_limit_ : t0_ + h_;
   begin_watch_nodes();
@@ -127,7 +128,7 @@ bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
   if (inside > 1.0) return false;
   before_.error = control_.previous_error;
   const double factor = control_.factor(std::max(try_error_, inside), attempt_.is_retry);
-  // A step cut short by the limit says nothing against the longer one that was planned.
+  // If the limit has cut the step, the next one may still have the planned length.
   next_h_ = h_ < attempt_.h ? std::max(attempt_.h, h_ * factor) : h_ * factor;
   note_end(pivot);
   return true;

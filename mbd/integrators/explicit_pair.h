@@ -1,4 +1,4 @@
-// Step control shared by the embedded explicit pairs.
+// Step control common to the embedded explicit Runge–Kutta pairs.
 #pragma once
 
 #include "mbd/integrators/explicit_runge_kutta.h"
@@ -8,12 +8,13 @@
 
 namespace steplap {
 
-/// A singular position of joints lies ahead that the step from here does not pass in joint coordinates, which bodies'
-/// own might: thrown where there is a choice, the state still that of the last step.
+/// A singular position of joints is ahead that cannot be passed in joint coordinates, but perhaps in absolute ones. Thrown only if both are
+/// possible; the state is then that of the last step.
 struct JointsNearSingular : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
 
+/// Base class of the pairs: derived classes supply the stages, the error estimate and the dense output.
 class ExplicitPair : public Integrator {
 public:
   ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension, int stages, int order);
@@ -27,12 +28,14 @@ public:
   [[nodiscard]] double stability_share(Dynamics& dynamics) final { return is_crossing_ ? 0.0 : share_of_stability(dynamics); }
 
 protected:
+  /// Dense output of the pair, as Integrator::dense(), for a step that is not a singular crossing.
   virtual void dense_of_pair(Dynamics& dynamics, double theta, double* out) = 0;
+  /// Returns Integrator::stability_share() of the pair.
   [[nodiscard]] virtual double share_of_stability(Dynamics& dynamics) = 0;
-  /// Stages, y1 and the error norm (accepted when ≤ 1) of a step of h_ from t0_.
+  /// Computes the stages, y1 and the error norm (acceptable if ≤ 1) of a step of length h_ from t0_.
   virtual double try_step(Dynamics& dynamics) = 0;
-  /// Of a step whose end is accepted and finished: error norm of its dense output, where the end's does not bound it;
-  /// beyond 1, which is no number too (infinite), the step is refused like any other.
+  /// Returns the error norm of the dense output of an accepted step, for pairs whose dense output can be worse than the end; 0 otherwise.
+  /// The step is rejected if it is above 1 or NaN.
   [[nodiscard]] virtual double dense_error(Dynamics& /*dynamics*/) { return 0.0; }
   void on_restart(Dynamics& dynamics) override;
   [[nodiscard]] bool withdraw(Dynamics& dynamics, double h) final;
@@ -41,15 +44,15 @@ protected:
     add_stages<Rows, Row, Row>(scratch_.data());
     evaluate_stage(dynamics, t0_ + c * h_, scratch_.data(), k(Row), c);
   }
-  /// combine() and weighted_sum() of the stages.
+  /// Evaluate combine() and weighted_sum() of explicit_runge_kutta.h for the stages.
   template <const auto& Rows, std::size_t Row, std::size_t Count> void add_stages(double* out) {
     combine<Rows, Row, Count>(y0_.data(), h_, k_.data(), stride_, n_, out);
   }
   template <const auto& Weights, std::size_t Count> void sum_stages(double* out) {
     weighted_sum<Weights, Count>(k_.data(), stride_, n_, out);
   }
-  /// h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the step's end: the fastest rate in the steps' direction
-  /// (Hairer, Wanner, Solving ODEs II, IV.2). `difference`: y_i − y_j.
+  /// Returns h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the end of the step, an estimate of the fastest rate (Hairer, Wanner, Solving ODEs
+  /// II, IV.2). `difference` is y_i − y_j.
   [[nodiscard]] double rate_of_stages(std::size_t i, std::size_t j, const double* difference) {
     double rates = 0.0, states = 0.0;
     for (int l = 0; l < n_ - 2; ++l) {
@@ -57,7 +60,7 @@ protected:
       rates += f * f;
       states += y * y;
     }
-    // Differences far below the tolerance (bodies at rest) are rounding.
+    // Differences far below the tolerance (bodies at rest) are rounding errors.
     return states > 1e-6 ? h_ * std::sqrt(rates / states) : 0.0;
   }
   double* k(std::size_t i) { return k_.data() + i * stride_; }
@@ -65,25 +68,26 @@ protected:
   std::vector<double> k_;
   int stride_;
 
-  double try_error_ = 0.0; ///< of the try made last
+  double try_error_ = 0.0; ///< error norm of the last try
 
 private:
-  /// Of the step that is being tried.
+  /// Data of the step being tried.
   struct Attempt {
-    double left = 0.0; ///< to the limit, s
-    double h = 0.0;    ///< that is wanted, before it is cut to end well
+    double left = 0.0; ///< time left to the limit, s
+    double h = 0.0;    ///< desired length, s, before the adjustment to the limit
     bool is_last = false, is_retry = false, has_tried_crossing = false;
     std::optional<SingularPassage> passage;
   };
   void prepare_try();
-  /// Is the step, whose end was finished, as good inside as at its end? Then it is noted.
+  /// Checks the dense output of a step whose end is accepted; completes the step if it is accurate enough. `inside` receives its error
+  /// norm.
   [[nodiscard]] bool accept_inside(Dynamics& dynamics, double& inside);
   double cross_singularity(Dynamics& dynamics, double left);
   void note_end(double pivot);
   [[nodiscard]] double error_inside(Dynamics& dynamics);
   void refuse_shorter_than_rounding(double h) const;
   [[nodiscard]] double shorter(double error) const;
-  /// The next try takes h.
+  /// Prepares the next try with length h. Returns false: the step is not yet made.
   bool try_again(double h) {
     attempt_.h = h;
     attempt_.is_retry = true;
@@ -95,12 +99,12 @@ private:
   int order_;
   double next_h_ = 0.0;
   Attempt attempt_;
-  std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
+  std::unique_ptr<SingularCrossing> crossing_; ///< created when the first crossing occurs
   SingularApproach approach_;
-  bool is_crossing_ = false;        ///< the step made is one
-  bool is_inside_known_ = false;    ///< of the step made: it bears a look
-  bool is_beside_singular_ = false; ///< the step made is
-  /// What was before the step made, if it is withdrawn.
+  bool is_crossing_ = false;        ///< the step made is a crossing
+  bool is_inside_known_ = false;    ///< the dense output of the step made has been checked
+  bool is_beside_singular_ = false; ///< the step made is near a singular position
+  /// Control data before the step made, restored if it is withdrawn.
   struct Before {
     SingularApproach approach;
     double error = 1e-4;

@@ -1,7 +1,5 @@
-// Explicit Runge–Kutta methods: one engine, the coefficients are data known at compile time.
-//
-// A Method has k_stages, k_order, a, b, c as constexpr arrays and two functions of its stages:
-// error(...) (adaptive methods) and its dense output, supplied by the derived class.
+// Linear combinations of stages for explicit Runge–Kutta methods. The coefficients are compile-time constants, so that zeros cost nothing
+// and loops are vectorised.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -15,15 +13,15 @@
 
 namespace steplap {
 
-/// Neighbours in the parts of a register: the operations of each, in their order. Every x86-64 has registers for two, most have them for
-/// four.
+/// SIMD registers of two and four doubles. Each lane performs the same operations in the same order as scalar code. All x86-64 processors
+/// have two, most have four.
 using TwoNumbers [[gnu::vector_size(16)]] = double;
 using FourNumbers [[gnu::vector_size(32)]] = double;
 
-/// Numbers from there on, as many as S has. (By reference: as results their registers would hang on the processor.)
+/// Reads as many numbers as S holds. (By reference, because the registers for return values depend on the processor.)
 template <class S> STEPLAP_INLINE void read_numbers(const double* from, S& numbers) { std::memcpy(&numbers, from, sizeof numbers); }
 
-/// f.operator()<S>(i) for the numbers from each i on, as many as S has, up to n: four, then two at a time.
+/// Calls f.operator()<S>(i) for i … n − 1 in blocks of the size of S.
 template <class F> STEPLAP_INLINE void for_numbers_by_two(int i, int n, const F& f) {
   for (; i + 1 < n; i += 2) f.template operator()<TwoNumbers>(i);
   if (i < n) f.template operator()<double>(i);
@@ -45,21 +43,21 @@ template <class F> inline void for_numbers(int n, const F& f) {
   for_numbers_by_two(0, n, f);
 }
 
-/// sum += coefficient k
+/// sum += coefficient · k.
 template <class S> STEPLAP_INLINE void add_stage(double coefficient, const double* k, S& sum) {
   S numbers;
   read_numbers(k, numbers);
   sum += coefficient * numbers;
 }
 
-/// Σ_j coefficient_j k_j, zero coefficients dropped at compile time.
+/// sum = Σ_j coefficient_j k_j; zero coefficients are dropped at compile time.
 template <class S, auto Coefficient, std::size_t... J>
 STEPLAP_INLINE void sum_stages_into(S& sum, const double* k, int stride, std::index_sequence<J...>) {
   sum = S{};
   ((Coefficient(J) != 0.0 ? add_stage(Coefficient(J), k + static_cast<std::ptrdiff_t>(J) * stride, sum) : void()), ...);
 }
 
-/// out[i …] = Σ_j coefficient_j k_j[i …], as many as S has, after f(i, sum) has changed it.
+/// out[i …] = Σ_j coefficient_j k_j[i …] for a block of the size of S, modified by f(i, sum) before it is stored.
 template <class S, auto Coefficient, std::size_t Count, class F>
 STEPLAP_INLINE void put_sums(const double* k, int stride, int i, double* out, const F& f) {
   S sum;
@@ -68,7 +66,7 @@ STEPLAP_INLINE void put_sums(const double* k, int stride, int i, double* out, co
   std::memcpy(out + i, &sum, sizeof sum);
 }
 
-/// The same for those from `i` to n, two at a time.
+/// put_sums() for `i` … n − 1 in blocks of two.
 template <auto Coefficient, std::size_t Count, class F>
 STEPLAP_INLINE void put_sums_by_two(const double* __restrict k, int stride, int i, int n, double* __restrict out, const F& f) {
   for (; i + 1 < n; i += 2) put_sums<TwoNumbers, Coefficient, Count>(k, stride, i, out, f);
@@ -84,7 +82,7 @@ template <auto Coefficient, std::size_t Count, class F>
 }
 #endif
 
-/// The same for all i < n.
+/// put_sums() for all i < n, in the largest blocks that the processor has.
 template <auto Coefficient, std::size_t Count, class F> inline void for_sums(const double* k, int stride, int n, double* out, const F& f) {
 #if defined(__x86_64__)
   if (has_registers_of_four) return put_sums_by_four<Coefficient, Count>(k, stride, n, out, f);
@@ -92,12 +90,12 @@ template <auto Coefficient, std::size_t Count, class F> inline void for_sums(con
   put_sums_by_two<Coefficient, Count>(k, stride, 0, n, out, f);
 }
 
-/// Leaves a sum as it is.
+/// Leaves the sum unchanged.
 struct AsItIs {
   template <class S> STEPLAP_INLINE void operator()(int, S&) const {}
 };
 
-/// out = y + h Σ_j coefficient_j k_j. Rows is a constexpr array of rows, Row and Count pick the first Count entries of one.
+/// out = y + h Σ_j coefficient_j k_j, with the first Count entries of row `Row` of the constexpr array Rows.
 template <const auto& Rows, std::size_t Row, std::size_t Count>
 inline void combine(const double* __restrict y, double h, const double* __restrict k, int stride, int n, double* __restrict out) {
   for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(
@@ -108,27 +106,28 @@ inline void combine(const double* __restrict y, double h, const double* __restri
       });
 }
 
-/// out = Σ_j w_j k_j
+/// out = Σ_j w_j k_j.
 template <const auto& Weights, std::size_t Count>
 inline void weighted_sum(const double* __restrict k, int stride, int n, double* __restrict out) {
   for_sums<[](std::size_t j) { return Weights[j]; }, Count>(k, stride, n, out, AsItIs{});
 }
 
-/// out = h Σ_j w_j k_j, with one row of an array of rows (a part of an object as argument is more than clang 14 understands).
+/// out = h Σ_j w_j k_j with one row of an array. (clang 14 does not accept the row itself as template argument.)
 template <const auto& Rows, std::size_t Row, std::size_t Count>
 inline void weighted_row(double h, const double* __restrict k, int stride, int n, double* __restrict out) {
   for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(
       k, stride, n, out, [h]<class S>(int, S& sum) __attribute__((always_inline)) { sum = h * sum; });
 }
 
-/// The adaptive loop around a pair: PI control after Hairer & Wanner, Solving ODEs II, IV.2.
+/// PI control of the step length, after Hairer & Wanner, Solving ODEs II, IV.2.
 struct StepControl {
-  int order = 5; ///< of the error estimate + 1: err = O(h^order)
+  int order = 5; ///< p in err = O(h^p)
   double safety = 0.9;
   double largest = 6.0, smallest = 0.2;
   double beta = 0.04;
   double previous_error = 1e-4;
 
+  /// Returns the ratio of the next step length to the present one for an error norm `error`.
   [[nodiscard]] double factor(double error, bool is_after_rejection) {
     const double alpha = 1.0 / order - 0.75 * beta;
     double f = error > 0.0 ? safety * portable::pow(error, -alpha) * portable::pow(previous_error, beta) : largest;

@@ -1,10 +1,10 @@
-// Slips that begin and end inside a part of a time step, at whose end everything sticks.
+// Detection of slips that begin and end within one part of a time step, so that all elements stick at its end.
 //
-// A part has the loads' means, and clamping pressures as they are at its end. What it leaves of a peak is of the size of what usages
-// (shares of what elements bear) change by from part to part. Only where that may reach one the part is looked into: made again up
-// to three places of it, with the loads' means over a thousandth of it before each. Loads have no breakpoints inside a step
-// (Simulation::next_limit_of_steps) and no harmonic turns far in it, so that usages go like the parabola through the three. A part in
-// which it reaches one, and at whose end it is below, hides a slip; one at whose end it is not leaves it to the next.
+// A part uses means of loads and the clamping pressures at its end. The error of the utilisations (shares of the capacity) near a peak is
+// of the size of their changes from part to part. Only if a utilisation may reach one within this error is the part examined: it is
+// repeated up to three places, with loads averaged over 1/1000 of its length before each. Loads have no breakpoints within a step
+// (Simulation::next_limit_of_steps), and no harmonic turns far, so the utilisation is nearly a parabola through three values. If this
+// reaches one within the part and is below one at the end, a slip is hidden; if it is not below at the end, the next part will find it.
 #include "mbd/integrators/time_stepping.h"
 
 #include <algorithm>
@@ -14,15 +14,16 @@ namespace steplap {
 
 namespace {
 
-// Usages of parts are those of means: of a peak between straight lines that is as wide as a part they lack as much as they change by.
+// Allowance in changes of utilisation from part to part: for a triangular peak as wide as a part the mean is too small by one change.
 constexpr double k_reach = 1.5;
-constexpr double k_noise = 1e-6;  // of usages: wrenches are settled to this (time_stepping.cpp)
-constexpr double k_glance = 1e-3; // of a part
+constexpr double k_noise = 1e-6;  // accuracy of utilisations; wrenches converge to this (time_stepping.cpp)
+constexpr double k_glance = 1e-3; // duration of averaging, relative to a part
 constexpr double k_unlike_parabola =
-    0.3; // of what it bends by in a part: harmonics turn by 0.4 rad at most, but a usage may be one over them
-constexpr double k_places[] = {0.125, 0.5625, 1.0}; // of a part, the last its end
+    0.3; // relative to the curvature within a part. Harmonics advance by at most 0.4 rad per part; the reciprocal of one may curve more
+constexpr double k_places[] = {0.125, 0.5625, 1.0}; // positions within a part; the last is its end
 
-// What usage may reach between 0 and 1: the largest of the parabola through three values at k_places, and a share of its bend.
+// Returns an upper limit of the utilisation between 0 and 1: the maximum of the parabola through three values at k_places, plus a fraction
+// of its curvature.
 double top_of(const std::array<double, 3>& u) {
   constexpr double a = k_places[0], b = k_places[1], c = k_places[2];
   const double first = (u[1] - u[0]) / (b - a), second = ((u[2] - u[1]) / (c - b) - first) / (c - a);
@@ -32,7 +33,7 @@ double top_of(const std::array<double, 3>& u) {
   return top + k_unlike_parabola * 0.25 * std::abs(second);
 }
 
-// Keeps its memory from part to part.
+// Returns a state whose memory is reused from part to part.
 State& probe_state() {
   thread_local State state;
   return state;
@@ -40,7 +41,7 @@ State& probe_state() {
 
 } // namespace
 
-// 1 where it slips.
+// Returns the utilisation of an element; 1 if it slips.
 double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) const {
   if (!part.block.is_inside) return 1.0;
   const double* const wrench = &wrench_[static_cast<std::size_t>(part.first)];
@@ -50,9 +51,9 @@ double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) con
   return system_.frictions[part.friction].friction->gauge(e, e.friction[part.friction], wrench, normal);
 }
 
-// What sticks at the end of the part made, t1. True if inside it some of that may have slipped.
+// Stores the sticking elements at the end t1 of the part made. Returns true if some of them may have slipped within it.
 bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
-  if (sticking_.size() < system_.frictions.size()) { // takes the memory that later steps need
+  if (sticking_.size() < system_.frictions.size()) { // allocates the memory for later steps
     sticking_.resize(system_.frictions.size());
     glance_usage_.resize(system_.frictions.size());
     probe_state() = start_;
@@ -75,7 +76,8 @@ bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
   return is_any_near;
 }
 
-// Does one of those that are near slip inside the part from start_ to t1, and stick at its end? `dynamics` is left anywhere.
+// Returns true if an element marked as near slips within the part from start_ to t1 and sticks at its end. The state of `dynamics` is
+// undefined afterwards.
 bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance) {
   const double h = t1 - start_.t;
   const Residual residual = residual_;
@@ -89,7 +91,7 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
     try {
       is_made = try_part(dynamics, probe, end, tolerance).what == nullptr;
     } catch (const NumericalFailure&) {
-      is_made = false; // the part itself could be made
+      is_made = false; // the part as a whole was possible
     }
     glance_ = 0.0;
     if (is_made)

@@ -11,29 +11,30 @@ namespace steplap {
 
 namespace {
 
-// Absolute part of the error scales: a thousandth of the bodies' size, and what it would be in motion of so many times the
-// scene's own rate: at 10 Hz, 60/s, for bodies of a metre. Beyond that errors are relative to displacement and velocity.
+// Absolute part of the error scales. Positions: a thousandth of the radius of gyration. Velocities: that length times this multiple of the
+// scene's characteristic rate, 60/s (10 Hz) for bodies of 1 m. Above these, errors are relative to displacement and velocity.
 constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0 / k_metre_rate;
-// What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
+// Weight of the part of an error that projection removes: its directions change within a step, so it is not zero.
 constexpr double k_turned_share = 1e-4;
-// Merged joints far from their bounds are looked at about twice inside a step, so far apart, and not just before its end,
-// where they are looked at anyway.
+// Event functions of merged joints far from their limits are computed about twice inside a step, at this distance, but not just before its
+// end, where they are computed in any case.
 constexpr double k_merged_look = 0.25, k_merged_end = 0.0625;
-// Of the time, from which on a step that cannot meet the constraints is not shortened any more.
+// Relative to time: a step that cannot satisfy the constraints is not shortened below this.
 constexpr double k_shortest_try = 1e-12;
-// Errors of velocity stay below this share of what a slip law turns with, whatever the tolerance: where a slip
-// begins and ends, |ν| → 0, an error of the tolerance's size would give the friction any direction.
+// Errors of slip velocities stay below this fraction of the slip speed, whatever the tolerance. At the start and end of a slip, |ν| → 0, an
+// error of the size of the tolerance would give the friction an arbitrary direction.
 constexpr double k_slip_share = 5e-4;
-// The norm is a mean over the numbers of the state: of more of them than those of eight bodies, velocities of a slip weigh as
-// much as they would there.
+// The error norm is a mean over the numbers of the state. If there are more numbers than those of eight bodies, slip velocities get a
+// correspondingly larger weight.
 constexpr double k_slip_numbers = 50.0;
 // Within a step a slip slows down to this share at most. Errors that are k_slip_share of its speed where the step begins
 // are then a two hundredth of it wherever the step is looked into, and so is what they turn it by.
 constexpr double k_least_slip = 0.1;
-// Of the way to the place where it was slower, how much the next try goes: a slip that falls evenly is at a fifth there.
+// Fraction of the distance to the place where the slip was too slow, for the next try. For a uniformly decelerated slip the speed there is
+// a fifth.
 constexpr double k_shorter_slip = 0.8;
-// Halved steps leave a 32nd of the error of the methods of least order here, 5.
+// Halving steps reduces the error of a method of order 5, the lowest used here, by 32.
 double slip_share(int division) { return k_slip_share / (static_cast<double>(division) * division * division * division * division); }
 
 } // namespace
@@ -167,7 +168,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
   residual_.velocity = std::max(residual_.velocity, found.velocity);
   if (is_adaptive() || !are_looks_expected_) {
     dynamics.evaluate(Request::end, t1_, y1_.data(), k1_);
-  } else { // who looks at fixed steps takes what was found at their ends
+  } else { // for fixed steps only the values at their ends are used
     dynamics.rates(t1_, y1_.data(), k1_);
     dynamics.watch_merged(k1_);
   }
@@ -178,14 +179,14 @@ void Integrator::finish_step(Dynamics& dynamics) {
 }
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
-  // Where no step is short enough, the failure itself tells more than the step's length.
+  // If no step is short enough, the failure itself is more informative than a message about the step length.
   const bool is_shortest = h_ < k_shortest_try * time_size(t0_, system_);
   try {
     finish_step(dynamics);
     return true;
   } catch (const ConstraintFailure&) {
     if (is_shortest) throw;
-  } catch (const ElementFailure&) { // rates that cannot be met: the step ends beside a singular position of the joints
+  } catch (const ElementFailure&) { // the step ends near a singular position of the joints
     if (is_shortest) throw;
   }
   return false;
@@ -216,10 +217,10 @@ void Integrator::update_weights(Dynamics& dynamics) {
     const CoordinateScale& scale = layout.scales[i];
     const bool is_locked = layout.inverse_mass[i] == 0.0;
     double size = scale.is_place ? k_displacement_floor * length_scale_ : k_displacement_floor;
-    // What an angle of a mechanism turns is known as well as a place would be.
+    // A point moved by an angle of a mechanism must be as accurate as a position.
     if (scale.reach > length_scale_) size *= length_scale_ / scale.reach;
     double displacement = std::abs(y0_[i] - layout.reference[i]);
-    if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // whatever it turns goes no further
+    if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // an angle moves points by its reach at most
     weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
     weight_[m + i] = is_locked ? 0.0 : 1.0 / (tolerance * (rate_floor_ * size + std::abs(y0_[m + i])));
   };
@@ -229,11 +230,12 @@ void Integrator::update_weights(Dynamics& dynamics) {
     for (int i = 0; i < m; ++i)
       if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (share * slip_scale0_[i]));
   }
-  // Inner states are displacements (of an elastic joint: m, m, rad), known as well as those of bodies.
+  // Inner states are displacements (of an elastic joint: m, m, rad) with the same accuracy as those of bodies.
   for (int i = 2 * m; i < n_ - 2; ++i)
     weight_[i] =
         1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) + std::abs(y0_[i] - system_.initial_inner[i - 2 * m])));
-  // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
+  // Dissipated energy and work: relative to the present energy, the energy converted so far, or that of the absolute scales, whichever is
+  // largest.
   const double floor_rate = rate_floor_ * k_displacement_floor * length_scale_;
   double energy = std::abs(y0_[n_ - 2]) + std::abs(y0_[n_ - 1]);
   const double* v = dynamics.cluster_rates(y0_.data());
@@ -260,8 +262,8 @@ double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const
   return std::max(error_norm(error), k_turned_share * all);
 }
 
-// Where the motion would be after h if nothing changed, the forces are those that the new modes have there: a contact
-// that has closed presses all the more the deeper that is. Within a step they may change a velocity by as much as itself.
+// Compares the present forces with those of the new modes at the position after h with unchanged velocity, since a contact that has closed
+// presses more the deeper it gets. Within a step forces may change a velocity by at most its own size.
 double Integrator::restrained_step(Dynamics& dynamics, double h) {
   constexpr int k_most_tries = 12;
   constexpr double k_most_shortened = 0.03;
@@ -279,7 +281,7 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
   return h / settings_.division;
 }
 
-// Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the size of y, f and a difference of f.
+// Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the norms of y, f and a difference of f.
 double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
   update_weights(dynamics);
   double* y = scratch_.data();

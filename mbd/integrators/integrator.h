@@ -1,9 +1,8 @@
-// The interface behind which every one-step method sits.
+// Interface of all one-step integration methods.
 //
-// A method advances the packed vector y of a Dynamics within one mode; it knows nothing of events. It
-// leaves the step it has made (both ends, rates, watch values, dense output) for whoever looks for
-// events in it, and goes on from where it is told: accept() from the step's end, restart() from
-// anywhere (after an event, in a new layout).
+// A method advances the packed state y of a Dynamics within one mode and does not know about events. After a step it provides both ends,
+// rates, event functions and dense output to the event finder. It continues from the end of the step by accept(), or from another state by
+// restart() (after an event, in a new layout).
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -19,13 +18,15 @@
 
 namespace steplap {
 
+/// Settings of a method.
 struct IntegratorSettings {
   double tolerance = 1e-8; ///< relative local error of adaptive methods
-  double step = 0.0;       ///< s; fixed-step methods need it, others take it as the first step
-  double max_step = 0.0;   ///< s; 0: none
+  double step = 0.0;       ///< length of fixed steps, s; first step of adaptive methods
+  double max_step = 0.0;   ///< largest step, s; 0: no limit
   double projection_tolerance = 1e-12;
-  /// Of a finer run, above 1: whatever else limits a step (a breakpoint, a harmonic, the forces behind an event, a slip that
-  /// ends) limits one of so many parts. Fixed steps are cut as steps of division × step would be, and then divided.
+  /// Number of parts into which each step is divided in a finer run. All limits of a step (breakpoints, harmonics, forces after an event,
+  /// the end of a slip) then apply to `division` steps together. Fixed steps are cut as those of length division × step would be, and then
+  /// divided.
   int division = 1;
 };
 
@@ -38,54 +39,55 @@ public:
 
   [[nodiscard]] virtual const char* name() const = 0;
   [[nodiscard]] virtual bool is_adaptive() const = 0;
-  /// Begins at (t, y) in the layout that `dynamics` has now; evaluates the rates there.
+  /// Starts at (t, y) in the present layout of `dynamics` and evaluates the rates there.
   void restart(Dynamics& dynamics, double t, const double* y);
-  /// The same where `dynamics` was evaluated there last, merged joints watched, and found the rates `dy`.
+  /// As restart(), if the last evaluation of `dynamics` was at (t, y), with event functions of merged joints, and gave the rates `dy`.
   void restart_evaluated(Dynamics& dynamics, double t, const double* y, const double* dy);
-  /// Will somebody look into every step (samples, extremes)? Then, and unless told otherwise, step() makes none whose dense
-  /// output is worse than its ends allow; if not, bears_look() tells.
+  /// Tells whether every step will be evaluated inside (samples, extremes). If so, which is the default, step() makes only steps whose
+  /// dense output is as accurate as their ends. If not, bears_look() checks this on demand.
   virtual void expect_looks(bool are_expected) { are_looks_expected_ = are_expected; }
-  /// To be asked before anybody looks into the step made. False: its dense output is worse than its ends allow; the step is
-  /// withdrawn, and step() makes another, shorter one.
+  /// To be called before the dense output of a step is used for the first time. Returns false if it is less accurate than the ends of the
+  /// step; the step is then withdrawn, and step() must be called again to make a shorter one.
   [[nodiscard]] virtual bool bears_look(Dynamics& /*dynamics*/) { return true; }
-  /// To be asked where the step made is to be used up to: at theta of it, in the state y. False: some slip has fallen there to
-  /// what velocities are known to in this step, so that nobody could tell whether it comes to rest or which way it goes on;
-  /// the step is withdrawn, and step() makes another, shorter one.
+  /// To be called if the step is used only up to theta, with y the state there. Returns false if some slip velocity has fallen there to the
+  /// accuracy of velocities in this step, so that its end or its direction would be arbitrary. The step is then withdrawn, and step() makes
+  /// a shorter one.
   [[nodiscard]] virtual bool resolves_slips(Dynamics& dynamics, double theta, const double* y);
-  /// The share of the step made in which bodies turn no further than they may (turn_limit.h); 1: all of it.
+  /// Returns the fraction of the step in which all rotations stay within their limits (turn_limit.h); 1: all of it.
   [[nodiscard]] double turns_kept(const Dynamics& dynamics) { return turn_limit_.kept(dynamics.layout(), y0_.data(), y1_.data()); }
-  /// Takes the step made back, so that step() makes one of this share of it. False: it has to stay as it is.
+  /// Withdraws the step made; step() will make one with this fraction of its length. Returns false if the method cannot.
   [[nodiscard]] virtual bool shorten(Dynamics& dynamics, double share) { return withdraw(dynamics, share * h_); }
-  /// No step is longer than this, s: Simulation sets it anew wherever the loads' and drives' harmonics change.
+  /// Sets an upper limit of steps, s. Simulation sets it whenever the harmonics of loads and drives change.
   virtual void limit_step(double longest) { longest_step_ = longest; }
-  /// Takes the memory that its steps will need, at (t, y) in the present layout: afterwards they allocate nothing.
+  /// Allocates the memory for steps from (t, y) in the present layout, so that they do not allocate.
   virtual void reserve(Dynamics&, double, const double*) {}
-  /// The length of the next step, s, of a method that chooses its steps and has made none yet.
+  /// Sets the length of the first step, s, of an adaptive method.
   virtual void propose_step(double) {}
-  /// No step turns a harmonic of a load or drive further than this, rad: its places resolve a quarter of a period.
+  /// Largest angle by which a harmonic of a load or drive may turn in one step, rad, so that the nodes within the step resolve a quarter of
+  /// a period.
   static constexpr double k_largest_turn = 1.6;
-  /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
+  /// Makes one step, at most to t_limit. Throws NumericalFailure if it is impossible.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
-  /// The same in parts, so that a step whose events forbid it can be tried anew: begin_step(), then make_try() and conclude_try()
-  /// in turn until the step is made. A method without tries makes its step in the last.
+  /// The same in parts, so that events can interrupt the tries of a step: begin_step(), then make_try() and conclude_try() alternately
+  /// until the latter returns true. Methods without tries make the step in make_try().
   virtual void begin_step(Dynamics& dynamics, double t_limit);
   virtual void make_try(Dynamics& dynamics);
   [[nodiscard]] virtual bool conclude_try(Dynamics& dynamics);
-  /// Ends the step just made at theta of it, anew as a step of its own. Fixed steps do where forces have a kink behind
-  /// the event; no error estimate has shortened them. False: it was left as it is.
+  /// Repeats the step made so that it ends at theta of it. Used for fixed steps if forces have a kink after an event, since no error
+  /// estimate has shortened them. Returns false if the step was left unchanged.
   virtual bool end_at(Dynamics& dynamics, double theta);
-  /// Nobody will look beyond theta of the step made, where an event ends it: dissipated energy and work are to be as exact
-  /// there as at an end. May evaluate.
+  /// Tells that the step is used only up to theta, because of an event. Dissipated energy and work are then computed there as accurately as
+  /// at the end of a step. May evaluate.
   virtual void cut_at(Dynamics& /*dynamics*/, double /*theta*/) {}
-  /// State at t + theta·h of the step made, 0 ≤ theta ≤ 1. May evaluate.
+  /// Writes the state at t0 + theta·h, 0 ≤ theta ≤ 1, to `out`. May evaluate.
   virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
-  /// Goes on from the end of the step.
+  /// Makes the end of the step the start of the next one.
   virtual void accept();
-  /// Of an explicit method: h times the fastest rate met, over what the method bears; above 1 stability
-  /// and not accuracy limits the step. 0: not known.
+  /// Returns, for explicit methods, h times the fastest rate in the step divided by the method's stability limit. Above 1 stability and not
+  /// accuracy limits the step. 0: unknown.
   [[nodiscard]] virtual double stability_share(Dynamics& /*dynamics*/) { return 0.0; }
-  /// Of a method that locates no events but decides contact modes and friction phases itself: the state at
-  /// the end of the step, which `dynamics` then has; null for all others.
+  /// Returns the state at the end of the step for methods that determine contact modes and friction phases themselves (time stepping);
+  /// `dynamics` then has this state. Null for all others.
   [[nodiscard]] virtual const State* stepped_state() const { return nullptr; }
 
   // --- the step made ------------------------------------------------------------------------------
@@ -100,20 +102,20 @@ public:
   [[nodiscard]] const std::vector<double>& watch1() const { return watch1_; }
   [[nodiscard]] const std::vector<double>& watch_rate0() const { return watch_rate0_; }
   [[nodiscard]] const std::vector<double>& watch_rate1() const { return watch_rate1_; }
-  /// Watch values met at the stages inside the step.
+  /// Returns the event functions at the stages inside the step.
   [[nodiscard]] virtual WatchNodes& watch_nodes() { return nodes_; }
 
-  /// Relative local error asked for; 0 of methods that do not choose their steps.
+  /// Returns the relative local tolerance; 0 for methods with fixed steps.
   [[nodiscard]] double tolerance() const { return is_adaptive() ? settings_.tolerance : 0.0; }
-  /// How well velocities are known in the step made, m/s: its tolerance, or their rounding.
+  /// Returns the accuracy of velocities in the step made, m/s: by the tolerance, or by rounding.
   [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
-  /// The same of places, m, and of angles, rad.
+  /// Returns the accuracy of positions, m, and angles, rad, in the step made.
   [[nodiscard]] double place_accuracy(const Dynamics& dynamics) const;
-  /// Fixed steps that were divided, since bodies turned too far in them.
+  /// Statistics of fixed steps that were divided because bodies turned too far.
   struct DividedSteps {
     long count = 0;
     double shortest = std::numeric_limits<double>::infinity(); ///< s
-    int a = k_ground, b = k_ground;                            ///< which turned fastest against each other
+    int a = k_ground, b = k_ground;                            ///< pair of bodies with the fastest relative rotation
   };
   [[nodiscard]] const DividedSteps& divided_steps() const { return divided_; }
   [[nodiscard]] long steps() const { return steps_; }
@@ -123,66 +125,65 @@ public:
 
 protected:
   virtual void on_restart(Dynamics& /*dynamics*/) {}
-  /// Takes the step made back; the next one tries h. False: it has to stay as it is.
+  /// Withdraws the step made and tries h next. Returns false if the method cannot.
   [[nodiscard]] virtual bool withdraw(Dynamics& /*dynamics*/, double /*h*/) { return false; }
   [[nodiscard]] bool are_looks_expected() const { return are_looks_expected_; }
   void begin_at(Dynamics& dynamics, double t, const double* y);
   void note_begin(Dynamics& dynamics);
-  /// Where the rates at both ends are kept; a method with more stages points them into its own.
+  /// Sets where the rates at both ends are stored; methods with more stages use their own arrays.
   void set_rate_storage(double* k0, double* k1) {
     k0_ = k0;
     k1_ = k1;
   }
-  /// Projects y1 and evaluates there: rates into k1, watch values into watch1.
+  /// Projects y1 onto the constraints and evaluates there: rates to k1, event functions to watch1.
   void finish_step(Dynamics& dynamics);
-  /// False where the end cannot be brought onto the constraints: a shorter step may (friction that holds up to an event
-  /// early in the step would have to turn a body far beyond it).
+  /// As finish_step(). Returns false if the end cannot be projected; a shorter step may succeed. (Example: friction that would hold until
+  /// an event early in the step turns a body far beyond it.)
   [[nodiscard]] bool try_finish_step(Dynamics& dynamics);
-  /// At the last evaluation: how fine velocities have to be known there.
+  /// Stores how accurately slip velocities must be known at the last evaluation (Dynamics::slip_scales).
   void note_slips(Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
   void begin_watch_nodes() {
     nodes_.clear();
     last_merged_look_ = 0.0;
   }
-  /// Rates of a stage at t0 + theta·h, and its watch values.
+  /// Evaluates a stage at t = t0 + theta·h: rates to dy, event functions to the nodes.
   void evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta);
   [[nodiscard]] bool is_merged_look_due(double theta) const;
-  /// After the rates dy of a stage at t0 + theta·h.
+  /// Stores the event functions of a stage at t0 + theta·h, after its rates dy were computed.
   void note_stage_watches(Dynamics& dynamics, const double* dy, double theta);
-  /// `h` within the limits set.
+  /// Returns `h` limited by max_step and limit_step().
   [[nodiscard]] double limited(double h) const {
     if (settings_.max_step > 0.0) h = std::min(h, settings_.max_step);
     return std::min(h, longest_step_);
   }
-  /// Limits the next step by the angle that bodies may turn in it. `division`: into so many parts as in TurnLimit.
+  /// Returns `h` limited by the rotation of bodies in the next step; `division` as in TurnLimit.
   [[nodiscard]] double limited_by_turns(const Dynamics& dynamics, double h, int division) {
     return turn_limit_.longest(dynamics.layout(), y0_.data(), k0_, h, division);
   }
-  /// Counts a fixed step that became shorter than what was asked for, since it would have turned bodies too far.
+  /// Counts a fixed step that was shortened because of rotations.
   void note_divided(double h);
-  /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
+  /// Updates the weights of the error norm: 1/(tolerance · scale) per number of the state, 0 for locked coordinates.
   void update_weights(Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;
-  /// The same without most of what the projection will take away, near singular positions of the joints.
-  /// A share stays: the directions turn within a step. Changes `error`; the last evaluation must have been
-  /// near the step's end.
+  /// Returns the error norm, near singular positions without most of the part that projection removes. A small fraction of it remains,
+  /// because the directions change within a step. Changes `error`. Precondition: the last evaluation was near the end of the step.
   [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
-  /// The step of h_ from t0_ for a crossing of a singular position.
+  /// Returns the data of a singular crossing by a step of h_ from t0_.
   [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
-  /// step() by its parts.
+  /// Implements step() by begin_step(), make_try() and conclude_try().
   void step_by_parts(Dynamics& dynamics, double t_limit);
-  /// h, or as much of it as the forces of the present modes allow without stopping and turning the motion: what
-  /// limited the steps before an event knew nothing of them. After update_weights.
+  /// Returns h, or a smaller step if the forces of the present modes would stop or reverse a motion within h. Needed after an event,
+  /// because earlier step lengths do not account for new forces. Precondition: update_weights().
   [[nodiscard]] double restrained_step(Dynamics& dynamics, double h);
 
   const System& system_;
   IntegratorSettings settings_;
-  int n_ = 0;                 ///< dimension now
-  bool is_restarted_ = false; ///< no step was made since
+  int n_ = 0;                 ///< present dimension of the state
+  bool is_restarted_ = false; ///< no step since the last restart
   bool are_looks_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
-  double t_limit_ = 0.0; ///< of begin_step()
+  double t_limit_ = 0.0; ///< argument of begin_step()
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;
   double* k1_ = nullptr;
@@ -203,7 +204,7 @@ protected:
   double rate_floor_ = 1.0; ///< 1/s: of what is too small for errors relative to it
 };
 
-/// One of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.
+/// Creates the method with this name, one of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynamics& dynamics,
                                                           const IntegratorSettings& settings);
 

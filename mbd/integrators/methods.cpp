@@ -9,7 +9,7 @@ namespace steplap {
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> list = {
-      // name, fixed step, time stepping, for damping, storms stepped over
+      // name, has_fixed_step, is_time_stepping, is_for_damping, may_step_over_storms, make
       {"rk4", true, false, false, false, make_rk4},        {"tsit5", false, false, false, false, make_tsit5},
       {"dop853", false, false, false, false, make_dop853}, {"rodas5p", false, false, true, false, make_rodas5p},
       {"moreau", true, true, false, false, make_moreau},   {"auto", false, false, false, true, make_automatic},

@@ -1,4 +1,4 @@
-// The methods by themselves; make_integrator() picks one by name.
+// Constructors of the single methods, for the list in methods.cpp; other code uses make_integrator().
 #pragma once
 
 #include "mbd/integrators/integrator.h"
@@ -12,8 +12,9 @@ std::unique_ptr<Integrator> make_automatic(const Dynamics&, const IntegratorSett
 std::unique_ptr<Integrator> make_moreau(const Dynamics&, const IntegratorSettings&, int max_dimension);
 std::unique_ptr<Integrator> make_rodas5p(const Dynamics&, const IntegratorSettings&, int max_dimension);
 
-/// Interpolation from both ends of a step: quintic for coordinates (position, velocity, acceleration of
-/// both ends), its derivative for velocities, cubic for what is behind them up to `dimension`.
+/// Interpolates between both ends of a step: coordinates by the quintic polynomial with position, velocity and acceleration of both ends,
+/// velocities by its derivative, all further numbers up to `dimension` by cubic Hermite polynomials. `rate0` and `rate1` are dy/dt at the
+/// ends.
 void hermite_dense(int coordinates, int dimension, double theta, double h, const double* y0, const double* y1, const double* rate0,
                    const double* rate1, double* out);
 

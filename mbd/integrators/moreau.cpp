@@ -1,4 +1,4 @@
-// TimeStepping (time_stepping.h) as an integrator: it decides contact modes and friction phases itself.
+// TimeStepping (time_stepping.h) as an integrator. It determines contact modes and friction phases itself.
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/time_stepping.h"
 
@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_stretch = 1e-6; // of a step, by which steps may be longer than asked for
+constexpr double k_stretch = 1e-6; // relative: steps may be longer than requested by this
 
 class Moreau final : public Integrator {
 public:
@@ -22,8 +22,8 @@ public:
   [[nodiscard]] const State* stepped_state() const override { return &state_; }
 
   void step(Dynamics& dynamics, double t_limit) override {
-    // As many equal steps as there is room for up to the limit: sums of steps end beside it by rounding, and a last
-    // step of that length would tell nothing but rounding.
+    // The remaining time up to the limit is divided into equal steps. Summed steps would miss the limit by rounding, and a last step of
+    // that length would be meaningless.
     const double left = t_limit - t0_, count = steps_to(t_limit, left);
     h_ = count > 1.0 ? left / count : left;
     const double turned = limited_by_turns(dynamics, h_, settings_.division);
@@ -37,21 +37,22 @@ public:
     stepping_.step(dynamics, state_, t1_, settings_.projection_tolerance);
     residual_.position = std::max(residual_.position, stepping_.residual().position);
     residual_.velocity = std::max(residual_.velocity, stepping_.residual().velocity);
-    // Both ends in the layout of the new phases, so that one can interpolate between them.
+    // Both ends are packed in the layout of the new phases, so that they can be interpolated.
     n_ = dynamics.dimension();
     dynamics.pack(start_, y0_.data());
     dynamics.pack(state_, y1_.data());
-    std::fill(watch1_.begin(), watch1_.end(), 1.0); // nobody looks for events here, nor at rates: the run begins anew
+    std::fill(watch1_.begin(), watch1_.end(), 1.0); // event functions are not used, nor rates: the run restarts after each step
     ++steps_;
   }
 
-  /// Straight between the ends, as the method sees the motion.
+  /// Linear interpolation between the ends, as the method assumes for the motion.
   void dense(Dynamics&, double theta, double* out) override {
     for (int i = 0; i < n_; ++i) out[i] = y0_[i] + theta * (y1_[i] - y0_[i]);
   }
 
 private:
-  // How many equal ones: of a finer run `division` for each that the longer steps have up to the same limit.
+  // Returns the number of equal steps up to the limit. In a finer run it is `division` times the number of undivided steps up to the same
+  // limit.
   [[nodiscard]] double steps_to(double t_limit, double left) {
     if (settings_.division == 1) return std::ceil(left / limited(settings_.step) - k_stretch);
     if (t_limit != limit_) {
@@ -64,7 +65,7 @@ private:
   TimeStepping stepping_;
   State state_, start_;
   std::vector<double> k_;
-  double limit_ = -1.0; ///< of the steps of length part_, s
+  double limit_ = -1.0; ///< limit for which part_ was computed, s
   double part_ = 0.0;   ///< s
 };
 

@@ -1,8 +1,7 @@
-// The classical Runge–Kutta method of order 4 with a fixed step, as the paper uses it (§3).
+// The classical Runge–Kutta method of order 4 with fixed steps, as in the paper (§3).
 //
-// Dense output: positions by the quintic that has position, velocity and acceleration of both ends
-// (its own error O(h⁶), below the step's O(h⁵)), velocities by its derivative (O(h⁴): the step's error
-// divided by h), so that events located on it keep the order.
+// Dense output: positions by the quintic polynomial with position, velocity and acceleration of both ends (error O(h⁶), less than the
+// step's O(h⁵)); velocities by its derivative (O(h⁴), the step's error divided by h). Events located on it therefore keep the order.
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/scene_rate.h"
@@ -14,11 +13,11 @@ namespace steplap {
 
 namespace {
 
-// Where a slip law turns velocities faster than the step, steps are this share of its time, …
+// If a slip law changes velocities faster than the step, steps are shortened to this fraction of its time constant.
 constexpr double k_decay_share = 0.5;
-// … and where a slip comes to rest, |ν| → 0, they shrink from this share of the scene's time on (0.25 ms for bodies of a
-// metre), as its power 3/4. The motion is one of powers of the time left, x^(1+λ) with λ > 0, and the sum of the steps'
-// errors h⁴ ∫ x³ x^(λ−4) dx stays of order 4.
+// When a slip comes to rest, |ν| → 0, steps decrease from this fraction of the characteristic time on (0.25 ms for bodies of 1 m), with the
+// power 3/4 of the time left. The motion behaves like x^(1+λ), λ > 0, in the time left x, and with this rule the sum of the step errors, h⁴
+// ∫ x³ x^(λ−4) dx, remains of order 4.
 constexpr double k_rest_layer = 2.5e-4 * k_metre_rate;
 
 class Rk4 final : public Integrator {
@@ -82,7 +81,7 @@ private:
     for (int i = 0; i < n_; ++i) y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
     return try_finish_step(dynamics);
   }
-  // The step that is due, into `division` parts.
+  // Determines the next step and divides it into `division` parts.
   void cut_step(Dynamics& dynamics, double left) {
     double step = limited(next_step(settings_.division * settings_.step));
     const double most = std::min(step, left), turned = limited_by_turns(dynamics, most, 1);
@@ -90,7 +89,7 @@ private:
       step = turned;
       note_divided(step / settings_.division);
     }
-    // A remainder of a step's rounding is taken along rather than left for a step of its own.
+    // A remainder that is only rounding is added to the last step.
     is_cut_at_limit_ = left <= step * (1.0 + 1e-9);
     parts_left_ = settings_.division;
     part_ = (is_cut_at_limit_ ? left : step) / settings_.division;
@@ -104,7 +103,8 @@ private:
     const double share = scene_rate(system_) / (k_rest_layer * decay_rate_);
     return std::min(h, longest * std::sqrt(share * std::sqrt(share)));
   }
-  // The quintic's derivative divides the rounding of positions by h: too much where steps are shortened by decades.
+  // The derivative of the quintic divides the rounding errors of positions by h, which is too inaccurate for very short steps. There
+  // velocities are interpolated by cubic polynomials.
   void velocities_by_cubic(int n, double theta, double* out) const {
     const double s = theta, r = 1.0 - theta;
     for (int i = n; i < 2 * n; ++i)
@@ -116,12 +116,12 @@ private:
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
     evaluate_stage(dynamics, t0_ + c * h_, y, k(index), c);
   }
-  std::vector<double> k_, kept_; ///< kept_: end of a step that is tried anew
+  std::vector<double> k_, kept_; ///< kept_: state at the end of a step that is repeated in parts
   int stride_;
-  double last_decay_rate_ = 0.0; ///< where the last step began
-  double part_ = 0.0;            ///< of the step cut last, s
-  int parts_left_ = 0;           ///< of it, still to be made
-  bool is_cut_at_limit_ = false; ///< it ends at the limit
+  double last_decay_rate_ = 0.0; ///< decay rate at the start of the last step, 1/s
+  double part_ = 0.0;            ///< length of a part of the present step, s
+  int parts_left_ = 0;           ///< parts of it still to be made
+  bool is_cut_at_limit_ = false; ///< the step ends at the limit
 };
 
 } // namespace
@@ -134,7 +134,7 @@ void hermite_dense(int coordinates, int dimension, double theta, double h, const
                    const double* rate1, double* out) {
   const int n = coordinates;
   const double s = theta, s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
-  // Quintic basis on [0, 1] for (q0, h v0, h² a0, q1, h v1, h² a1) and its derivative.
+  // Quintic basis functions on [0, 1] for (q0, h v0, h² a0, q1, h v1, h² a1), and their derivatives.
   const double b1 = s - 6 * s3 + 8 * s4 - 3 * s5;
   const double b2 = 0.5 * (s2 - 3 * s3 + 3 * s4 - s5);
   const double b3 = 10 * s3 - 15 * s4 + 6 * s5;

@@ -1,18 +1,16 @@
-// Rodas5P (tableau_rodas5p.h): linearly implicit, L-stable, of order 5, for stiff scenes.
+// Rodas5P (tableau_rodas5p.h): linearly implicit, L-stable, order 5, for stiff scenes.
 //
-// Applied to the equations of motion with the multipliers eliminated (index 1), the stages' linear systems
-// with the exact linearisation and the constraints beside it (stage_system.h). One linearisation and one
-// factorisation a step, eight evaluations of the accelerations. Explicit time dependence (drives, loads)
-// enters through ∂F/∂t at the step's begin: a difference forward over a fraction of the step, of order 4,
-// so that it costs the method no order; F is smooth within a step.
+// It is applied to the equations of motion with eliminated multipliers (index 1); the linear systems of the stages contain the exact
+// linearisation and the constraints (stage_system.h). Each step needs one linearisation, one factorisation and eight evaluations of
+// accelerations. Explicit time dependence (drives, loads) enters by ∂F/∂t at the start of the step, a forward difference of order 4 over a
+// fraction of the step, which preserves the order of the method. F is smooth within a step.
 //
-// Energy dissipated and work are integrals along the motion: taken by Lobatto's rule with four points
-// (order 6) over the dense output; what they differ by from the rule with the inner points alone (order 2) tells their
-// error, which counts in the step's. The two points inside also serve as looks inside the step for events:
-// the stages of such a method are no approximations of the motion.
+// Dissipated energy and work are integrated by Lobatto's rule with four points (order 6) on the dense output. The difference to the rule
+// with the two inner points (order 2) estimates the error, which enters the error of the step. The two inner points are also the nodes for
+// event functions, since the stages of this method do not approximate the motion.
 //
-// A singular position of the joints ahead is crossed as the explicit methods do (singular_crossing.h): the linearisation
-// is worth nothing there. Where forces are too stiff for that the usual steps go on.
+// A singular position of joints ahead is crossed as in explicit methods (singular_crossing.h), because the linearisation is useless there.
+// If forces are too stiff for that, ordinary steps continue.
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/integrators/explicit_runge_kutta.h"
@@ -29,7 +27,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_time_step = 1.0 / 32.0; // of h, between the points of ∂F/∂t
+constexpr double k_time_step = 1.0 / 32.0; // distance of the points for ∂F/∂t, relative to h
 constexpr double k_share_of_cube = 0.1;
 const double k_lobatto[2] = {0.5 - std::sqrt(0.05), 0.5 + std::sqrt(0.05)};
 
@@ -38,7 +36,7 @@ public:
   Rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
       : Integrator(dynamics, settings, max_dimension), k_(2 * max_dimension), u_(8 * max_dimension), rate_(max_dimension),
         slope_(max_dimension), right_(max_dimension), raw_(max_dimension), stride_(max_dimension), next_h_(settings.step) {
-    slip_care_ = 0.1; // as tsit5: nothing checks the output within a step
+    slip_care_ = 0.1; // as in tsit5: nothing checks the output within a step
     set_rate_storage(k_.data(), k_.data() + stride_);
     control_.order = 5;
   }
@@ -57,7 +55,7 @@ public:
   void dense(Dynamics& dynamics, double theta, double* out) override {
     if (is_crossing_) return crossing_->dense(theta, crossing_step(dynamics), out);
     interpolate(theta, out);
-    // The integral of the cubic through the powers at Lobatto's points.
+    // Integral of the cubic through the powers at Lobatto's points.
     const int e = n_ - 2;
     for (int i = 0; i < 2; ++i)
       out[e + i] = y0_[e + i] + power_span_ * h_ * power_integral(theta / power_span_, power_[i]) + theta * settled_[i];
@@ -78,7 +76,7 @@ protected:
     control_.previous_error = before_.error;
     next_h_ = h;
     refuse_shorter_than_rounding(h);
-    dynamics.rates(t0_, y0_.data(), scratch_.data()); // where the next try begins
+    dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
     return true;
   }
 
@@ -97,16 +95,16 @@ private:
   std::vector<double> k_, u_, rate_, slope_, right_, raw_;
   int stride_;
   double settled_[2] = {};
-  double power_[2][4] = {}; ///< of dissipation and work at 0, the two points inside, 1
-  double power_span_ = 1.0; ///< part of the step that these points divide
+  double power_[2][4] = {}; ///< powers of dissipation and work at 0, the two inner points, and 1
+  double power_span_ = 1.0; ///< fraction of the step that these points divide
   Linearization linearization_;
   StageSystem system_of_stages_;
   StepControl control_;
   double next_h_ = 0.0;
-  std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
+  std::unique_ptr<SingularCrossing> crossing_; ///< created when the first crossing occurs
   SingularApproach approach_;
-  bool is_crossing_ = false; ///< the step made is one
-  /// What was before the step made, if it is withdrawn.
+  bool is_crossing_ = false; ///< the step made is a crossing
+  /// Control data before the step made, restored if it is withdrawn.
   struct Before {
     SingularApproach approach;
     double error = 1e-4;
@@ -114,7 +112,7 @@ private:
   Before before_;
 };
 
-// ∂F/∂t at (t0, y0) from five points forward (order 4).
+// Computes ∂F/∂t at (t0, y0) from five points forward (order 4).
 void Rodas5p::find_time_slope(Dynamics& dynamics) {
   const double d = k_time_step * h_;
   const int n = n_ - 2;
@@ -125,7 +123,7 @@ void Rodas5p::find_time_slope(Dynamics& dynamics) {
   for (int p = 3; p >= 0; --p) {
     dynamics.evaluate(Request::rates_as_given, t0_ + (p + 1) * d, y0_.data(), f);
     is_still = is_still && std::equal(f, f + n, k0_);
-    if (is_still && p < 3) break; // the same at three instants: no explicit time
+    if (is_still && p < 3) break; // equal at three times: no explicit time dependence
     for (int i = 0; i < n; ++i) slope_[i] += weights[p] / d * f[i];
   }
   if (is_still) std::fill(slope_.begin(), slope_.end(), 0.0);
@@ -156,7 +154,7 @@ double Rodas5p::try_step(Dynamics& dynamics) {
     for (int k = 0; k < n; ++k) right_[k] += f[k];
     system_of_stages_.solve(right_.data(), u(static_cast<int>(i)));
   }
-  // The argument of the last stage is the embedded solution, its u the error estimate.
+  // The argument of the last stage is the embedded solution, and its u is the error estimate.
   const double* const last = u(7);
   for (int k = 0; k < n; ++k) y1_[k] = y[k] + last[k];
   std::copy(last, last + n, scratch_.begin());
@@ -172,10 +170,10 @@ void Rodas5p::interpolate(double theta, double* out) {
   const double s = theta, r = 1.0 - theta;
   double weight[8];
   for (std::size_t j = 0; j < 8; ++j) weight[j] = s * r * (H[0][j] + s * (H[1][j] + s * H[2][j]));
-  // What projection moved is spread over the step, so that the output meets the projected end.
+  // The displacement by projection is distributed over the step, so that the dense output agrees with the projected end.
   const double blend = s * s * (3.0 - 2.0 * s);
-  // The place at the step's start and what has been gone since: (1 − s) y₀ + s y₁ would round a place that does not move, and what touches
-  // there would open or close by that.
+  // Computed as position at the start plus displacement. The form (1 − s) y₀ + s y₁ would change a constant position by rounding, and
+  // contacts at rest would open or close.
   for (int i = 0; i < n_ - 2; ++i) {
     double sum = 0.0;
     for (std::size_t j = 0; j < 8; ++j) sum += weight[j] * u_[j * stride_ + i];
@@ -183,7 +181,7 @@ void Rodas5p::interpolate(double theta, double* out) {
   }
 }
 
-// ∫₀^θ of the cubic through (0, a, 1 − a, 1): by Newton's divided differences.
+// Returns ∫₀^θ of the cubic with these values at 0, a, 1 − a, 1, by Newton's divided differences.
 double Rodas5p::power_integral(double theta, const double* power) {
   const double x[4] = {0.0, k_lobatto[0], k_lobatto[1], 1.0};
   double d[4] = {power[0], power[1], power[2], power[3]};
@@ -208,13 +206,13 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
   }
   for (int i = 0; i < 2; ++i) {
     power_[i][3] = k1_[e + i];
-    settled_[i] = y1_[e + i] - y0_[e + i]; // what settling inner states at the step's end has booked
+    settled_[i] = y1_[e + i] - y0_[e + i]; // energy by the correction of inner states at the end of the step
     y1_[e + i] += h_ * power_integral(1.0, power_[i]);
   }
 }
 
-// Up to θ alone by Lobatto's rule of its own: no cubic through powers of the whole step is as good at θ as at the step's
-// end, and behind an event they may be those of a law that ends there.
+// Integrates up to θ by a Lobatto rule of its own. The cubic through the powers of the whole step is less accurate at θ than at its end,
+// and after an event these powers may belong to a law that is no longer valid.
 void Rodas5p::cut_at(Dynamics& dynamics, double theta) {
   if (is_crossing_ || !(theta > 0.0) || theta == power_span_) return;
   const int e = n_ - 2;
@@ -230,8 +228,8 @@ void Rodas5p::cut_at(Dynamics& dynamics, double theta) {
   power_span_ = theta;
 }
 
-// For power that turns by φ within the step, cos φτ, Lobatto's rule with four points is off by φ⁶/1.5e6 of its size and
-// the rule of the inner two points by δ = φ²/20: the finer one's error is about δ³/100; ten times that is taken.
+// Error estimate of the integrals. For a power cos φτ that turns by φ within the step, the relative error of the four-point rule is
+// φ⁶/1.5e6, and that of the two-point rule δ = φ²/20. The former is about δ³/100; ten times that is used.
 double Rodas5p::error_of_powers() const {
   const int e = n_ - 2;
   double worst = 0.0;
@@ -242,11 +240,11 @@ double Rodas5p::error_of_powers() const {
     const double share = std::abs((p[0] + p[3] + 5.0 * (p[1] + p[2])) / 12.0 - 0.5 * (p[1] + p[2])) / largest;
     worst = std::max(worst, k_share_of_cube * h_ * largest * share * share * share * weight_[e + i]);
   }
-  return worst / std::sqrt(static_cast<double>(n_)); // as part of the norm
+  return worst / std::sqrt(static_cast<double>(n_)); // contribution to the norm, a root mean square
 }
 
-// After a try that came near a singular position: the same way in one step of another kind, the position in a gap of its
-// stages. True if that step was made.
+// After a try that came near a singular position: crosses it by one step of collocation with the position between two of its stages.
+// Returns true if this succeeded.
 bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
   if (!crossing_) crossing_ = std::make_unique<SingularCrossing>(stride_);
   const double ahead = h_ * crossing_->locate(dynamics, crossing_step(dynamics));

@@ -1,8 +1,8 @@
-// The rate and the time that what is small in a scene is measured by: those with which its bodies fall over their own length.
+// Characteristic rate of a scene, which defines what counts as slow or short: the rate at which its bodies fall by their own length.
 //
-// Without gravity nothing tells such a rate before the run: what bodies of a metre have is taken, whatever they are, and scenes
-// without gravity whose times are scaled are not stepped alike. The run's duration does not serve: short runs of stiff joints
-// become too coarse by it, and long ones let slips end otherwise.
+// Without gravity no such rate is known before the run, so that of bodies of 1 m under gravity is used; scenes without gravity therefore do
+// not scale with time. The duration of the run would not be suitable instead: it makes short runs of stiff joints too coarse, and changes
+// the ends of slips in long ones.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -14,11 +14,11 @@ namespace steplap {
 
 inline constexpr double k_metre_rate = 3.1320919526731650; ///< 1/s: √(9.81 m/s² / 1 m)
 
-/// 1/s.
+/// Returns the characteristic rate, 1/s.
 [[nodiscard]] inline double scene_rate(const System& system) { return system.gravity.isZero(0.0) ? k_metre_rate : system.scale.rate; }
 
-/// To what size of time a step's length is compared, where it is asked whether rounding leaves any of it: t, and near zero a
-/// little of the time in which the scene moves.
+/// Returns the magnitude of time that a step length is compared with to decide whether it is only rounding: |t|, but at least a small
+/// fraction of the characteristic time.
 [[nodiscard]] inline double time_size(double t, const System& system) {
   constexpr double k_least_share = 3.132e-3; // 1 ms for bodies of a metre
   return std::max(std::abs(t), k_least_share / scene_rate(system));

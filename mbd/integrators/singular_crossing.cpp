@@ -12,9 +12,9 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_rounds = 40, k_max_setbacks = 4;
-constexpr double k_agreement = 1e-2;   // of the tolerance: what the end may move by from one round to the next
-constexpr double k_rounded = 2e-11;    // of a step's length: what rounding may leave of that
-constexpr double k_dense_share = 1e-3; // weight of the polynomial's own error beside that of the step's end
+constexpr double k_agreement = 1e-2;   // relative to the tolerance: largest change of the end from one iteration to the next
+constexpr double k_rounded = 2e-11;    // relative to the step length: change that may be rounding
+constexpr double k_dense_share = 1e-3; // weight of the error of the polynomial relative to that of the end of the step
 constexpr double k_infinite = std::numeric_limits<double>::infinity();
 
 struct Legendre {
@@ -31,7 +31,7 @@ Legendre legendre(int n, long double x) {
   return {p, n * (x * p - q) / (x * x - 1.0L)};
 }
 
-// ∫ from..to of the Lagrange polynomials of up to four nodes; Gauss' method of two points is exact for them.
+// Computes ∫ from..to of the Lagrange polynomials for up to four nodes; Gauss' method with two points is exact for them.
 void integrate_lagrange(const double* node, int count, double from, double to, double* weight) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   for (int j = 0; j < count; ++j) {
@@ -47,7 +47,7 @@ void integrate_lagrange(const double* node, int count, double from, double to, d
 
 } // namespace
 
-// --- the method --------------------------------------------------------------------------------------
+// --- coefficients ------------------------------------------------------------------------------------
 
 std::array<double, GaussTable::n> GaussTable::weights_to(double theta) const {
   std::array<double, n> w{};
@@ -120,8 +120,8 @@ double SingularCrossing::distance(Dynamics& dynamics, const Step& step, double t
   return std::sqrt(dynamics.layout().smallest_pivot());
 }
 
-// The distance falls and grows linearly on either side of the position: walks until it grows, with strides that
-// take it there in a few.
+// The distance decreases and increases linearly on both sides of the position. Walks until it increases, with strides chosen to arrive
+// within a few samples.
 double SingularCrossing::locate(Dynamics& dynamics, const Step& step) {
   constexpr int k_most_samples = 10;
   constexpr double k_first = 0.25, k_strides = 3.0, k_near = 0.2;
@@ -165,7 +165,7 @@ void SingularCrossing::evaluate(Dynamics& dynamics, const Step& step, int stage)
   dynamics.rates(t, state(stage), rate(stage));
 }
 
-// First guess of a stage: from the one before, with the rates of up to four before it (Adams' method).
+// Initial guess of a stage: from the previous one, with the rates of up to four stages before (Adams' method).
 void SingularCrossing::begin_stage(Dynamics& dynamics, const Step& step, int stage) {
   constexpr int k_most = 4;
   const auto& c = gauss_table().c;
@@ -173,7 +173,7 @@ void SingularCrossing::begin_stage(Dynamics& dynamics, const Step& step, int sta
   double node[k_most], weight[k_most];
   const double* rates[k_most];
   for (int j = 0; j < count; ++j) {
-    const int i = stage - 1 - j; // −1: the step's start
+    const int i = stage - 1 - j; // −1: start of the step
     node[j] = i < 0 ? 0.0 : c[i];
     rates[j] = i < 0 ? step.rate0 : rate(i);
   }
@@ -187,7 +187,7 @@ void SingularCrossing::begin_stage(Dynamics& dynamics, const Step& step, int sta
   evaluate(dynamics, step, stage);
 }
 
-// All stages once more from the rates of the last round, and the end of the step, on the constraints.
+// Updates all stages from the rates of the last iteration, and the end of the step; projects them onto the constraints.
 void SingularCrossing::iterate(Dynamics& dynamics, const Step& step, double* y1) {
   const GaussTable& table = gauss_table();
   const auto combine = [&](const std::array<double, k_stages>& weights, double* y) {
@@ -203,9 +203,9 @@ void SingularCrossing::iterate(Dynamics& dynamics, const Step& step, double* y1)
   dynamics.project(step.t0 + step.h, y1, 0.0);
 }
 
-// The polynomial of degree 7 through the stages' rates is off by some δ at the start, where the rate is known;
-// the step's end, exact for degree 15, by that times its relative size. What the constraints do not allow is
-// rounding.
+// The polynomial of degree 7 through the rates of the stages has some error δ at the start, where the rate is known. The end of the step,
+// exact to degree 15, has an error of δ times the relative size of δ. The part of δ that violates the constraints is rounding and is
+// removed.
 double SingularCrossing::error_of(Dynamics& dynamics, const Step& step) {
   const auto w = gauss_table().weights_at(0.0);
   double* const off = work_.data();
@@ -223,8 +223,8 @@ double SingularCrossing::error_of(Dynamics& dynamics, const Step& step) {
   return std::max(size > 0.0 ? delta * delta / size : delta, k_dense_share * delta);
 }
 
-// Rounds until the step's end stays where it is. Each brings a digit or more; one that does not has reached what
-// rounding leaves, which now and then throws a stage far off.
+// Iterates until the end of the step no longer changes. Each iteration should gain a digit; one that does not has reached the level of
+// rounding, which occasionally throws a stage far off.
 bool SingularCrossing::settle(Dynamics& dynamics, const Step& step, double* y1) {
   double* const change = work_.data();
   double* const before = change + stride_;
@@ -251,7 +251,7 @@ double SingularCrossing::cross(Dynamics& dynamics, const Step& step, double* y1)
   try {
     for (int i = 0; i < k_stages; ++i) begin_stage(dynamics, step, i);
     if (!settle(dynamics, step, y1)) return k_infinite;
-    for (int i = 0; i < k_stages; ++i) { // for what a step's stages tell of events
+    for (int i = 0; i < k_stages; ++i) { // the stages become nodes of the event functions
       evaluate(dynamics, step, i);
       step.note_stage(rate(i), gauss_table().c[i]);
     }

@@ -1,11 +1,10 @@
-// One step across a singular position of the joints (a parallelogram that folds flat), by collocation.
+// One step across a singular position of joints (for example a parallelogram that folds flat), by collocation.
 //
-// Accelerations beside such a position are known to rounding over the square of the distance from it, those
-// of states off the constraints not even so far, and at the position itself not at all. But the motion is as
-// smooth there as elsewhere: a polynomial through the accelerations on either side carries it across. The
-// stages of Gauss' method of order 16 are eight states on the constraints, the position in the gap between
-// two of them, and are iterated until they agree: each is then as accurate as the end, unlike the stages of
-// an explicit method. (Hairer, Nørsett, Wanner, Solving ODEs I, II.7.)
+// Near such a position the relative rounding error of accelerations grows with the inverse square of the distance, and at the position they
+// are undefined. The motion itself is smooth, and a polynomial through the accelerations on both sides continues it. The stages of Gauss'
+// method of order 16 are eight states on the constraints, with the singular position between two of them. They are iterated until they
+// agree. In contrast to the stages of an explicit method, each then has the accuracy of the end. (Hairer, Nørsett, Wanner, Solving ODEs I,
+// II.7.)
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -17,30 +16,31 @@
 
 namespace steplap {
 
-/// How near to a singular position of the joints steps have come: pivots of the constraints (Dynamics::lowest_pivot),
-/// squares of distances in rad². Copied to be taken back with a step.
+/// Keeps track of how near steps have come to a singular position, by the smallest pivots (Dynamics::lowest_pivot), about squares of
+/// distances in rad². Copied, so that it can be restored with a withdrawn step.
 class SingularApproach {
 public:
   void restart() { start_ = highest_ = 1.0; }
-  /// A step was made that has this smallest pivot at its end.
+  /// Stores the smallest pivot at the end of a step.
   void note_end(double pivot) {
-    const bool is_first = highest_ == 1.0; // the first step's end tells what is usual here
+    const bool is_first = highest_ == 1.0; // the first step defines the usual value
     start_ = pivot;
     highest_ = is_first ? pivot : std::max(highest_, pivot);
   }
-  /// Came a step whose lowest pivot this is so near that rounding rules its stages?
+  /// Returns true if a step with smallest pivot `lowest` came so near that rounding dominates its stages.
   [[nodiscard]] bool is_beside(double lowest) const { return lowest < k_crossed_pivot && lowest < 0.5 * highest_; }
-  /// Is it to be crossed by collocation: falling towards a singular position, not merely small all the time, and not so near
-  /// at the start that the step would have to be tiny?
+  /// Returns true if the position should be crossed by collocation: the pivot decreases (and is not small all the time), and the start of
+  /// the step is not too near to the position, which would make the step tiny.
   [[nodiscard]] bool is_ahead(double lowest) const { return is_beside(lowest) && lowest < start_ && start_ > k_closest_start; }
 
 private:
   static constexpr double k_crossed_pivot = 2e-2, k_closest_start = 4e-4;
 
-  double start_ = 1.0;   ///< at t0, 1: not known
-  double highest_ = 1.0; ///< since the last restart
+  double start_ = 1.0;   ///< pivot at t0; 1: unknown
+  double highest_ = 1.0; ///< largest pivot since the last restart
 };
 
+/// The collocation method. It does not allocate after construction.
 class SingularCrossing {
 public:
   static constexpr int k_stages = 8;
@@ -48,23 +48,24 @@ public:
   explicit SingularCrossing(int max_dimension);
 
   using Norm = std::function<double(const double* error)>;
+  /// A step to be made, with the norm that defines its tolerance.
   struct Step {
     double t0 = 0.0, h = 0.0;
     const double* y0 = nullptr;
     const double* rate0 = nullptr;
     int n = 0;
-    Norm norm;                                                         ///< 1: as large as tolerated
-    std::function<void(const double* rates, double theta)> note_stage; ///< after each stage's last evaluation
+    Norm norm;                                                         ///< error norm; 1 is the tolerance
+    std::function<void(const double* rates, double theta)> note_stage; ///< called after the last evaluation of each stage
   };
 
-  /// Where in a step (0: its start, 1: its end, above 1: beyond it) the joints are singular; NaN if nowhere near.
+  /// Returns the singular position as a fraction of the step (0 start, 1 end, above 1 beyond it); NaN if none is near.
   [[nodiscard]] double locate(Dynamics& dynamics, const Step& step);
-  /// The longest step not above `left` that has what lies `ahead` s from its start in a gap of its stages: in
-  /// the middle one if it can, else in a later one; 0 if there is none.
+  /// Returns the longest step, at most `left`, for which a position `ahead` s from its start lies between two stages, preferably in the
+  /// middle gap, otherwise in a later one; 0 if there is none.
   [[nodiscard]] double length_with_gap_at(double ahead, double left) const;
-  /// Stages and end of the step. Returns its error, accepted when ≤ 1; infinite if the stages do not agree.
+  /// Computes stages and end of the step. Returns its error norm, acceptable if ≤ 1; infinite if the iteration does not converge.
   double cross(Dynamics& dynamics, const Step& step, double* y1);
-  /// State at t0 + theta h of the step last crossed, before its end was projected.
+  /// Writes the state at t0 + theta h of the last step, before its end was projected.
   void dense(double theta, const Step& step, double* out) const;
 
 private:
@@ -89,7 +90,7 @@ struct GaussTable {
   std::array<std::array<double, n>, n> a{};
   std::array<std::array<double, n>, n> power{}; ///< Lagrange polynomial i = Σ_p power[i][p] θ^p
 
-  /// ∫₀^θ of the Lagrange polynomials.
+  /// Returns ∫₀^θ of the Lagrange polynomials.
   [[nodiscard]] std::array<double, n> weights_to(double theta) const;
   [[nodiscard]] std::array<double, n> weights_at(double theta) const;
 };

@@ -1,24 +1,25 @@
-// How steps pass singular positions of joints (a parallelogram that folds flat).
+// Policy for passing singular positions of joints (for example a parallelogram that folds flat) by ordinary steps.
 //
-// Accelerations near them are known to rounding over the square of the distance, so no stage may come too
-// close. A step that fails for that is tried again a little shorter, until the position lies in a gap between
-// its stages; and no step ends closer than a hundredth of a radian if it need not.
+// The rounding error of accelerations grows with the inverse square of the distance from such a position, so no stage may be too close. A
+// step that fails for this reason is repeated slightly shorter, until the position lies between its stages. Steps also avoid ending closer
+// than 0.01 rad.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
 
 namespace steplap {
 
+/// Decisions of one step near a singular position.
 class SingularPassage {
 public:
-  /// At the start of a step, the last evaluation still at its state.
+  /// To be created at the start of a step, with the last evaluation at its state.
   explicit SingularPassage(Dynamics& dynamics) : dynamics_(dynamics), begins_near_(is_near()) {}
 
-  /// Before each try.
+  /// To be called before each try.
   void begin_try() { dynamics_.forget_pivots(); }
-  /// After a try that would be accepted: should it end elsewhere?
+  /// After an acceptable try: returns true if the step should end elsewhere, because its end is too near.
   [[nodiscard]] bool wants_other_end() { return !begins_near_ && other_ends_ < k_max_other_ends && is_near() && ++other_ends_ > 0; }
-  /// After one that would not: because a stage came too close?
+  /// After a rejected try: returns true if it should be repeated because a stage came too near.
   [[nodiscard]] bool wants_other_stages() {
     return dynamics_.lowest_pivot() < k_close_pivot && tries_across_ < k_max_tries_across && ++tries_across_ > 0;
   }
@@ -28,7 +29,7 @@ public:
 private:
   [[nodiscard]] bool is_near() const { return !dynamics_.layout().active.empty() && dynamics_.smallest_pivot() < k_end_pivot; }
 
-  // Squares of distances, rad².
+  // Pivots of the constraints, about the squares of the distance from the singular position in rad².
   static constexpr double k_close_pivot = 1e-3, k_end_pivot = 1e-4;
   static constexpr int k_max_tries_across = 14, k_max_other_ends = 3;
 

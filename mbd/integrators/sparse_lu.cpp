@@ -17,8 +17,8 @@ void SparseLu::begin(int n) {
   else added_.clear();
 }
 
-// From the first entry that is not where it was: the matrix is read back from what has been summed
-// up so far, one value for each place, and taken as it comes from there on.
+// The pattern differs from here on. The entries so far are recovered from the sums, one value for each place; the following ones are stored
+// as they come.
 void SparseLu::add_unknown(std::size_t k, int row, int column, double value) {
   if (is_known_) {
     added_.assign(k, 0.0);
@@ -32,7 +32,7 @@ void SparseLu::add_unknown(std::size_t k, int row, int column, double value) {
   added_.push_back(value);
 }
 
-// Entries by columns, those at one place in one, and the order of elimination.
+// Sorts the entries by columns, merges those at the same place, and determines the order of elimination.
 void SparseLu::analyze() {
   const std::size_t count = rows_.size();
   std::vector<int> sorted(count);
@@ -76,7 +76,7 @@ void SparseLu::analyze() {
 }
 
 bool SparseLu::factor() {
-  if (is_known_ && count_ != rows_.size()) { // the pattern of before goes on where this one has ended
+  if (is_known_ && count_ != rows_.size()) { // the pattern is a proper part of the previous one
     added_.assign(count_, 0.0);
     for (std::size_t i = count_; i-- > 0;) std::swap(added_[i], values_[places_[i]]);
     rows_.resize(count_);
@@ -89,7 +89,7 @@ bool SparseLu::factor() {
   return (has_pivots_ && refactor()) || factor_anew();
 }
 
-// Rows of L reached from one row, in topological order backwards from `top` in found_.
+// Depth-first search: adds the rows of L reached from `row`, in topological order backwards from `top` in found_.
 void SparseLu::visit(int row, int& top) {
   int depth = 0;
   stack_[0] = row;
@@ -163,7 +163,7 @@ bool SparseLu::factor_anew() {
     }
     l_begin_.push_back(static_cast<int>(l_.size()));
   }
-  // Other pivots fill in elsewhere: room for them from the start.
+  // Other pivots give other fill-in, so capacity is reserved in advance.
   const auto make_room = [](auto& list) {
     if (list.capacity() < list.size() + list.size() / 4) list.reserve(2 * list.size());
   };
@@ -189,7 +189,7 @@ bool SparseLu::refactor() {
     const double pivot = work_[pivot_[k]];
     double largest = 0.0;
     for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) largest = std::max(largest, std::abs(work_[l_row_[e]]));
-    if (!(std::abs(pivot) > k_pivot_share * largest)) return false; // also 0 of 0
+    if (!(std::abs(pivot) > k_pivot_share * largest)) return false; // also false for 0/0
     inverse_pivot_[k] = 1.0 / pivot;
     work_[pivot_[k]] = 0.0;
     for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) {

@@ -19,7 +19,7 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   set_states();
 }
 
-// Found anew each time: what the lists hold comes and goes with modes.
+// Determined for every linearisation, because the lists change with the modes.
 void StageSystem::set_states() {
   const Linearization::StateParts& parts = linearization_->states();
   const auto place_in = [](std::vector<int>& list, int number) {
@@ -97,7 +97,7 @@ void StageSystem::factor_inner() {
   }
 }
 
-// The forces that inner states bring without the velocities' part.
+// Adds the forces of inner states that do not depend on the velocity part.
 void StageSystem::add_inner_forces(const double* r) {
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     const Linearization::InnerBlock& block = linearization_->inner()[i];
@@ -189,7 +189,7 @@ void StageSystem::solve(const double* r, double* u) {
   solve_unknowns();
   for (int i = 0; i < n_; ++i) {
     u[n_ + i] = solution_[i];
-    u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate has a rate of its own
+    u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate has its own rate
   }
   solve_inner(r, u);
   solve_states(r, u);

@@ -10,28 +10,27 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_mode_passes = 12;  // beyond, contacts go round in a circle: the step is halved
-constexpr int k_max_force_passes = 60; // repetitions for the normal forces of the step's end; beyond, it is halved
-constexpr int k_passes_in_full = 12;   // later ones go half the way: two that throw each other to and fro meet
-constexpr int k_passes_repeated = 20;  // later ones take bounds as functions of the wrenches: repetition has no end
-constexpr int k_passes_static = 6;     // later ones leave an element that has slipped its kinetic coefficient
+constexpr int k_max_mode_passes = 12;  // after so many passes contact modes cycle: the step is halved
+constexpr int k_max_force_passes = 60; // passes for the normal forces at the end of the step; then it is halved
+constexpr int k_passes_in_full = 12;   // later passes use half of the change, so that an alternation between two states converges
+constexpr int k_passes_repeated = 20;  // later passes use bounds as functions of the wrenches (the plain repetition diverges)
+constexpr int k_passes_static = 6;     // later passes do not return the static coefficient to an element that has slipped
 constexpr int k_max_halvings = 20;
-// Wrenches that still change by so much, of an element's, are settled: far below the method's own
-// error.
+// Wrenches are converged if they change by less than this relative to those of the element; far below the error of the method.
 constexpr double k_settled = 1e-8;
-// What changes by no more than this, and no longer less and less, may stay: the wrenches are those
-// of a step whose normal forces and free velocities differ by so much, relatively, from its own.
+// Smaller relative changes that no longer decrease are tolerated. The wrenches are then those of a step whose normal forces and velocities
+// differ from the true ones by this relative amount.
 constexpr double k_tolerated = 1e-6;
-// A step shorter than this share of the longest is one of rounding: residual velocities of the
-// steps before, 1e-8 of what a step adds, would be taken for forces a hundred times those that act.
+// A step shorter than this fraction of the longest is only rounding. Residual velocities of earlier steps, 1e-8 of what a step adds, would
+// otherwise appear as forces a hundred times the real ones.
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
-constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to it
-// Of the longest step: a slip inside it that a thousandth of it does not show is a millionth of how a load bends in a step.
+constexpr double k_whole = 1e-6; // relative to a part: a shorter remainder is added to it
+// Relative to the longest step. A slip that a part of this length does not show is 1e-6 of the curvature of a load within a step.
 constexpr double k_shortest_looked_into = 1e-3;
-constexpr double k_known = 1e-12; // of the scene's length: to which places are known, as constraints are met
+constexpr double k_known = 1e-12; // relative to the scene's length: accuracy of positions, equal to that of the constraints
 
-// While it lives, rates take signals that are forces by their means from `from` to their time.
+// While it exists, rates use the means of force signals over [`from`, t].
 class Means {
 public:
   Means(Dynamics& dynamics, double from) : dynamics_(dynamics) { dynamics.take_means(from); }
@@ -43,8 +42,7 @@ private:
   Dynamics& dynamics_;
 };
 
-// What a law does not hold beyond, whatever the mode (a rope that has run onto its pulley), ends the run from
-// next_mode().
+// Ends the run by next_mode() if a law is not valid any more, whatever the mode (a rope that has run onto its pulley).
 void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& state) {
   for (std::size_t u = 0; u < system.units.size(); ++u) {
     const Unit& unit = system.units[u];
@@ -65,7 +63,7 @@ bool TimeStepping::is_rounding(double t0, double t1) const {
   return t1 - t0 <= std::max(rounding, k_negligible * longest_);
 }
 
-// Nothing is decided in a step whose length is rounding: whatever holds goes on.
+// In a step whose length is rounding no mode changes.
 void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   const double h = t1 - state.t;
   dynamics.set_state(state);
@@ -80,7 +78,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
   residual_ = {};
   if (is_rounding(state.t, t1)) return drift(dynamics, state, t1);
   longest_ = std::max(longest_, t1 - state.t);
-  double part = t1 - state.t; // halved where it cannot be made, doubled where it could
+  double part = t1 - state.t; // halved if impossible, doubled after success
   int halvings = 0;
   while (state.t < t1) {
     const double left = t1 - state.t;
@@ -128,12 +126,12 @@ void TimeStepping::fail(const Trouble& trouble, double t, double h) const {
 
 void TimeStepping::evaluate(Dynamics& dynamics, double t, const double* y) {
   dynamics.rates(time_of_loads(t), y, dy_.data());
-  (void)dynamics.snapshot(dy_.data()); // places bodies that only friction refers to
+  (void)dynamics.snapshot(dy_.data()); // computes the motion of bodies that only friction refers to
 }
 
-// The step's end with the wrenches as they are, on the constraints.
+// Computes the end of the step for the present wrenches, and projects it onto the constraints.
 void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
-  const int numbers = 2 * n_ + dynamics.inner_count(); // own states follow the free motion
+  const int numbers = 2 * n_ + dynamics.inner_count(); // own states follow the motion without friction
   std::copy(y0_.begin(), y0_.begin() + numbers + 2, y1_.begin());
   for (int i = 0; i < numbers; ++i) y1_[i] += free_[i];
   for (int r = 0; r < rows_; ++r)
@@ -145,7 +143,7 @@ void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
   evaluate(dynamics, t1, y1_.data());
 }
 
-// Friction for the normal forces and the velocities that the end of the step has with it.
+// Solves friction for the normal forces and velocities of the end of the step, by repetition.
 TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1, double tolerance) {
   move(dynamics, t1, tolerance);
   double change = 0.0;
@@ -173,8 +171,7 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
   return {"friction and the normal forces it hangs on", system_.frictions[parts_[worst].friction].element, change, " of its force"};
 }
 
-// Modes that the end of the step asks for, taken over; the first unit whose mode differs from that
-// which the step was made with, or −1.
+// Takes over the modes at the end of the step. Returns the first unit whose mode differs from that used in the step, or −1.
 int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   int first = -1;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
@@ -186,24 +183,23 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   return first;
 }
 
-// A contact that is open at both ends, but which went on at the rate of either end would have closed before the other: a
-// fast body may be on its other side (a plate thinner than what a step goes). −1: none. Rates that turn round from approach
-// to parting without any force of the contact need something that turns them; a part half as long then tells. One that would have
-// gone in by no more than places are known lies there.
+// Returns the first contact that is open at both ends of the step, but would have closed according to the rate at either end; −1 if there
+// is none. A fast body may have passed a plate that is thinner than the step's displacement. A real reversal from approach to separation
+// without a contact force needs another cause, which a part half as long shows. A penetration below the accuracy of positions is ignored.
 int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, double h) const {
   const double known = k_known * system_.scale.length;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     if (state.mode[u] != 0 || start_.mode[u] != 0) continue;
     for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot)
-      if (start_watch_[slot] + h * start_watch_rate_[slot] < -known && // not so where a rate is not known
+      if (start_watch_[slot] + h * start_watch_rate_[slot] < -known && // false if a rate is not known
           dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < -known)
         return static_cast<int>(u);
   }
   return -1;
 }
 
-// From start_ to t1, in y1_ and the modes of `state`.
+// Makes the part from start_ to t1: result in y1_ and the modes of `state`.
 TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1, double tolerance) {
   const double h = t1 - state.t;
   for (std::size_t f = 0; f < state.friction.size(); ++f)
@@ -249,8 +245,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   return trouble;
 }
 
-// A force that is the same throughout a step works by the mean of the velocities at its ends: so do loads and drives, whose
-// impulse a step takes as it is. What is dissipated is that of the step's end, as laws are met there.
+// A force that is constant in a step does work by the mean of the velocities at its ends. This applies to loads and drives, whose impulse
+// is exact. Dissipation is that at the end of the step, where laws are satisfied.
 void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
   const int n = dynamics.dimension(), m = dynamics.coordinate_count();
   dynamics.rates(time_of_loads(state.t), y1_.data(), dy_.data());
@@ -263,14 +259,14 @@ void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
   state.work += h * dy_[n - 1];
 }
 
-// What became of each friction element, its anchor, and the power at the step's end.
+// Sets phase and anchor of each friction element, and the power at the end of the step.
 void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
   bool has_rejoined = false;
   for (const FrictionPart& part : parts_) {
     const FrictionElement& element = *system_.frictions[part.friction].friction;
     FrictionState& friction = state.friction[part.friction];
     const RowSpec* rows = element.rows(friction);
-    if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // stays free
+    if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // an unloaded element is free
     double rate[3] = {0, 0, 0};
     const bool stays = part.block.is_inside && has_held(friction, part.friction);
     for (int r = 0; r < part.dimension; ++r) {
@@ -288,7 +284,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     friction.sign = part.block.direction[0] > 0.0 ? 1 : -1;
     if (part.dimension == 3) element.aim(friction, rate);
   }
-  if (has_rejoined) dynamics.forget_layouts(); // those that merge the two have them where they held before
+  if (has_rejoined) dynamics.forget_layouts(); // cached layouts that merge the two bodies have their previous relative pose
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
   book_power(dynamics, state, h);

@@ -1,36 +1,31 @@
-// Time stepping after Moreau and Jean: forces as impulses over a fixed step, laws met at the step's
-// end.
+// Time stepping after Moreau and Jean: impulses over a fixed step, with the laws satisfied at its end.
 //
-//   M (v₁ − v₀) = h (Q(q₁, v₁, t₁) + Jᵀλ₁ + Hᵀw),   q₁ = q₀ + h v₁,   J v₁ = target's rate,
-//   −H v₁ in the normal cone of K at w: each friction element bears any w inside its convex set K
-//   and slides only on the set's boundary, the way that dissipates most.
-// Forces that follow signals enter by their means over the step, from the signals' integrals: their impulse is exact however
-// short they are. What moves by a signal does so by its value at the step's end, where what it presses against is met:
-// steps have to resolve it (Moreau, Simulation).
-// Springs, dampers and contacts enter linearised at the step's begin (linearization.h) and
-// implicitly, so that no stiffness limits the step; which contacts press is found by repeating the
-// step until the pressed ones are those that the end asks for. Friction is the convex problem of
-// friction_modes.h with velocities in place of accelerations, solved by block Gauss–Seidel over the
-// elements. Its operator, the change of H v₁ by w, is the one that joints and drives leave: they
-// answer every w within the step. The free velocities H v₁ are those of the step's end, on the
-// constraints, and so are the normal forces: both are found by repetition.
+//   M (v₁ − v₀) = h (Q(q₁, v₁, t₁) + Jᵀλ₁ + Hᵀw),   q₁ = q₀ + h v₁,   J v₁ = prescribed rate,
+//   −H v₁ in the normal cone of K at w: each friction element can have any w in its convex set K, and slides only on the boundary of K, in
+//   the direction of maximum dissipation.
 //
-// First order; no event is located: chattering, simultaneous impacts and jumps cost little more
-// than smooth motion. Vibrations of period T are damped by 2π²h/T of their amplitude in each period
-// (implicit Euler). Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom
-// dynamics (CISM 302, 1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
+// Forces that are signals enter by their means over the step, so that the impulse of a short pulse is exact. Signals used in other ways
+// (drives, parameters) enter by their value at the end of the step, and steps must resolve them (Moreau, Simulation).
 //
-// Friction that changes the normal force it hangs on by more than itself (a ladder whose foot jams)
-// does not settle so: there each element is solved with its bound as a function of its wrench,
-// linear at where the repetition is (Newton).
+// Springs, dampers and contacts are linearised at the start of the step (linearization.h) and treated implicitly, so that stiffness does
+// not limit the step. The set of pressed contacts is found by repeating the step until it agrees with its end. Friction is the convex
+// problem of friction_modes.h with velocities in place of accelerations, solved by block Gauss–Seidel iteration over the elements. Its
+// matrix, the change of H v₁ by w, includes the reactions of joints and drives. The velocities H v₁ without friction and the normal forces
+// belong to the end of the step on the constraints, and are found by repetition, too.
 //
-// A step is made only if it is consistent: friction and normal forces settled, contact modes those
-// that its end asks for. Where they are not (a contact's damper makes its force jump on closing:
-// within a step that is long against m/c neither mode is right) the step is halved, where both have
-// an answer, down to a millionth; a run in which that does not help stops.
+// The method is of first order. Events are not located: chattering, simultaneous impacts and jumps cost little more than smooth motion.
+// Vibrations of period T lose 2π²h/T of their amplitude per period (implicit Euler). Source: J. J. Moreau, Unilateral contact and dry
+// friction in finite freedom dynamics (CISM 302, 1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
 //
-// What sticks at a step's end may slip inside the step: the mean of a load leaves its peak out, and so does a clamping pressure
-// that is read at the end. A step in which that is so is halved, too (inner_slips.cpp).
+// The repetition diverges if friction changes its own normal force by more than itself (a ladder whose foot jams). There each element is
+// solved with its bound as a linear function of its wrench (Newton's method).
+//
+// A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved, down
+// to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither mode is
+// consistent.) If halving does not help the run stops.
+//
+// A friction element that sticks at the end of a step may have slipped within it, because means of loads and the clamping pressure at the
+// end do not show peaks. Such steps are halved, too (inner_slips.cpp).
 #pragma once
 
 #include "mbd/integrators/stage_system.h"
@@ -42,63 +37,64 @@
 
 namespace steplap {
 
+/// Time stepping of one system; see Moreau (moreau.cpp) for its use as an integrator.
 class TimeStepping {
 public:
   explicit TimeStepping(const System& system);
 
-  /// Called at the end of each part that a step is made of, with the states at its ends.
+  /// Called for each part of a step with the states at its ends.
   using PartObserver = std::function<void(const State& before, const State& after)>;
 
-  /// Advances `state` by h to its time t1 = t + h, with contact modes, friction phases, anchors,
-  /// and the two integrals of power. `dynamics` is left with `state` set. Locks and rows are met to
-  /// `tolerance`. A step whose length is rounding decides nothing. Throws NumericalFailure, `state`
-  /// then being that before the part of the step that cannot be made.
+  /// Advances `state` to the time t1: motion, contact modes, friction phases, anchors, and the integrals of power. `dynamics` is left with
+  /// `state` set. Constraints are satisfied to `tolerance`. If the step is only rounding in length, modes do not change. Throws
+  /// NumericalFailure if a part of the step is impossible; `state` is then that before this part.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance, const PartObserver& observe = {});
 
-  /// Time stands still (settling.h): in steps that follow loads, drives and clamping pressures are those of `t`, whatever the step's times.
+  /// Stops time at `t` for loads, drives and clamping pressures in all following steps (settling.h).
   void hold_time(double t) { held_time_ = t; }
-  /// Largest residuals met before projection in the last step.
+  /// Returns the largest residuals before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
-  /// Parts into which steps were halved so far, beyond one for each step.
+  /// Returns the number of additional parts by halving, in all steps so far.
   [[nodiscard]] long extra_parts() const { return extra_parts_; }
 
 private:
+  /// A friction element that may carry a load, in the present part of a step.
   struct FrictionPart {
-    int friction = 0, first = 0, dimension = 0; ///< first: among the rows of all parts
-    bool has_slid = false;                      ///< at the end of the step before
-    bool is_kinetic = false;                    ///< its set is that of the kinetic coefficient
-    bool is_returned = false;                   ///< was given back its static coefficient in this step
-    bool is_loaded = false;                     ///< it can bear something
-    bool is_driven = false;                     ///< some direction that joints and drives alone decide
-    Mat3 mobility = Mat3::Zero();               ///< of such a part: its own block, exact zeros along those directions
-    Mat3 free = Mat3::Identity();               ///< projector along the others
-    double noise = 0.0;                         ///< velocity along those directions that counts as rest
-    double bound = 0.0, kinetic_share = 1.0;    ///< of one dimension: what it bears at bound_at_, and sliding, of that
+    int friction = 0, first = 0, dimension = 0; ///< first: index of its first row
+    bool has_slid = false;                      ///< it slid at the end of the previous step
+    bool is_kinetic = false;                    ///< the kinetic coefficient applies
+    bool is_returned = false;                   ///< it has got back its static coefficient in this step
+    bool is_loaded = false;                     ///< its admissible set is more than zero
+    bool is_driven = false;                     ///< in some direction joints and drives alone determine the velocity
+    Mat3 mobility = Mat3::Zero();               ///< if driven: its own block of the mobility, zero in these directions
+    Mat3 free = Mat3::Identity();               ///< projection onto the other directions
+    double noise = 0.0;                         ///< velocity in these directions that counts as rest
+    double bound = 0.0, kinetic_share = 1.0;    ///< dimension 1: bound at the wrench bound_at_; ratio of the kinetic to the static bound
     FrictionBlock block;
   };
-  /// Gradient of a friction row in the coordinates of the clusters of its two sides.
+  /// Gradient of a friction row in the coordinates of the clusters on both sides.
   struct FrictionGradient {
     int cluster[2] = {-1, -1};
     double g[2][3] = {};
   };
-  /// Why a step could not be made.
+  /// Reason why a step is impossible.
   struct Trouble {
-    const char* what = nullptr; ///< null: it could
+    const char* what = nullptr; ///< null: it is possible
     int element = -1;
     double residual = 0.0;
     const char* unit = "";
   };
 
-  /// An element that sticks, at the end of a part.
+  /// A sticking element at the end of a part.
   struct Sticking {
-    double t = -1.0;      ///< s, of that end; negative: it does not stick
-    double usage = 0.0;   ///< share of what it bears
-    double change = 0.0;  ///< of that since the part before; 1 where nothing is known of it
-    bool is_near = false; ///< inside the part usage may have been one
+    double t = -1.0;      ///< time of that end, s; negative: it does not stick
+    double usage = 0.0;   ///< utilisation: share of what it can carry
+    double change = 0.0;  ///< change of the utilisation since the previous part; 1 if unknown
+    bool is_near = false; ///< the utilisation may have reached one within the part
   };
   static constexpr int k_glances = 3;
 
-  /// At which loads, drives and pressures are taken, at t of a step.
+  /// Returns the time for which loads, drives and pressures are evaluated in a step at t.
   [[nodiscard]] double time_of_loads(double t) const { return std::isnan(held_time_) ? t : held_time_; }
   [[nodiscard]] bool is_rounding(double t0, double t1) const;
   void drift(Dynamics& dynamics, State& state, double t1);
@@ -156,28 +152,28 @@ private:
   StageSystem stages_;
   Residual residual_;
   State start_;
-  std::vector<double> start_watch_, start_watch_rate_; ///< of the part being made
-  double longest_ = 0.0;                               ///< step so far, s
+  std::vector<double> start_watch_, start_watch_rate_; ///< at the start of the part being made
+  double longest_ = 0.0;                               ///< longest step so far, s
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;
   std::vector<double> y0_, y1_, dy_, right_, free_, probe_;
-  std::vector<FrictionGradient> gradient_; ///< per friction row
-  std::vector<double> response_;           ///< rows × 2n: change of state by a unit force
+  std::vector<FrictionGradient> gradient_; ///< gradient of each friction row
+  std::vector<double> response_;           ///< rows × 2n: change of the state by a unit force
   std::vector<double> compliance_;         ///< rows × rows: change of a row's rate by a unit force along another
-  std::vector<double> rate_;               ///< per row: rate at the end without wrenches
+  std::vector<double> rate_;               ///< per row: rate at the end without friction
   std::vector<double> wrench_, before_,
       last_;                                ///< per row: now, before the last repetition, before the last sweep
-  bool is_coupled_ = false;                 ///< bounds as functions of the wrenches
-  std::vector<double> bound_at_, bound_by_; ///< per row: the wrench there; rows × rows: ∂bound/∂wrench
+  bool is_coupled_ = false;                 ///< bounds are functions of the wrenches
+  std::vector<double> bound_at_, bound_by_; ///< per row: wrench at the linearisation; rows × rows: ∂bound/∂wrench
   std::vector<int> held_;                   ///< rows of factor_held() and solve_held()
-  std::vector<char> tried_;                 ///< per set of modes tried and part: was it kinetic?
-  std::vector<double> overload_;            ///< per part: share of its static set that it would need to hold
+  std::vector<char> tried_;                 ///< for each set of modes tried, per part: kinetic or not
+  std::vector<double> overload_;            ///< per part: fraction of its static set that it would need to stick
   std::vector<double> matrix_, together_, rest_;
-  std::vector<Sticking> sticking_, sticking_now_;               ///< per friction element: of the part before, of the part made
+  std::vector<Sticking> sticking_, sticking_now_;               ///< per friction element: of the previous part, of the present one
   std::vector<std::array<double, k_glances>> glance_usage_;     ///< per friction element
-  double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< s; not-a-number: time goes on
-  double glance_ = 0.0; ///< s: loads are taken by their means over so long before the part's end; 0: over the part
+  double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< s; NaN: time is not held
+  double glance_ = 0.0; ///< duration before the end of the part over which loads are averaged, s; 0: the whole part
 };
 
 } // namespace steplap

@@ -1,5 +1,4 @@
-// Friction in a time step: its rows, what wrenches along them do, and which of them the elements
-// bear.
+// Friction in a time step: rows, their responses, and the wrenches within the admissible sets.
 #include "mbd/base/portable_math.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/system/row_gradient.h"
@@ -15,48 +14,45 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_sweeps = 2000;
-constexpr int k_joint_sweeps = 10;  // the first sweeps are followed by a common solution of all that stick,
-constexpr int k_sweeps_between = 8; // one in so many by a stretch of what it changed
+constexpr int k_joint_sweeps = 10;  // after each of the first sweeps all sticking elements are solved together,
+constexpr int k_sweeps_between = 8; // later, one sweep in this many is followed by an extrapolation of its change
 constexpr double k_longest_stretch = 1e15;
 constexpr int k_bisections = 60;
-constexpr double k_settled = 1e-9; // change of a wrench, of the element's own: far below the method's error
-// The wrenches of a sweep that changed none by more solve the problem exactly for free velocities
-// that differ from the true ones by what those changes do, as much relatively: that is far below
-// the method's error, too.
+constexpr double k_settled = 1e-9; // relative change of an element's wrench; far below the error of the method
+// If no wrench changes by more than this in a sweep, the wrenches are the exact solution for velocities that differ by this relative
+// amount, which is also far below the error of the method.
 constexpr double k_tolerated = 1e-6;
-constexpr double k_small_share = 1e-3; // elements with less than this of the largest wrench count as having that
-// Mobility that joints and drives leave, of that without them: below it is rounding, and there is
-// none.
+constexpr double k_small_share = 1e-3; // elements below this fraction of the largest wrench use that fraction as their scale
+// Ratio of the mobility with joints and drives to that without them. Smaller values are rounding errors of zero.
 constexpr double k_driven = 1e-12;
-// Velocity that counts as rest where drives alone decide it, of those it is a difference of: their
-// rounding.
+// Where drives alone determine the velocity: rounding error of the velocity relative to the terms it is a difference of; below it the
+// element is at rest.
 constexpr double k_rest = 1e-10;
 constexpr double k_tolerances_at_rest = 10.0;
-// Wrenches that stick together: proximal iterations, each within this of the problem, whose limit
-// is of all solutions the least (weighted) where rows depend on each other.
+// Wrenches of elements that stick together: proximal point iterations with this regularisation. For dependent rows they converge to the
+// (weighted) least of all solutions.
 constexpr double k_proximal = 1e-10;
 constexpr int k_proximal_steps = 4;
-// Velocity that is rest, of what the other elements give: their wrenches are known to k_settled, or
-// this many times the last change. On the boundary without a velocity an element sticks: many ways
-// to share a load lead there.
+// Velocity that counts as rest, relative to the contribution of other elements: their wrenches are accurate to k_settled, or to this
+// multiple of the last change. An element on the boundary of its set without a velocity sticks, since many distributions of a load lead
+// there.
 constexpr double k_rest_of_others = 1e-7, k_changes_at_rest = 10.0;
-// Of what an element bears, by which its wrench is changed to see what that does to bounds; where that is too much,
-// less by this factor, so many times.
+// Change of a wrench for computing the derivatives of bounds, relative to the element's capacity. If it is too large, it is reduced by the
+// factor k_shorter, up to k_probes times.
 constexpr double k_probe = 1e-2, k_shorter = 1e-2;
 constexpr int k_probes = 6;
-constexpr int k_sets_expected = 8; // of modes that a step tries: memory for them
-constexpr double k_held = 1e-6;    // what is left of the free velocities, relatively, where holding is possible
+constexpr int k_sets_expected = 8; // capacity reserved for the sets of modes tried in a step
+constexpr double k_held = 1e-6;    // relative residual of the velocities below which sticking together is possible
 
 } // namespace
 
-// Stuck before this step at the same place: its anchor stays, and with it what an element has
-// worked out there.
+// Returns true if the element stuck before this step at the same contact point. Its anchor is then kept, with all that the element has
+// computed for it.
 bool TimeStepping::has_held(const FrictionState& friction, int f) const {
   return start_.friction[f].phase == FrictionPhase::stick && start_.friction[f].foot == friction.foot;
 }
 
-// Elements that can bear anything, anchored where they are; their rows are forces here, not
-// constraints.
+// Collects the elements with a nonzero admissible set, anchored at the present position. Their rows are forces here, not constraints.
 void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
   parts_.clear();
   rows_ = 0;
@@ -64,7 +60,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     const FrictionElement& element = *system_.frictions[f].friction;
     FrictionState& friction = state.friction[f];
     if (friction.phase == FrictionPhase::apart || element.never_slips()) continue;
-    FrictionState before = friction; // a joint that sticks cannot come apart: the phase counts
+    FrictionState before = friction; // a joint that sticks cannot separate, so the phase matters
     before.phase = start_.friction[f].phase;
     if (element.watch_place(dynamics.evaluation(), before) < 0.0) element.change_place(dynamics.evaluation(), friction);
     if (friction.phase == FrictionPhase::apart) continue;
@@ -83,7 +79,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
   gradient_.resize(rows_);
 }
 
-// Gradient of a friction row in the clusters' coordinates.
+// Computes the gradient of a friction row in the coordinates of the clusters.
 void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const {
   const Layout& layout = dynamics.layout();
   const std::vector<Motion<double>>& motion = dynamics.motion();
@@ -99,11 +95,11 @@ void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec, FrictionGra
     put_gradient(m, side, (side == 0 ? m.lever_a : m.lever_b) + off, row.g[side]);
   }
   if (row.cluster[0] < 0 || row.cluster[0] != row.cluster[1]) return;
-  for (int c = 0; c < 3; ++c) row.g[0][c] += row.g[1][c]; // two bodies that move as one
+  for (int c = 0; c < 3; ++c) row.g[0][c] += row.g[1][c]; // both bodies belong to one cluster
   row.cluster[1] = -1;
 }
 
-// Responses to unit forces along the friction rows, with all that joints and drives answer.
+// Computes the responses to unit forces along the friction rows, including the reactions of joints and drives.
 void TimeStepping::respond(Dynamics& dynamics, double h) {
   const std::vector<double>& w = linearization_.inverse_mass();
   const auto n2 = static_cast<std::size_t>(2 * n_), rows = static_cast<std::size_t>(rows_);
@@ -111,7 +107,7 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
     const RowSpec* specs = system_.frictions[part.friction].friction->rows(dynamics.evaluation().friction[part.friction]);
     for (int i = 0; i < part.dimension; ++i) load_row(dynamics, specs[i], gradient_[part.first + i]);
   }
-  matrix_.reserve(rows * rows); // of hold_together, which may be asked for the first time late
+  matrix_.reserve(rows * rows); // for hold_together(), which may be needed for the first time late in a run
   for (auto* v : {&together_, &rest_}) v->reserve(rows);
   held_.reserve(rows);
   overload_.reserve(parts_.size());
@@ -138,11 +134,11 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
   for (FrictionPart& part : parts_) find_driven(part, h);
 }
 
-// Directions along which joints and drives leave no mobility: no wrench changes the velocity there.
+// Finds the directions in which joints and drives leave no mobility, so that no wrench changes the velocity.
 void TimeStepping::find_driven(FrictionPart& part, double h) {
   const std::vector<double>& w = linearization_.inverse_mass();
   Mat3 scaled = Mat3::Identity();
-  Vec3 scale = Vec3::Ones(); // by the mobility without joints
+  Vec3 scale = Vec3::Ones(); // mobility of the two bodies without joints
   for (int i = 0; i < part.dimension; ++i) {
     const FrictionGradient& row = gradient_[part.first + i];
     double own = 0.0;
@@ -172,8 +168,7 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
   part.free = scale.asDiagonal() * range * scale.cwiseInverse().asDiagonal();
 }
 
-// The rows' rates at the step's end as it is, on the constraints, less what the wrenches make of
-// them.
+// Computes the rates of the rows without friction: those at the projected end of the step minus the responses to the wrenches.
 void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   const Motion<double>* const motion = dynamics.motion().data();
   for (FrictionPart& part : parts_) {
@@ -190,17 +185,17 @@ void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   }
 }
 
-// What an element of one dimension bears at the evaluation `e`.
+// Returns the bound of a one-dimensional element at the evaluation `e`.
 double TimeStepping::bound_of(const Evaluation& e, const FrictionPart& part, bool is_kinetic) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
   if (!element.is_loaded(e, friction)) return 0.0;
-  const double a[9] = {}, b[3] = {-1.0}; // no wrench helps: it is the largest
+  const double a[9] = {}, b[3] = {-1.0}; // the wrench is insufficient in any case, so it equals the bound
   return element.solve_block(e, friction, a, b, is_kinetic).wrench[0];
 }
 
-// Bounds as functions of the wrenches, linear at those that are now. Normal forces end at zero, and with them what
-// wrenches do to them: an element whose wrench has made its own vanish begins anew without one.
+// Linearises bounds as functions of the wrenches at their present values. Normal forces end at zero, where they no longer depend on
+// wrenches: an element whose wrench has reduced its own normal force to zero starts again with zero wrench.
 void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance) {
   const bool is_first = !is_coupled_;
   is_coupled_ = true;
@@ -209,7 +204,7 @@ void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance
     double& wrench = wrench_[part.first];
     if (part.dimension != 1 || wrench == 0.0) continue;
     if (!is_first && bound_of(dynamics.evaluation(), part, false) > 0.0) continue;
-    wrench = 0.0; // repetition may have thrown it anywhere
+    wrench = 0.0; // the repetitions so far may have led to any value
     is_moved = true;
   }
   if (is_moved) move(dynamics, t1, tolerance);
@@ -225,7 +220,7 @@ void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance
   evaluate(dynamics, t1, y1_.data());
 }
 
-// What a wrench of element `by` changes of all bounds: a difference, short enough that none ends at zero.
+// Computes the derivatives of all bounds by a wrench of element `by`, as a difference small enough that no bound becomes zero.
 void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart& by) {
   double size = k_probe * by.bound;
   for (int attempt = 0; attempt < k_probes; ++attempt, size *= k_shorter) {
@@ -244,9 +239,8 @@ void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart&
   }
 }
 
-// One dimension, its bound linear in its own wrench w, B(w) = bound + slope w: sticks where |w| ≤ B holds it, else
-// slides either way with w = ∓B(w) against the rate a w + b that it then has. Where more than one is possible (Painlevé's
-// paradox) it sticks.
+// Solves a one-dimensional element with bound B(w) = bound + slope w: it sticks if |w| ≤ B(w) stops it, otherwise it slides in either
+// direction with w = ∓B(w) against the rate a w + b. If several solutions exist (Painlevé's paradox) it sticks.
 FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, double b) const {
   const std::size_t row = part.first;
   const double* const by = &bound_by_[row * rows_];
@@ -263,7 +257,7 @@ FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, do
   block.wrench[0] = held;
   if (block.is_inside) return block;
   double least = std::numeric_limits<double>::infinity();
-  for (const double sign : {1.0, -1.0}) { // of the rate
+  for (const double sign : {1.0, -1.0}) { // direction of slip
     const double against = 1.0 + sign * slope;
     const double wrench = bound > 0.0 && against > 0.0 ? -sign * bound / against : 0.0;
     const double wrong = std::max(0.0, -sign * (a * wrench + b)) + (bound > 0.0 && against <= 0.0 ? std::abs(b) : 0.0);
@@ -275,7 +269,7 @@ FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, do
   return block;
 }
 
-// One element for the others' wrenches as they are.
+// Solves one element for the present wrenches of the others.
 FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& part) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
@@ -290,8 +284,8 @@ FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
     for (int j = 0; j < d; ++j) a[i * d + j] = c[part.first + j];
   }
   if (part.is_driven && d == 1) {
-    if (std::abs(b[0]) <= part.noise) return {}; // what it takes is the drive's to say: none
-    a[0] = 1e-30 * std::abs(b[0]);               // any wrench changes as good as nothing: it slides
+    if (std::abs(b[0]) <= part.noise) return {}; // the wrench is undetermined, as the drive carries it: zero
+    a[0] = 1e-30 * std::abs(b[0]);               // wrenches have almost no effect: it slides
   } else if (part.is_driven) {
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(a);
     Eigen::Map<Vec3> rate(b);
@@ -303,8 +297,7 @@ FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
   return element.solve_block(e, friction, a, b, part.is_kinetic);
 }
 
-// Sizes of wrenches that compare between forces and couples: the root of the energy that they give
-// alone.
+// Returns a size that is comparable for forces and moments: the square root of the energy that the wrench alone would give.
 double TimeStepping::size_of(const FrictionPart& part, const double* wrench) const {
   double size = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
@@ -314,8 +307,8 @@ double TimeStepping::size_of(const FrictionPart& part, const double* wrench) con
   return size;
 }
 
-// The largest wrench, or what an element of one dimension bears, if that is more: a wheel that rolls on by itself takes a
-// friction force of zero, and what rounding makes of that is no change.
+// Returns the largest wrench, or the bound of a one-dimensional element if that is larger. Otherwise the zero friction force of a freely
+// rolling wheel would never converge, because its rounding errors are large relative to it.
 double TimeStepping::largest_size(const Evaluation& e) const {
   double size = 0.0;
   for (const FrictionPart& part : parts_) {
@@ -327,8 +320,7 @@ double TimeStepping::largest_size(const Evaluation& e) const {
   return size;
 }
 
-// Of an element's wrench against that before (of its dimension), relative to its own size or a
-// small share of the largest.
+// Returns the change of an element's wrench relative to its own size or to a small fraction of the largest wrench.
 double TimeStepping::change_of(const FrictionPart& part, const double* before, double size) const {
   double change = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
@@ -340,7 +332,7 @@ double TimeStepping::change_of(const FrictionPart& part, const double* before, d
   return change > 0.0 || std::isnan(change) ? change / own : 0.0;
 }
 
-// Each element once; the largest change, and whose it is.
+// Solves each element once. Returns the largest change; `worst` is its element.
 double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   const Evaluation& e = dynamics.evaluation();
   last_ = wrench_;
@@ -365,9 +357,8 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   return largest;
 }
 
-// The wrenches of all elements that stick at once, those that slip as they are: where the guess of
-// who sticks is right, the next sweep changes nothing. Left as they are where no wrenches can hold
-// all of them.
+// Solves for the wrenches of all sticking elements together, with those of slipping ones fixed. If the set of sticking elements is right,
+// the next sweep changes nothing. If no wrenches can stop all of them, nothing is changed.
 void TimeStepping::hold_together() {
   held_.clear();
   for (const FrictionPart& part : parts_)
@@ -376,11 +367,11 @@ void TimeStepping::hold_together() {
   for (std::size_t i = 0; i < held_.size(); ++i) wrench_[held_[i]] = together_[i];
 }
 
-// The wrenches together_ that bring the rows held_ to rest, the least where many do. False where none can.
+// Computes the wrenches together_ that stop the rows held_, the least ones if there are many. Returns false if there are none.
 bool TimeStepping::hold_rows() { return factor_held(k_proximal) && solve_held(k_proximal_steps) <= k_held; }
 
-// L Lᵀ of the symmetric part of the compliance of the rows held_, its diagonal raised by the share `proximal`. False if it is not
-// positive definite.
+// Computes L Lᵀ of the symmetric part of the compliance of the rows held_, with its diagonal increased by the fraction `proximal`. Returns
+// false if it is not positive definite.
 bool TimeStepping::factor_held(double proximal) {
   const std::size_t n = held_.size();
   const auto c = [&](std::size_t i, std::size_t j) { return compliance_[static_cast<std::size_t>(held_[i]) * rows_ + held_[j]]; };
@@ -396,7 +387,8 @@ bool TimeStepping::factor_held(double proximal) {
   return true;
 }
 
-// The wrenches together_ by so many proximal iterations with the factors of factor_held(), all others as they are. Returns the share of the rows' velocity without them that is left.
+// Computes the wrenches together_ by the given number of proximal iterations with the factors of factor_held(); other wrenches are fixed.
+// Returns the remaining velocity of the rows relative to that without these wrenches.
 double TimeStepping::solve_held(int steps) {
   const std::size_t n = held_.size();
   together_.assign(n, 0.0);
@@ -427,7 +419,7 @@ double TimeStepping::solve_held(int steps) {
   return wanted > 0.0 ? left / wanted : 0.0;
 }
 
-// Do all elements bear the wrenches before the last sweep and `share` of what it changed?
+// Returns true if all elements can carry the wrenches before the last sweep plus `share` of its change.
 bool TimeStepping::bears(const Evaluation& e, double share) const {
   for (const FrictionPart& part : parts_) {
     const FrictionElement& element = *system_.frictions[part.friction].friction;
@@ -449,9 +441,9 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
   return true;
 }
 
-// Rows that are nearly dependent (two feet of a box that has turned a little) leave the problem as
-// good as flat along what they take from each other, and sweeps creep along there: as far as the
-// energy falls and all elements bear it at once.
+// Extrapolates the change of the last sweep as far as the energy decreases and all wrenches remain admissible. With nearly dependent rows
+// (two feet of a slightly rotated box) the energy is almost constant for some exchange of load between them, and plain sweeps converge very
+// slowly.
 void TimeStepping::stretch(const Evaluation& e) {
   double slope = 0.0, curvature = 0.0;
   for (int i = 0; i < rows_; ++i) {
@@ -475,8 +467,7 @@ void TimeStepping::stretch(const Evaluation& e) {
   for (int i = 0; i < rows_; ++i) wrench_[i] = last_[i] + share * (wrench_[i] - last_[i]);
 }
 
-// Elements on the boundary of what they bear whose velocity is that of the others' remaining
-// changes.
+// Makes elements stick that are on the boundary of their set with a velocity no larger than the remaining changes of the others.
 void TimeStepping::stop_at_rest(double change) {
   const double share = std::max(k_rest_of_others, k_changes_at_rest * change);
   for (FrictionPart& part : parts_) {
@@ -497,7 +488,8 @@ void TimeStepping::stop_at_rest(double change) {
   }
 }
 
-// Block Gauss–Seidel: each element's wrench for the others' as they are, with static or kinetic coefficients as they are.
+// Block Gauss–Seidel iteration: solves each element for the present wrenches of the others, with the present choice of static or kinetic
+// coefficients.
 TimeStepping::Trouble TimeStepping::settle_wrenches(Dynamics& dynamics, double& change) {
   int worst = 0;
   for (int i = 0; i < k_max_sweeps; ++i) {

@@ -1,17 +1,19 @@
-// Static or kinetic coefficient: which of the two each friction element has in a time step.
+// Choice between static and kinetic coefficient for each friction element in a time step.
 //
-// Kinetic friction below static makes the problem of a step non-convex, and nothing in it marks the onset of a slip. Friction that
-// slid at the end of the last step goes on with its kinetic coefficient, as it does in truth; otherwise its static force, which it
-// has not, would load its neighbours. All other friction begins with its static coefficient. Then, until nothing changes:
-//   1. The convex problem is solved for the coefficients as they are.
-//   2. Friction that would slide the other way than before has passed through rest: it gets its static coefficient back.
-//   3. Friction with the kinetic coefficient that is at rest and within its static set gets its static coefficient back.
-//   4. Of all that slides with its static coefficient, the one that is most overloaded gets its kinetic coefficient, together
-//      with all that equal it. The overload is what it would need to hold while everything that may stick holds, relative to what
-//      it can bear: under loads that grow in proportion this one begins to slide first. Where others that may stick hold it in any
-//      case, as two frictions on one body do, it slides only together with them: then all that slides gets its kinetic coefficient.
-// Each element is given back its static coefficient once in a step at most, and no set of coefficients is tried twice: from the set on
-// that would be, the elements with kinetic coefficients only become more. So there are at most about twice as many rounds as elements.
+// With kinetic friction below static friction the problem of a step is not convex, and does not define the onset of slip. An element that
+// slid at the end of the last step keeps its kinetic coefficient; with the static one it would load its neighbours by a force that it does
+// not have. All others start with the static coefficient. Then, until nothing changes:
+//
+//   1. The convex problem is solved for the present coefficients.
+//   2. An element that would slide in the opposite direction has passed through rest: it gets its static coefficient back.
+//   3. An element with the kinetic coefficient that is at rest and within its static set gets its static coefficient back.
+//   4. Of the elements that slide with the static coefficient, the most overloaded one, and those equal to it, get the kinetic coefficient.
+//      The overload is the wrench needed to stick, while all elements that may stick do so, relative to the capacity. Under proportionally
+//      growing loads this element starts to slide first. If the elements that may stick hold it in any case (two friction elements on
+//      one body), it can slide only together with them: then all that slide get the kinetic coefficient.
+//
+// Each element gets its static coefficient back at most once in a step, and no set of coefficients is tried twice: once one would be,
+// elements only change to kinetic. The number of rounds is therefore at most about twice the number of elements.
 #include "mbd/integrators/time_stepping.h"
 
 #include <algorithm>
@@ -22,21 +24,21 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_tie = 1e-9; // of overloads that are equal: far above the rounding of identical elements
-// Wrenches are known to the last change of the sweeps; overloads that differ by no more than this many times that are equal, too.
+constexpr double k_tie = 1e-9; // relative tolerance for equal overloads, far above the rounding errors of identical elements
+// Wrenches are accurate to the last change of the sweeps. Overloads that differ by at most this multiple of it are equal, too.
 constexpr double k_changes_in_tie = 10.0;
-// If not all frictions can hold, as between parts that drives move apart, the loads are those of springs of the same stiffness relative
-// to the mobilities. Rounding makes errors of 1e-10 of them.
+// Regularisation for the case that not all elements can stick, for example between parts that drives move apart. The loads are then those
+// of springs with equal stiffness relative to the mobilities; rounding errors are 1e-10 of them.
 constexpr double k_soft = 1e-6;
-// Share of the velocities that add up to a row's velocity, below which the row is at rest. They are solved to 1e-6 at worst.
+// A row is at rest if its velocity is below this fraction of the terms that add up to it. Velocities are accurate to 1e-6 at worst.
 constexpr double k_rest_by_others = 1e-6;
 
 } // namespace
 
-// A step of zero length begins at rest, whatever the last step ended with.
+// A step of zero length starts at rest, whatever the phase at the end of the last step.
 bool TimeStepping::slid_before(int f) const { return start_.friction[f].phase == FrictionPhase::slip && std::isnan(held_time_); }
 
-// `keeps_kinetic`: goes on with the coefficients of the last call, of which more become kinetic.
+// `keeps_kinetic`: continues with the coefficients of the last call; elements then only change to kinetic.
 TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
   const Evaluation& e = dynamics.evaluation();
   for (FrictionPart& part : parts_) {
@@ -64,8 +66,8 @@ TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool ke
   }
 }
 
-// Slides the other way than at the end of the last step. In three dimensions a slip swings round without a rest; there the present
-// friction would push along the former slip.
+// Returns true if the element slides opposite to its direction at the end of the last step. In three dimensions a slip changes its
+// direction without coming to rest; there the criterion is whether the friction would push along the former slip.
 bool TimeStepping::turns_round(const FrictionPart& part) const {
   if (!part.has_slid || !part.is_kinetic || !part.is_loaded || part.block.is_inside) return false;
   const FrictionState& before = start_.friction[part.friction];
@@ -85,17 +87,17 @@ bool TimeStepping::return_turned() {
   return is_any;
 }
 
-// The wrenches are those of the static sets, too: no new balance is needed for that.
+// The wrenches are admissible in the static sets, too, so they need not be solved again.
 void TimeStepping::return_stopped(const Evaluation& e) {
   for (FrictionPart& part : parts_) {
     if (!part.is_kinetic || part.is_returned || !part.is_loaded || !part.block.is_inside) continue;
     part.is_kinetic = false;
     if (solve_part(e, part).is_inside) part.is_returned = true;
-    else part.is_kinetic = true; // a viscous part makes its kinetic set the larger one
+    else part.is_kinetic = true; // a viscous part makes the kinetic set larger than the static one
   }
 }
 
-// False if nothing slides with its static coefficient.
+// Returns false if nothing slides with its static coefficient.
 bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
   const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.is_inside; };
   if (std::none_of(parts_.begin(), parts_.end(), slides)) return false;
@@ -114,15 +116,15 @@ bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
   }
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     FrictionPart& part = parts_[p];
-    // Rounding may leave one just inside its set that equals one just outside. Where elements share a load that they need not have, one may
-    // hold with an overload beyond one: others bear the rest.
+    // By rounding, an element just within its set may equal one just outside. If elements share a load in a statically indeterminate way,
+    // an overload above one does not imply sliding: others carry the rest.
     const bool equals_by_rounding = part.is_loaded && !part.is_kinetic && most <= 1.0 + tie && std::abs(overload_[p] - most) <= tie;
     if ((slides(part) && overload_[p] >= most * (1.0 - tie)) || equals_by_rounding) part.is_kinetic = true;
   }
   return true;
 }
 
-// Infinite where drives decide the motion, or nothing can be borne: such friction slides for certain.
+// Computes the overloads. They are infinite if drives determine the motion or the capacity is zero: such an element slides.
 void TimeStepping::find_overloads(const Evaluation& e) {
   overload_.assign(parts_.size(), 0.0);
   held_.clear();
@@ -145,7 +147,8 @@ void TimeStepping::find_overloads(const Evaluation& e) {
   }
 }
 
-// Is it at rest where all others with static coefficients hold? Then it cannot slide by itself, and how they share the load is not unique.
+// Returns true if the element is at rest when all others with static coefficients stick. It cannot slide alone then, and the distribution
+// of the load is not unique.
 bool TimeStepping::is_held_by_others(const FrictionPart& part) {
   held_.clear();
   for (const FrictionPart& other : parts_)

@@ -1,4 +1,4 @@
-// Tsitouras' explicit pair of order 5(4) with its dense output of order 4.
+// Explicit pair of order 5(4) by Tsitouras, with dense output of order 4.
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/tableau_tsit5.h"
@@ -7,8 +7,8 @@ namespace steplap {
 
 namespace {
 
-// The output within a step is of order 4 and known from no estimate; near a slip's end the wrench follows the direction of what it
-// says of the slip's velocity. A tenth of the usual error keeps 200 random slips (slip_ends_test.cpp) within 2 % of the capacity.
+// The dense output is of order 4 and has no error estimate. Near the end of a slip the friction direction depends on its velocity. With a
+// tenth of the usual error, 200 random slips (slip_ends_test.cpp) stay within 2 % of the capacity.
 constexpr double k_slip_care = 0.1;
 
 class Tsit5 final : public ExplicitPair {
@@ -26,7 +26,7 @@ public:
       const auto& d = tsit5::d[j];
       weight[j] = theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3])));
     }
-    // What projection moved is spread over the step, so that the output meets the projected end.
+    // The displacement by projection is distributed over the step, so that the dense output agrees with the projected end.
     const double blend = theta * theta * (3.0 - 2.0 * theta);
     for (int i = 0; i < n_; ++i) {
       double sum = 0.0;
@@ -39,7 +39,7 @@ public:
     double* const y = scratch_.data();
     combine<tsit5::a, 5, 5>(y0_.data(), h_, k_.data(), stride_, n_, y);
     for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];
-    return rate_of_stages(6, 5, y) / 3.5; // stable for hρ up to 3.5 on the negative axis
+    return rate_of_stages(6, 5, y) / 3.5; // stable on the negative real axis for hρ up to 3.5
   }
 
 protected:
@@ -51,7 +51,7 @@ protected:
     stage<a, 4>(dynamics, c[4]);
     stage<a, 5>(dynamics, c[5]);
     add_stages<a, 6, 6>(y1_.data());
-    // The estimate counts the rates at the end: taken before projection, which moves far less.
+    // The error estimate contains the rates at the end. They are evaluated before projection, whose displacement is much smaller.
     dynamics.evaluate(Request::stage, t0_ + h_, y1_.data(), k(6));
     std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
     sum_stages<e, 7>(scratch_.data());

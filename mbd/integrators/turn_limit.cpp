@@ -7,17 +7,17 @@ namespace steplap {
 
 namespace {
 
-// Share of the interval behind a knot: a step that ends within it counts as ending at the knot. More than k_reached of turn_table.cpp.
+// Fraction of the interval after a knot: a step that ends within it counts as ending at the knot. Larger than k_reached of turn_table.cpp.
 constexpr double k_beyond_knot = 0.05;
-constexpr double k_shorter = 0.9; // of what a step turned too far would have been allowed
-constexpr double k_whole = 1e-9;  // by which an interval may be longer than so many parts
+constexpr double k_shorter = 0.9; // safety factor for repeating a step that turned too far
+constexpr double k_whole = 1e-9;  // relative tolerance for an interval that is a whole number of parts
 
-// Time in which `turn` is reached at `rate` with `acceleration`, both positive.
+// Returns the time in which the angle `turn` is reached with `rate` and `acceleration`, both positive.
 double time_to(double turn, double rate, double acceleration) {
   return 2.0 * turn / (rate + std::sqrt(rate * rate + 2.0 * acceleration * turn));
 }
 
-// The coordinate that is a cluster's angle.
+// Returns the coordinate that is the angle of a cluster.
 int angle_of(const Layout& layout, int cluster) {
   if (cluster < layout.absolute_count) return 3 * cluster + 2;
   const Mechanism& m = layout.mechanism_of_cluster(cluster);
@@ -33,7 +33,7 @@ TurnLimit::TurnLimit(const System& system) : turns_(turn_table_of(system).turns(
 double TurnLimit::difference(const Layout& layout, const Turn& turn, const double* values) {
   const int a = layout.placements[static_cast<std::size_t>(turn.a)].cluster;
   const int b = layout.placements[static_cast<std::size_t>(turn.b)].cluster;
-  if (a == b) return 0.0; // they move as one body
+  if (a == b) return 0.0; // both bodies belong to one cluster
   return (a < 0 ? 0.0 : values[angle_of(layout, a)]) - (b < 0 ? 0.0 : values[angle_of(layout, b)]);
 }
 
@@ -60,10 +60,11 @@ double TurnLimit::shortened_by(const Turn& turn, const Layout& layout, const dou
     const double x = angle + knots.zero;
     const TurnKnots::Interval interval = knots.about(x, rate);
     const double left = rate > 0.0 ? interval.high - x : x - interval.low, part = (interval.high - interval.low) / division;
-    // As many equal steps up to the knot as the interval has parts of that length.
+    // Divides the interval up to the knot into equal steps of at most that length.
     if (std::isfinite(left)) most = std::min(most, left / std::max(1.0, std::ceil(left / part - k_whole)));
   }
-  // An acceleration that doubles the rate within such a step is a transient: what the step turns is seen at its end.
+  // An acceleration that would double the rate within such a step is a transient and is ignored; the rotation is checked at the end of the
+  // step.
   const double even = most / std::abs(rate), growth = difference(layout, turn, dy + layout.coordinate_count) * (rate > 0.0 ? 1.0 : -1.0);
   const bool is_steady = growth > 0.0 && growth * even < std::abs(rate);
   return is_steady ? time_to(most, std::abs(rate), growth) : even;
@@ -89,7 +90,7 @@ double TurnLimit::kept_by(const Turn& turn, const Layout& layout, const double* 
     const TurnKnots::Interval interval = knots.about(x, turned);
     const double knot = turned > 0.0 ? interval.high : interval.low;
     if (!std::isfinite(knot)) continue;
-    const TurnKnots::Interval behind = knots.about(knot, turned); // counts as reached
+    const TurnKnots::Interval behind = knots.about(knot, turned); // this knot counts as reached
     const double width = std::isfinite(behind.high - behind.low) ? std::min(behind.high - behind.low, k_most) : k_most;
     most = std::min(most, std::abs(knot - x) + k_beyond_knot * width);
   }

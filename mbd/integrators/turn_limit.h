@@ -1,7 +1,7 @@
-// How far pairs of bodies may turn against each other within one step (mbd/system/turn_table.h).
+// Limit of the relative rotation of pairs of bodies within one step (mbd/system/turn_table.h).
 //
-// Before a step its length is limited by the relative angular velocities at its begin, and by angular accelerations where these make a
-// rotation faster; after it the angles at its ends tell whether the bound was kept. A step that turned further is made again, shorter.
+// Before a step its length is limited by the relative angular velocities at its start, and by angular accelerations that increase them.
+// Afterwards the angles at both ends are checked. A step with too much rotation is repeated, shorter.
 #pragma once
 
 #include "mbd/dynamics/layout.h"
@@ -13,35 +13,36 @@
 
 namespace steplap {
 
+/// Limits of rotation for the bodies of one system, which must outlive it.
 class TurnLimit {
 public:
-  /// No step turns a pair further than this, rad.
+  /// Largest rotation of a pair in one step, rad.
   static constexpr double k_most = 1.0;
 
   explicit TurnLimit(const System& system);
 
-  /// The longest step that is not longer than `h` and, as far as rates tell, keeps the bound. `y`, `dy`: packed state and its rate. Of a
-  /// finer run, `division` above 1, the bound and intervals between knots are divided.
+  /// Returns the longest step, at most `h`, that keeps the limit according to the rates at its start. `y` and `dy`: packed state and its
+  /// rate. With `division` > 1 (finer run) the limit and the intervals between knots are divided by it.
   [[nodiscard]] double longest(const Layout& layout, const double* y, const double* dy, double h, int division) {
     limiting_ = nullptr;
     if (is_free(2.0 * division * h * fastest(layout, y + layout.coordinate_count), k_aim)) return h;
     return shortened(layout, y, dy, h, division);
   }
-  /// The share of the step from y0 to y1 that keeps the bound; 1: all of it.
+  /// Returns the fraction of the step from y0 to y1 that keeps the limit; 1: all of it.
   [[nodiscard]] double kept(const Layout& layout, const double* y0, const double* y1) {
     limiting_ = nullptr;
     return is_free(2.0 * furthest(layout, y0, y1), k_most) ? 1.0 : kept_by_all(layout, y0, y1);
   }
-  /// The pair for which the step last asked for is shorter; null: none.
+  /// Returns the pair that limited the last step; null: none.
   [[nodiscard]] const Turn* limiting() const { return limiting_; }
 
 private:
-  /// Aimed at, so that what accelerations change in a step seldom makes it a step too long.
+  /// Target, below the limit, so that accelerations rarely make a step exceed it.
   static constexpr double k_aim = 0.95 * k_most;
 
-  /// Nothing turns far enough to be looked at pair by pair.
+  /// Returns true if no rotation is large enough for checking single pairs.
   [[nodiscard]] bool is_free(double twice_turned, double most) const { return !has_knots_ && (turns_.empty() || twice_turned <= most); }
-  /// Calls f with each coordinate that is an angle.
+  /// Calls f with the index of each coordinate that is an angle.
   template <class F> static void for_angles(const Layout& layout, const F& f) {
     for (int k = 0; k < layout.absolute_count; ++k) f(3 * k + 2);
     for (const Mechanism& m : layout.mechanisms)
@@ -58,9 +59,10 @@ private:
     for_angles(layout, [&](int i) { most = std::max(most, std::abs(y1[i] - y0[i])); });
     return most;
   }
-  /// Returns the angle of the pair's a against its b, as `values` has it of coordinates.
+  /// Returns the angle, or rate, of the pair's a relative to b for the coordinates or rates in `values`.
   [[nodiscard]] static double difference(const Layout& layout, const Turn& turn, const double* values);
-  /// From a curve's argument to the angle between coordinates of the layout: clusters carry the angle of one of their bodies.
+  /// Returns the difference between the argument of a curve and the angle of the coordinates, since a cluster has the angle of one of its
+  /// bodies.
   [[nodiscard]] static double offset(const Layout& layout, const Turn& turn);
   [[nodiscard]] double shortened(const Layout& layout, const double* y, const double* dy, double h, int division);
   [[nodiscard]] static double shortened_by(const Turn& turn, const Layout& layout, const double* y, const double* dy, double h,

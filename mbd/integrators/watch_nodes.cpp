@@ -11,29 +11,30 @@ namespace steplap {
 
 namespace {
 
-// A kink between two places shows in the differences at both as half of what would bound it there; and as much again.
+// Safety factor of the curvature M. A kink between two nodes appears in each of the adjacent second differences with half of the required
+// value; the rest is a margin of 2.
 constexpr double k_curvature_safety = 4.0;
-// Where w″ changes its sign differences do not see it. Of a harmonic that turns by 1.6 rad about such a place it is up to 1.28 times
-// what w itself varies by.
+// Second differences miss the curvature where w″ changes sign. For a harmonic that turns by 1.6 rad about such a point w″ is up to 1.28
+// times the range of w.
 constexpr double k_bend_of_range = 2.0;
-// A clamping pressure bends what a load takes of a joint's grip far more where it is least: 1 − 1/q of q = 1 + b (1 − cos 1.6 θ) by
-// 2.56 (1 + b) times its range, and elsewhere hardly at all. b is 9 where a tenth of the mean is left.
+// The same for the utilisation of a joint with variable clamping pressure. 1 − 1/q with q = 1 + b (1 − cos 1.6 θ) has a curvature of 2.56
+// (1 + b) times its range where the pressure is least, and little elsewhere. b is 9 if the pressure falls to a tenth of its mean.
 constexpr double k_bend_of_share = 25.6;
 constexpr double k_steeper = 1.5;       // 1/cos of 0.84 rad
-constexpr int k_few = 3;                // so few gaps may lie about such a place
-constexpr double k_unseen_by_one = 2.0; // of what the values at three places differ by
+constexpr int k_few = 3;                // with at most this many gaps the range determines M
+constexpr double k_unseen_by_one = 2.0; // factor for one inner node, of the range of the values at three nodes
 
-// Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
+// Returns true if chord − ½ M s (g − s) > 0 for 0 < s < g, with end values a and b.
 bool is_positive_between(double a, double b, double g, double m) {
   const double slope = (b - a) / g;
-  const double s = 0.5 * g - slope / m; // where it is least
+  const double s = 0.5 * g - slope / m; // place of the minimum
   if (!(s > 0.0)) return b > 0.0;
   if (!(s < g)) return a > 0.0;
   return a + slope * s - 0.5 * m * s * (g - s) > 0.0;
 }
 
-// Three places, of rk4, have one difference: where parts of a sum of harmonics cancel in it nobody knows how w bends, but by
-// its slopes.
+// Returns true if the curvature can be estimated. Three nodes (rk4) have a single second difference, in which components of a sum of
+// harmonics may cancel; then slopes at both ends are required.
 template <class Curve> bool tells_bend(const Curve& c) {
   return c.last > 2 || (c.last == 2 && !std::isnan(c.start_slope) && !std::isnan(c.end_slope));
 }
@@ -46,7 +47,7 @@ void WatchNodes::add(double theta, const double* watch, bool has_merged) {
   for (; place > 0 && theta_[order_[place - 1]] > theta; --place) order_[place] = order_[place - 1];
   if (place > 0 && theta_[order_[place - 1]] == theta) {
     for (int i = place; i < count_; ++i) order_[i] = order_[i + 1];
-    // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
+    // Two stages at the same node, the midpoints of rk4, deviate by h² a/8 in opposite directions, so their mean is used.
     double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
     for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
     has_merged_[order_[place - 1]] = has_merged_[order_[place - 1]] && has_merged;
@@ -68,7 +69,7 @@ void WatchNodes::close(const double* watch0, const double* watch1) {
         read_numbers(watch1 + i, last);
         S least = first < last ? first : last, most = first < last ? last : first;
         const double* at = values + i;
-        for (int k = 0; k < count; ++k, at += stride) { // of values that are no numbers, what was known stays
+        for (int k = 0; k < count; ++k, at += stride) { // NaN: the previous value is kept
           read_numbers(at, value);
           least = value < least ? value : least;
           most = value > most ? value : most;
@@ -77,7 +78,7 @@ void WatchNodes::close(const double* watch0, const double* watch1) {
         std::memcpy(high + i, &most, sizeof most);
       });
   if (count_ > 1) return;
-  // One place inside, as of rk4, does not see where parts of a sum of harmonics cancel: it may be lower than there.
+  // A single inner node (rk4) cannot detect cancelling components of a sum of harmonics; the function may be lower than at the nodes.
   for (int i = 0; i < slots_; ++i) low_[i] -= k_unseen_by_one * (high_[i] - low_[i]);
 }
 
@@ -102,7 +103,7 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
         2.0 * ((c.w[j + 1] - c.w[j]) / (c.x[j + 1] - c.x[j]) - (c.w[j] - c.w[j - 1]) / (c.x[j] - c.x[j - 1])) / (c.x[j + 1] - c.x[j - 1]);
   c.bend[0] = c.bend[1];
   c.bend[n] = c.bend[n - 1];
-  // What is known of slopes at the ends tells more than the stages.
+  // Slopes at the ends, where known, are more reliable than stages.
   const auto [least, most] = std::minmax_element(c.w.begin(), c.w.begin() + n + 1);
   c.most_bend = (watched.is_of_joint ? k_bend_of_share : k_bend_of_range) * (*most - *least);
   const double first = c.x[1], rest = 1.0 - c.x[n - 1];
@@ -111,10 +112,10 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
   return c;
 }
 
-// A kink in a gap, as of the distance of what is passed, takes a value below its chord by (jump of the slope) u (g − u)/g, wherever in the gap
-// it is: by M = 2 (jump)/g. Second differences alone show less of it, the wider the gaps beside it are. The jump is what the slopes of the
-// chords beside the gap differ by, or more: the flanks of a point that passes on a circle grow steeper towards the kink, by no more than
-// k_steeper within a step that turns by a radian. (Where a slope is not known, comparisons with NaN are false.)
+// Returns M. A kink in a gap, as in the distance to something that is passed, lowers the function below its chord by (jump of the slope) u
+// (g − u)/g, wherever in the gap it is; this corresponds to M = 2 (jump)/g. Second differences underestimate it if neighbouring gaps are
+// wide. The jump is the difference between the slopes of the adjacent chords, or larger: the flanks of a point that passes on a circle get
+// steeper towards the kink, by at most k_steeper in a step that turns by a radian. (If a slope is unknown, comparisons with NaN are false.)
 double WatchNodes::Curve::bound(int gap) const {
   const auto chord = [this](int i) { return (w[i + 1] - w[i]) / (x[i + 1] - x[i]); };
   const double before = gap > 0 ? chord(gap - 1) : start_slope, after = gap + 1 < last ? chord(gap + 1) : end_slope;
@@ -126,7 +127,7 @@ double WatchNodes::Curve::bound(int gap) const {
 bool WatchNodes::Curve::is_positive_in(int gap) const {
   const double m = bound(gap), g = x[gap + 1] - x[gap];
   if (is_positive_between(w[gap], w[gap + 1], g, m)) return true;
-  // Out of the start or into the end with a slope that is known (comparisons with NaN are false).
+  // Leaves zero at the start, or approaches it at the end, with a known slope (comparisons with NaN are false).
   return (gap == 0 && start_slope > 0.5 * m * g) || (gap == last - 1 && -end_slope > 0.5 * m * g);
 }
 

@@ -1,15 +1,17 @@
-// Watch values met at the stages inside a step, and what they tell between them.
+// Event functions at the stages inside a step, and conclusions about their sign between them.
 //
-// A value w of the step is certain to stay positive between neighbouring places x_j, x_{j+1} if
+// An event function w is certain to be positive between neighbouring nodes x_j, x_{j+1} if
+//
 //   chord(x) − ½ M (x − x_j)(x_{j+1} − x) > 0,   M ≥ |w″| there,
-// the error of linear interpolation. M is taken as four times the largest second difference through neighbouring places (a
-// kink between them is bounded, too, as of the gap to a pin that is passed), of three gaps or fewer twice what w varies by at
-// least. It passes zero once between a place where it is positive and the next one where it is negative if it does so for
-// certain in no gap before, and there either only falls, by the same bound, or bends one way: what is convex or concave
-// between a positive and a negative end has one root. Why M is a bound:
-// explicit time dependence is resolved by the places, since no step turns a harmonic of a load or drive further
-// than Integrator::k_largest_turn, and motion is, since the step's error was accepted. Stages are approximations of
-// the motion: what they do not make certain is looked at on dense output (EventFinder).
+//
+// by the error of linear interpolation. M is four times the largest second difference of neighbouring nodes, which also covers a kink
+// between them (as in the gap to a pin that is passed); with three gaps or fewer it is at least twice the range of w. w has exactly one
+// root up to the first node where it is negative if it is certainly positive in all gaps before, and in the last gap certainly decreases,
+// or is convex or concave.
+//
+// M is a bound because the nodes resolve the explicit time dependence (a step turns no harmonic by more than Integrator::k_largest_turn)
+// and the motion (the error of the step was accepted). Stages only approximate the motion: what they leave uncertain is checked on dense
+// output (EventFinder).
 #pragma once
 
 #include <array>
@@ -17,18 +19,19 @@
 
 namespace steplap {
 
-/// Value and slope (per step, NaN where it is not known) of a watch value at an end of a step.
+/// Value and slope of an event function at an end of a step. The slope refers to the step as unit of time; NaN if unknown.
 struct WatchEnd {
   double value = 0.0, slope = 0.0;
 };
 
-/// A watch value of a step.
+/// An event function in a step.
 struct WatchedStep {
   int slot = 0;
-  bool is_merged = false;   ///< of a joint that is merged: not every place has looked at it
-  bool is_of_joint = false; ///< of a joint that holds with a share of its grip
+  bool is_merged = false;   ///< belongs to a merged joint: not all nodes have its value
+  bool is_of_joint = false; ///< belongs to a joint whose capacity is a fraction of its clamping
   WatchEnd start, end;
 };
+/// Event functions at the nodes of one step.
 
 class WatchNodes {
 public:
@@ -37,39 +40,39 @@ public:
         low_(stride_), high_(stride_) {}
 
   void clear() { count_ = 0; }
-  /// Values at `theta` (0: the step's start, 1: its end); those at the ends, and beyond capacity, are not kept.
-  /// `has_merged`: those of merged joints are of this place, and not what was left of an earlier look.
+  /// Adds the values at `theta` (0 start, 1 end of the step). Values at the ends and beyond the capacity are ignored. `has_merged`: values
+  /// of merged joints were computed at this node and are not older ones.
   void add(double theta, const double* watch, bool has_merged);
 
-  /// Finds the range of each value, once, after the last add(); before the functions below.
+  /// Computes the range of each event function. To be called once after the last add(), before the functions below.
   void close(const double* watch0, const double* watch1);
   [[nodiscard]] double low(int slot) const { return low_[slot]; }
   [[nodiscard]] double high(int slot) const { return high_[slot]; }
-  /// Is this value certain to stay positive, but for the ends themselves?
+  /// Returns true if the function is certainly positive in the step, except at the ends themselves.
   [[nodiscard]] bool is_surely_positive(const WatchedStep& watched) const;
-  /// Does it for certain pass zero just once, up to the first place where it is negative? It is positive at the start and
-  /// negative at the end.
+  /// Returns true if the function certainly has exactly one root up to the first node where it is negative. Precondition: positive at the
+  /// start and negative at the end.
   [[nodiscard]] bool crosses_once(const WatchedStep& watched) const;
 
 private:
   static constexpr int k_most = 18;
-  /// A value at the places that know it, the step's ends among them.
+  /// An event function at the nodes where it is known, including the ends.
   struct Curve {
-    int last = 0;                                    ///< index of the end
-    std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ by the difference about j
+    int last = 0;                                    ///< index of the last node
+    std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ by the second difference about node j
     double start_slope = 0.0, end_slope = 0.0;
-    double most_bend = 0.0;                    ///< of w″ where few places show it, by what w varies by
-    [[nodiscard]] double bound(int gap) const; ///< M between places `gap` and `gap` + 1
+    double most_bend = 0.0;                    ///< lower limit of M for few nodes, by the range of w
+    [[nodiscard]] double bound(int gap) const; ///< returns M between nodes `gap` and `gap` + 1
     [[nodiscard]] bool is_positive_in(int gap) const;
     [[nodiscard]] bool falls_once_in(int gap) const;
   };
   [[nodiscard]] Curve curve_of(const WatchedStep& watched) const;
-  static constexpr int k_block = 4; ///< a place's values begin at multiples of so many
+  static constexpr int k_block = 4; ///< alignment of the values of a node
   int slots_, stride_, count_ = 0;
   std::array<double, k_most> theta_{};
-  std::array<int, k_most> order_{}; ///< by theta
+  std::array<int, k_most> order_{}; ///< nodes sorted by theta
   std::array<char, k_most> has_merged_{};
-  std::vector<double> values_; ///< `stride_` for each place
+  std::vector<double> values_; ///< `stride_` numbers for each node
   std::vector<double> low_, high_;
 };
 

@@ -78,7 +78,7 @@ std::optional<EventText> event_text(const std::string& when) {
   const std::string text = trimmed(when);
   for (std::size_t space = text.find(' '); space != std::string::npos; space = text.find(' ', space + 1)) {
     const auto kind = event_kind_called(trimmed(text.substr(space)));
-    const bool is_compared = text.find_first_of("<>=") < space; // "t > opens", with a parameter of that name
+    const bool is_compared = text.find_first_of("<>=") < space; // "t > opens" is a comparison, with a parameter called "opens"
     if (kind && !is_compared) return EventText{trimmed(text.substr(0, space)), *kind};
   }
   return std::nullopt;
@@ -97,7 +97,7 @@ std::optional<std::vector<std::string>> items_of_list(const std::string& value) 
   }
   if (depth != 0) return std::nullopt;
   for (std::string& item : items) item = unquoted(item);
-  if (items.back().empty()) items.pop_back(); // a comma behind the last one
+  if (items.back().empty()) items.pop_back(); // comma after the last item
   return items;
 }
 

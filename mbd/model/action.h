@@ -1,5 +1,5 @@
-// `[[action]]`: something that happens in a run, when a condition comes true: an element is released or held, something is set, the
-// run ends. What it means is said in docs/reference/actions.md.
+// Model table `[[action]]`: when a condition comes true during a run, an element is released or held, a value is set, or the run ends.
+// Semantics: docs/reference/actions.md.
 #pragma once
 
 #include "mbd/base/event_kind.h"
@@ -12,46 +12,48 @@
 
 namespace steplap {
 
-/// The table as a file has it.
+/// One table [[action]], texts as in the file.
 struct Action : TableObject {
-  std::string when;               ///< a time, a comparison, or an event of an element
-  std::vector<std::string> steps; ///< what is done, one after the other
-  bool once = true;               ///< else each time that the condition comes true
-  bool armed = true;              ///< from the start; else from where another action arms it
-  std::string meaning;            ///< for people; may be empty
-  std::string reason;             ///< why loads that it cuts off are meant to end there; empty: they have not acted
+  std::string when;               ///< condition: a time, a comparison, or an event of an element
+  std::vector<std::string> steps; ///< steps, executed in this order
+  bool once = true;               ///< true: acts only the first time that the condition comes true; false: each time
+  bool armed = true;              ///< true: armed from the start; false: after another action arms it
+  std::string meaning;            ///< description for reports; may be empty
+  std::string reason;             ///< reason why loads removed by this action are meant to end there; empty: not yet applied loads count as
+                                  ///< missing
 };
 
-/// The action that the element is; nullptr if it is another element.
+/// Returns the action if the element is one, otherwise nullptr.
 [[nodiscard]] const Action* as_action(const Element& element);
 
-/// What one step does.
+/// Operation of one step. A parsed step, such as "release hook", "set brake.holds = 20 N m", "arm alarm", "stop".
 enum class ActionVerb { release, hold, set, arm, disarm, stop };
 
 /// A step as it is written: "release hook", "set brake.holds = 20 N m", "arm alarm", "stop".
 struct ActionStepText {
   ActionVerb verb = ActionVerb::stop; ///< what it does
-  std::string name;                   ///< of an element, or of an action to be armed or disarmed; "" of stop
-  std::string field, value;           ///< of set
+  std::string name;                   ///< element, or for arm and disarm the action; "" for stop
+  std::string field, value;           ///< for set only
 };
 
-/// Throws std::invalid_argument that says what a step may be.
+/// Parses a step. Throws std::invalid_argument with a list of the valid forms.
 [[nodiscard]] ActionStepText action_step(const std::string& text);
-/// As action_step() reads it.
+/// Returns the text that action_step() parses to `step`.
 [[nodiscard]] std::string text_of(const ActionStepText& step);
 
-/// An event of an element: "left foot opens". Nothing where the text is none.
+/// Event condition "ELEMENT EVENT", such as "left foot opens".
 struct EventText {
   std::string element;              ///< its name
   EventKind kind = EventKind::none; ///< what happens to it
 };
-/// Reads one.
+/// Parses an event condition. Returns nothing if the text is not one.
 [[nodiscard]] std::optional<EventText> event_text(const std::string& when);
 
-/// Of a value of set that is a list, "[a, [b, c]]", the items "a" and "[b, c]", without blanks and quotes around them; nullopt if it is none.
+/// Splits a list value of a set step: "[a, [b, c]]" gives "a" and "[b, c]", without blanks and quotes around the items. Returns nullopt if
+/// the value is not a list.
 [[nodiscard]] std::optional<std::vector<std::string>> items_of_list(const std::string& value);
 
-/// A value of set that names something, as a signal, and is no number.
+/// Returns true if the value of a set step is a name, for example of a signal, and not a number.
 [[nodiscard]] bool is_name_in_step(const std::string& value);
 
 } // namespace steplap

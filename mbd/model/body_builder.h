@@ -1,18 +1,19 @@
-// A table that stands for bodies of the model: an elastic beam is one entry of a file, and many rigid segments of a scene.
+// Tables that are expanded to bodies. For example, one elastic beam of a file becomes many rigid segments of the scene.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// A table whose bodies, markers and elements the others may refer to.
+/// Base class of such tables. Other entries of the model may refer to the bodies, markers and elements that it adds.
 struct BodyBuilder : TableObject {
-  /// Adds them and changes nothing else. Called when a model is completed, before joints place bodies, for the joints may hold what is
-  /// added here. Fields are within their ranges. Throws ModelError with all that is wrong.
+  /// Adds bodies, markers and elements to the model and changes nothing else. Called during completion, before joints determine the
+  /// positions of bodies, since these joints may be attached to the added bodies. Precondition: fields are within their ranges. Throws
+  /// ModelError with all errors found.
   virtual void add_bodies(Model& model) const = 0;
 };
 
-/// Null where a table adds no bodies.
+/// Returns the table if it adds bodies, otherwise nullptr.
 [[nodiscard]] inline const BodyBuilder* body_builder(const TableEntry& entry) {
   return dynamic_cast<const BodyBuilder*>(entry.table.get());
 }

@@ -1,11 +1,12 @@
-// A sine whose frequency runs from one value to another: A sin(Φ(τ) + φ), Φ = 2π ∫ f dτ, with
+// A sine whose frequency changes from f₀ to f₁ over the time T: A sin(Φ(τ) + φ), Φ = 2π ∫ f dτ, with
+//
 //   linear:       f = f₀ + (f₁ − f₀) τ/T
 //   exponential:  f = f₀ (f₁/f₀)^(τ/T)
 //
-// Its integrals are Fresnel's, and for the exponential one there are none in closed form. So it is cut into pieces, in each of which
-// Φ = Φ_k + ω_k τ + δ(τ) with a small δ, and e^{iδ} is its power series in τ: waves of the piece's first frequency times powers of
-// time, which signals have with all their derivatives and integrals, sums, products and delays (signal.h). Pieces are as long as
-// what the series leaves out is below the rounding of the sine itself.
+// The integrals of the linear form are Fresnel integrals; those of the exponential form have no closed form. The signal is therefore
+// divided into pieces with Φ = Φ_k + ω_k τ + δ(τ) and small δ. There e^{iδ} is expanded into a power series in τ. Each piece is then a sum
+// of terms τⁿ cos(ω_k τ + …), whose integrals, products and delays signals can represent exactly (signal.h). The length of a piece is
+// chosen so that the truncation error is below the rounding error of the sine.
 #include "mbd/model/load_signals.h"
 
 #include "mbd/base/number_text.h"
@@ -22,10 +23,11 @@ namespace steplap {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-constexpr int k_power = 16;              // of τ, in a piece: products with cubics stay within what signals have (signal_algebra.h)
-constexpr int k_looked_at = 2 * k_power; // powers beyond which nothing of the series is left: each falls by some ten
+constexpr int k_power = 16;              // highest power of τ in a piece; products with cubics stay below k_most_power (signal_algebra.h)
+constexpr int k_looked_at = 2 * k_power; // highest power considered for the truncation error; higher ones are negligible, since successive
+                                         // terms fall by a factor of about ten
 constexpr double k_left_out = 0.5 * std::numeric_limits<double>::epsilon();
-constexpr double k_nothing = 1e-40; // of the amplitude: far below its rounding, and its factor might be beyond what numbers hold
+constexpr double k_nothing = 1e-40; // relative to the amplitude: negligible terms, whose coefficients could overflow
 constexpr std::size_t k_most_pieces = 20'000;
 
 using Powers = std::array<double, k_looked_at + 1>;
@@ -40,14 +42,14 @@ struct Chirp : SignalDefinition {
 
 [[nodiscard]] bool is_exponential(const Chirp& chirp) { return chirp.course == "exponential"; }
 
-// rad/s, at τ after the start.
+// Returns the angular frequency at time τ after the start, rad/s.
 double frequency_at(const Chirp& chirp, double tau) {
   const double share = tau / chirp.duration;
   if (is_exponential(chirp)) return 2.0 * k_pi * chirp.from * portable::pow(chirp.to / chirp.from, share);
   return 2.0 * k_pi * (chirp.from + (chirp.to - chirp.from) * share);
 }
 
-// Of δ, beyond a place where the frequency is ω: factors of (τ/length)ⁿ.
+// Power series of δ about a point with angular frequency ω, as coefficients of (τ/length)ⁿ.
 Powers deviation(const Chirp& chirp, double omega, double length) {
   Powers d{};
   if (!is_exponential(chirp)) {
@@ -63,7 +65,7 @@ Powers deviation(const Chirp& chirp, double omega, double length) {
   return d;
 }
 
-// Σ of what the powers beyond those that are kept amount to within the length, at most: e^δ with δ's factors made positive.
+// Returns a bound of the truncated terms for |τ| ≤ length, from the series of e^δ with absolute values of the coefficients of δ.
 double left_out(const Powers& d) {
   Powers bound{};
   bound[0] = 1.0;
@@ -76,7 +78,8 @@ double left_out(const Powers& d) {
   return sum;
 }
 
-// The next piece's, of what remains: tried from a little more than the last one's downwards.
+// Returns the length of the next piece, at most `remaining`. Tries lengths in decreasing order, beginning slightly above the length of the
+// previous piece.
 double length_of(const Chirp& chirp, double omega, double remaining, double last) {
   constexpr double k_longer = 1.3, k_shorter = 0.95;
   double length = std::min(remaining, k_longer * last);
@@ -84,7 +87,7 @@ double length_of(const Chirp& chirp, double omega, double remaining, double last
   return length;
 }
 
-// n c_n = i Σ j d_j c_{n−j}: the series of e^{iδ}, its real and imaginary parts.
+// Coefficients of e^{iδ} = Σ c_n (τ/length)ⁿ from the recurrence n c_n = i Σ j d_j c_{n−j}; real and imaginary parts.
 struct Turned {
   std::array<double, k_power + 1> real{}, imaginary{};
 };
@@ -106,7 +109,7 @@ Turned turned_by(const Powers& d) {
 Signal::Piece piece_of(double amplitude, double start, double omega, double phase, const Powers& d, double length) {
   Signal::Piece piece;
   piece.start = start;
-  const double cosine_phase = phase - 0.5 * k_pi; // of a sine
+  const double cosine_phase = phase - 0.5 * k_pi; // converts the sine to a cosine
   if (omega > 0.0) piece.harmonics.push_back({amplitude, omega, cosine_phase});
   else piece.c[0] = amplitude * portable::cos(cosine_phase);
   const Turned c = turned_by(d);
@@ -124,13 +127,14 @@ void check(const Chirp& chirp) {
   if (is_exponential(chirp) && (!(chirp.from > 0.0) || !(chirp.to > 0.0)))
     fail("a frequency that grows exponentially is never 0: give 'from' and 'to' above 0, or course = 'linear'");
   if (chirp.from == 0.0 && chirp.to == 0.0) fail("both frequencies are 0, which is no sine: give 'to' above 0");
-  const double cycles = std::abs(chirp.to - chirp.from) * chirp.duration; // a linear one takes √45 of them in pieces
+  const double cycles = std::abs(chirp.to - chirp.from) * chirp.duration; // a linear chirp needs about √45 pieces per cycle of this number
   if (!(cycles < 1e7))
     fail("it sweeps over more frequencies than can be followed: (to - from) duration is " + number_text(cycles) +
          ", and must be less than 1e7; let it be shorter or narrower");
 }
 
-// Phases add up from piece to piece, of lengths as times have them rounded, so that no value jumps; whole turns are taken out.
+// The phase is accumulated over the pieces, with the lengths that result from rounded times, so that the value does not jump. Whole turns
+// are subtracted.
 Signal build_chirp(const SignalDefinition& definition) {
   const auto& chirp = static_cast<const Chirp&>(definition);
   check(chirp);
@@ -151,7 +155,7 @@ Signal build_chirp(const SignalDefinition& definition) {
     double turned = omega * length;
     for (int n = 2; n <= k_looked_at; ++n) turned += d[n];
     phase = std::fmod(phase + turned, 2.0 * k_pi);
-    if (!(next > t)) break; // times far away from 0 have no more digits
+    if (!(next > t)) break; // far from t = 0 times cannot resolve a shorter piece
     t = next;
   }
   Signal::Piece silence;

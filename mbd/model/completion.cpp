@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// Markers that stand for bodies' centres of gravity, where an element names a body as a marker.
+// Adds markers at the centres of gravity of bodies that elements name instead of a marker.
 void add_body_markers(Model& model) {
   std::unordered_map<std::string, const Body*> bodies{{"ground", nullptr}};
   for (const Body& body : model.bodies) bodies.emplace(body.name, &body);
@@ -31,7 +31,7 @@ void add_body_markers(Model& model) {
   for (const TableEntry& entry : model.tables) add_for(entry.kind->fields, entry.table.get());
 }
 
-// Those without a place: they go to their body's centre of gravity.
+// Returns the markers without a position. They are placed at the centre of gravity of their body.
 std::vector<std::size_t> unplaced_markers(const Model& model) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < model.markers.size(); ++i)
@@ -49,10 +49,10 @@ void place_at_centres(Model& model, const std::vector<std::size_t>& markers) {
   }
 }
 
-// Tables of each kind, by their names: messages, overrides and studies reach them so.
+// Names of the tables of each kind. They must be unique, since messages, overrides and studies refer to tables by name.
 using KnownTables = std::set<std::pair<const TableKind*, std::string>>;
 
-// Has it been read, are its fields within their ranges, and is it the only one of its kind with this name?
+// Returns true if the table could be read, its fields are within their ranges, and its name is unique in its kind.
 bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, KnownTables& known, std::vector<Diagnostic>& problems) {
   const TableEntry& entry = model.tables[table];
   const std::size_t before = problems.size();
@@ -68,7 +68,8 @@ bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, 
   return problems.size() == before && (!places.is_table_usable || places.is_table_usable(table));
 }
 
-// Tables that add bodies do so before anything asks for a body, all others when bodies have their places.
+// Applies the tables that add bodies (`are_builders`), or all others. The former must be applied before any reference to a body is
+// resolved, the latter after all bodies have poses.
 bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
   bool is_every_one = true;
   KnownTables known;
@@ -91,7 +92,7 @@ bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, st
   return is_every_one;
 }
 
-// What its file gave, and what code has set to something else than the default.
+// Fields of bodies given in the file, or set by code to a value that differs from the default.
 GivenBodyField given_in_model(const Model& model) {
   return [&model](std::size_t index, const std::string& name) -> std::optional<Location> {
     const Field* const field = Body::fields().find(name);
@@ -128,7 +129,7 @@ bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& 
   place_at_centres(model, at_centres);
   place_by_joints(model, places.given ? places.given : given_in_model(model), places.locate ? places.locate : own_places(model), problems);
   const bool is_every_table_applied = apply_tables(model, false, places, problems);
-  place_at_centres(model, at_centres); // tables may have moved a centre of gravity
+  place_at_centres(model, at_centres); // tables may have changed the centre of gravity
   model.is_completed = true;
   return is_every_body_there && is_every_table_applied;
 }

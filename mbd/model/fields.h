@@ -1,9 +1,8 @@
-// The fields of everything a model file can contain, declared once.
+// Description of all fields that a model file can contain.
 //
-// A kind of thing (a body, a signal, a spring-damper, the simulation settings) is a plain struct.
-// Its FieldTable lists name, type, unit, default, range and one line of documentation for each
-// member. From that table come: reading, validation messages, `--set` paths, the generated
-// reference and the JSON Schema. A struct never parses anything itself.
+// Each kind of entry (body, signal, spring-damper, simulation settings) is a plain struct. Its FieldTable lists name, type, unit, default,
+// range and documentation for each member. Reading, validation messages, `--set` paths, the generated reference and the JSON Schema all use
+// this table; a struct contains no parsing code.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -18,7 +17,7 @@
 
 namespace steplap {
 
-/// What kind of value a field holds.
+/// Type of the value of a field.
 enum class FieldType {
   number,   ///< double, in `unit`
   integer,  ///< long
@@ -40,65 +39,65 @@ enum class FieldType {
   file      ///< path of a file, relative to the model file that names it; read as a usable path
 };
 
-/// What a field holds, after reading: units removed, inline markers replaced by a marker's name.
+/// Value of a field after reading: in SI units; an inline marker is replaced by the name of the marker made for it.
 using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vector<double>, std::vector<Vec2>,
                                 std::vector<std::vector<Vec2>>, std::vector<std::string>>;
 
-/// One field of a kind of thing: what a file may give, and where in the struct it goes.
+/// Description of one field: its spelling and range in a file, and access to the member of the struct.
 struct Field {
   std::string name;                   ///< as written in a model file
   std::string earlier_name;           ///< accepted with a warning until the next minor version; "" if the field was never renamed
-  FieldType type = FieldType::number; ///< what it holds
+  FieldType type = FieldType::number; ///< type of its value
   std::string unit;                   ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless; "N m|N": by other fields (field_units.h)
   std::string unit2;                  ///< second unit of a list of points
-  std::string doc;                    ///< one line
-  bool is_required = false;           ///< a file has to give it
-  bool is_limit = false;              ///< a run is judged by it, and nothing moves by it
-  double minimum = -std::numeric_limits<double>::infinity(); ///< of each number, in `unit`
-  double maximum = std::numeric_limits<double>::infinity();  ///< of each number, in `unit`
-  bool is_minimum_excluded = false;                          ///< the value has to be larger than `minimum`
-  std::vector<std::string> choices;                          ///< of a field of type choice
+  std::string doc;                    ///< description, one line
+  bool is_required = false;           ///< must be given in a file
+  bool is_limit = false;              ///< limit used only to judge a run; does not affect the motion
+  double minimum = -std::numeric_limits<double>::infinity(); ///< smallest allowed value of each number, in `unit`
+  double maximum = std::numeric_limits<double>::infinity();  ///< largest allowed value of each number, in `unit`
+  bool is_minimum_excluded = false;                          ///< values must be larger than `minimum`, not equal
+  std::vector<std::string> choices;                          ///< allowed texts, for type choice
   std::function<void(void* object, const FieldValue&)>
       set;                                           ///< writes the value into the struct; throws std::bad_variant_access for another type
-  std::function<FieldValue(const void* object)> get; ///< reads it; text "" for an optional field that is not given
+  std::function<FieldValue(const void* object)> get; ///< returns the value; text "" for an optional field that is not given
 };
 
 /// Chained description of one field: table.add("mass", &Body::mass).in("kg").positive().required().
 class FieldBuilder {
 public:
-  /// Describes `field`, which has to outlive it.
+  /// Edits `field`, which must outlive the builder.
   explicit FieldBuilder(Field& field) : field_(&field) {}
-  /// Its SI unit in UDUNITS spelling: "N/m".
+  /// Sets the SI unit in UDUNITS spelling, such as "N/m".
   FieldBuilder& in(std::string unit) { return assign(field_->unit, std::move(unit)); }
-  /// Of a list of points: units of x and y.
+  /// Sets the units of x and y for a list of points.
   FieldBuilder& in(std::string unit, std::string unit2) {
     field_->unit2 = std::move(unit2);
     return in(std::move(unit));
   }
-  /// One line for the reference and for messages.
+  /// Sets the description, one line, for the reference and for messages.
   FieldBuilder& doc(std::string text) { return assign(field_->doc, std::move(text)); }
-  /// The name that the field had in the last minor version. Files may still use it, with a warning.
+  /// Sets the name of the field in the previous minor version. Files may still use it, with a warning.
   FieldBuilder& renamed_from(std::string earlier) { return assign(field_->earlier_name, std::move(earlier)); }
-  /// A file has to give it.
+  /// Marks the field as required in files.
   FieldBuilder& required() { return assign(field_->is_required, true); }
-  /// A run is judged by it, from its start to its end, and nothing moves by it.
+  /// Marks the field as a limit that only judges a run from start to end and does not affect the motion.
   FieldBuilder& limit() { return assign(field_->is_limit, true); }
-  /// Larger than 0.
+  /// Requires values > 0.
   FieldBuilder& positive() { return at_least(0.0).excluding_minimum(); }
-  /// 0 or larger.
+  /// Requires values ≥ 0.
   FieldBuilder& not_negative() { return at_least(0.0); }
-  /// Not less than this.
+  /// Requires values ≥ `lowest`.
   FieldBuilder& at_least(double lowest) { return assign(field_->minimum, lowest); }
-  /// Not more than this.
+  /// Requires values ≤ `largest`.
   FieldBuilder& at_most(double largest) { return assign(field_->maximum, largest); }
-  /// Larger than the minimum given.
+  /// Excludes the minimum itself.
   FieldBuilder& excluding_minimum() { return assign(field_->is_minimum_excluded, true); }
-  /// One of these texts.
+  /// Makes it a choice of these texts.
   FieldBuilder& one_of(std::vector<std::string> choices) {
     field_->type = FieldType::choice;
     return assign(field_->choices, std::move(choices));
   }
-  /// Of another type than its member's own: a name that refers to something, a file.
+  /// Sets a type other than that of the member, for example for a text that is a name or a file.
   FieldBuilder& as(FieldType type) { return assign(field_->type, type); }
 
 private:
@@ -109,20 +108,20 @@ private:
   Field* field_;
 };
 
-/// The fields of one kind of thing, in the order in which they were added.
+/// Fields of one kind of entry, in the order in which they were added.
 class FieldTable {
 public:
-  /// Adds the member `member` of struct T under `name`. Its default is what T{} holds. A member of
-  /// type std::optional<X> is a field without a default: absent means "not given".
+  /// Adds member `member` of struct T under `name`. Its default is the value in T{}. A member of type std::optional<X> has no default: if
+  /// it is absent, it is not given.
   template <class T, class M> FieldBuilder add(std::string name, M T::*member);
 
-  /// In that order.
+  /// Returns all fields, in order of addition.
   [[nodiscard]] const std::vector<Field>& fields() const { return fields_; }
-  /// Nullptr if there is none of that name.
+  /// Returns the field with this name, or nullptr.
   [[nodiscard]] const Field* find(const std::string& name) const;
-  /// The field that had this name earlier; nullptr if there is none.
+  /// Returns the field that had this name in an earlier version, or nullptr.
   [[nodiscard]] const Field* find_earlier(const std::string& name) const;
-  /// Of all fields, in that order.
+  /// Returns the names of all fields, in the same order.
   [[nodiscard]] std::vector<std::string> names() const;
 
 private:

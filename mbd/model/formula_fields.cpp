@@ -17,7 +17,7 @@ std::vector<std::string> names_in_formulas(const ElementEntry& entry) {
     try {
       const Formula formula(std::get<std::string>(field.get(entry.element.get())), field.name, {});
       names.insert(names.end(), formula.names().begin(), formula.names().end());
-    } catch (const ModelError&) { // told where the element is compiled
+    } catch (const ModelError&) { // the error is reported when the element is compiled
     }
   }
   return names;

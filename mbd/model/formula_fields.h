@@ -1,7 +1,7 @@
-// Which fields of elements hold formulas (mbd/formula/formula.h): texts called "formula", "rate" or "when".
+// Fields of elements that contain formulas (mbd/formula/formula.h): text fields called "formula", "rate" or "when".
 //
-// Names in them are those of channels, states, signals and parameters. Where a file is a part of another they get its prefix,
-// and channels that they name are made although nobody writes them.
+// Names in formulas refer to channels, states, signals and parameters. If a file is used as a part of another, these names get the prefix
+// of the part. Channels used in formulas are computed even if they are not written.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -11,15 +11,15 @@
 
 namespace steplap {
 
-/// Is a field of that name one, if it is a text?
+/// Returns true if a text field with this name is a formula.
 [[nodiscard]] bool is_formula_key(const std::string& name);
-/// A text that is read as a formula.
+/// Returns true if the field is a text that is parsed as a formula.
 [[nodiscard]] bool is_formula_field(const Field& field);
 
-/// Names that stand for the element's own coordinate, whatever part it is of.
+/// Returns true for names that refer to the element's own coordinate and therefore get no prefix.
 [[nodiscard]] bool is_own_name(const std::string& name);
 
-/// Names in the formulas of an element, each once; none of what is no formula.
+/// Returns the names used in the formulas of an element, each once. Texts that are not valid formulas are skipped.
 [[nodiscard]] std::vector<std::string> names_in_formulas(const ElementEntry& entry);
 
 } // namespace steplap

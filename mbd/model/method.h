@@ -1,5 +1,5 @@
-// The integration methods there are, as far as a model and whoever judges a run have to know them. The list itself stands
-// with the methods (mbd/integrators/methods.cpp): a method is a file pair and a line there.
+// Properties of the integration methods that models and judgements need. The methods are listed in mbd/integrators/methods.cpp; each is a
+// file pair and a line there.
 #pragma once
 
 #include <memory>
@@ -14,20 +14,20 @@ struct IntegratorSettings;
 
 /// One integration method.
 struct Method {
-  const char* name;          ///< as a model file writes it: "dop853"
-  bool has_fixed_step;       ///< steps as long as 'step' says; else it chooses them by 'tolerance'
-  bool is_time_stepping;     ///< goes over events without locating them; in absolute coordinates, without inner states
-  bool is_for_damping;       ///< for scenes that are damped faster than they move: what others make small steps for
-  bool may_step_over_storms; ///< an element whose events crowd may be gone over by time stepping
-  /// For systems of at most `max_dimension` packed numbers.
+  const char* name;          ///< name in model files, such as "dop853"
+  bool has_fixed_step;       ///< true: constant steps of length 'step'; false: steps are controlled by 'tolerance'
+  bool is_time_stepping;     ///< does not locate events; requires absolute coordinates and no inner states
+  bool is_for_damping;       ///< implicit, for stiffly damped systems in which explicit methods need very small steps
+  bool may_step_over_storms; ///< may use time stepping for an element while its events are too dense to be located one by one
+  /// Creates an integrator for systems with at most `max_dimension` state variables.
   std::unique_ptr<Integrator> (*make)(const Dynamics&, const IntegratorSettings&, int max_dimension);
 };
 
-/// All of them, in the order of mbd/integrators/methods.cpp.
+/// Returns all methods, in the order of mbd/integrators/methods.cpp.
 [[nodiscard]] const std::vector<Method>& methods();
-/// Their names, in that order.
+/// Returns their names, in the same order.
 [[nodiscard]] std::vector<std::string> method_names();
-/// Throws std::invalid_argument for a name that is none.
+/// Returns the method with this name. Throws std::invalid_argument if there is none.
 [[nodiscard]] const Method& method(const std::string& name);
 
 } // namespace steplap

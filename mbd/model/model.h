@@ -1,7 +1,7 @@
-// The model: what the user described, by name, before anything is compiled or run.
+// The model as described by the user, before compilation.
 //
-// Bodies, markers, signals and elements refer to each other by name; every entry remembers the
-// place in the file it came from, so that an error found later can still point at it.
+// Entries (bodies, markers, signals, elements) refer to each other by name. Each entry keeps its location in the file, so that later error
+// messages can refer to it.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -25,94 +25,96 @@ struct ElementJudgement;
 struct Model;
 struct RunResult;
 
-/// A rigid body. Its frame has the origin `position` and the angle `angle` in the reference pose (the
-/// pose the file gives); its centre of gravity lies at `cg` in that frame.
+/// A rigid body. `position` and `angle` are the pose of its frame in the reference pose, which is the pose given in the file; `cg` is the
+/// centre of gravity in this frame.
 struct Body {
   std::string name;              ///< unique among bodies; not "ground"
   double mass = 0.0;             ///< kg, > 0
   double inertia = 0.0;          ///< kg m², about the centre of gravity, > 0
-  Vec2 position = Vec2::Zero();  ///< m, ground axes
+  Vec2 position = Vec2::Zero();  ///< origin of the body frame, m, ground axes
   double angle = 0.0;            ///< rad
-  Vec2 cg = Vec2::Zero();        ///< m
-  Vec2 velocity = Vec2::Zero();  ///< of the centre of gravity, m/s, ground axes
+  Vec2 cg = Vec2::Zero();        ///< centre of gravity, m, body frame
+  Vec2 velocity = Vec2::Zero();  ///< velocity of the centre of gravity, m/s, ground axes
   double angular_velocity = 0.0; ///< rad/s
-  bool fixed = false;            ///< it never moves, and needs neither mass nor inertia
-  std::string label;             ///< what reports and drawings call it; "": the name
+  bool fixed = false;            ///< the body does not move; mass and inertia are not required
+  std::string label;             ///< name in reports and drawings; "": `name`
   std::vector<Vec2> outline;     ///< body frame, m; for drawings only
-  Location where;                ///< in the model's file; empty of a body made in code
-  std::uint32_t given = 0;       ///< bit k: the k-th of fields() stands in the file, whatever its value
+  Location where;                ///< location in the model file; empty for a body made in code
+  std::uint32_t given = 0;       ///< bit k is set if field k of fields() was given in the file, whatever its value
 
-  /// (x, y, θ) of the centre of gravity in the reference pose.
+  /// Returns (x, y, θ) of the centre of gravity in the reference pose.
   [[nodiscard]] Vec3 reference_pose() const;
-  /// Its fields as a model file has them.
+  /// Returns the fields as in a model file.
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// A point fixed in a body (or the ground), with axes turned by `angle` against the body's.
-/// Given either by `point` (body frame) or by `at` (ground frame, reference pose).
+/// A point fixed to a body or to the ground, with axes turned by `angle` relative to those of the body. Its position is given either by
+/// `point` (body frame) or by `at` (ground frame, reference pose).
 struct Marker {
   std::string name;            ///< unique among markers
   std::string body = "ground"; ///< name of a body, or "ground"
   std::optional<Vec2> point;   ///< m, body frame
   std::optional<Vec2> at;      ///< m, ground frame, in the reference pose
   double angle = 0.0;          ///< rad
-  Location where;              ///< in the model's file
+  Location where;              ///< location in the model file
 
-  /// Its fields as a model file has them.
+  /// Returns the fields as in a model file.
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// What an element of any kind has. Kinds derive from it and add their fields.
+/// Common members of all elements. Kinds derive from it and add their own fields.
 struct Element {
   virtual ~Element() = default;
   std::string name;          ///< unique among elements
-  std::string draw = "auto"; ///< how drawings show it; "auto": as its kind is usually drawn
-  bool active = true;        ///< it acts from the start; else from where an action says so
-  Location where;            ///< in the model's file
+  std::string draw = "auto"; ///< symbol in drawings; "auto": the usual one of its kind
+  bool active = true;        ///< acts from the start; otherwise after an action activates it
+  Location where;            ///< location in the model file
 
-  /// Fields that elements of every kind have, besides name and kind.
+  /// Returns the fields that all kinds have, except name and kind.
   [[nodiscard]] static const FieldTable& common_fields();
 };
 
-/// One kind of element: its fields and how it becomes part of a compiled system.
+/// One kind of element: its fields and its compilation into a system.
 struct ElementKind {
-  std::string name;  ///< as written in a model file, "spring_damper"
+  std::string name;  ///< name in model files, such as "spring_damper"
   std::string doc;   ///< a few sentences: what it models, sign convention
-  FieldTable fields; ///< of the struct that its elements are; besides common_fields()
-  /// Elements of the kind in TOML, with whatever they need besides two bodies 'a' and 'b': for what is found out by making
-  /// them (kind_channels.h). "": required fields are enough.
+  FieldTable fields; ///< fields of its struct, in addition to common_fields()
+  /// TOML text with an element of the kind and everything it needs except two bodies 'a' and 'b'. It is used to find the channels of the
+  /// kind by making an element (kind_channels.h). "": giving the required fields is enough.
   std::string example = {};
-  int stage = 0;                                                      ///< kinds that refer to other elements compile at stage 1
-  std::shared_ptr<Element> (*create)() = nullptr;                     ///< a new element with the kind's defaults; set by holds()
-  std::shared_ptr<Element> (*copy)(const Element& element) = nullptr; ///< set by holds()
-  /// Adds the element to the system; reports what is wrong through the builder's errors.
+  int stage = 0;                                                      ///< 0, or 1 for kinds that refer to other elements and are compiled
+                                                                      ///< after these
+  std::shared_ptr<Element> (*create)() = nullptr;                     ///< returns a new element with default values; set by holds()
+  std::shared_ptr<Element> (*copy)(const Element& element) = nullptr; ///< returns a copy; set by holds()
+  /// Adds the element to the system. Errors are reported to the builder.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
-  /// Judges an element of the kind after a run (mbd/trust/element_judgement.h); null if the kind has no limits of its own.
+  /// Judges an element after a run (mbd/trust/element_judgement.h); null if the kind has no limits of its own.
   ElementJudgement (*judge)(const Element& element, const Model& model, const RunResult& result) = nullptr;
-  /// Kinds that exert a force that is given, and not the answer to a motion: does an element exert one besides its signals? Null: other kinds.
+  /// For kinds that exert a prescribed force: returns true if the element exerts one in addition to its signals. Null for kinds whose forces
+  /// depend on the motion alone.
   bool (*has_constant_load)(const Element& element) = nullptr;
-  /// Names of the channels whose extremes `judge` needs to tell whether the run can be trusted.
+  /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 
-  /// Its elements are of type T.
+  /// Declares T as the struct of its elements.
   template <class T> void holds() {
     create = make_held<Element, T>;
     copy = copy_held<Element, T>;
   }
 };
 
-/// A copy of an object of that kind. Throws std::logic_error for a kind that does not say how: ElementKind::holds.
+/// Returns a copy of an object of this kind. Throws std::logic_error if the kind has not called holds().
 template <class Kind, class Object> std::shared_ptr<Object> copied(const Kind& kind, const Object& object) {
   if (!kind.copy) throw std::logic_error("the kind '" + kind.name + "' does not say what it holds: call holds<T>()");
   return kind.copy(object);
 }
 
-/// An element of a kind; a copy has an element of its own.
+/// An element with its kind. Copying it copies the element.
 struct ElementEntry {
-  const ElementKind* kind = nullptr; ///< never nullptr; has to outlive the model
-  std::shared_ptr<Element> element;  ///< of the struct that the kind holds
+  const ElementKind* kind = nullptr; ///< not null; must outlive the model
+  std::shared_ptr<Element> element;  ///< instance of the kind's struct
 
-  /// Takes the element over.
+  /// Takes ownership of the element.
   ElementEntry(const ElementKind* kind_, std::shared_ptr<Element> element_) : kind(kind_), element(std::move(element_)) {}
   ElementEntry(const ElementEntry& other) : kind(other.kind), element(copied(*other.kind, *other.element)) {}
   ElementEntry(ElementEntry&&) = default;
@@ -121,12 +123,12 @@ struct ElementEntry {
   ~ElementEntry() = default;
 };
 
-/// A named signal: a scalar function of time; a copy has a definition of its own.
+/// A signal, a scalar function of time, with its kind. Copying it copies the definition.
 struct SignalEntry {
-  const SignalKind* kind = nullptr;             ///< never nullptr; has to outlive the model
-  std::shared_ptr<SignalDefinition> definition; ///< of the struct that the kind holds
+  const SignalKind* kind = nullptr;             ///< not null; must outlive the model
+  std::shared_ptr<SignalDefinition> definition; ///< instance of the kind's struct
 
-  /// Takes the definition over.
+  /// Takes ownership of the definition.
   SignalEntry(const SignalKind* kind_, std::shared_ptr<SignalDefinition> definition_) : kind(kind_), definition(std::move(definition_)) {}
   SignalEntry(const SignalEntry& other) : kind(other.kind), definition(copied(*other.kind, *other.definition)) {}
   SignalEntry(SignalEntry&&) = default;
@@ -135,110 +137,109 @@ struct SignalEntry {
   ~SignalEntry() = default;
 };
 
-/// Runs of more steps than this are not begun, or given up when they turn out to need them: days of computing.
+/// Largest number of steps. Runs that need more, which would take days, are refused or aborted.
 inline constexpr double k_most_steps = 1e10;
 
-/// [simulation]: how long the model runs, by which method, from where.
+/// Table [simulation]: duration, method, initial state.
 struct SimulationSettings {
   double end = 1.0;                      ///< s
   std::string integrator = "auto";       ///< name of a method (method.h)
-  std::optional<double> step;            ///< s, fixed step methods
-  std::optional<double> tolerance;       ///< relative, adaptive methods
-  std::string coordinates = "automatic"; ///< of small islands with pins: "automatic", "joint" or "absolute"
+  std::optional<double> step;            ///< step length, s, for methods with fixed steps
+  std::optional<double> tolerance;       ///< relative tolerance, for adaptive methods
+  std::string coordinates = "automatic"; ///< coordinates of small islands with pin joints: "automatic", "joint" or "absolute"
   std::string initial = "as_given";      ///< "as_given" or "equilibrium"
   Vec2 velocity = Vec2::Zero();          ///< m/s, added to every body's initial velocity
   double projection_tolerance = 1e-12;   ///< largest constraint residual left after a step, m or rad
-  long max_events = 100000;              ///< beyond which a run is given up; kinks of characteristics do not count
-  Location where;                        ///< of the table, in the model's file
+  long max_events = 100000;              ///< number of events after which a run is aborted; kinks of force laws are not counted
+  Location where;                        ///< location of the table in the model file
 
-  /// Its fields as a model file has them.
+  /// Returns the fields as in a model file.
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// [output]: what is written of a run, and how often.
+/// Table [output]: which results are written, and at which times.
 struct OutputSettings {
-  double step = 1e-3;                ///< s
+  double step = 1e-3;                ///< sampling interval, s
   std::vector<std::string> channels; ///< patterns with * and ?; empty = all
-  std::vector<std::string> also;     ///< channels on request that there are besides, patterns
-  double most_numbers = 1e8;         ///< rows times channels, beyond which a run is not begun: about 2 GB of text
-  std::string seen_from;             ///< body that drawings stand still with; "" = chosen by the drawing
-  Location where;                    ///< of the table, in the model's file
+  std::vector<std::string> also;     ///< patterns of channels that are computed only on request
+  double most_numbers = 1e8;         ///< largest number of rows × channels (about 2 GB of text); a larger run is refused
+  std::string seen_from;             ///< body whose frame drawings use; "" = chosen by the drawing
+  Location where;                    ///< location of the table in the model file
 
-  /// Its fields as a model file has them.
+  /// Returns the fields as in a model file.
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// What an array of tables that is none of the kernel's holds: it knows where its fields stand in the file.
+/// Base class of array tables that are not defined in mbd/model itself, such as [[plot]] or [[core]]; keeps the location of each field.
 struct TableObject : Element {
-  std::map<std::string, Location> places; ///< of the fields given
+  std::map<std::string, Location> places; ///< locations of the fields that were given
 
-  /// Of the field, or of the whole table if it is not given.
+  /// Returns the location of the field, or of the whole table if the field is not given.
   [[nodiscard]] const Location& place(const std::string& field) const;
 };
 
-/// [[plot]]: time histories that belong in one figure, all of one unit.
+/// Table [[plot]]: time histories for one figure, all in the same unit.
 struct Plot : TableObject {
   std::string title;                 ///< above the figure
   std::vector<std::string> channels; ///< patterns with * and ?
-  std::vector<std::string> bounds;   ///< channels drawn dashed at plus and minus their value
+  std::vector<std::string> bounds;   ///< channels drawn dashed at ± their value
 };
 
-/// [[channel]]: a formula of other channels (formula/formula.h).
+/// Table [[channel]]: a channel defined as a formula of others (formula/formula.h).
 struct DefinedChannel : TableObject {
-  std::string expression;    ///< as given: "foot.force + 2 * block.vx"
-  std::string unit;          ///< that it is given in; "": SI, as it follows from the operands
-  std::string meaning, sign; ///< for documents; may be empty
+  std::string expression;    ///< formula as given, such as "foot.force + 2 * block.vx"
+  std::string unit;          ///< unit of the result; "": the SI unit that follows from the operands
+  std::string meaning, sign; ///< description and sign convention; may be empty
 };
 
-/// [[acceptance]]: what the receiver of a machine may ask of a run. Either of channels (over the samples
-/// of the trajectory) or of events that must not happen.
+/// Table [[acceptance]]: a criterion for a run. It limits channels over the whole run, or forbids events.
 struct Criterion : TableObject {
   std::string channel;                                  ///< pattern with * and ?
-  std::string at_least_text, at_most_text, within_text; ///< as given, "300 kN": empty if not
-  /// The same in the channels' unit, once these are known; `within` bounds the absolute value.
+  std::string at_least_text, at_most_text, within_text; ///< limits as given, such as "300 kN"; empty if not given
+  /// Limits in the unit of the channels, set once this unit is known; `within` limits the absolute value.
   std::optional<double> at_least, at_most, within;
-  std::string element, event;          ///< patterns: no such event of such an element
-  std::string consequence = "inspect"; ///< if it is not met: "inspect" or "reject"
-  std::string reason;                  ///< why, or by which document
+  std::string element, event;          ///< patterns of an element and of an event that must not occur
+  std::string consequence = "inspect"; ///< consequence of failing: "inspect" or "reject"
+  std::string reason;                  ///< justification, such as a document
 };
 
-/// Top-level scalars of a model file.
+/// Top-level keys of a model file.
 struct ModelHeader {
   std::string title;        ///< one line
-  std::string source;       ///< where the values come from
+  std::string source;       ///< source of the values
   Vec2 gravity{0.0, -9.81}; ///< m/s², ground axes
-  Location where;           ///< of the first key, in the model's file
+  Location where;           ///< location of the first key in the model file
 
-  /// Its fields as a model file has them.
+  /// Returns the fields as in a model file.
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// A top-level array of tables that is not the kernel's: handed in by another room (a core's geometry,
-/// say), it reads its own fields and adds bodies, markers or elements to the model.
+/// A kind of top-level array table defined in another folder, for example the dimensions of a core. Its tables add bodies, markers or
+/// elements to the model.
 struct TableKind {
-  std::string name;                                                 ///< as in [[name]]
-  std::string doc;                                                  ///< a few sentences: what it stands for
-  FieldTable fields;                                                ///< of the struct that its tables are
-  std::shared_ptr<Element> (*create)() = nullptr;                   ///< a new table with the kind's defaults; set by holds()
-  std::shared_ptr<Element> (*copy)(const Element& table) = nullptr; ///< set by holds()
+  std::string name;                                                 ///< NAME in [[NAME]]
+  std::string doc;                                                  ///< a few sentences: what it models
+  FieldTable fields;                                                ///< fields of its struct
+  std::shared_ptr<Element> (*create)() = nullptr;                   ///< returns a new table with default values; set by holds()
+  std::shared_ptr<Element> (*copy)(const Element& table) = nullptr; ///< returns a copy; set by holds()
   void (*apply)(const Element& table, Model& model) =
-      nullptr; ///< adds elements, gives bodies what they lack, or adds what is shown and judged, and changes nothing else; throws ModelError
-  /// Does apply() look at bodies' masses and inertias, at plain numbers of elements? If not, they can be changed afterwards.
+      nullptr; ///< adds elements, missing data of bodies, or channels and criteria, and changes nothing else; throws ModelError
+  /// True if apply() reads masses and inertias of bodies, or numbers of elements. If not, these may be changed after completion.
   bool reads_masses = true, reads_elements = true;
 
-  /// Its tables are of type T.
+  /// Declares T as the struct of its tables.
   template <class T> void holds() {
     create = make_held<Element, T>;
     copy = copy_held<Element, T>;
   }
 };
 
-/// A table of such a kind; a copy has a table of its own.
+/// A table with its kind. Copying it copies the table.
 struct TableEntry {
-  const TableKind* kind = nullptr; ///< never nullptr; has to outlive the model
-  std::shared_ptr<Element> table;  ///< of the struct that the kind holds
+  const TableKind* kind = nullptr; ///< not null; must outlive the model
+  std::shared_ptr<Element> table;  ///< instance of the kind's struct
 
-  /// Takes the table over.
+  /// Takes ownership of the table.
   TableEntry(const TableKind* kind_, std::shared_ptr<Element> table_) : kind(kind_), table(std::move(table_)) {}
   TableEntry(const TableEntry& other) : kind(other.kind), table(copied(*other.kind, *other.table)) {}
   TableEntry(TableEntry&&) = default;
@@ -247,43 +248,43 @@ struct TableEntry {
   ~TableEntry() = default;
 };
 
-/// A key that a model file gives by its earlier name.
+/// A key given under its earlier name.
 struct RenamedKey {
   Location where;      ///< of the key
-  std::string earlier; ///< as in the file
-  std::string name;    ///< its present name
-  std::string subject; ///< what has the key: "spring_damper 'rear block'"
+  std::string earlier; ///< name in the file
+  std::string name;    ///< present name
+  std::string subject; ///< entry with this key, such as "spring_damper 'rear block'"
 };
 
-/// A value: a copy shares nothing with it. As given by a file or by code, until completed() makes a completed model of it.
+/// A model as given by a file or by code; completed() makes a completed model of it. Copies share nothing.
 struct Model {
   ModelHeader header;                            ///< title, source, gravity
   SimulationSettings simulation;                 ///< [simulation]
   OutputSettings output;                         ///< [output]
   std::vector<Body> bodies;                      ///< [[body]], in the order of the file
-  std::vector<Marker> markers;                   ///< [[marker]], and those that references to bodies made
+  std::vector<Marker> markers;                   ///< [[marker]], and markers made for references to bodies
   std::vector<SignalEntry> signals;              ///< [[signal]]
   std::vector<ElementEntry> elements;            ///< [[element]]
   std::vector<DefinedChannel> channels;          ///< [[channel]]
   std::vector<Plot> plots;                       ///< [[plot]]
   std::vector<Criterion> criteria;               ///< [[acceptance]]
-  std::vector<TableEntry> tables;                ///< such as [[core]], as given; complete() adds what they stand for
-  Parameters parameters;                         ///< [parameters], and the fields that follow from them
-  std::vector<std::string> files_without_format; ///< files of the model that do not say `format = 1`
-  std::vector<RenamedKey> renamed_keys;          ///< keys that its files give by earlier names
-  bool is_completed = false;                     ///< by complete(): until then what its tables stand for is missing
+  std::vector<TableEntry> tables;                ///< tables such as [[core]], as given; complete() adds the entries that they stand for
+  Parameters parameters;                         ///< [parameters], and the fields whose values are formulas of parameters
+  std::vector<std::string> files_without_format; ///< files of the model without `format = 1`
+  std::vector<RenamedKey> renamed_keys;          ///< keys given under earlier names
+  bool is_completed = false;                     ///< set by complete()
 
-  /// Nullptr if there is none of that name.
+  /// Returns the body with this name, or nullptr.
   [[nodiscard]] const Body* find_body(const std::string& name) const;
 };
 
-/// The kinds a model file may use: the kernel and the reader know none by name.
+/// Kinds that a model file may use. mbd itself refers to no kind by name.
 struct Catalogue {
-  std::vector<const ElementKind*> elements; ///< kinds of elements, with names of their own
-  std::vector<const SignalKind*> signals;   ///< kinds of signals, with names of their own
-  std::vector<const TableKind*> tables;     ///< top-level arrays of tables that are none of the kernel's
+  std::vector<const ElementKind*> elements; ///< kinds of elements, unique names
+  std::vector<const SignalKind*> signals;   ///< kinds of signals, unique names
+  std::vector<const TableKind*> tables;     ///< kinds of array tables defined in other folders
 
-  /// Nullptr if there is none of that name.
+  /// Returns the kind with this name, or nullptr.
   [[nodiscard]] const ElementKind* find_element(const std::string& name) const;
 };
 

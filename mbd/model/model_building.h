@@ -1,4 +1,4 @@
-// For models made in code: entries that are filled in where they stand.
+// Functions that add entries to a model in C++ code.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -8,9 +8,8 @@
 
 namespace steplap {
 
-/// Adds an element with the defaults of its kind, to be filled in. `Held` is the struct that the kind's header
-/// declares beside it (SpringDamper for spring_damper_kind()); any other throws std::bad_cast. What is returned stays
-/// where it is while the entry stays in the model.
+/// Adds an element with the default values of its kind and returns a reference to it, valid while the entry is in the model. `Held` is the
+/// struct of the kind, declared in the same header (SpringDamper for spring_damper_kind()); throws std::bad_cast for another type.
 template <class Held> Held& add_element(Model& model, const ElementKind& kind, std::string name) {
   auto element = kind.create();
   Held& held = dynamic_cast<Held&>(*element);
@@ -19,8 +18,8 @@ template <class Held> Held& add_element(Model& model, const ElementKind& kind, s
   return held;
 }
 
-/// Adds a signal of one of the kernel's kinds (signal_kinds(): "haversine", "harmonics", …), whose fields are set by
-/// their paths: set_value(model, "signal.<name>.peak", 5.9) (model_path.h). Throws ModelError for an unknown kind.
+/// Adds a signal of one of the kinds in signal_kinds() ("haversine", "harmonics", …). Set its fields by path: set_value(model,
+/// "signal.<name>.peak", 5.9) (model_path.h). Throws ModelError for an unknown kind.
 void add_signal(Model& model, const std::string& kind, std::string name);
 
 } // namespace steplap

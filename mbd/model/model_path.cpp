@@ -16,21 +16,21 @@ namespace {
 
 [[noreturn]] void complain(const std::string& path, const std::string& message) { throw ModelError(Location{path, 0, 0}, message); }
 
-// A field of an object of the model, and which part of it.
+// Object and field that a path refers to, possibly an item of the field.
 struct Target {
   const void* object = nullptr;
   const Field* field = nullptr;
-  const FieldTable* fields = nullptr; ///< of the object, itself and what it hangs on
+  const FieldTable* fields = nullptr; ///< all fields of the object, on which its unit may depend
   std::string subject;
-  std::vector<std::size_t> items; ///< one or two indices into what the field holds
+  std::vector<std::size_t> items; ///< one or two indices into the value of the field
 };
 
-// An entry of one of the model's arrays.
+// An entry of one of the arrays of the model.
 struct Candidate {
   const std::string* name;
   const FieldTable* fields;
   const void* object;
-  const FieldTable* common; ///< fields that all entries of the array have besides, or null
+  const FieldTable* common; ///< fields common to all entries of the array, or null
 };
 
 template <class Visit> void visit_entries(const Model& model, const std::string& array, const Visit& visit) {
@@ -64,7 +64,7 @@ public:
   }
 
 private:
-  // The part before the next point.
+  // Returns the part of the path before the next point.
   std::string take() {
     const std::size_t point = rest_.find('.');
     std::string segment(rest_.substr(0, point));
@@ -110,7 +110,7 @@ private:
   std::string_view rest_;
 };
 
-// The component that `items` name, null if there is none.
+// Returns the component with these indices, null if it does not exist.
 double* component_of(FieldValue& value, const std::vector<std::size_t>& items) {
   const auto of_point = [](Vec2& p, std::size_t i) { return i < 2 ? &p[static_cast<Eigen::Index>(i)] : nullptr; };
   if (auto* p = std::get_if<Vec2>(&value); p && items.size() == 1) return of_point(*p, items[0]);
@@ -121,14 +121,14 @@ double* component_of(FieldValue& value, const std::vector<std::size_t>& items) {
   return nullptr;
 }
 
-// What kind of value a field holds, in words.
+// Returns a description of the type of a value.
 const char* text_of(const FieldValue& value) {
   static constexpr const char* k_texts[] = {"a number",          "an integer",       "true or false",   "a text",         "a point",
                                             "a list of numbers", "a list of points", "a list of rings", "a list of texts"};
   return k_texts[value.index()];
 }
 
-// The value as the field's type has it.
+// Converts the value to the type of the field. Throws ModelError if it cannot.
 FieldValue fitted(const std::string& path, const Target& target, FieldValue value) {
   const bool is_integer = target.field->type == FieldType::integer;
   if (const double* x = std::get_if<double>(&value); x && is_integer) {
@@ -139,7 +139,7 @@ FieldValue fitted(const std::string& path, const Target& target, FieldValue valu
   return value;
 }
 
-// An alternative of FieldValue that a field of this type holds.
+// Returns the index of the alternative of FieldValue for a field of this type.
 std::size_t index_of(FieldType type) {
   switch (type) {
   case FieldType::number: return FieldValue(0.0).index();
@@ -158,7 +158,7 @@ std::size_t index_of(FieldType type) {
 
 constexpr std::string_view k_parameters = "parameters.";
 
-// The parameter that the path names, nothing if it names no parameters at all.
+// Returns the parameter that the path names, or nothing if the path does not begin with "parameters.".
 std::optional<std::size_t> parameter_at(const Model& model, const std::string& path) {
   if (!path.starts_with(k_parameters)) return std::nullopt;
   const std::string name = path.substr(k_parameters.size());
@@ -169,7 +169,7 @@ std::optional<std::size_t> parameter_at(const Model& model, const std::string& p
   complain(path, "there is no parameter '" + name + "'" + did_you_mean(name, known));
 }
 
-// What the formula gives now, as its field holds it: limits of criteria are texts with a unit.
+// Returns the current value of the formula in the form required by its field; limits of criteria are texts with a unit.
 FieldValue value_for_field(const Model& model, const ParameterUse& use) {
   const double value = use.formula.value(model.parameters.values);
   if (!std::isfinite(value)) complain(use.path, "'" + use.text + "' has no finite value");
@@ -217,7 +217,7 @@ void set_value(Model& model, const std::string& path, const FieldValue& value) {
   if (!is_type) complain(path, "'" + target.field->name + "' of " + target.subject + " does not take " + text_of(wanted));
   std::string problem = range_problem(*target.field, wanted);
   if (!problem.empty()) complain(path, "'" + target.field->name + "' of " + target.subject + " " + problem);
-  target.field->set(const_cast<void*>(target.object), wanted); // an object of `model`, which is not const
+  target.field->set(const_cast<void*>(target.object), wanted); // the object belongs to `model`, which is not const
 }
 
 FieldValue value_of(const Model& model, const std::string& path) {

@@ -1,4 +1,4 @@
-// [parameters] of a model: numbers with a name, and formulas of them in its fields.
+// Table [parameters] of a model: named numbers, and field values that are formulas of them.
 //
 //   [parameters]
 //   wall = "12 mm"
@@ -8,8 +8,8 @@
 //   [[body]]
 //   mass = "= '7850 kg/m^3' * width^2 * '1 m'"
 //
-// The language is that of channels (mbd/formula/formula.h); names are those of parameters. Values are in SI. A parameter that is
-// given as a formula follows from others; the others are free, and a model may be given other values of them.
+// The formula language is that of channels (mbd/formula/formula.h), with parameters as names. Values are in SI units. A parameter given as
+// a formula depends on others; all other parameters are free and may be changed.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -22,12 +22,12 @@
 
 namespace steplap {
 
-/// A formula of parameters.
+/// A formula whose names are parameters.
 struct ParameterFormula {
   Formula formula;             ///< its names() are parameters
-  std::vector<std::size_t> of; ///< these parameters, as indices into Parameters::entries, in the order of names()
+  std::vector<std::size_t> of; ///< indices into Parameters::entries of names(), in the same order
 
-  /// In SI, from the values of all parameters. Not-a-number where there is no finite value.
+  /// Returns the value in SI units for the values of all parameters; NaN if there is no finite value.
   [[nodiscard]] double value(const std::vector<double>& values) const;
 };
 
@@ -35,39 +35,39 @@ struct ParameterFormula {
 struct Parameter {
   std::string name;                        ///< letters, digits and _
   std::string text;                        ///< as given: "12 mm", "= 2*wall + bore"
-  std::array<double, 3> powers{};          ///< of kg, m and s in its unit
-  std::optional<ParameterFormula> formula; ///< what it follows from; nothing of a free one
-  std::optional<double> least, most;       ///< SI, the range that makes sense
+  std::array<double, 3> powers{};          ///< exponents of kg, m and s in its unit
+  std::optional<ParameterFormula> formula; ///< formula that gives its value; nothing for a free parameter
+  std::optional<double> least, most;       ///< range of sensible values, SI
   std::string meaning;                     ///< one line; may be empty
-  Location where;                          ///< of its value, in the model's file
+  Location where;                          ///< location of the value in the model file
 };
 
-/// A field that a formula of parameters gives.
+/// A field whose value is a formula of parameters.
 struct ParameterUse {
-  std::string path;         ///< of the field (model_path.h)
+  std::string path;         ///< path of the field (model_path.h)
   std::string text;         ///< the formula as given
-  std::string unit;         ///< SI unit of what it gives
-  ParameterFormula formula; ///< in SI
+  std::string unit;         ///< SI unit of the result
+  ParameterFormula formula; ///< formula with result in SI
   Location where;           ///< in the model's file
-  bool can_be_set = true;   ///< false: the path leads to what has no path of a number, such as a ring of points
+  bool can_be_set = true;   ///< false if the target has no path of its own, such as a point of a ring
 };
 
-/// All parameters of a model with their values, and where they are used.
+/// All parameters of a model with their values, and the fields that use them.
 struct Parameters {
   std::vector<Parameter> entries; ///< in the order of the file
-  std::vector<double> values;     ///< of the entries, SI
-  std::vector<std::size_t> order; ///< of the entries that are formulas: each after those that it needs
-  std::vector<ParameterUse> uses; ///< in the order of the file
+  std::vector<double> values;     ///< values of the entries, SI
+  std::vector<std::size_t> order; ///< indices of the entries that are formulas, in an order in which each follows those it depends on
+  std::vector<ParameterUse> uses; ///< fields that use parameters, in the order of the file
 
-  /// Its index, or nothing.
+  /// Returns the index of the parameter, or nothing.
   [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
-  /// Does the formula need that parameter, itself or through other parameters?
+  /// Returns true if the formula depends on the parameter, directly or through other parameters.
   [[nodiscard]] bool needs(const ParameterFormula& formula, std::size_t parameter) const;
-  /// Finds all values that follow from others.
+  /// Recomputes the values of all parameters that are formulas.
   void evaluate();
 };
 
-/// Why the parameter cannot have this value, "" if it can: it is not finite, or out of its range.
+/// Returns the reason why the parameter cannot have this value (not finite, or outside its range); "" if it can.
 [[nodiscard]] std::string problem_with(const Parameter& parameter, double value);
 
 } // namespace steplap

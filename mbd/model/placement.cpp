@@ -7,22 +7,22 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_nobody = static_cast<std::size_t>(-1); // the ground
+constexpr std::size_t k_nobody = static_cast<std::size_t>(-1); // index of the ground
 
-// A joint that places, its bodies by index (k_nobody: the ground).
+// A joint that determines a relative pose, with the indices of its bodies.
 struct Edge {
   std::size_t element = 0;
   const PlacingElement* joint = nullptr;
   const ElementKind* kind = nullptr;
   const Marker* marker[2] = {nullptr, nullptr};
   std::size_t body[2] = {k_nobody, k_nobody};
-  RelativePose pose; // of body[0] against body[1]
+  RelativePose pose; // pose of body[0] relative to body[1]
   bool is_used = false;
 
   [[nodiscard]] std::string text() const { return subject_text(kind->name, joint->name); }
 };
 
-// A frame in the ground and how it moves.
+// Pose and velocity of a frame relative to the ground.
 struct Frame {
   Vec2 place = Vec2::Zero();
   double angle = 0.0;
@@ -38,7 +38,7 @@ Frame seen_on(const Frame& base, const RelativePose& p) {
           base.spin + p.spin};
 }
 
-// The base from which `frame` is seen at p.
+// Returns the frame relative to which `frame` has the relative pose p.
 Frame seen_from(const Frame& frame, const RelativePose& p) {
   Frame base;
   base.angle = frame.angle - p.angle;
@@ -102,7 +102,7 @@ private:
   std::vector<char> is_placed_, is_adrift_;
   std::vector<std::vector<std::size_t>> edges_of_;
   std::deque<std::size_t> waiting_;
-  bool has_unresolved_ = false; // what hangs on such a joint is not said to hang in the air
+  bool has_unresolved_ = false; // prevents the message "is not connected" for bodies whose joint could not be resolved
 };
 
 void Placement::find_edges() {
@@ -128,7 +128,7 @@ void Placement::find_edges() {
     add_edge(element, static_cast<const PlacingElement&>(*model_.elements[element].element), pose, markers, bodies);
 }
 
-// Unknown names are reported by validation.
+// Adds a joint to the graph. Unknown names are skipped; validation reports them.
 void Placement::add_edge(std::size_t element, const PlacingElement& joint, const RelativePose& pose,
                          const std::unordered_map<std::string, const Marker*>& markers,
                          const std::unordered_map<std::string, std::size_t>& bodies) {
@@ -143,7 +143,7 @@ void Placement::add_edge(std::size_t element, const PlacingElement& joint, const
     edge.marker[side] = marker->second;
     edge.body[side] = body->second;
   }
-  if (edge.body[0] == edge.body[1]) return; // compile says so
+  if (edge.body[0] == edge.body[1]) return; // compilation reports an error
   for (const std::size_t body : edge.body)
     if (body != k_nobody) edges_of_[body].push_back(edges_.size());
   edges_.push_back(edge);
@@ -156,7 +156,7 @@ void Placement::follow(std::size_t e) {
   place(edge, is_known(edge.body[1]) ? 0 : 1);
 }
 
-// Places body[side] of the edge against the other one.
+// Computes the pose of body[side] of the edge from that of the other body.
 void Placement::place(Edge& edge, int side) {
   const std::size_t body = edge.body[side];
   if (edge.marker[side]->at)
@@ -231,7 +231,7 @@ void Placement::report_leftovers() {
   }
 }
 
-// All that hangs together with `body`: one message is enough.
+// Marks all bodies connected to `body`, so that only one message is given.
 void Placement::mark_adrift(std::size_t body) {
   is_adrift_[body] = 1;
   waiting_.push_back(body);

@@ -1,39 +1,38 @@
-// Reference poses of bodies from the joints that join them: angles and displacements instead of places.
+// Reference poses of bodies from the coordinates of joints.
 //
-// A joint that gives its coordinate ("the angle of a against b is 30 degrees") places one of its two bodies
-// against the other. From the ground, fixed bodies and bodies that give a pose of their own this goes along
-// the joints, as far as a tree of them reaches; loops are left to assembly. A body's velocity follows in the
-// same way, from the joint's rate. Each body is placed once: what is said twice is an error, though it agree.
+// A joint with a given coordinate ("the angle of a against b is 30 degrees") determines the pose of one of its bodies relative to the
+// other, and its rate the velocity. Starting from the ground, fixed bodies and bodies with a given pose, poses are computed along the tree
+// of such joints. Loops are closed later by assembly. A body whose pose is determined twice is an error, even if both agree.
 #pragma once
 
 #include "mbd/model/validate.h"
 
 namespace steplap {
 
-/// Frame of marker a as seen from the frame of marker b, and how it moves there.
+/// Pose and velocity of the frame of marker a relative to the frame of marker b.
 struct RelativePose {
-  Vec2 shift = Vec2::Zero();    ///< of marker a from marker b, in b's axes, m
-  double angle = 0.0;           ///< of a's axes against b's, rad
-  Vec2 velocity = Vec2::Zero(); ///< of marker a as seen from b, in b's axes, m/s
-  double spin = 0.0;            ///< rad/s
+  Vec2 shift = Vec2::Zero();    ///< position of a relative to b, in the axes of b, m
+  double angle = 0.0;           ///< angle of a relative to b, rad
+  Vec2 velocity = Vec2::Zero(); ///< velocity of a as seen from b, in the axes of b, m/s
+  double spin = 0.0;            ///< angular velocity of a relative to b, rad/s
 };
 
-/// An element that may say where its two bodies are against each other.
+/// Base class of elements that can prescribe the relative pose of their two bodies.
 struct PlacingElement : Element {
   std::string a, b = "ground"; ///< markers
-  /// Nullopt: it does not say.
+  /// Returns the prescribed relative pose, or nullopt if none is given.
   [[nodiscard]] virtual std::optional<RelativePose> relative_pose() const = 0;
-  /// The field that decides whether it says so.
+  /// Returns the name of the field whose presence makes the element prescribe a pose.
   [[nodiscard]] virtual const char* placing_field() const = 0;
-  /// A field that is given in vain without it; null if there is none.
+  /// Returns the name of a field that has no effect without placing_field(); null if there is none.
   [[nodiscard]] virtual const char* idle_field() const { return nullptr; }
 };
 
-/// Where the file gives a body's field; nullopt: it does not give it.
+/// Returns the location of a body's field in the file, or nullopt if it is not given.
 using GivenBodyField = std::function<std::optional<Location>(std::size_t body, const std::string& field)>;
 
-/// Sets pose and velocity of every body that joints place. Markers need their places. Adds what is
-/// contradictory, said twice or never said to `problems`; `locate` as in validate().
+/// Sets pose and velocity of all bodies that joints place. Precondition: positions of markers are known. Appends contradictory, repeated
+/// and missing information to `problems`; `locate` as in validate().
 void place_by_joints(Model& model, const GivenBodyField& given, const FieldLocator& locate, std::vector<Diagnostic>& problems);
 
 } // namespace steplap

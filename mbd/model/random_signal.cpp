@@ -1,9 +1,9 @@
-// A stationary Gaussian vibration within an envelope: Σ A_i cos(2π f_i τ + φ_i), A_i drawn from Rayleigh's distribution with a
-// mean square of twice the density's integral over the i-th band of frequencies.
+// A stationary Gaussian vibration multiplied by an envelope: Σ A_i cos(2π f_i τ + φ_i). The A_i are drawn from Rayleigh's distribution; the
+// mean of A_i² is twice the integral of the power spectral density over frequency band i.
 //
-// Bands are 0.1 % of their frequency wide, or one over the duration where that is wider: finer ones cannot be told apart within
-// it. A resonance of damping ratio ζ, 2 ζ wide, sees forty waves or more for ζ ≥ 0.02, so that their drawn amplitudes add no
-// scatter to what it answers.
+// The width of a band is 0.1 % of its frequency, but at least the reciprocal of the duration, because narrower bands cannot be
+// distinguished within it. The resonance of a system with damping ratio ζ has the relative bandwidth 2 ζ. For ζ ≥ 0.02 it contains at least
+// forty waves, so the random amplitudes add no significant scatter to its response.
 #include "mbd/model/load_signals.h"
 #include "mbd/model/spectral_waves.h"
 
@@ -16,7 +16,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_band = 0.001;
-constexpr std::uint32_t k_stream = 0x72616e64; // of random numbers
+constexpr std::uint32_t k_stream =
+    0x72616e64; // stream of random numbers of this kind, independent of those of other kinds with the same seed
 
 struct Random : SignalDefinition {
   std::vector<double> frequencies, densities; // Hz; unit²/Hz
@@ -42,7 +43,7 @@ Signal build_random(const SignalDefinition& definition) {
   }
   if (!(f.back() <= k_widest_band * f.front()))
     fail("the last of 'frequencies' is more than " + number_text(k_widest_band) + " times the first");
-  constexpr double k_usual = 0.1; // of the duration
+  constexpr double k_usual = 0.1; // default rise and fall relative to the duration
   const double rise = random.rise.value_or(k_usual * random.duration), fall = random.fall.value_or(k_usual * random.duration);
   if (rise + fall > random.duration)
     fail("'rise' and 'fall' take " + number_text(rise + fall) + " s, more than 'duration', " + number_text(random.duration) + " s");

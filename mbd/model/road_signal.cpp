@@ -1,10 +1,10 @@
-// The height of a road that is passed at a constant speed v: z(t) = Σ A_i cos(2π n_i v τ + φ_i), A_i² / 2 the integral of the
-// density Gd(n) = Gd(n0) (n/n0)^−w over the i-th band of wave numbers n.
+// Height of a road profile at constant speed v: z(t) = Σ A_i cos(2π n_i v τ + φ_i), where A_i² / 2 is the integral of the displacement
+// spectral density Gd(n) = Gd(n0) (n/n0)^−w over wave number band i.
 //
-// Bands are 1.25 % of their wave number wide, 444 from 0.011/m to 2.83/m: a resonance of damping ratio ζ, 2 ζ wide, sees three
-// waves or more for ζ ≥ 0.02. Amplitudes follow the density and only phases and places within bands are drawn, so that every seed
-// has the roughness of its class. Waves belong to places: another speed passes the same road, another class scales it.
-// Limits: tyres' footprint and a speed that changes are left out.
+// The width of a band is 1.25 % of its wave number: 444 bands from 0.011/m to 2.83/m. A resonance with damping ratio ζ ≥ 0.02 contains at
+// least three waves. Amplitudes follow the density; only phases and wave numbers within the bands are random, so that every seed has the
+// roughness of its class. The profile is a function of position: another speed gives the same road, another class scales it. Neglected:
+// footprint of the tyre, changes of speed.
 #include "mbd/model/load_signals.h"
 #include "mbd/model/spectral_waves.h"
 
@@ -19,7 +19,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_band = 0.0125;
-constexpr std::uint32_t k_stream = 0x726f6164; // of random numbers
+constexpr std::uint32_t k_stream =
+    0x726f6164; // stream of random numbers of this kind, independent of those of other kinds with the same seed
 
 struct Road : SignalDefinition {
   std::optional<std::string> road_class;
@@ -38,7 +39,7 @@ const std::vector<std::string>& classes() {
   return letters;
 }
 
-// Geometric means of ISO 8608, each four times the one before.
+// Returns the geometric mean of Gd(n0) for an ISO 8608 class; each is four times that of the class before.
 double roughness_of(const std::string& letter) {
   double value = 16e-6;
   for (const std::string& other : classes()) {

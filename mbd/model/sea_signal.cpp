@@ -1,11 +1,12 @@
-// A vessel that turns about an axis by θ = Θ sin ωτ while the axis rises by h with ḧ = H sin(ω_h τ + φ), and what a place (X, Y)
-// of its deck, from the axis and in the vessel's axes, feels: its acceleration less gravity's, in the vessel's axes,
-//   f_x = −X θ̇² − Y θ̈ + (g + ḧ) sin θ,   f_y = X θ̈ − Y θ̇² + (g + ḧ) cos θ.
-// A model whose ground is the deck has these as the acceleration of its vehicle: x as f_x, y as f_y − g, because its own gravity
-// stays.
+// Motion of a vessel: it rotates about an axis by θ = Θ sin ωτ, while the axis moves vertically with ḧ = H sin(ω_h τ + φ). At a point (X,
+// Y) relative to the axis, in the axes of the vessel, acceleration minus gravity has the components
 //
-// sin(Θ sin ωτ) = 2 Σ J_k(Θ) sin kωτ over odd k, cos(Θ sin ωτ) = J_0(Θ) + 2 Σ J_k(Θ) cos kωτ over even k (Jacobi, Anger): exact,
-// and harmonics again. Everything grows from zero within `rise`, the accelerations as wholes.
+//   f_x = −X θ̇² − Y θ̈ + (g + ḧ) sin θ,   f_y = X θ̈ − Y θ̇² + (g + ḧ) cos θ.
+//
+// For a model whose ground is the deck, the vehicle is accelerated by f_x in x and by f_y − g in y, because the model has its own gravity.
+//
+// The trigonometric functions of θ are expanded exactly into harmonics (Jacobi–Anger): sin(Θ sin ωτ) = 2 Σ J_k(Θ) sin kωτ over odd k, cos(Θ
+// sin ωτ) = J_0(Θ) + 2 Σ J_k(Θ) cos kωτ over even k ≥ 2. The accelerations rise from zero within `rise`.
 #include "mbd/model/load_signals.h"
 #include "mbd/model/signal_algebra.h"
 #include "mbd/model/spectral_waves.h"
@@ -31,12 +32,12 @@ struct Sea : SignalDefinition {
   std::optional<double> heave_period;      // s
   double heave_phase = 0.0;                // rad
   Vec2 place = Vec2::Zero();               // m
-  double gravity = 9.81;                   // m/s², as a model's
+  double gravity = 9.81;                   // m/s², should equal that of the model
   double start = 0.0;                      // s
   std::optional<double> rise;              // s
 };
 
-// J_n(x) by its power series: for x up to 1.6 its terms fall from the first one on.
+// Returns the Bessel function J_n(x) by its power series. For x up to 1.6 the terms decrease from the first one on.
 double bessel(int n, double x) {
   double term = 1.0;
   for (int k = 1; k <= n; ++k) term *= 0.5 * x / k;
@@ -53,7 +54,7 @@ Signal sines(std::vector<Signal::Harmonic> waves, double offset = 0.0) {
 }
 Signal::Harmonic sine(double amplitude, double frequency, double phase = 0.0) { return {amplitude, frequency, phase - 0.5 * k_pi}; }
 
-// sin θ for `first` = 1, cos θ for `first` = 0.
+// Returns sin θ(t) for `first` = 1, cos θ(t) for `first` = 0, for θ = angle · sin(omega τ).
 Signal of_angle(double angle, double omega, int first) {
   constexpr double k_none = 1e-20;
   std::vector<Signal::Harmonic> waves;
@@ -69,7 +70,7 @@ Signal whole_sea(const Sea& sea, double angle, double omega, double heave_omega)
   if (sea.component == "height") return sines({sine(-sea.heave / (heave_omega * heave_omega), heave_omega, sea.heave_phase)});
   const bool is_x = sea.component == "x";
   const double faster = angle * omega * omega, lever = is_x ? sea.place.y() : -sea.place.x(), arm = is_x ? sea.place.x() : sea.place.y();
-  const double swing = 0.5 * arm * angle * faster; // of θ̇² times the other lever: its mean
+  const double swing = 0.5 * arm * angle * faster; // mean of θ̇² multiplied by the other coordinate
   const Signal turning = sines({sine(lever * faster, omega), {-swing, 2.0 * omega, 0.0}}, -swing);
   const Signal weight = sines({sine(sea.heave, heave_omega, sea.heave_phase)}, sea.gravity), tilt = of_angle(angle, omega, is_x ? 1 : 0);
   const Signal felt = product_of({&weight, &tilt}), one = Signal::constant(1.0);

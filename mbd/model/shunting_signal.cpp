@@ -1,13 +1,15 @@
-// Two wagons of masses m and M meet with a closing speed v₀. Their buffers, two at each end and all alike, are pressed by
-// s each, the wagons have closed by x = 2 s, and F, what the two pairs in series pass on, slows the closing:
-//   μ ẍ = −F,   μ = m M/(m + M),   F = 2 (f(s) + c ṡ),
-// f the curve for loading while s grows and the one for unloading while it falls; beyond the last point of the curves a stop of
-// stiffness k per buffer adds k (s − s_end). Buffers push and do not pull: the wagons part where F reaches zero.
+// Impact of two wagons of masses m and M with closing speed v₀. Each end has two buffers, all alike. If each buffer is compressed by s, the
+// wagons have approached by x = 2 s. F is the force of the two pairs in series:
 //
-// It is integrated once, by Runge and Kutta's method of fourth order: from corner to corner of the curves, each met by
-// halving the last step, in steps of a fiftieth of the fastest part's radian. The pulse F/m is the cubic through value and slope at the
-// ends of every two steps: it is off by (2/50)⁴/384 = 7e-9 of the peak, its integral by half of that. The energy that the curves took and the
-// velocity that the pulse takes away are held against the motion: a pulse that misses either by 1e-7 is refused.
+//   μ ẍ = −F,   μ = m M/(m + M),   F = 2 (f(s) + c ṡ)
+//
+// f is the loading curve while s grows and the unloading curve while it decreases. Beyond the end of the curves a stop of stiffness k per
+// buffer adds k (s − s_end). Buffers do not pull: contact ends when F becomes zero.
+//
+// Integration: classical Runge–Kutta method of order 4 with steps of 1/50 rad of the highest frequency, restarted at each corner of the
+// curves, which is located by bisection of the last step. The acceleration F/m is interpolated by cubic Hermite polynomials over every two
+// steps, with an error of (2/50)⁴/384 = 7e-9 of the peak, half of that in the integral. As a check, the energy absorbed by the curves and
+// the change of velocity of the pulse are compared with the motion; a relative deviation above 1e-7 is an error.
 #include "mbd/model/shunting_signal.h"
 
 #include "mbd/base/shown_text.h"
@@ -24,7 +26,7 @@ constexpr int k_steps_per_piece = 2;
 constexpr int k_most_steps = 1000000;
 constexpr int k_halvings = 60;
 constexpr double k_agrees = 1e-7;
-constexpr double k_buffers = 2.0; // at an end of a wagon; and ends that meet
+constexpr double k_buffers = 2.0; // buffers at one end of a wagon; also the number of ends in contact
 
 struct Shunting : SignalDefinition {
   double mass = 0.0, other_mass = 0.0;   // kg
@@ -35,13 +37,13 @@ struct Shunting : SignalDefinition {
   double start = 0.0;                    // s
 };
 
-// f on one straight part of a curve: from s = `from` on with the force there, up to `to`.
+// A linear segment of the curve: force at s = `from`, constant slope up to `to`.
 struct Part {
   double from = 0.0, to = 0.0, force = 0.0, slope = 0.0;
 };
 
 struct Node {
-  double t = 0.0, s = 0.0, rate = 0.0, work = 0.0; // of one buffer: travel, its rate, what it took
+  double t = 0.0, s = 0.0, rate = 0.0, work = 0.0; // for one buffer: time, travel, its rate, absorbed work
 };
 
 class Meeting {
@@ -65,7 +67,7 @@ public:
     }
     for (std::size_t p = unloading_.size(); p-- > 0;) {
       if (unloading_[p].from >= now.s) continue;
-      if (!(force(unloading_[p], now) > 0.0)) continue; // damped: it does not push yet, or no more
+      if (!(force(unloading_[p], now) > 0.0)) continue; // because of damping the force is not yet, or no longer, positive
       follow(unloading_[p], false, now);
     }
     Signal::Piece rest;
@@ -118,16 +120,17 @@ private:
       parts.push_back(
           {curve[i - 1].x(), curve[i].x(), curve[i - 1].y(), (curve[i].y() - curve[i - 1].y()) / (curve[i].x() - curve[i - 1].x())});
     const Vec2 &last = given_.buffer.back(), &before = given_.buffer[given_.buffer.size() - 2];
-    const double slope = (last.y() - before.y()) / (last.x() - before.x()); // of both curves beyond: what they part with stays what it is
+    const double slope = (last.y() - before.y()) / (last.x() - before.x()); // both curves are continued with this slope, so their
+                                                                            // difference remains constant
     if (given_.stop_stiffness) parts.push_back({curve.back().x(), 1e30, curve.back().y(), slope + *given_.stop_stiffness});
     return parts;
   }
 
-  // Of one buffer.
+  // Returns the force of one buffer.
   [[nodiscard]] double force(const Part& part, const Node& n) const {
     return part.force + part.slope * (n.s - part.from) + given_.damping * n.rate;
   }
-  // ṡ̇ = −F/(2 μ), with F = 2 f: the wagons close by two travels.
+  // Returns s̈ = −F/(2 μ) with F = 2 f, since the wagons approach by two travels.
   [[nodiscard]] double second_rate(const Part& part, const Node& n) const { return -force(part, n) / reduced_; }
 
   [[nodiscard]] Node step(const Part& part, const Node& from, double h) const {
@@ -143,7 +146,7 @@ private:
     return {from.t + h, from.s + sum(ds), from.rate + sum(dv), from.work + sum(dw)};
   }
 
-  // Has the way over this part come to its end?
+  // Returns true if the motion has reached the end of this segment.
   [[nodiscard]] bool is_over(const Part& part, const Node& n, bool is_loading) const {
     return is_loading ? n.s >= part.to || n.rate <= 0.0 : n.s <= part.from || force(part, n) <= 0.0;
   }
@@ -174,7 +177,7 @@ private:
     if (is_loading && now.rate <= 0.0) now.rate = 0.0;
   }
 
-  // The cubic with values and slopes of the wagon's acceleration at both ends.
+  // Adds the cubic with the values and slopes of the wagon's acceleration at both nodes.
   void add_piece(const Part& part, const Node& a, const Node& b) {
     const double h = b.t - a.t;
     if (!(h > 0.0)) return;
@@ -191,7 +194,7 @@ private:
   }
 
   void hold_against_motion(const Signal& signal, const Node& end) const {
-    const double before = closing_, after = k_buffers * end.rate; // after: negative, they part
+    const double before = closing_, after = k_buffers * end.rate; // velocities of approach; negative after the impact
     const double energy = 0.5 * reduced_ * before * before, taken = energy - 0.5 * reduced_ * after * after;
     if (!(std::abs(2.0 * k_buffers * end.work - taken) <= k_agrees * energy))
       fail("its energy is not found to 1e-7: are its curves in N and m?");

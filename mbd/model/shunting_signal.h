@@ -1,11 +1,11 @@
-// The acceleration that a wagon gets when another one meets it buffer to buffer.
+// Acceleration of a wagon during a buffer-to-buffer impact with another wagon.
 #pragma once
 
 #include "mbd/model/signal.h"
 
 namespace steplap {
 
-/// "shunting": two wagons of given masses and speeds, and the force–travel curves of their buffers.
+/// "shunting": impact of two wagons with given masses, speeds and force–travel curves of their buffers.
 [[nodiscard]] const SignalKind& shunting_kind();
 
 } // namespace steplap

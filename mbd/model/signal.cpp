@@ -13,25 +13,27 @@ namespace steplap {
 
 namespace {
 
-// A piece's value, first two derivatives and integrals from the piece's start, at τ after it.
+// Value, first two derivatives, and integrals from the start of the piece, at time τ after it.
 struct PieceJet {
   double value = 0.0, rate = 0.0, second_rate = 0.0, integral = 0.0, double_integral = 0.0;
 };
 
 constexpr double k_small_angle = 0.5; // rad
 
-// sin x − x without cancellation.
+// Returns sin x − x without cancellation.
 double sine_minus_argument(double x) {
   if (std::abs(x) > k_small_angle) return portable::sin(x) - x;
   const double y = x * x;
-  // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
+  // Taylor series; for |x| ≤ 0.5 the first omitted term, x¹⁷/17!, is below 1e-19 of the first.
   return x * y *
          (-1.0 / 6 + y * (1.0 / 120 +
                           y * (-1.0 / 5040 + y * (1.0 / 362880 + y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
 }
 
-// With x = ωτ, s and c of x/2: cos(x+φ) = cos φ cos x − sin φ sin x, and
-// ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)]; `lag`: sin x − x.
+// Adds one harmonic. With x = ωτ, s and c are sine and cosine of x/2, `lag` is sin x − x:
+//
+//   cos(x+φ) = cos φ cos x − sin φ sin x
+//   ∫ = A/ω [cos φ sin x − sin φ (1−cos x)],   ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)]
 template <bool has_integrals> void add_harmonic(const Signal::Harmonic& h, double s, double c, double lag, PieceJet& jet) {
   const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
   const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
@@ -46,9 +48,9 @@ template <bool has_integrals> void add_harmonic(const Signal::Harmonic& h, doubl
   jet.double_integral += h.double_integral_scale * bracket;
 }
 
-constexpr std::size_t k_block = 8; // of sin_cos_of_block
+constexpr std::size_t k_block = 8; // harmonics per vectorised call
 
-// Of k_block harmonics: the same bits as one after the other.
+// Adds k_block harmonics, with the same bits as by add_harmonic().
 template <bool has_integrals> void add_block(const Signal::Harmonic* h, double tau, PieceJet& jet) {
   double x[k_block], half[k_block], s[k_block], c[k_block], lag[k_block] = {}, unused[k_block];
   for (std::size_t i = 0; i < k_block; ++i) {
@@ -82,12 +84,12 @@ void add_polynomial(const double* c, double tau, PieceJet& jet) {
   jet.double_integral = tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
 }
 
-// ∫₀¹ uⁿ e^{ixu} du of two neighbouring n.
+// Moments F_n = ∫₀¹ uⁿ e^{ixu} du for two consecutive n.
 struct Moments {
   double real[2] = {0.0, 0.0}, imaginary[2] = {0.0, 0.0};
 };
 
-// Σ (ix)^k / (k! (n+k+1)), which loses few digits while |x| ≤ max(2, n/2).
+// Power series F_n = Σ (ix)^k / (k! (n+k+1)), which is accurate for |x| ≤ max(2, n/2).
 void add_moment_series(int n, double x, double& real, double& imaginary) {
   double term = 1.0; // x^k / k!
   for (int k = 0; k < 80 && std::abs(term) > 1e-20; ++k) {
@@ -97,7 +99,7 @@ void add_moment_series(int n, double x, double& real, double& imaginary) {
   }
 }
 
-// For larger x by parts, upwards from n = 0: F_n = (e^{ix} − n F_{n−1}) / (ix).
+// Returns F_n and F_{n+1}. For larger |x| they are computed by integration by parts, upwards from n = 0: F_n = (e^{ix} − n F_{n−1}) / (ix).
 Moments moments(int n, double x) {
   Moments m;
   if (std::abs(x) <= std::max(2.0, 0.5 * n)) {
@@ -123,7 +125,7 @@ double power(double x, int n) {
   return result;
 }
 
-// ∫ τⁿ cos(ωτ+φ) = τⁿ⁺¹ Re e^{iφ} F_n, ∬ = ∫ (τ−s) sⁿ cos = τⁿ⁺² Re e^{iφ} (F_n − F_n+1).
+// Adds one modulated harmonic: ∫ τⁿ cos(ωτ+φ) = τⁿ⁺¹ Re e^{iφ} F_n, ∬ = ∫ (τ−s) sⁿ cos = τⁿ⁺² Re e^{iφ} (F_n − F_n+1).
 void add_modulated(const Signal::Modulated& m, double tau, bool has_integrals, PieceJet& jet) {
   const int n = m.power;
   const double x = m.frequency * tau;
@@ -160,7 +162,7 @@ PieceJet evaluate(const Signal::Piece& piece, double tau, bool has_integrals = t
   return jet;
 }
 
-// A bound of the piece's terms up to τ: the scale of its rounding.
+// Returns a bound of the terms of the piece up to τ, for estimating rounding errors.
 double magnitude(const Signal::Piece& piece, double tau) {
   double sum = 0.0;
   for (int i = 3; i >= 0; --i) sum = sum * tau + std::abs(piece.c[i]);
@@ -169,12 +171,12 @@ double magnitude(const Signal::Piece& piece, double tau) {
   return sum;
 }
 
-// The mean of f between two times by Gauss' rule with four points, exact to the seventh power, in stretches within which
-// a wave of angular frequency `fastest` turns by no more than a radian: what is left is below 1e-8 of it.
+// Returns the mean of f over [a, b] by Gauss quadrature with four points per subinterval (exact to degree 7). A wave of angular frequency
+// `fastest` turns by at most one radian in a subinterval, so the relative error is below 1e-8.
 template <class F> double gauss_mean(double a, double b, double fastest, const F& f) {
   constexpr double k_place[] = {0.06943184420297371, 0.33000947820757187};
   constexpr double k_weight[] = {0.17392742256872693, 0.32607257743127307};
-  constexpr double k_most_stretches = 256.0; // of waves that turn faster, integrals are rounding beside those of one turn
+  constexpr double k_most_stretches = 256.0; // limit for higher frequencies, whose mean is negligible compared with that of one turn
   const int count = static_cast<int>(std::clamp(std::ceil(fastest * (b - a)), 1.0, k_most_stretches));
   const double h = (b - a) / count;
   double sum = 0.0;
@@ -185,11 +187,11 @@ template <class F> double gauss_mean(double a, double b, double fastest, const F
 
 // sin x / x
 double sinc(double x) {
-  return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : portable::sin(x) / x; // what is left out is below 1e-18
+  return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : portable::sin(x) / x; // truncation error below 1e-18
 }
 
-// Of a piece between τ = a and b. About the middle m, half a length d to either side, odd powers cancel, and a harmonic's
-// mean is its value there times sin(ωd)/(ωd): no digits are lost however short the stretch.
+// Returns the mean of a piece between τ = a and b. With midpoint m and half length d, odd powers about m cancel, and the mean of a harmonic
+// is its value at m times sin(ωd)/(ωd). No accuracy is lost for short intervals.
 double mean_of(const Signal::Piece& piece, double a, double b) {
   const double m = 0.5 * (a + b), d = 0.5 * (b - a);
   const double* const c = piece.c;
@@ -199,7 +201,7 @@ double mean_of(const Signal::Piece& piece, double a, double b) {
     sum += h.amplitude * (h.cos_phase * cosine - h.sin_phase * s) * sinc(h.frequency * d);
   }
   for (const Signal::Modulated& wave : piece.modulated) {
-    constexpr double k_slow = 16.0; // rad: within fewer turns Gauss' rule costs less than the closed form loses
+    constexpr double k_slow = 16.0; // rad; below it Gauss quadrature is cheaper and more accurate than the closed form
     if (std::abs(wave.frequency) * (b - a) > k_slow) {
       PieceJet before, after;
       add_modulated(wave, a, true, before);
@@ -207,7 +209,7 @@ double mean_of(const Signal::Piece& piece, double a, double b) {
       sum += (after.integral - before.integral) / (b - a);
       continue;
     }
-    // A power of τ turns like so many half waves over the whole piece, of which this is a part.
+    // A power τⁿ is treated like n half-waves over the whole piece.
     const double turn = std::abs(wave.frequency) + (b > 0.0 ? wave.power / b : 0.0);
     sum += gauss_mean(a, b, turn, [&](double tau) {
       PieceJet jet;
@@ -263,8 +265,8 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 
 Signal Signal::constant(double value) { return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}, {}}}); }
 
-// The integrals at the starts, forwards and backwards from the piece that holds t = 0, so that
-// pieces long before t = 0 cost those after it no digits.
+// Computes the integrals at the starts of the pieces, forwards and backwards from the piece that contains t = 0. Pieces long before t = 0
+// therefore do not reduce the accuracy of those after it.
 void Signal::accumulate_integrals() {
   if (pieces_.empty()) return;
   const Piece* at_zero = piece_at(0.0);
@@ -293,7 +295,7 @@ void Signal::accumulate_integrals() {
 }
 
 const Signal::Piece* Signal::piece_at(double t) const {
-  constexpr std::ptrdiff_t k_few = 8; // from the last one on, as runs spend most of their time there
+  constexpr std::ptrdiff_t k_few = 8; // pieces searched linearly from the last one, where runs spend most of their time
   const Piece *const begin = pieces_.data(), *piece = begin + pieces_.size();
   if (piece <= begin + k_few) {
     while (piece != begin)
@@ -311,8 +313,7 @@ double Signal::value(double t) const {
 
 namespace {
 
-// What drive() gives of an acceleration, for pieces as most drives are made of: no rates that nobody asks for. The same
-// bytes as by way of evaluate().
+// Result of drive() for an acceleration on a simple piece, without the derivatives that it does not need. Bit-identical to evaluate().
 [[gnu::noinline]] SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
   double value = piece.c[0], integral = tau * piece.c[0], double_integral = tau * tau * (piece.c[0] / 2);
   for (const Signal::Harmonic& h : piece.harmonics) {
@@ -328,7 +329,7 @@ namespace {
   return {double_integral + (piece.double_integral + piece.integral * tau), integral + piece.integral, value};
 }
 
-// The same of any piece, and where there is none; `value_at_zero`: of the signal.
+// Result of drive() for any piece, or for none. `value_at_zero` is f(0).
 [[gnu::noinline]] SignalJet driven_by(const Signal::Piece* piece, const std::vector<Signal::Piece>& pieces, double value_at_zero, double t,
                                       DriveLevel level) {
   PieceJet jet;
@@ -352,7 +353,7 @@ namespace {
 
 } // namespace
 
-// Between its pulses a drive goes on evenly, for most of a run: that calls nothing.
+// Simple pieces are evaluated inline, without a call: a drive is constant for most of a run.
 SignalJet Signal::drive(double t, DriveLevel level) const {
   const Piece* const piece = piece_at(t);
   if (level != DriveLevel::acceleration || !piece || !piece->is_usual) return driven_by(piece, pieces_, value_at_zero_, t, level);
@@ -377,8 +378,8 @@ double Signal::mean(double from, double to) const {
 }
 
 double Signal::fastest_at(double t) const {
-  constexpr int k_tame_power = 3;   // a cubic is followed by every method
-  constexpr double k_slight = 1e-2; // of the piece: humps so low hide no extreme, and errors of steps see them
+  constexpr int k_tame_power = 3;   // cubics need no step limit: every method follows them
+  constexpr double k_slight = 1e-2; // relative to the piece: lower humps change no extreme significantly, and step errors detect them
   double fastest = 0.0;
   const Piece* piece = piece_at(t);
   if (!piece) return fastest;
@@ -407,13 +408,13 @@ namespace {
 
 constexpr double k_rounding = 1e-12;
 
-// On either side of a breakpoint, and how much of it may be rounding.
+// Values on both sides of a breakpoint, and a bound of their rounding error.
 struct Sides {
   double before = 0.0, after = 0.0, scale = 0.0;
   [[nodiscard]] bool differ() const { return std::abs(after - before) > k_rounding * scale; }
 };
 
-// A bound of the terms of a piece's rate up to τ.
+// Returns a bound of the terms of f′ on a piece up to τ.
 double rate_magnitude(const Signal::Piece& piece, double tau) {
   double sum = std::abs(piece.c[1]) + tau * (2.0 * std::abs(piece.c[2]) + tau * 3.0 * std::abs(piece.c[3]));
   for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude * h.frequency);
@@ -424,7 +425,7 @@ double rate_magnitude(const Signal::Piece& piece, double tau) {
   return sum;
 }
 
-// What the value at a piece's end is known to no better than: delays round the times of its start and end, and with them its length.
+// Returns the uncertainty of the value at the end of a piece due to rounding of its start and end times, for example by delays.
 double time_rounding(const Signal::Piece& piece, double end, double length) {
   return 4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(piece.start), std::abs(end)) * rate_magnitude(piece, length);
 }
@@ -440,7 +441,7 @@ Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
   return sides;
 }
 
-// The slope of a line between two samples is rounded as their values and times are, over its length.
+// Returns the uncertainty of the slope of a line between two samples, due to rounding of their values and times.
 double slope_rounding(const Signal::Piece& piece, double length) {
   const double value = magnitude(piece, length) + std::abs(piece.start) * rate_magnitude(piece, length);
   return 16.0 * std::numeric_limits<double>::epsilon() * value / length;

@@ -1,10 +1,9 @@
-// Signals: scalar functions of time, with their exact integrals and derivatives.
+// Signals: scalar functions of time with exact derivatives and integrals.
 //
-// Every signal is a sequence of pieces between breakpoints; a piece is a cubic polynomial plus a sum of
-// harmonics, so value, derivatives and both integrals from t = 0 on are closed forms, and a body driven
-// by an acceleration has position, velocity and acceleration that agree to rounding. Products bring powers of
-// time times harmonics, whose integrals are closed forms as well (signal_algebra.h).
-// Limits: before the first breakpoint a signal is 0; integrals start at t = 0.
+// A signal is a sequence of pieces. On each piece it is a cubic polynomial plus a sum of harmonics, so that its derivatives and both
+// integrals are closed forms. A body driven by an acceleration therefore has position, velocity and acceleration that agree up to rounding.
+// Products of signals contain powers of time multiplied by harmonics, which have closed-form integrals, too (signal_algebra.h). Before the
+// first piece a signal is 0; integrals start at t = 0.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -24,78 +23,78 @@ struct SignalJet {
   double acceleration = 0.0; ///< per s²
 };
 
-/// What a driven coordinate follows: the signal is its position, its velocity or its acceleration.
+/// Meaning of a signal that drives a coordinate: position, velocity or acceleration.
 enum class DriveLevel { position, velocity, acceleration };
 
-/// A function of time, constant once made: read by any number of threads. Times are in s, values in the unit that its user
-/// gives it.
+/// A function of time t in s, immutable and therefore safe to read from several threads. The unit of its values is defined by its use.
 class Signal {
 public:
-  /// amplitude · cos(frequency τ + phase), τ from the start of the piece; frequency in rad/s, ≠ 0.
+  /// amplitude · cos(frequency τ + phase), with τ = t − start of the piece; frequency ≠ 0.
   struct Harmonic {
     double amplitude = 0.0;             ///< in the signal's unit
     double frequency = 1.0;             ///< rad/s
     double phase = 0.0;                 ///< rad
-    double cos_phase = 1.0;             ///< filled by Signal
-    double sin_phase = 0.0;             ///< filled by Signal
-    double integral_scale = 0.0;        ///< amplitude/frequency (filled by Signal)
-    double double_integral_scale = 0.0; ///< that over the frequency once more (filled by Signal)
+    double cos_phase = 1.0;             ///< computed by Signal
+    double sin_phase = 0.0;             ///< computed by Signal
+    double integral_scale = 0.0;        ///< amplitude/frequency, computed by Signal
+    double double_integral_scale = 0.0; ///< amplitude/frequency², computed by Signal
   };
-  /// amplitude · τ^power · cos(frequency τ + phase), as products have them; a frequency of 0 makes a higher
-  /// power of a polynomial.
+  /// amplitude · τ^power · cos(frequency τ + phase), as it occurs in products. Frequency 0 gives a polynomial term of degree above 3.
   struct Modulated {
-    int power = 0;          ///< of τ in s
+    int power = 0;          ///< exponent of τ
     double amplitude = 0.0; ///< in the signal's unit over s^power
     double frequency = 0.0; ///< rad/s
     double phase = 0.0;     ///< rad
-    double cos_phase = 1.0; ///< filled by Signal
-    double sin_phase = 0.0; ///< filled by Signal
+    double cos_phase = 1.0; ///< computed by Signal
+    double sin_phase = 0.0; ///< computed by Signal
   };
   /// c0 + c1 τ + c2 τ² + c3 τ³ + Σ harmonics + Σ modulated, for start ≤ t < start of the next piece.
   struct Piece {
     double start = 0.0;                 ///< s
-    double c[4] = {0.0, 0.0, 0.0, 0.0}; ///< of powers of τ in s
-    std::vector<Harmonic> harmonics;    ///< any number
-    std::vector<Modulated> modulated;   ///< any number
-    bool is_level = true;               ///< c1 = c2 = c3 = 0 (filled by Signal)
-    bool is_usual = true;               ///< so, with few harmonics and nothing modulated: as most drives are (filled by Signal)
-    double integral = 0.0;              ///< ∫ from 0 to start (filled by Signal)
-    double double_integral = 0.0;       ///< ∬ from 0 to start (filled by Signal)
+    double c[4] = {0.0, 0.0, 0.0, 0.0}; ///< polynomial coefficients
+    std::vector<Harmonic> harmonics;    ///< Σ harmonics
+    std::vector<Modulated> modulated;   ///< Σ modulated harmonics
+    bool is_level = true;               ///< c1 = c2 = c3 = 0; computed by Signal
+    bool is_usual = true;               ///< few harmonics and nothing modulated, as in most drives, evaluated by a faster path; computed by
+                                        ///< Signal
+    double integral = 0.0;              ///< ∫ from 0 to start; computed by Signal
+    double double_integral = 0.0;       ///< ∬ from 0 to start; computed by Signal
   };
 
   Signal() = default; ///< identically zero
-  /// Pieces in ascending order of start, every number finite. Throws std::invalid_argument otherwise.
+  /// Creates a signal from pieces in ascending order of `start`. Throws std::invalid_argument if they are not, or if a number is not
+  /// finite.
   explicit Signal(std::vector<Piece> pieces);
-  /// The same value from t = 0 on.
+  /// Returns the signal that is `value` from t = 0 on.
   static Signal constant(double value);
 
-  /// At t, s.
+  /// Returns f(t).
   [[nodiscard]] double value(double t) const;
-  /// The driven coordinate's increment since t = 0, its rate and its acceleration at t, the signal
-  /// being read at `level`: position f(t) − f(0), velocity ∫f, acceleration ∬f (from rest at t = 0).
+  /// Returns the increment of the driven coordinate since t = 0, its rate and its acceleration at t. Increment for level position: f(t) −
+  /// f(0); velocity: ∫f; acceleration: ∬f (from rest at t = 0).
   [[nodiscard]] SignalJet drive(double t, DriveLevel level) const;
-  /// Of its values between two times, from < to: their integral over the time between.
+  /// Returns the mean value of f over [from, to], from < to.
   [[nodiscard]] double mean(double from, double to) const;
-  /// Times at which the signal or one of its derivatives may jump, ascending: the starts of the
-  /// pieces (none for a constant).
+  /// Returns the times at which the signal or one of its derivatives may jump, in ascending order: the starts of the pieces, none for a
+  /// constant.
   [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }
-  /// Has it the same value throughout?
+  /// Returns true if the signal has the same value at all times.
   [[nodiscard]] bool is_constant() const;
-  /// Ascending in time.
+  /// Returns the pieces in ascending order of time.
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  /// Angular frequency of the fastest of its harmonics in the piece that holds t, rad/s; 0 if it has none. A
-  /// power above the third counts as so many half waves over its piece.
+  /// Returns the highest angular frequency in the piece that contains t, rad/s; 0 if there is none. A power τ^p with p > 3 counts as p
+  /// half-waves over its piece.
   [[nodiscard]] double fastest_at(double t) const;
-  /// True where the value itself jumps at breakpoint k by more than rounding.
+  /// Returns true if f jumps at breakpoint k by more than rounding.
   [[nodiscard]] bool jumps_at(std::size_t k) const;
-  /// True where its rate does.
+  /// Returns true if f′ jumps at breakpoint k by more than rounding.
   [[nodiscard]] bool rate_jumps_at(std::size_t k) const;
-  /// Where a coordinate that follows the signal, read at `level`, cannot: its place or its velocity would jump.
+  /// Jump of the position or the velocity of a coordinate driven at `level`, which no motion can follow.
   struct Jump {
-    double t = 0.0, before = 0.0, after = 0.0; ///< s; in the signal's unit, or that per s
-    bool is_of_rate = false;                   ///< before, after: rates of the signal, else values
+    double t = 0.0, before = 0.0, after = 0.0; ///< s; values before and after in the signal's unit, or per s
+    bool is_of_rate = false;                   ///< before and after are f′ rather than f
   };
-  /// The first with from < t < end.
+  /// Returns the first jump with from < t < end.
   [[nodiscard]] std::optional<Jump> first_jump(DriveLevel level, double from, double end) const;
 
 private:
@@ -106,41 +105,41 @@ private:
   double value_at_zero_ = 0.0;
 };
 
-/// What any kind of signal has in a model file; kinds derive from it.
+/// Common members of all signals in a model file. Kinds derive from it.
 struct SignalDefinition {
   virtual ~SignalDefinition() = default;
   std::string name; ///< unique among signals
-  Location where;   ///< in the model's file
+  Location where;   ///< location in the model file
 };
 
-/// For the kinds of things that a model holds by pointers to their base.
+/// Returns a new default-constructed T. Used by kinds, which refer to their entries by base class.
 template <class Base, class T> std::shared_ptr<Base> make_held() { return std::make_shared<T>(); }
-/// A copy of an object that is a T.
+/// Returns a copy of `object`, which must be a T.
 template <class Base, class T> std::shared_ptr<Base> copy_held(const Base& object) {
   return std::make_shared<T>(static_cast<const T&>(object));
 }
 
-/// Kinds that are made of other signals name them in fields of the types signal and signals.
+/// One kind of signal. Kinds that combine other signals refer to them by name in fields of types signal and signals.
 struct SignalKind {
-  std::string name;                                        ///< as written in a model file: "haversine"
-  std::string doc;                                         ///< a few sentences: its formula
-  FieldTable fields;                                       ///< of the struct that its definitions are
-  std::shared_ptr<SignalDefinition> (*create)() = nullptr; ///< a new definition with the kind's defaults; set by holds()
-  std::shared_ptr<SignalDefinition> (*copy)(const SignalDefinition& definition) = nullptr; ///< set by holds()
-  /// Throws ModelError (at definition.where) for values that make no signal.
+  std::string name;                                        ///< name in model files, such as "haversine"
+  std::string doc;                                         ///< a few sentences, with the formula
+  FieldTable fields;                                       ///< fields of its struct
+  std::shared_ptr<SignalDefinition> (*create)() = nullptr; ///< returns a new definition with default values; set by holds()
+  std::shared_ptr<SignalDefinition> (*copy)(const SignalDefinition& definition) = nullptr; ///< returns a copy; set by holds()
+  /// Makes the signal. Throws ModelError (at definition.where) if the values do not define a signal.
   Signal (*build)(const SignalDefinition& definition) = nullptr;
-  /// Instead of `build`, of kinds made of others: `parts` in the order of their fields.
+  /// Used instead of `build` by kinds that combine other signals; `parts` in the order of the fields.
   Signal (*combine)(const SignalDefinition& definition, const std::vector<const Signal*>& parts) = nullptr;
 
-  /// Its signals are described by a T.
+  /// Declares T as the struct of its definitions.
   template <class T> void holds() {
     create = make_held<SignalDefinition, T>;
     copy = copy_held<SignalDefinition, T>;
   }
 };
 
-/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, chirp, sum, product, scaled, road, random, sea
-/// (mbd/io adds `record`).
+/// Returns the kinds constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, chirp, sum, product, scaled, road, random,
+/// sea (mbd/io adds `record`, elements/catalog.cpp `shunting`).
 [[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
 
 } // namespace steplap

@@ -14,10 +14,11 @@ namespace steplap {
 namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_same_time = 16.0 * k_epsilon;     // of the time: "start + duration" against the same number given
-constexpr double k_same_frequency = 4.0 * k_epsilon; // of the larger: their difference is rounding
+constexpr double k_same_time = 16.0 * k_epsilon;     // relative; times closer than this are merged, for example "start + duration" and the
+                                                     // same time given as a number
+constexpr double k_same_frequency = 4.0 * k_epsilon; // relative to the larger; closer frequencies are merged
 
-// A piece, open for algebra: a polynomial of any degree, and waves A τⁿ cos(ωτ + φ) with ω > 0.
+// A piece in a form suited to algebra: a polynomial of any degree and waves A τⁿ cos(ωτ + φ) with ω > 0.
 struct Terms {
   std::array<double, k_most_power + 1> polynomial{};
   std::vector<Signal::Modulated> waves;
@@ -47,7 +48,7 @@ private:
   }
 };
 
-// (τ + d)ⁿ as powers of τ: calls take(k, coefficient).
+// Expands (τ + d)ⁿ: calls take(k, coefficient) for each power τᵏ.
 template <class Take> void expand(int n, double d, const Take& take) {
   double coefficient = 1.0; // binomial(n, k) d^(n−k), from k = n downwards
   for (int k = n; k >= 0; --k) {
@@ -56,7 +57,7 @@ template <class Take> void expand(int n, double d, const Take& take) {
   }
 }
 
-// The piece as a function of the time since `start`, at or after its own.
+// Returns the piece as a function of the time since `start`, which must not precede the start of the piece.
 Terms terms_of(const Signal::Piece& piece, double start) {
   double d = start - piece.start;
   if (std::abs(d) <= k_same_time * std::abs(start)) d = 0.0;
@@ -106,7 +107,7 @@ Terms product(const Terms& a, const Terms& b) {
   return result;
 }
 
-// Where pieces of the whole begin. Constants are there as soon as anything is.
+// Returns the starts of all pieces, without times that differ only by rounding. A constant begins with the earliest of the others.
 std::vector<double> starts_of(const std::vector<const Signal*>& parts) {
   std::vector<double> times;
   bool has_constant = false;
@@ -122,7 +123,7 @@ std::vector<double> starts_of(const std::vector<const Signal*>& parts) {
   return times;
 }
 
-// The pieces of one part that hold at ascending times.
+// Returns the piece of one signal for a sequence of ascending times.
 class Cursor {
 public:
   explicit Cursor(const Signal& signal) : signal_(signal) {}
@@ -140,7 +141,7 @@ private:
   std::size_t next_ = 0;
 };
 
-// combine(k, terms of part k, what has been combined so far)
+// Combines pieces of several signals between common breakpoints: combine(k, terms of signal k, result so far).
 template <class Combine> Signal combined(const std::vector<const Signal*>& parts, const Combine& combine) {
   std::vector<Cursor> cursors;
   for (const Signal* part : parts) cursors.emplace_back(*part);

@@ -1,24 +1,24 @@
-// Signals made of signals: sums, products, and one scaled and delayed.
+// Signals made from signals: sums, products, scaling and delay.
 //
-// All of them are pieces of the same family again, polynomials and powers of time times harmonics, between the
-// breakpoints of all that they are made of: values, derivatives, integrals, jumps and kinks stay closed forms. A product
-// of harmonics has the sum and the difference of their frequencies: cos a cos b = ½ cos(a+b) + ½ cos(a−b).
-// Limits: a product whose pieces would have more than k_most_terms terms, or a power of time above k_most_power, is
-// refused (std::invalid_argument). Breakpoints that differ by rounding only become one.
+// The results consist of pieces of the same family, between the union of the breakpoints of the operands, so values, derivatives, integrals
+// and jumps remain closed forms. Products of harmonics are expanded: cos a cos b = ½ cos(a+b) + ½ cos(a−b). A product is refused
+// (std::invalid_argument) if a piece would need more than k_most_terms terms or a power of time above k_most_power. Breakpoints that differ
+// only by rounding are merged.
 #pragma once
 
 #include "mbd/model/signal.h"
 
 namespace steplap {
 
-inline constexpr std::size_t k_most_terms = 10'000; ///< of one piece: a road and a vibration that grow have some thousands
-inline constexpr int k_most_power = 20;             ///< of time, in one piece: of a chirp times a cubic, and one more
+inline constexpr std::size_t k_most_terms = 10'000; ///< largest number of terms of one piece; a product of a road and a vibration needs
+                                                    ///< some thousands
+inline constexpr int k_most_power = 20;             ///< largest power of time in one piece; enough for a chirp times a cubic
 
-/// Σ factor · part; as many factors as parts.
+/// Returns Σ factor · part. `parts` and `factors` must have the same length.
 [[nodiscard]] Signal sum_of(const std::vector<const Signal*>& parts, const std::vector<double>& factors);
-/// Π part, at least one.
+/// Returns the product of all parts, at least one.
 [[nodiscard]] Signal product_of(const std::vector<const Signal*>& parts);
-/// The same history, later by `delay` and times `factor`: a constant then begins at t = delay.
+/// Returns factor · signal(t − delay). A constant then begins at t = delay.
 [[nodiscard]] Signal delayed(const Signal& signal, double delay, double factor = 1.0);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// The kinds of signal that are made of others: sum, product, scaled.
+// Kinds of signal that combine others: sum, product, scaled.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -9,13 +9,13 @@
 
 namespace steplap {
 
-/// "sum": its parts added.
+/// "sum": sum of other signals.
 [[nodiscard]] const SignalKind& sum_kind();
-/// Names of the signals that a sum adds with a factor other than 0, or nothing if the signal is no sum.
+/// Returns the names of the signals that a sum adds with a nonzero factor, or nothing if the signal is not a sum.
 [[nodiscard]] std::optional<std::vector<std::string>> summands_of(const SignalEntry& entry);
-/// "product": its parts multiplied.
+/// "product": product of other signals.
 [[nodiscard]] const SignalKind& product_kind();
-/// "scaled": one signal times a factor, later by a delay.
+/// "scaled": another signal times a factor, delayed.
 [[nodiscard]] const SignalKind& scaled_kind();
 
 } // namespace steplap

@@ -21,7 +21,7 @@ bool is_modulated(const Piece& piece) {
 bool is_level(const Piece& piece) { return piece.is_level && !has_waves(piece) && !is_modulated(piece); }
 bool is_stationary(const Piece& piece) { return piece.is_level && has_waves(piece) && !is_modulated(piece); }
 
-// Σ a², twice the mean square.
+// Returns Σ a², twice the mean square.
 double power_of(const Piece& piece) {
   double square = 0.0;
   for (const Signal::Harmonic& h : piece.harmonics) square += h.amplitude * h.amplitude;
@@ -34,8 +34,7 @@ double mean_period(const Piece& piece) {
   return 2.0 * std::numbers::pi * std::sqrt(power_of(piece) / square_of_rate);
 }
 
-// Sums and products leave levels that differ by rounding: of sixteen digits nine are asked, of the largest value at the beginning and
-// inside of pieces.
+// Returns the tolerance for comparing levels, 1e-9 of the largest value. Sums and products leave levels that differ by rounding.
 double rounding_of(const Signal& signal) {
   double largest = 0.0;
   const std::vector<Piece>& pieces = signal.pieces();
@@ -56,7 +55,7 @@ SignalCourse course_of(const Signal& signal) {
   const double slack = rounding_of(signal);
   const auto is_at = [slack](const Piece& piece, double level) { return is_level(piece) && std::abs(piece.c[0] - level) <= slack; };
   const Piece& last = pieces.back();
-  // A pulse that begins at t = 0 is a level at first, too: what ends with zero counts from zero.
+  // A pulse that begins at t = 0 also begins with a level. If the signal ends at zero, it is compared with zero instead.
   const bool begins_level = is_level(pieces.front()) && pieces.front().start <= 0.0 && !is_at(last, 0.0);
   const double level = begins_level ? pieces.front().c[0] : 0.0;
   const auto first = std::find_if(pieces.begin(), pieces.end(), [&](const Piece& piece) { return !is_at(piece, level); });
@@ -67,7 +66,7 @@ SignalCourse course_of(const Signal& signal) {
   if (is_at(last, level)) {
     course.ends = last_start;
     if (course.ends <= 0.0) return {};
-    // Harmonics that rise and fall as harmonics are of this form, too, and have less power than between.
+    // Harmonics that rise or fall by an envelope consist of harmonics, too, but have less power than the stationary part.
     const Piece* strongest = nullptr;
     for (const Piece& piece : pieces)
       if (is_stationary(piece) && (!strongest || power_of(piece) > power_of(*strongest))) strongest = &piece;

@@ -1,4 +1,4 @@
-// When a signal begins, is at its full size, and ends: what tells whether a run has seen all of it.
+// Times at which a signal begins, reaches its full size, and ends. They decide whether a run covers the whole load.
 //
 // The course is read from the pieces of the signal, whatever its kind:
 //   last piece       example                          course
@@ -6,9 +6,10 @@
 //   its first level  a pulse on top of an offset      the same
 //   another level    ramp and hold                    it has no end; full where that piece begins
 //   harmonics        sine, sea, road                  it has no end; full where that piece begins, with a mean period
-// A signal with an end may be stationary before it, as a random vibration is: the piece of harmonics alone with the largest mean
-// square is then its full size, if it is k_periods mean periods long or longer. The mean period of Σ a cos(ω t + φ) is 2π √(Σ a² / Σ a² ω²), the mean time between two
-// upward crossings of a Gaussian process with this spectrum (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46).
+// A signal with an end may be stationary before it, for example a random vibration. Its full size is then the piece consisting of harmonics
+// only that has the largest mean square, provided it lasts at least k_periods mean periods. The mean period of Σ a cos(ω t + φ) is 2π √(Σ
+// a² / Σ a² ω²), the mean time between two upward zero crossings of a Gaussian process with this spectrum (S. O. Rice, Bell Syst. Tech. J.
+// 24 (1945) 46).
 #pragma once
 
 #include "mbd/model/signal.h"
@@ -17,18 +18,18 @@
 
 namespace steplap {
 
-/// Times are in s; infinite: never.
+/// Times of the course, s; infinite means never.
 struct SignalCourse {
-  static constexpr double k_periods = 10.0; ///< at full size, after which a load that goes on alike has acted
+  static constexpr double k_periods = 10.0; ///< number of mean periods at full size after which a stationary load counts as fully applied
 
-  double begins = std::numeric_limits<double>::infinity(); ///< before it the signal is zero, or at its first level; not before t = 0
-  double full = std::numeric_limits<double>::infinity();   ///< from there on it is a level, or harmonics
-  double ends = std::numeric_limits<double>::infinity();   ///< from there on it is zero, or at its first level
-  double period = 0.0;                                     ///< mean period of the harmonics from `full` on; 0: a level
+  double begins = std::numeric_limits<double>::infinity(); ///< before this time the signal is zero, or constant at its first level; ≥ 0
+  double full = std::numeric_limits<double>::infinity();   ///< from this time on the signal is a constant level or stationary harmonics
+  double ends = std::numeric_limits<double>::infinity();   ///< from this time on the signal is zero, or at its first level
+  double period = 0.0;                                     ///< mean period of the harmonics after `full`, s; 0: constant level
 
-  /// Does it return to zero, or to its first level, for good?
+  /// Returns true if the signal finally returns to zero or to its first level.
   [[nodiscard]] bool has_end() const { return ends < std::numeric_limits<double>::infinity(); }
-  /// It never differs from zero, or from one level.
+  /// Returns true if the signal is constant for all t ≥ 0.
   [[nodiscard]] bool is_level() const { return !(begins < std::numeric_limits<double>::infinity()); }
 };
 

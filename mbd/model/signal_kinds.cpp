@@ -1,5 +1,5 @@
-// The kinds of signal that need no file. A pulse is zero outside [start, start + duration];
-// a deceleration is a pulse with a negative peak.
+// Kinds of signal without files: pulses, harmonics, chirps, sums and products. A pulse is zero outside [start, start + duration]. A
+// deceleration is a pulse with a negative peak.
 #include "mbd/model/signal.h"
 
 #include "mbd/model/load_signals.h"
@@ -15,7 +15,7 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 using Piece = Signal::Piece;
 
-// Fields "peak", "start", "duration" of every pulse.
+// Fields common to all pulses.
 struct Pulse : SignalDefinition {
   double peak = 0.0;
   double start = 0.0;    // s
@@ -44,8 +44,7 @@ Piece polynomial(double start, double c0, double c1 = 0.0) {
   return piece;
 }
 
-// Corners of a polygonal line, zero before the first and after the last; corners at the same time
-// make a jump.
+// Returns the polygonal line through `corners`, zero before the first and after the last; two corners at the same time make a jump.
 Signal polygon(const std::vector<Vec2>& corners) {
   std::vector<Piece> pieces;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {

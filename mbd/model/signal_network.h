@@ -1,4 +1,4 @@
-// The signals of a model, which may be made of one another.
+// Builds the signals of a model, including those that refer to other signals.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,16 +7,16 @@
 
 namespace steplap {
 
-/// Builds every signal once, after those that it is made of.
+/// Builds each signal once, after the signals that it refers to.
 class SignalNetwork {
 public:
-  /// Refers to the model's signals, of which none may be added later.
+  /// Keeps references to the signals of `model`; none may be added later.
   explicit SignalNetwork(const Model& model);
 
-  /// Null if there is none of that name, or if it or one that it is made of is excluded or has failed before. Throws
-  /// ModelError for values that make no signal, and for one that is made of itself.
+  /// Returns the signal, built on the first call. Returns null if the name is unknown, or if it or a signal it refers to is excluded or has
+  /// failed before. Throws ModelError if its values do not define a signal, or if it refers to itself.
   const Signal* build(const std::string& name);
-  /// Its error is reported already.
+  /// Marks a signal as unusable because its error has already been reported.
   void exclude(const std::string& name);
 
 private:
@@ -30,10 +30,10 @@ private:
   [[noreturn]] void fail_in_a_circle(const Item& item) const;
 
   std::unordered_map<std::string, Item> items_;
-  std::vector<const Item*> chain_; ///< begun, each made of the next
+  std::vector<const Item*> chain_; ///< signals being built, each referring to the next; used to detect cycles
 };
 
-/// The names that its fields of the types signal and signals hold, in their order.
+/// Returns the signal names in the object's fields of types signal and signals, in order.
 [[nodiscard]] std::vector<std::string> parts_of(const FieldTable& fields, const void* object);
 
 } // namespace steplap

@@ -12,21 +12,21 @@ namespace steplap {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-constexpr double k_flat = 1e-5; // of an exponent: terms left out of its series are below 1e-15
+constexpr double k_flat = 1e-5; // below this exponent the logarithmic series is used; truncation error below 1e-15
 
 double log_of(double x) { return portable::log10(x) * std::numbers::ln10; }
 
-// S(f) = value (f / from)^exponent between two points.
+// Density S(f) = value (f / from)^exponent between two points of the table.
 struct PowerLaw {
   double from = 1.0, value = 1.0, exponent = 0.0;
 
-  // ∫ from a to b, with g = exponent + 1: S(a) a ((b/a)^g − 1)/g.
+  // Returns ∫ S df from a to b: S(a) a ((b/a)^g − 1)/g with g = exponent + 1.
   [[nodiscard]] double integral(double a, double b) const {
     const double g = exponent + 1.0, r = log_of(b / a), at_a = value * portable::pow(a / from, exponent);
     if (std::abs(g * r) < k_flat) return at_a * a * r * (1.0 + g * r * (0.5 + g * r / 6.0));
     return at_a * a * (portable::pow(b / a, g) - 1.0) / g;
   }
-  // Below which the share u of the integral lies.
+  // Returns the frequency below which the share u of the integral from a to b lies.
   [[nodiscard]] double quantile(double a, double b, double u) const {
     const double g = exponent + 1.0;
     if (std::abs(g * log_of(b / a)) < k_flat) return a * portable::pow(b / a, u);
@@ -41,14 +41,14 @@ Signal::Piece level(double start, double value) {
   return piece;
 }
 
-// The waves, τ later than they are given.
+// Returns the same waves with phases at time τ.
 std::vector<Signal::Harmonic> later(const std::vector<Signal::Harmonic>& waves, double tau) {
   std::vector<Signal::Harmonic> result = waves;
   for (Signal::Harmonic& h : result) h.phase += h.frequency * tau;
   return result;
 }
 
-// (½ + ½ sign cos Ωτ) Σ A cos(ωτ + φ): each wave has one a little faster and one a little slower beside it.
+// (½ + ½ sign cos Ωτ) Σ A cos(ωτ + φ), expanded: each wave gets two neighbours with frequencies ω ± Ω.
 Signal::Piece ramp(double start, double length, double sign, const std::vector<Signal::Harmonic>& waves) {
   Signal::Piece piece = level(start, 0.0);
   const double turn = k_pi / length;
@@ -66,7 +66,7 @@ Signal::Piece ramp(double start, double length, double sign, const std::vector<S
 } // namespace
 
 std::vector<Signal::Harmonic> waves_of(const SpectralDensity& density, const WaveRules& rules) {
-  constexpr double k_sliver = 0.5; // of a band: what is left over goes to the last one
+  constexpr double k_sliver = 0.5; // of a band width: a shorter remainder is added to the last band
   std::vector<Signal::Harmonic> waves;
   for (std::size_t k = 0; k + 1 < density.frequencies.size(); ++k) {
     const double begin = density.frequencies[k], end = density.frequencies[k + 1];

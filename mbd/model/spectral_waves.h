@@ -1,10 +1,10 @@
-// Waves that have a given spectral density: what roads and random vibrations are made of.
+// Sums of harmonic waves with a given spectral density, for roads and random vibrations.
 //
-// The density's range is cut into bands. One wave stands for each: its power, half of the square of its amplitude, is the
-// integral of the density over the band, its frequency is drawn within the band as the density is distributed there, its phase is
-// uniform. So no two waves have a common period, and the expected spectrum is the density itself, at every frequency.
-// Source: M. Shinozuka, G. Deodatis, Simulation of stochastic processes by spectral representation, Appl. Mech. Rev. 44 (1991)
-// 191. Numbers are drawn by counter and found by functions of mbd/base: a seed gives the same bits everywhere.
+// The frequency range is divided into bands, each represented by one wave. Half the square of its amplitude is the integral of the density
+// over the band; its frequency is drawn from the density within the band, its phase is uniformly distributed. Random frequencies avoid a
+// common period, and the expected spectrum equals the density at every frequency. Source: M. Shinozuka, G. Deodatis, Simulation of
+// stochastic processes by spectral representation, Appl. Mech. Rev. 44 (1991) 191. A seed gives the same bits on every machine
+// (counter_random.h, portable_math.h).
 #pragma once
 
 #include "mbd/model/signal.h"
@@ -15,39 +15,39 @@
 
 namespace steplap {
 
-/// Largest frequency over the smallest one: kinds refuse more, for which there would be too many waves.
+/// Largest ratio of the highest to the lowest frequency. A wider range needs too many waves and is refused.
 inline constexpr double k_widest_band = 1e6;
 
-/// One-sided density over frequency, straight between its points where both axes are logarithmic, zero outside of them.
+/// One-sided power spectral density: linear between its points in a log-log plot, zero outside.
 struct SpectralDensity {
   std::vector<double> frequencies; ///< ascending, > 0, at least two
-  std::vector<double> values;      ///< > 0, of the signal's unit squared over that of frequencies
+  std::vector<double> values;      ///< > 0, signal unit squared over frequency unit
 };
 
-/// How a density is cut into waves.
+/// Rules for dividing a density into bands.
 struct WaveRules {
-  double relative_width = 0.01; ///< of a band, of its frequency
-  double least_width = 0.0;     ///< of a band, in the unit of frequencies
-  /// Amplitudes as they are drawn from Rayleigh's distribution, as a Gaussian process has them; else each is the root of its mean
-  /// square.
+  double relative_width = 0.01; ///< width of a band relative to its frequency
+  double least_width = 0.0;     ///< smallest width of a band, in the unit of frequencies
+  /// True: amplitudes are drawn from Rayleigh's distribution, as for a Gaussian process. False: amplitudes are the root-mean-square values
+  /// of their bands.
   bool is_gaussian = false;
-  std::uint64_t seed = 1;   ///< of all that is drawn
-  std::uint32_t stream = 0; ///< tells apart what one seed is used for
+  std::uint64_t seed = 1;   ///< seed of all random numbers
+  std::uint32_t stream = 0; ///< random stream; use a different one for each purpose of the same seed
 };
 
-/// In ascending order; frequencies are in rad for one cycle: 2π times those of `density`.
+/// Returns the waves in ascending order of frequency, in rad per unit: 2π times the frequencies of `density`.
 [[nodiscard]] std::vector<Signal::Harmonic> waves_of(const SpectralDensity& density, const WaveRules& rules);
 
-/// Grows from zero within `rise` as ½ − ½ cos(π τ / rise), holds, and falls in the same way; for ever if it does not hold for a
-/// time.
+/// Factor of a signal: rises as ½ − ½ cos(π τ / rise) from `start` on, holds, and falls in the same way. Without `hold` it never falls.
 struct Envelope {
   double start = 0.0;         ///< s
   double rise = 0.0;          ///< s
   std::optional<double> hold; ///< s
-  double fall = 0.0;          ///< s, behind `hold`
+  double fall = 0.0;          ///< s, after `hold`
 };
 
-/// Σ waves · envelope; phases count from the envelope's start. Harmonics again, so derivatives and integrals are closed forms.
+/// Returns Σ waves · envelope, with phases counted from the start of the envelope. The result consists of harmonics, so its derivatives and
+/// integrals are closed forms.
 [[nodiscard]] Signal enveloped(const std::vector<Signal::Harmonic>& waves, const Envelope& envelope);
 
 } // namespace steplap

@@ -14,7 +14,7 @@ namespace steplap {
 
 bool has_fixed_step(const std::string& integrator) {
   const auto found = std::find_if(methods().begin(), methods().end(), [&](const Method& m) { return m.name == integrator; });
-  return found != methods().end() && found->has_fixed_step; // a wrong name is said elsewhere
+  return found != methods().end() && found->has_fixed_step; // unknown names are reported elsewhere
 }
 
 std::string subject_text(const std::string& kind, const std::string& name) {
@@ -57,13 +57,14 @@ std::string reference_noun(FieldType type) {
   }
 }
 
-// Not given: empty text, also what an optional number without a value is read as.
+// Returns true for an empty text, which also represents an optional number without a value.
 bool is_absent(const FieldValue& value) {
   const auto* text = std::get_if<std::string>(&value);
   return text && text->empty();
 }
 
-// Of numbers, points or rings: asked before anybody writes what is wrong.
+// Returns true if a number, or a component of a point, is within the range of the field. This is checked first because composing the
+// message is slow.
 bool is_allowed(const Field& field, double value) {
   const bool is_above = field.is_minimum_excluded ? value > field.minimum : value >= field.minimum;
   return std::isfinite(value) && is_above && value <= field.maximum;
@@ -92,7 +93,7 @@ std::string choice_problem(const Field& field, const std::string& value) {
   return "must be one of " + list + ", got '" + value + "'" + did_you_mean(value, field.choices);
 }
 
-// The first problem of numbers, points or rings.
+// Returns the message for the first number that is out of range.
 std::string first_problem(const Field& field, double value) { return number_problem(field, value); }
 std::string first_problem(const Field& field, const Vec2& p) {
   const std::string of_x = number_problem(field, p.x());
@@ -140,7 +141,7 @@ void FieldChecker::check(const FieldTable& table, const void* object, const std:
 
 void FieldChecker::check_field(const Field& field, const FieldValue& value, const std::string& subject, const Location& where) {
   if (is_absent(value)) {
-    if (field.is_required && field.name != "name") // names have a check of their own
+    if (field.is_required && field.name != "name") // names are checked separately
       problems_.push_back({where, missing_field_message(field, subject)});
     return;
   }
@@ -183,13 +184,13 @@ std::string FieldChecker::suggestion(FieldType type, const std::string& name) {
   if (type == FieldType::marker || type == FieldType::body) take(bodies_);
   if (type == FieldType::signal || type == FieldType::signals) take(signals_);
   if (type == FieldType::element || type == FieldType::elements) take(elements_);
-  std::sort(known.begin(), known.end()); // so that ties are decided alike everywhere
+  std::sort(known.begin(), known.end()); // makes the choice among equally near names deterministic
   return did_you_mean(name, known);
 }
 
 namespace {
 
-// One run over a model.
+// One validation of a model.
 class Validation {
 public:
   Validation(const Model& model, const FieldLocator& locate) : model_(model), locate_(locate), checker_(model, problems_) {}
@@ -223,7 +224,7 @@ private:
 
   using Seen = std::unordered_map<std::string, Location>;
 
-  // Names: there, and not used twice.
+  // Checks that the name is given and unique.
   void check_name(Section section, std::size_t index, const std::string& noun, const std::string& name, const Location& where, Seen& seen) {
     const std::optional<Location> place = locate(section, index, "name", where);
     if (!place) return;
@@ -231,7 +232,7 @@ private:
       add(*place, "the name of " + subject_text(noun, "") + " must not be empty");
       return;
     }
-    if (place->line == 0 && has_control_character(name)) // files are looked through as a whole
+    if (place->line == 0 && has_control_character(name)) // names from files are checked for control characters when the file is read
       add(*place, subject_text(noun, "") + " '" + name + "': the name must not hold control characters");
     const auto [first, is_new] = seen.emplace(name, *place);
     if (!is_new)
@@ -259,8 +260,7 @@ void Validation::check_settings() {
     const Location& fallback = section == Section::output ? model_.output.where : s.where;
     if (const auto where = locate(section, 0, field, fallback)) add(*where, message);
   };
-  // 'step' is for fixed-step methods, 'tolerance' for adaptive ones: a file may hold both, so that
-  // the integrator alone can be changed.
+  // Fixed-step methods need 'step', adaptive ones 'tolerance'. A file may contain both, so that the integrator can be changed alone.
   if (has_fixed_step(s.integrator) && !s.step)
     complain(Section::simulation, "step",
              "[simulation] needs 'step' for the fixed-step integrator '" + s.integrator + "', for example step = 1e-4");
@@ -308,7 +308,7 @@ void Validation::check_markers() {
   }
 }
 
-// Every field was read without an error.
+// Returns true if all fields of the signal were read without error.
 bool Validation::is_readable(std::size_t signal) const {
   const SignalEntry& entry = model_.signals[signal];
   for (const Field& field : entry.kind->fields.fields())

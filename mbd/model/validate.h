@@ -1,6 +1,5 @@
-// The model checked as a whole, before anything is compiled: names, ranges, references, settings
-// that contradict each other. Models built in code and models read from a file go through the same
-// checks; a reader tells where each field stands, so that a message points at the key.
+// Validation of a whole model before compilation: names, ranges, references, contradictory settings. The same checks apply to models from
+// files and from code; a reader supplies the location of each field for messages.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -10,29 +9,27 @@
 
 namespace steplap {
 
-/// A section's fields are those of its table; Section::header has the key "body" besides.
+/// Part of a model file. Section::header also has the key "body".
 enum class Section { header, simulation, output, body, marker, signal, element };
 
-/// Where a field of the index-th object of a section stands; nullopt: its error is reported
-/// already.
+/// Returns the location of a field of entry `index` of a section; nullopt if an error of this field has already been reported.
 using FieldLocator = std::function<std::optional<Location>(Section, std::size_t index, const std::string& field)>;
 
-/// All that is wrong with the model, empty if it can be compiled. Without `locate` every message
-/// points at the object's own place.
+/// Returns all errors of the model; empty if it can be compiled. Without `locate`, messages refer to the location of the whole object.
 [[nodiscard]] std::vector<Diagnostic> validate(const Model& model, const FieldLocator& locate = {});
 
-/// Checks the fields of single objects against their tables and the names in a model.
+/// Checks fields of single objects against their tables and against the names of the model.
 class FieldChecker {
 public:
-  /// Where a field of the object stands; nullopt: its error is reported already.
+  /// Returns the location of a field of the object; nullopt if an error of this field has already been reported.
   using Locate = std::function<std::optional<Location>(const std::string& field)>;
 
-  /// Refers to both; names added to the model later are not known.
+  /// Keeps references to both arguments. Names added to the model later are unknown to it.
   FieldChecker(const Model& model, std::vector<Diagnostic>& problems);
 
-  /// `subject` is what messages call the object: "body 'tank'".
+  /// Checks all fields of `object`. `subject` is its name in messages: "body 'tank'".
   void check(const FieldTable& table, const void* object, const std::string& subject, const Locate& locate);
-  /// True for "ground", too.
+  /// Returns true if a body with this name exists, or for "ground".
   [[nodiscard]] bool is_body(const std::string& name) const { return bodies_.count(name) > 0; }
 
 private:
@@ -44,26 +41,25 @@ private:
   [[nodiscard]] std::string suggestion(FieldType type, const std::string& name);
 
   std::vector<Diagnostic>& problems_;
-  Names bodies_, markers_, signals_, elements_; // bodies_ holds "ground"
-  int suggestions_left_ = 20;                   // each looks at all names
+  Names bodies_, markers_, signals_, elements_; // includes "ground"
+  int suggestions_left_ = 20;                   // limits the cost, since each suggestion compares all names
 };
 
-/// "must be at least 0 kg, got -1" of a number, or of numbers in the value, that the field does not allow, or "must be
-/// one of ...": "" if all is well, and for values that are neither.
+/// Returns a message such as "must be at least 0 kg, got -1" or "must be one of ..." if numbers or choices in `value` are outside the
+/// allowed range; "" otherwise, also for other types.
 [[nodiscard]] std::string range_problem(const Field& field, const FieldValue& value);
-/// Has the object nothing there, or what the field allows?
+/// Returns true if the field of the object is not given or is within its range.
 [[nodiscard]] bool is_in_range(const Field& field, const void* object);
 
-/// What a reader adds to "needs" and what an unset required field is reported as.
+/// Returns the message for a required field that is missing.
 [[nodiscard]] std::string missing_field_message(const Field& field, const std::string& subject);
 
-/// "body 'tank'", or "a body" for an empty name.
+/// Returns "body 'tank'", or "a body" for an empty name.
 [[nodiscard]] std::string subject_text(const std::string& kind, const std::string& name);
 
-/// True for methods that take 'step' and not 'tolerance'.
+/// Returns true for methods with 'step' rather than 'tolerance'.
 [[nodiscard]] bool has_fixed_step(const std::string& integrator);
-/// True for fields that an object may leave out although the table requires them: mass and inertia
-/// of a fixed body.
+/// Returns true for required fields that this body may omit: mass and inertia of a fixed body.
 [[nodiscard]] bool is_excused(const Body& body, const Field& field);
 
 } // namespace steplap

@@ -10,12 +10,13 @@ namespace steplap {
 
 namespace {
 
-// Of the time, or of the scene's: what lies nearer is one instant.
+// Relative to time, or to the scene's characteristic time: times closer than this are equal.
 constexpr double k_same_instant = 1e-13;
-constexpr std::ptrdiff_t k_most_at_once = 20; // times that an action happens at one instant, where events between them chase each other
+constexpr std::ptrdiff_t k_most_at_once = 20; // executions of one action at one time, if events between its executions trigger it
+                                              // repeatedly
 
 RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
-  RunStatistics sum = b; // dissipated energy and work go on from leg to leg
+  RunStatistics sum = b; // dissipated energy and work continue over all legs
   sum.steps += a.steps;
   sum.rejections += a.rejections;
   sum.evaluations += a.evaluations;
@@ -24,7 +25,7 @@ RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
   sum.storms += a.storms;
   sum.max_position_residual = std::max(a.max_position_residual, b.max_position_residual);
   sum.max_velocity_residual = std::max(a.max_velocity_residual, b.max_velocity_residual);
-  sum.energy_residual = a.energy_residual + b.energy_residual; // each is of its own start
+  sum.energy_residual = a.energy_residual + b.energy_residual; // each refers to the start of its own leg
   sum.energy_exchanged = std::max(a.energy_exchanged, b.energy_exchanged);
   sum.energy_scale = std::max(a.energy_scale, b.energy_scale);
   sum.energy_worst_step = std::max(a.energy_worst_step, b.energy_worst_step);
@@ -56,8 +57,7 @@ ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
   return both;
 }
 
-// A field that is given for the first time may make channels that a run has no columns for.
-// The element that an element is a part of, as an interface of its joint; -1: none.
+// Returns the element that an element is a part of, for example the joint of an interface; −1: none.
 int whole_of(const Model& model, std::size_t element) {
   const ElementEntry& part = model.elements[element];
   for (const Field& field : part.kind->fields.fields()) {
@@ -79,7 +79,8 @@ void refuse_other_channels(const System& first, const System& system) {
                            "'): give the element a value of the field that is set from the start, which the action then changes");
 }
 
-// What was added to the first system behind its own channels, in the same order: what hangs on an element that does not act is zero.
+// Adds the channels that were added to the first system after compilation, in the same order. Channels of elements that do not act are
+// zero.
 void add_channels(const ActionGroup& group, const System& first, System& system) {
   const std::size_t own = system.channels.size();
   const auto is_same = [](const Channel& a, const Channel& b) { return a.name == b.name; };
@@ -104,8 +105,8 @@ ActionFollower::ActionFollower(const System& system) : first_(system), group_(*a
   first.acts = acting_elements(*group_.model);
 }
 
-// What is due at one time happens in the order of the file. Only then does what it has changed begin to act: a switch that is set twice
-// at once is set to the last of both.
+// All actions due at one time are executed in the order of the file before their changes take effect. If a value is set twice, the last one
+// counts.
 void ActionFollower::act(std::unique_ptr<RunLeg>& leg) {
   const double t = leg->state().t;
   if (std::abs(t - instant_) > k_same_instant * std::max(first_.scale.time(), std::abs(t))) at_once_.clear();
@@ -210,7 +211,7 @@ void ActionFollower::change_over(std::unique_ptr<RunLeg>& leg, const Arrangement
     statistics_.push_back(leg->statistics());
     ranges_.push_back(leg->ranges());
     leg = std::move(next);
-  } catch (const ModelError& error) { // elements contradict each other as they act now
+  } catch (const ModelError& error) { // the elements are inconsistent after the changes
     throw NumericalFailure("at t = " + rounded_text(leg->state().t, 12) + " s action '" + group_.entries[at_once_.back()].name +
                            "' makes a machine that cannot be: " + error.diagnostics().front().message);
   }

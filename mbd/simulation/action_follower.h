@@ -1,4 +1,4 @@
-// Does what the actions of a run say, between its legs: keeps the model as they have made it, and the systems of that.
+// Executes the actions of a run between its legs, and keeps the model and the systems that result from them.
 #pragma once
 
 #include "mbd/simulation/run_leg.h"
@@ -11,41 +11,41 @@
 
 namespace steplap {
 
-/// One per run of a model with actions.
+/// One for each run of a model with actions.
 class ActionFollower {
 public:
-  /// `system` has actions; it begins as its model says.
+  /// Precondition: `system` contains actions. Elements start active or inactive as the model specifies.
   explicit ActionFollower(const System& system);
 
-  /// Which actions are armed, for the legs.
+  /// Returns which actions are armed, for use by the legs.
   [[nodiscard]] ActionTriggers& triggers() { return triggers_; }
-  /// Does what is due where `leg` is interrupted, one after the other in the order of the file, and what is due because of that; puts the
-  /// leg in which the run goes on in its place. Throws ElementFailure for actions that set each other off without end.
+  /// Executes the actions that are due at the interruption of `leg`, in the order of the file, and those that become due by them. Replaces
+  /// `leg` by the leg in which the run continues. Throws ElementFailure for actions that trigger each other endlessly.
   void act(std::unique_ptr<RunLeg>& leg);
-  /// Of the action that has ended the run; empty: none has.
+  /// Returns the name of the action that ended the run; empty: none.
   [[nodiscard]] const std::string& ended_by() const { return ended_by_; }
-  /// Legs that are closed.
+  /// Returns the number of legs that have ended.
   [[nodiscard]] std::size_t past_legs() const { return statistics_.size(); }
-  /// The system of `leg`, if it was made for what actions have changed; null: it is the one that the run began in.
+  /// Returns the system of `leg` if actions have changed it; null: it is the system in which the run began.
   [[nodiscard]] std::shared_ptr<const System> made_system(const RunLeg& leg) const;
-  /// Of the legs that are closed.
+  /// Returns the statistics of all ended legs plus `last`.
   [[nodiscard]] RunStatistics add_statistics(const RunStatistics& last) const;
-  /// Of all legs, `last` the ranges of the one that the run ended in.
+  /// Returns the channel ranges of all legs together; `last` are those of the last leg.
   [[nodiscard]] std::vector<ChannelRange> joined_ranges(std::vector<ChannelRange> last) const;
-  /// The final state as the first system has it.
+  /// Returns the final state of `leg` converted to the first system.
   [[nodiscard]] State in_first_system(const RunLeg& leg) const;
 
 private:
-  /// How elements differ from the model: whether they act, and the step of an action that set a field of theirs last.
+  /// Differences from the model: which elements are active, and for each field that was set the last step that did so.
   struct Arrangement {
     std::vector<char> acts;
     std::map<std::pair<int, std::string>, const ActionStep*> set;
     auto operator<=>(const Arrangement&) const = default;
   };
   struct Arranged {
-    std::shared_ptr<System> made; ///< null of the first
+    std::shared_ptr<System> made; ///< null for the first system
     const System* system = nullptr;
-    std::vector<char> acts; ///< with what hangs on others
+    std::vector<char> acts; ///< per element; an element that depends on an inactive one does not act
   };
   void happen(std::size_t action, RunLeg& leg);
   void guard_against_rings(std::size_t action, const RunLeg& leg) const;
@@ -59,10 +59,10 @@ private:
   const ActionGroup& group_;
   ActionTriggers triggers_;
   Arrangement now_;
-  std::map<Arrangement, Arranged> arranged_; ///< so far
-  std::vector<std::size_t> at_once_;         ///< actions that have happened at one instant, in their order
-  std::size_t first_now_ = 0;                ///< of them, since when no time at all has passed
-  double instant_ = 0.0;                     ///< s
+  std::map<Arrangement, Arranged> arranged_; ///< all that have occurred
+  std::vector<std::size_t> at_once_;         ///< actions executed at the present time, in order
+  std::size_t first_now_ = 0;                ///< index in at_once_ of the first since time last advanced at all
+  double instant_ = 0.0;                     ///< present time, s
   bool is_ended_ = false;
   std::string ended_by_;
   std::vector<RunStatistics> statistics_;

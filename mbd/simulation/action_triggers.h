@@ -1,7 +1,7 @@
-// Which actions of a run are armed, and which of them are due.
+// State of the triggers of all actions: armed or not, due or not.
 //
-// An action is due where its condition has come true since it was armed: at once, if it is true there. A condition that is true stays
-// one occasion until it has been false. Of an event each is an occasion.
+// An action is due when its condition becomes true after it was armed, or at once if the condition is true at that time. A condition that
+// remains true triggers only once, until it has been false. Each occurrence of an event triggers.
 #pragma once
 
 #include "mbd/events/event_handler.h"
@@ -15,21 +15,22 @@ namespace steplap {
 
 /// One flag per action of the model.
 struct ActionTriggers {
-  std::vector<char> is_armed;  ///< it waits for its condition
-  std::vector<char> is_spent;  ///< its condition is true, and has been since it last happened
-  std::vector<char> has_event; ///< its event has been, and it has not happened yet
-  std::vector<char> is_due;    ///< as looked at last
+  std::vector<char> is_armed;  ///< waits for its condition
+  std::vector<char> is_spent;  ///< the condition is true and has been since the action was last executed
+  std::vector<char> has_event; ///< its event has occurred since the action was last executed
+  std::vector<char> is_due;    ///< result of the last look()
 
-  /// As the model says at the start.
+  /// Sets the state at the start as the model specifies.
   explicit ActionTriggers(const ActionGroup& group);
 
-  /// From here on it waits.
+  /// Arms an action.
   void arm(std::size_t action);
-  /// From here on it does not.
+  /// Disarms an action.
   void disarm(std::size_t action);
-  /// It happens: no more before its condition comes true anew, nor, if it happens once, before it is armed.
+  /// To be called when an action is executed. It triggers again only after its condition has become true anew, and, with `is_once`, after
+  /// it was armed again.
   void spend(std::size_t action, bool is_once);
-  /// Is any due at `state`? `events`: those that are new; `is_stepped` as in ActionGroup::holds.
+  /// Returns true if any action is due at `state`, and sets is_due. `events` are the new events; `is_stepped` as in ActionGroup::holds.
   bool look(const ActionGroup& group, const System& system, const State& state, bool is_stepped, std::span<const Event> events);
 
 private:

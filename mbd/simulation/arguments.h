@@ -1,13 +1,13 @@
-// What a program hands to a run, looked at before it begins: from model files all of this is checked when they are read.
+// Checks of the arguments of a run that come from a program. Those from model files are checked when the file is read.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
 
 namespace steplap {
 
-/// The options, if a run from time `start` can use them. Throws std::invalid_argument, which names what cannot be.
+/// Returns the options. Throws std::invalid_argument, naming the invalid one, if a run from time `start` cannot use them.
 [[nodiscard]] SimulationOptions checked(SimulationOptions options, double start);
-/// The state, if it is one of `system` and all its numbers are finite. Throws std::invalid_argument.
+/// Returns the state. Throws std::invalid_argument if it does not belong to `system` or contains numbers that are not finite.
 [[nodiscard]] const State& checked(const State& state, const System& system);
 
 } // namespace steplap

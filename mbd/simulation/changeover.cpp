@@ -13,10 +13,10 @@ namespace steplap {
 
 namespace {
 
-// Of the scene's length: what is farther apart does not fit. Events are located, and joints met, far closer than that.
+// Largest gap that counts as fitting, relative to the scene's length. Events and joints are far more accurate.
 constexpr double k_fit = 1e-6;
 
-// Copies what each element of `from` remembers to its place in `to`, one after the other; `of_from`, `of_to`: its element, per place.
+// Copies the data of each element in `from` to its place in `to`. `of_from` and `of_to` give the element of each place.
 template <class F>
 void carry(const std::vector<int>& of_from, const std::vector<int>& of_to, const std::vector<char>& goes_on, const F& copy) {
   std::vector<std::vector<std::size_t>> places(goes_on.size());
@@ -34,7 +34,7 @@ template <class Units> std::vector<int> elements_of(const Units& units) {
   return elements;
 }
 
-// Own states stand together, whichever element was compiled first that reads one.
+// Returns the element of each inner state. Own states have consecutive places, whatever element was compiled first that reads one.
 std::vector<int> elements_of_inner(const System& system, int own_states) {
   std::vector<int> elements = system.inner_elements;
   if (const OwnStateGroup* const group = own_state_group(system))
@@ -63,7 +63,7 @@ double stored_energy(const System& system, const State& state) {
       {name});
 }
 
-// What an element remembers by rates of its own begins with a run.
+// Elements with inner states can only be activated at the start of a run, because these states have no values otherwise.
 void refuse_inner(const Changeover& change, const State& state) {
   const OwnStateGroup* const own = own_state_group(change.to);
   for (std::size_t i = 0; i < change.to.inner_elements.size(); ++i) {
@@ -110,7 +110,7 @@ State carried(const Changeover& change, const State& state) {
   std::vector<char> goes_on = change.acts;
   for (std::size_t i = 0; i < goes_on.size(); ++i) goes_on[i] = static_cast<char>(goes_on[i] != 0 && change.acted[i] != 0);
   goes_on.push_back(1);                                                               // own states
-  for (FrictionState& friction : next.friction) friction.phase = FrictionPhase::free; // until it is found what presses
+  for (FrictionState& friction : next.friction) friction.phase = FrictionPhase::free; // until the pressed contacts are determined
   carry(elements_of(change.from.units), elements_of(change.to.units), goes_on,
         [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
   carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on,
@@ -140,7 +140,7 @@ void place_what_closes(const Changeover& change, State& state) {
   }
   for (const OneSidedUnit& rope : one_sided_rows(change.to))
     if (change.begins[static_cast<std::size_t>(rope.row->row.element)] != 0)
-      place_rope(change, rope, motion, state); // one whose length is set, too
+      place_rope(change, rope, motion, state); // also a rope whose length was set
 }
 
 void book_stored_energy(const Changeover& change, const State& before, State& after) {

@@ -1,10 +1,11 @@
-// From one leg of a run to the next: what the state of one system is in another of the same model, in which other elements act.
+// Conversion of the state between two legs of a run, from one system to another of the same model with other active elements or changed
+// fields.
 //
-// Places and velocities of bodies go on. So does what elements that act in both remember: modes, phases of friction, anchors, inner states.
-// What is released bears nothing from there on, and the energy that it has stored is dissipated. What begins to act does so where the
-// bodies are: a weld, a slide and a rod hold the pose that they find; a pin and a rope have to fit. Where velocities do not fit they jump
-// (mbd/events/blow.h). A drive that is set anew begins at the place and, if it is read as an acceleration, at the velocity that it finds.
-// Energy that appears with a spring that begins to act, or is made stiffer, is booked as work.
+// Positions and velocities are kept, and so are modes, friction phases, anchors and inner states of elements active in both. A deactivated
+// element exerts no force, and its stored energy is dissipated. An activated element starts at the present positions: a weld, a slide and a
+// rod keep the pose found; a pin and a rope must fit. Velocities that do not fit jump (mbd/events/blow.h). A drive that is set anew starts
+// at the present position, and, if it is read as an acceleration, at the present velocity. Energy that appears with an activated or
+// stiffened spring is counted as work.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -13,28 +14,30 @@
 
 namespace steplap {
 
-/// Two systems of one model, and what is different.
+/// Two systems of one model with their differences.
 struct Changeover {
-  const System& from;            ///< of the leg before
-  const System& to;              ///< of the leg that begins
-  std::vector<char> acted, acts; ///< per element: in `from`, in `to`
-  std::vector<char> begins;      ///< it acts in `to`, and did not in `from` or is set otherwise
+  const System& from;            ///< system of the previous leg
+  const System& to;              ///< system of the next leg
+  std::vector<char> acted, acts; ///< per element: active in `from`, active in `to`
+  std::vector<char> begins;      ///< active in `to`, and in `from` inactive or with other values
 
-  /// It acts in `to` and did not in `from`.
+  /// Returns true if the element is active in `to` and was not in `from`.
   [[nodiscard]] bool closes(int element) const {
     return acts[static_cast<std::size_t>(element)] != 0 && acted[static_cast<std::size_t>(element)] == 0;
   }
-  /// Some row or rope of `to` begins: velocities may have to jump.
+  /// Returns true if a row or rope of `to` is activated, so that velocities may jump.
   [[nodiscard]] bool closes_rows() const;
 };
 
-/// `state` of `from`, in `to`: of what begins there the bases of rows are still those of the reference pose.
+/// Returns `state` of `from` converted to `to`. Rows of activated elements still have the constants of the reference pose.
 [[nodiscard]] State carried(const Changeover& change, const State& state);
 
-/// Joints that close hold the pose of `state`, ropes are taut or slack at it. Throws ElementFailure for what does not fit.
+/// Sets the constants of activated joints for the pose of `state`, and whether ropes are taut. Throws ElementFailure if a joint or rope
+/// does not fit.
 void place_what_closes(const Changeover& change, State& state);
 
-/// What elements store in `after`, more or less than in `before`, both at the same places.
+/// Adds the difference of the stored energy of elements between `before` and `after` (both at the same positions) to work or dissipation of
+/// `after`.
 void book_stored_energy(const Changeover& change, const State& before, State& after);
 
 } // namespace steplap

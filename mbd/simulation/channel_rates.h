@@ -1,4 +1,4 @@
-// Which channel is the rate of which.
+// Relation between channels and the channels of their time derivatives.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// Of each channel of a body's, marker's or joint's motion the one that is its rate; −1 where there is none.
+/// Returns for each channel of the motion of a body, marker or joint the index of the channel that is its rate; −1 for all others.
 [[nodiscard]] std::vector<int> rates_of(const System& system);
 
 } // namespace steplap

@@ -12,7 +12,8 @@
 namespace steplap {
 
 void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& watch) {
-  constexpr double k_stuck_beyond = 1e-6; // the mode problem knows forces to 1e-9 of the capacities, and events are found to rounding
+  constexpr double k_stuck_beyond = 1e-6; // the mode problem determines forces to 1e-9 of the capacities, and events are located to
+                                          // rounding
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     const FrictionUnit& unit = system.frictions[f];
     if (unit.friction->dimension() != 1 || unit.friction->never_slips()) continue;
@@ -20,7 +21,7 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
     const double one = watch[unit.watch], other = watch[unit.watch + 1];
     const std::string& name = system.element_names[unit.element];
     if (const OneWayLock* const lock = one_way_lock(*unit.friction)) {
-      const double beyond = -std::min(one, other); // of the side that has a bound
+      const double beyond = -std::min(one, other); // the bounded side
       if (beyond <= k_stuck_beyond * lock->drag() + slight_force(system, *lock->rows(state.friction[f]))) continue;
       throw ElementFailure("at t = " + number_text(t) + " s the one-way clutch '" + name + "' holds back with " +
                                rounded_text(beyond + lock->drag()) + " where it drags with " + rounded_text(lock->drag()) +

@@ -1,5 +1,5 @@
-// Friction along a line that sticks with more than it can hold: a fault of the event finder or of the mode problem, which no run passes
-// over. Of step-lap joints Simulation::check_holding() does the same.
+// Check that one-dimensional friction elements stick only within their bounds. A violation is an error of the event finder or of the mode
+// problem, and ends the run. Simulation::check_holding() does the same for step-lap joints.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"
@@ -8,8 +8,9 @@
 
 namespace steplap {
 
-/// At the end of a step, t in s. `watch`: all watch values there; of friction along a line bound − λ and bound + λ, whose sizes together are
-/// what it is judged against; of a one-way clutch the side alone that has a bound. `sharing`: null if nothing shares loads; what does is judged with its group. Throws ElementFailure.
+/// To be called at the end of a step, at time t in s. `watch` contains all event functions; for a sticking element these are bound − λ and
+/// bound + λ, and a violation is judged relative to the sum of their magnitudes; for a one-way clutch only the bounded side counts.
+/// Elements that share a load are judged as a group (`sharing`; null: none). Throws ElementFailure.
 void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& watch);
 
 } // namespace steplap

@@ -7,11 +7,11 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-9; // of a step: spans that are not halved
-// Beside the ends of a step the condition may be about to change: there the event is, or was.
+constexpr double k_shortest = 1e-9; // relative to the step: intervals that are not bisected further
+// Relative to the step: near its ends the condition may just be changing, and the event finder locates the change.
 constexpr double k_beside_end = 1e-6;
-constexpr std::size_t k_most_spans = 4000; // of a step
-constexpr double k_half = 0.5;             // between false and true
+constexpr std::size_t k_most_spans = 4000; // intervals examined in one step
+constexpr double k_half = 0.5;             // a condition is a number, 0 false, 1 true; this is the limit
 constexpr double k_rounded_time = 4.0 * 0x1p-52;
 
 double value_of(const MotionOperand& operand, const Snapshot& s) {
@@ -24,7 +24,7 @@ double value_of(const MotionOperand& operand, const Snapshot& s) {
   case MotionOperand::Kind::state: return operand.unit * s.evaluation->inner[operand.inner];
   case MotionOperand::Kind::signal: return operand.signal->value(s.t);
   case MotionOperand::Kind::own_value:
-  case MotionOperand::Kind::own_rate: break; // conditions have no coordinate of their own
+  case MotionOperand::Kind::own_rate: break; // conditions do not have a coordinate of their own
   }
   return 0.0;
 }
@@ -84,7 +84,7 @@ double ConditionSearch::place_of_truth(Sought& sought, Integrator& integrator, D
   read(1.0, sought.last);
   sought.t_last = integrator.t1();
   sought.is_known = true;
-  if (is_true(sought, sought.first.data(), t0)) return 1.0; // the event finder looks for its end
+  if (is_true(sought, sought.first.data(), t0)) return 1.0; // already true; the event finder locates the change to false
   if (!may_be_true_by_range(sought, t0, integrator.t1())) return 1.0;
   sought.curves.begin(sought.first.data(), sought.last.data(), look);
   const bool ends_true = is_true(sought, sought.last.data(), integrator.t1());
@@ -97,7 +97,7 @@ double ConditionSearch::place_of_truth(Sought& sought, Integrator& integrator, D
     const double middle = 0.5 * (span.begin + span.end);
     if (may_be_true_at(sought, middle, t0 + middle * h)) {
       sought.curves.read(look(middle), operands_.data());
-      if (is_true(sought, operands_.data(), t0 + middle * h)) // to the end: the event finder sees that
+      if (is_true(sought, operands_.data(), t0 + middle * h)) // true up to the end; the event finder locates the change
         return ends_true && enclose(sought, {middle, 1.0}, t0, h).range.low > k_half ? 1.0 : middle;
     }
     if (span.end - span.begin > k_shortest && count < k_most_spans) {
@@ -110,7 +110,7 @@ double ConditionSearch::place_of_truth(Sought& sought, Integrator& integrator, D
   return 1.0;
 }
 
-// Operands within what is seen at three places, and as much again on either side: as of curves that are not smooth.
+// Encloses each operand by the range of its three samples, widened by the same amount on either side, as for curves that are not smooth.
 bool ConditionSearch::may_be_true_by_range(const Sought& sought, double t0, double t1) {
   for (std::size_t i = 0; i < sought.first.size(); ++i) {
     const auto [low, high] = std::minmax({sought.first[i], sought.middle[i], sought.last[i]});

@@ -1,13 +1,13 @@
-// Conditions of actions that are formulas other than linear in what they read (`hypot(b.x - x, b.y) < r`, `exp(-b.x^2) > 0.5`): where in a
-// step one of them comes true, however short that is.
+// Search for the time within a step at which the condition of an action becomes true, for conditions that are nonlinear formulas of the
+// motion (`hypot(b.x - x, b.y) < r`, `exp(-b.x^2) > 0.5`).
 //
-// Such a formula may be true for as short a time as one likes, of which neither values nor slopes beside it show anything. So it is not
-// sampled but bounded, as extremes of formulas are (formula_extremes.h): its operands are polynomials with an error over the step
-// (operand_curves.h), and of these the formula's tree makes an enclosure over any span (mbd/formula/enclosure.h). A span in which the
-// condition is false for certain is passed; another is halved, down to a 1e-9 of the step. What is undecided then, off the step's ends,
-// is told, and leaves the verdict open.
+// Such a condition can be true for an arbitrarily short time, which no samples of values and slopes need to show. It is therefore bounded,
+// as extremes of formulas are (formula_extremes.h): operands are polynomials with an error over the step (operand_curves.h), and the
+// formula's tree gives an enclosure over any interval (mbd/formula/enclosure.h). An interval in which the condition is certainly false is
+// dropped, any other is bisected, down to 1e-9 of the step. If the sign is still undecided there, and not at an end of the step, this is
+// reported, and the verdict remains open.
 //
-// Most steps stay far away: there the bounds of operands by three places of the step are enough.
+// For most steps bounds of the operands from three points of the step suffice.
 #pragma once
 
 #include "mbd/integrators/integrator.h"
@@ -19,22 +19,23 @@
 
 namespace steplap {
 
-/// Finds, within a step, where the condition of an armed action becomes true.
+/// Finds the time within a step at which the condition of an armed action becomes true.
 class ConditionSearch {
 public:
-  /// Searches the conditions of `group`, which may be null. Refers to both.
+  /// Searches the conditions of `group`, which may be null. Keeps references to both arguments.
   ConditionSearch(const System& system, const ActionGroup* group);
 
-  /// True if no condition needs a search.
+  /// Returns true if no condition needs a search.
   [[nodiscard]] bool is_empty() const { return sought_.empty(); }
-  /// Forgets the values at the end of the last step, because the state has jumped.
+  /// Discards the values at the end of the last step. To be called after the state has jumped.
   void restart() {
     for (Sought& sought : sought_) sought.is_known = false;
   }
-  /// A place of the step made, in parts of it, where the condition of an armed action is true that is false at the step's begin, and where
-  /// the event finder may miss that; 1: there is none. The step has to bear a look.
+  /// Returns a point of the step, as a fraction of it, where the condition of an armed action is true, if it is false at the start of the
+  /// step and the event finder may miss the change; 1 if there is none. Precondition: Integrator::bears_look().
   [[nodiscard]] double place_of_truth(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& is_armed);
-  /// s: where nobody could tell whether a condition was true for less than a 1e-9 of a step.
+  /// Returns the time, s, at which it remained undecided whether a condition was true for less than 1e-9 of a step; nothing if there was
+  /// none.
   [[nodiscard]] const std::optional<double>& undecided() const { return undecided_; }
 
 private:
@@ -43,8 +44,8 @@ private:
     std::size_t action = 0;
     const FormulaTree* tree = nullptr;
     OperandCurves curves;
-    std::vector<double> first, middle, last; ///< operands at the step's begin, in its middle, at its end
-    double t_last = 0.0;                     ///< s, of `last`; nothing is known before the first step
+    std::vector<double> first, middle, last; ///< operands at the start, in the middle and at the end of the step
+    double t_last = 0.0;                     ///< time of `last`, s
     bool is_known = false;
   };
   struct Span {

@@ -10,33 +10,34 @@ namespace steplap {
 
 namespace {
 
-// To this tolerance (1e-12 m of q₀ = 1e-3 m) projection onto the constraints knows positions, whatever the steps do.
+// Relative accuracy of positions due to projection onto the constraints (1e-12 m of q₀ = 1e-3 m), independent of the steps.
 constexpr double k_projected = 1e-9;
-// Of scale(): beyond it a step stops the run whatever its tolerance, for fixed steps the only limit. No bound of errors
-// but what the run is worth: five times what distrusts all of it (k_untrusted).
+// Relative to scale(): an energy error of a step above this ends the run, whatever the tolerance; the only limit for fixed steps. It is not
+// derived from error bounds but from the use of the result: five times the value above which the run is not trusted (k_untrusted).
 constexpr double k_most_share = 5e-2;
-// Of scale(): what setting to rest may take at one event, where its tolerance does not let it more. Velocities of rounding
-// are far below, a blow is far above.
+// Relative to scale(): largest energy that may be removed at one event by setting velocities to zero, unless the tolerance allows more.
+// Residual velocities by rounding have far less, an impact far more.
 constexpr double k_settled_share = 1e-4;
-// v₀/L over the scene's own rate: velocities below it are known to tol v₀ (Integrator: q₀ = 1e-3 L, at 60/s for bodies of a metre).
+// v₀/L relative to the scene's characteristic rate: velocities below v₀ have the absolute accuracy tol v₀ (Integrator: q₀ = 1e-3 L, at 60/s
+// for bodies of 1 m).
 constexpr double k_floor_rate = 0.06 / k_metre_rate;
-// The balance of a whole run is not asked for more than that of bodies that turn at so much, 1/s: 3.7 T₀ for a body alone.
-// A choice: no run is distrusted for energies that its tolerance takes for none.
+// Rotation rate, 1/s, whose kinetic energy is the smallest scale for the balance of a run; for a single body it is 3.7 T₀. It is chosen so
+// that no run is distrusted because of energies that its tolerance neglects.
 constexpr double k_least_rate = 0.2;
 
 struct Kinetic {
   double mass = 0.0, px = 0.0, py = 0.0; ///< kg, kg m/s
   double total = 0.0, about_centre = 0.0;
-  double of_floor = 0.0; ///< T₀ of the motion to which tolerances are absolute
-  double least = 0.0;    ///< of the motion that a whole run's balance is measured against at least
+  double of_floor = 0.0; ///< T₀, for velocities of the absolute part of the tolerances
+  double least = 0.0;    ///< smallest scale for the balance of a run
 };
 
-/// T₀, J, of a body at v₀ = `rate` L along both axes and about its centre.
+/// Returns T₀, J, of a body whose centre moves at v₀ = `rate` · L along both axes and which rotates at `rate`.
 double floor_energy(double mass, double inertia, double size, double rate) {
   return 0.5 * rate * rate * (2.0 * mass * size * size + inertia);
 }
 
-/// L, m: the largest radius of gyration.
+/// Returns L, the largest radius of gyration, m.
 double size_of(const System& system) {
   double size = 0.0;
   for (const BodyData& body : system.bodies)
@@ -44,11 +45,11 @@ double size_of(const System& system) {
   return size > 0.0 ? size : 1.0;
 }
 
-/// `size`: L.
+/// `size` is L, m.
 Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
   const double rate = k_floor_rate * scene_rate(dynamics.system());
   const Layout& layout = dynamics.layout();
-  const double* const v = dynamics.cluster_rates(y); // 3 numbers of each cluster
+  const double* const v = dynamics.cluster_rates(y); // 3 numbers per cluster
   Kinetic sum;
   for (int k = 0; k < layout.cluster_count(); ++k) {
     const Cluster& c = layout.clusters[k];
@@ -67,16 +68,19 @@ Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
 
 } // namespace
 
-// Measured, not derived (docs/explanation/theory.md): what the derivation takes for granted fails by a factor of 19 at one slip's onset.
+// Measured, not derived (docs/explanation/theory.md): at the onset of one slip the assumptions of the derivation were violated by a factor
+// of 19.
 const double EnergyAccount::k_reserve = 100.0;
 
 double EnergyAccount::scale() const { return std::max({exchanged_, peak_about_centre_, floor_}); }
 
-// Between what is exact and what an accepted step ends at lie e_v, e_q, e_D, e_W with
+// The end of an accepted step differs from the exact solution by e_v, e_q, e_D, e_W with
+//
 //   Σ (e_i/s_i)² ≤ n tol²,   s = v₀ + |v|, q₀ + |Δq|, and for D and W T + |D| + |W| + T₀ =: S₀ ≤ 3 S + T₀.
-// Velocities change T by vᵀM e_v ≤ |v|_M |e_v|_M ≤ √n tol √(2T) (√(2T) + √(2T₀)) ≤ √n tol (3 S + T₀). Positions are
-// integrals of velocities, within the step, too: |e_q| ≤ h |e_v|, and h ∇U, an impulse, is no more than turns the motion
-// round, 2 |M v|: twice as much again. Together at most, by Cauchy and Schwarz, √(3² + 1 + 1) tol √n (3 S + T₀).
+//
+// The error of T by velocities is vᵀM e_v ≤ |v|_M |e_v|_M ≤ √n tol √(2T) (√(2T) + √(2T₀)) ≤ √n tol (3 S + T₀). Positions are integrals of
+// velocities, also within the step: |e_q| ≤ h |e_v|; and the impulse h ∇U at most reverses the motion, 2 |M v|. The error of U is therefore
+// at most twice that of T. By the Cauchy–Schwarz inequality the sum is at most √(3² + 1 + 1) tol √n (3 S + T₀).
 double EnergyAccount::step_bound(double tolerance, int dimension, double turned_over, double of_floor) {
   return std::sqrt(11.0 * dimension) * tolerance * (3.0 * turned_over + of_floor);
 }
@@ -119,7 +123,8 @@ void EnergyAccount::check_step(Dynamics& dynamics, double t, const double* y) {
   judge_step(dynamics, t, last_ - before, dissipated - dissipated_);
 }
 
-// What dissipated energy loses over a step, that friction and dampers give back: none, but for its own error.
+// `made`: energy gained in the step. `given_back`: decrease of the dissipated energy, which friction and dampers never return, so that it
+// is an error as well.
 void EnergyAccount::judge_step(const Dynamics& dynamics, double t, double made, double given_back) {
   double allowed = k_most_share * std::max(scale(), peak_kinetic_);
   const double beyond = std::max(std::abs(made), given_back) - rounding();
@@ -137,7 +142,7 @@ void EnergyAccount::judge_step(const Dynamics& dynamics, double t, double made, 
   throw NumericalFailure(step + (made > 0.0 ? "made " : "lost ") + number_text(std::abs(made)) + rest);
 }
 
-// What is at rest to the accuracy of a step is set to rest by a change of velocities of that size, and its energy.
+// A body at rest within the accuracy of a step may be set to rest; this changes velocities and energy by amounts of that accuracy.
 void EnergyAccount::check_settled(double t, double lost) const {
   const double of = std::max(scale(), peak_kinetic_);
   const double known = std::min(step_bound(tolerance_, dimension_, turned_over(), of_floor_), k_most_share * of);

@@ -1,9 +1,10 @@
-// The balance of energy of a run, kept at every step: what it was worth, and whether it can be believed.
+// Energy balance of a run, checked at every step.
 //
 //   residual = |kinetic + potential + dissipated − work − their sum at the start|
-// measured against what was turned over: the larger of the changes of kinetic energy, the dissipated energy, the work,
-// and the peak kinetic energy about the common centre of mass (a fast train is no licence for its load), and not less
-// than the energy of the motion to which tolerances are absolute (Integrator).
+//
+// The residual is judged relative to the energy converted: the largest of the change of kinetic energy, dissipation, work, and peak kinetic
+// energy about the common centre of mass (so that a high common speed does not hide errors), but at least the energy of the motion that
+// corresponds to the absolute part of the tolerances (Integrator).
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -12,37 +13,37 @@
 
 namespace steplap {
 
-/// Follows the energies of one run; fed at every step.
+/// Energy account of one run, updated at every step.
 class EnergyAccount {
 public:
-  /// Begins with the state packed in y; `tolerance`: of the method's steps, 0 if it does not control them.
+  /// Starts with the packed state y. `tolerance` is that of the step control; 0 for fixed steps.
   void start(Dynamics& dynamics, double t, const double* y, double tolerance);
-  /// At y, in the layout of `dynamics`.
+  /// Updates the account at y, in the present layout of `dynamics`.
   void note(Dynamics& dynamics, double t, const double* y);
-  /// The same, at the end of a step of a method that follows the motion from event to event. Throws NumericalFailure
-  /// if the step made or lost more energy than its tolerance lets it, or took some back that was dissipated.
+  /// As note(), at the end of a step of a method that locates events. Throws NumericalFailure if the energy error of the step exceeds what
+  /// its tolerance allows, or if dissipated energy has decreased.
   void check_step(Dynamics& dynamics, double t, const double* y);
-  /// What setting to rest took at an event, J. Throws NumericalFailure if that was no rest.
+  /// Checks the energy, J, removed at an event by setting residual velocities to zero. Throws NumericalFailure if it is not negligible.
   void check_settled(double t, double lost) const;
 
-  [[nodiscard]] double residual() const { return worst_; }      ///< largest so far, J
-  [[nodiscard]] double exchanged() const { return exchanged_; } ///< largest change of kinetic energy, dissipation, work, J
-  /// What the residual is to be measured against, J.
+  [[nodiscard]] double residual() const { return worst_; }      ///< largest residual so far, J
+  [[nodiscard]] double exchanged() const { return exchanged_; } ///< largest change of kinetic energy, dissipation or work, J
+  /// Returns the energy relative to which the residual is judged, J.
   [[nodiscard]] double scale() const;
-  /// The largest energy that a step made or lost, of what its tolerance lets it (step_bound); 0 without a tolerance.
+  /// Returns the largest energy error of a step relative to its bound (step_bound); 0 without a tolerance.
   [[nodiscard]] double worst_step() const { return worst_step_; }
-  /// What rounding of the energies themselves can leave, J.
+  /// Returns the rounding error of the energies, J.
   [[nodiscard]] double rounding() const { return k_rounding * largest_; }
 
-  /// A run whose residual is a larger share of scale() than this is not to be trusted.
+  /// Residual relative to scale() above which a run cannot be trusted.
   static constexpr double k_untrusted = 1e-2;
-  /// What an accepted step of a method with error control makes or loses at most, J (docs/explanation/theory.md, "What a run says about
-  /// its own accuracy"): of a state of `dimension` numbers, `turned_over` up to its end, `of_floor` the energy of the motion
-  /// to which tolerances are absolute.
+  /// Returns a bound for the energy error of an accepted step of a method with error control, J (docs/explanation/theory.md, "What a run
+  /// says about its own accuracy"). `dimension`: length of the state; `turned_over`: energy converted up to its end; `of_floor`:
+  /// energy_of_floor().
   [[nodiscard]] static double step_bound(double tolerance, int dimension, double turned_over, double of_floor);
-  /// T₀ of all bodies, J: of the motion to which tolerances are absolute.
+  /// Returns T₀, J: kinetic energy of all bodies at the velocities of the absolute part of the tolerances.
   [[nodiscard]] static double energy_of_floor(const System& system);
-  /// A step stops the run beyond so many times its bound.
+  /// A step whose energy error exceeds this multiple of its bound ends the run.
   static const double k_reserve;
 
 private:

@@ -1,10 +1,9 @@
-// ExtremeFinder: extremes of channels that no polynomial goes through (a kink), by golden sections on the motion itself.
+// ExtremeFinder: extremes of channels with a kink, by golden sections on the motion itself.
 //
-// Each channel is followed for itself, but a kink is seldom one channel's: where a joint lets go, its wrench, its share of the
-// capacity and the accelerations of all that it holds turn at the same time, and the same sections close in on that. What was looked
-// at for one channel is therefore kept for those that are followed after it. Their values are what a look of their own would find,
-// to the bit. Channels that are noise find nothing there, and are soon left to themselves: to ask all of them at each look would cost the
-// square of their number.
+// The search is made for one channel after the other, but a kink usually affects many: when a joint starts to slip, its wrench, its
+// utilisation and all related accelerations change together, and their searches visit the same points. The values of all channels at a
+// point are therefore stored for the channels that follow. They are bit-identical to separate evaluations. Noisy channels do not profit,
+// and are soon excluded: evaluating all of them at each point would cost the square of their number.
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/base/diagnostics.h"
@@ -21,19 +20,20 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
+constexpr int k_last = NodePolynomial::k_last; // last node, at the end of the stretch
 constexpr int k_most_sections = 40;
-constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
+constexpr double k_same_place = 1e-7; // relative to the stretch: a smaller change of position changes a maximum by its square
 constexpr double k_golden = 0.3819660112501051;
-constexpr std::size_t k_trial = 50, k_least_use = 4;       // places made before their use is asked for; one in so many has to be of use
-constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // values of channels: 16 MB; of large scenes few places are kept
+constexpr std::size_t k_trial = 50, k_least_use = 4;       // number of points before their usefulness is checked; at least one in so many
+                                                           // must be reused
+constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // number of stored values: 16 MB; for large scenes this allows few points
 
-// Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
+// Finds the nodes around which golden sections are made: those higher than both neighbours, the highest first.
 int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double sign, std::array<int, k_last - 1>& middles) {
   int count = 0;
   for (int middle = 1; middle < k_last; ++middle) {
     const auto is_below = [&](int i) { return !(sign * nodes[i][c] > sign * nodes[middle][c]); };
-    // Beside an end that is the highest the curve may go on rising.
+    // If an end is the highest node the curve may rise further next to it.
     const bool is_top = (is_below(middle - 1) || middle == 1) && (is_below(middle + 1) || middle == k_last - 1);
     if (is_top) middles[count++] = middle;
   }
@@ -41,7 +41,7 @@ int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double
   return count;
 }
 
-// The top of value() between a and b, by golden sections, until the curve is flat to flat(), which what is met may change.
+// Finds the maximum of value() between a and b by golden sections, until the curve is flat to flat(), which evaluations may change.
 template <class Value, class Flat> void find_top(double a, double b, const Value& value, const Flat& flat) {
   double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
   for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
@@ -60,15 +60,16 @@ template <class Value, class Flat> void find_top(double a, double b, const Value
   }
 }
 
-/// Places that were looked at in the stretch, with what channels were there.
+/// Points evaluated in the present stretch, with the values of channels there.
 class Places {
 public:
   struct Place {
-    bool is_singular = false;                 ///< beside a singular position of the joints
-    std::vector<std::optional<double>> value; ///< as the open channels; none of those before, and where it failed
+    bool is_singular = false;                 ///< near a singular position of joints
+    std::vector<std::optional<double>> value; ///< in the order of the open channels; empty for channels already finished, or if the
+                                              ///< evaluation failed
   };
 
-  /// Memory is kept from stretch to stretch.
+  /// Returns the object of this thread, whose memory is reused for all stretches.
   static Places& of_thread() {
     static thread_local Places places;
     return places;
@@ -77,15 +78,15 @@ public:
     count_ = made_ = used_ = 0;
     number_.clear();
   }
-  /// Do those behind a channel come to the places that it was looked at? Channels that are noise each go their own way.
+  /// Returns true if stored points are reused often enough. Noisy channels each visit other points.
   [[nodiscard]] bool are_of_use() const { return made_ < k_trial || k_least_use * used_ >= made_; }
   void note_use() { ++used_; }
-  /// Where the value of a channel there is known; null: nowhere.
+  /// Returns the point if the value of the channel is known there, otherwise null.
   [[nodiscard]] const Place* at(double theta, std::size_t channel) const {
     const auto known = number_.find(theta);
     return known != number_.end() && places_[known->second].value[channel] ? &places_[known->second] : nullptr;
   }
-  /// One more, of so many channels, in the place of what was known at this theta.
+  /// Adds a point for the given number of channels. It replaces an earlier one with the same theta.
   [[nodiscard]] Place& add(double theta, std::size_t channels) {
     if ((count_ + 1) * channels > k_most_kept) clear();
     if (count_ == places_.size()) places_.emplace_back();
@@ -98,16 +99,16 @@ public:
   }
 
 private:
-  std::vector<Place> places_;                      ///< those behind count_ are memory
-  std::size_t count_ = 0, made_ = 0, used_ = 0;    ///< now; in the stretch, and how often one of them was of use
-  std::unordered_map<double, std::size_t> number_; ///< by theta: a noisy channel has thousands of them
+  std::vector<Place> places_;                      ///< entries after count_ are reserve
+  std::size_t count_ = 0, made_ = 0, used_ = 0;    ///< points at present; made in the stretch; number of times one was reused
+  std::unordered_map<double, std::size_t> number_; ///< index by theta; a noisy channel has thousands
 };
 
 } // namespace
 
 void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
   Places& places = Places::of_thread();
-  if (c == open_.front()) places.clear(); // another stretch
+  if (c == open_.front()) places.clear(); // a new stretch
   const auto own = static_cast<std::size_t>(std::find(open_.begin(), open_.end(), c) - open_.begin());
   const auto look_for_all = [&](double theta) -> const Places::Place& {
     const Snapshot snapshot = look(theta, integrator, dynamics);
@@ -117,7 +118,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     for (std::size_t k = own + 1; k < open_.size() && places.are_of_use(); ++k) {
       try {
         place.value[k] = ranges_[open_[k]].channel->value(snapshot);
-      } catch (const NumericalFailure&) { // its own look will tell, if it comes here
+      } catch (const NumericalFailure&) { // the channel's own evaluation will report it, if it comes here
       }
     }
     return place;

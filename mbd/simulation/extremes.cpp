@@ -14,34 +14,36 @@ namespace steplap {
 
 namespace {
 
-// Of the loads' and drives' harmonics about t, s; infinite if there are none.
+// Returns the shortest period of the harmonics of loads and drives around t, s; infinite if there are none.
 double shortest_period(const System& system, double t) { return 2.0 * std::numbers::pi / system.fastest_at(t); }
 
-constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
+constexpr int k_last = NodePolynomial::k_last; // last node, at the end of the stretch
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
-// What the second difference of three ends leaves out: a bend three times as strong is allowed for.
+// Safety factor of the curvature: the second difference of three ends may underestimate it by this factor.
 constexpr double k_surprise = 3.0;
-// Of the bend of the stretches before: long steps meet an oscillation where it happens to be straight.
+// Weight of the curvature in earlier stretches: long steps may meet an oscillation where it is nearly straight.
 constexpr double k_remembered = 0.5;
-constexpr double k_looks_per_period = 8.0; // of the quickest load
-constexpr double k_within_reach = 0.25; // of a channel's range: what lies further from both extremes is left where it may not bend so much
-constexpr double k_bit_of_slack = 0.1;  // by which a polynomial's top is found
-// Estimated errors of polynomials are exceeded by up to so much in one of a hundred: a top whose estimate is not smaller than the
-// tolerance by this factor is evaluated.
+constexpr double k_looks_per_period = 8.0; // samples per period of the fastest load
+constexpr double k_within_reach = 0.25;    // relative to the range of a channel: values farther from both extremes are ignored if the
+                                           // curvature is small enough
+constexpr double k_bit_of_slack = 0.1;     // accuracy of a polynomial's maximum, relative to the tolerance
+// One estimate in a hundred is exceeded by up to this factor. A maximum whose error estimate is not below the tolerance by it is evaluated.
 constexpr double k_safety = 3.0;
-constexpr double k_same_crossing = 1e-10; // of a stretch
-// So many channels are followed each for itself without asking whether what they do is rounding.
+constexpr double k_same_crossing = 1e-10; // relative to the stretch
+// Up to this number of channels each is searched separately without testing for rounding noise.
 constexpr std::size_t k_few = 8;
 constexpr int k_most_probes = 8;
-constexpr double k_hair = 1.25e-4;     // of a stretch: smooth curves and kinks change by a hundredth of what nodes differ by
-constexpr double k_jitter = 0.25;      // of what its nodes differ by: what a few hair's breadths change by so much is rounding
-constexpr double k_most_jitter = 1e-6; // of the largest value in the same unit: more is not rounding
-// Error of a straight line through two ends against the third, of a channel's range: below and above which the
-// stretches of a fixed-step method become longer and shorter.
+constexpr double k_hair = 1.25e-4;     // relative to the stretch: a time shift for which smooth curves and kinks change by 1/100 of the
+                                       // differences between nodes
+constexpr double k_jitter = 0.25;      // relative to the differences between nodes: a channel that changes by more over a few such shifts
+                                       // is noise
+constexpr double k_most_jitter = 1e-6; // relative to the largest value in the same unit: a larger change is not rounding
+// Error of the linear extrapolation over two stretches, relative to the range of a channel. Below the first value stretches of fixed steps
+// are lengthened, above the second shortened.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
 
-// What has codes changes at events alone: the ends of stretches show all of it.
+// Returns true for channels with codes. They change at events only, so the ends of stretches suffice.
 bool is_mode(const Channel& channel) { return !channel.codes.empty(); }
 
 } // namespace
@@ -110,14 +112,14 @@ void ExtremeFinder::take(std::size_t c, double t, double value) {
   kind.largest = std::max(kind.largest, std::abs(value));
 }
 
-// Values of all channels at an end of a stretch; not of those that bounds rule out, unless `is_everything`.
+// Evaluates all channels at an end of a stretch; without `is_everything` only those that their bounds do not exclude.
 void ExtremeFinder::evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything) {
   for (const std::size_t c : tracked_)
     if (is_everything || !is_ruled_out(c)) take(c, t, snapshot, values);
     else values[c] = k_unknown;
 }
 
-// Could a channel that costs much be beyond its extremes? The bounds tell, with what they changed by since the last end.
+// Determines which expensive channels may exceed their extremes, from their bounds and the change of these since the last end.
 void ExtremeFinder::screen(const Snapshot& snapshot) {
   std::swap(bounds_, bounds_before_);
   for (const std::size_t c : tracked_) {
@@ -151,7 +153,7 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   longest_ = 1;
 }
 
-// What formulas find on their way in the stretch from t_ on.
+// Gives the search for extremes of formulas access to the stretch that starts at t_.
 class ExtremeFinder::Site : public ExtremeSite {
 public:
   Site(ExtremeFinder& finder, double h, Integrator* integrator, Dynamics* dynamics)
@@ -164,11 +166,11 @@ public:
 private:
   ExtremeFinder& finder_;
   double h_;
-  Integrator* integrator_; ///< null, as the next, where there is no motion to look at
+  Integrator* integrator_; ///< null, as dynamics_, if there is no dense output
   Dynamics* dynamics_;
 };
 
-// Methods that decide contact modes themselves leave nothing but the ends of their steps: in between there is a straight line.
+// For methods that determine contact modes themselves: only the ends of steps are known, with straight lines between them.
 void ExtremeFinder::pass_between(double t, const Snapshot& snapshot) {
   Site site(*this, t - t_, nullptr, nullptr);
   formulas_->arrive(snapshot);
@@ -194,7 +196,7 @@ void ExtremeFinder::finish_rates(const Snapshot& snapshot, double before) {
 
 // --- along the steps --------------------------------------------------------------------------------------------
 
-// The beginning of one of several steps of a stretch.
+// Stores the start of a fixed step; a stretch contains several.
 void ExtremeFinder::keep_step(const Integrator& integrator, const Dynamics& dynamics) {
   if (integrator.is_adaptive()) return;
   const auto n = static_cast<std::size_t>(dynamics.dimension());
@@ -219,7 +221,7 @@ void ExtremeFinder::end_at(double t, Integrator& integrator, Dynamics& dynamics)
 }
 
 void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics) {
-  // Where nothing moves a step may pass over many periods of a load: it is looked at piece by piece.
+  // While nothing moves a step may be longer than many periods of a load. It is then divided into pieces.
   const double begin = t_, pieces = std::ceil((t - t_) / shortest_period(system_, 0.5 * (t_ + t)) * k_looks_per_period / k_last);
   for (double i = 1.0; i < pieces; ++i) {
     const double piece_end = begin + i / pieces * (t - begin);
@@ -227,7 +229,7 @@ void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrat
     dynamics.rates(piece_end, y_.data(), dy_.data());
     arrive(piece_end, dynamics.snapshot(dy_.data()), integrator, dynamics);
   }
-  if (pieces > 1.0) { // the end was evaluated before
+  if (pieces > 1.0) { // `dy` belonged to the end and has been overwritten
     state_at(t, integrator, dynamics);
     dynamics.rates(t, y_.data(), dy_.data());
     dy = dy_.data();
@@ -244,7 +246,7 @@ void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integ
   evaluate(t, snapshot, node_[k_last].data(), false);
   formulas_->arrive(snapshot);
   const bool is_unsure = is_unsure_;
-  is_unsure_ = was_unsure; // in between
+  is_unsure_ = was_unsure; // applies to the inside of the stretch
   close(t, integrator, dynamics);
   is_unsure_ = is_unsure;
 }
@@ -287,37 +289,38 @@ void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) 
   t_ = t;
 }
 
-// Does the cubic through a body's coordinate or velocity and its rates at both ends rise and fall?
+// Returns true if the cubic through values and rates at both ends of a stretch has an extreme inside. For coordinates and velocities of
+// bodies.
 bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
   const int rate = rate_of_[c];
   if (rate < 0) return false;
   const double s0 = h * at(rate, 0), s1 = h * at(rate, k_last), rise = at(c, k_last) - at(c, 0);
   if (!(s0 * s1 > 0.0)) return s0 != 0.0 || s1 != 0.0;
-  // Its slope s0 + 2 (3 rise − 2 s0 − s1) θ + 3 (s0 + s1 − 2 rise) θ², and the least of that against the ends' sign.
+  // The slope is s0 + 2 (3 rise − 2 s0 − s1) θ + 3 (s0 + s1 − 2 rise) θ²; its extreme value is compared with the sign of s0.
   const double b = 3.0 * rise - 2.0 * s0 - s1, a = 3.0 * (s0 + s1 - 2.0 * rise), theta = a != 0.0 ? -b / a : -1.0;
   return theta > 0.0 && theta < 1.0 && (s0 + b * theta) * s0 <= 0.0;
 }
 
-// The channels that may have passed an extreme of the run inside the stretch go to open_; true if there are any.
+// Collects in open_ the channels that may have an extreme of the run inside the stretch. Returns true if there are any.
 bool ExtremeFinder::suspect(double h) {
   open_.clear();
   const double *const first = node_[0].data(), *const end = node_[k_last].data(), *const before = before_.data();
   const double h_last = h_last_, share = h / h_last, halves = 1.0 + h_last / h,
-               square = h * h; // of the stretch before: used where there is one
+               square = h * h; // contains the curvature of the previous stretch, if there is one
   for (const std::size_t c : tracked_) {
     const double a = first[c], b = end[c];
     Curve& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
-    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // it rests
+    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // at rest
     if (is_mode(*ranges_[c].channel) || formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last > 0.0 ? (a - before[c]) * share : k_unknown;
-    if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
+    if (!std::isnan(slope) && !std::isnan(last)) { // rates over this stretch and over the same time before
       const double bend_now = std::abs(slope - last) / halves;
       curvature_[c] = std::max(bend_now / square, k_remembered * curvature_[c]);
       const double bend = k_surprise * curvature_[c] * h * h;
       const bool turns = turns_inside(c, h);
-      if (std::abs(slope) > bend && !turns) continue; // it only rises, or only falls
+      if (std::abs(slope) > bend && !turns) continue; // monotonic
       const double slack = tolerance(c);
       const double gain = 0.25 * (turns ? std::max({bend, std::abs(h * at(rate_of_[c], 0)), std::abs(h * at(rate_of_[c], k_last))}) : bend);
       const ChannelRange& r = ranges_[c];
@@ -332,14 +335,14 @@ bool ExtremeFinder::suspect(double h) {
 
 // --- inside a stretch ---------------------------------------------------------------------------------------------
 
-// Through the values of channel c at the nodes of a level; times `sign`.
+// Returns the polynomial through the values of channel c at the nodes of a level, multiplied by `sign`.
 static NodePolynomial through_nodes(const std::vector<std::vector<double>>& nodes, std::size_t c, int level, double sign) {
   NodePolynomial::Values values;
   for (int i = 0, place = 0; place <= k_last; ++i, place += NodePolynomial::spacing(level)) values[i] = sign * nodes[place][c];
   return {level, values};
 }
 
-// At a node of the next level, by its weights.
+// Returns the interpolated value at a node of the next level.
 static double interpolated(const std::vector<std::vector<double>>& nodes, std::size_t c, int level,
                            const NodePolynomial::Weights& weights) {
   const int n = 1 << level, step = NodePolynomial::spacing(level);
@@ -349,13 +352,14 @@ static double interpolated(const std::vector<std::vector<double>>& nodes, std::s
   return above / weights.sum;
 }
 
-// Is channel c done with after the nodes of `level`? If its polynomial is exact enough its extremes are noted.
+// Returns true if the search for channel c is finished after the nodes of `level`. If its polynomial is accurate enough its extremes are
+// stored.
 bool ExtremeFinder::settle(std::size_t c, int level) {
   const int n = 1 << level;
   const double slack = tolerance(c);
   const ChannelRange& r = ranges_[c];
-  // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
-  // the share that is missed.
+  // The error of the polynomial of half the degree is known at the new nodes. For a smooth curve doubling the number of nodes squares the
+  // relative error.
   NodePolynomial::Values v;
   const std::vector<double>* row = node_.data();
   double least = (*row)[c], most = least, sum = 0.0;
@@ -371,17 +375,17 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     const double record = sign > 0.0 ? r.high.value : -r.low.value, best = sign > 0.0 ? most : -least;
     if (!std::isfinite(best)) continue;
     if (!std::isfinite(sum)) return false;
-    // Beyond the record by more than anybody asks for?
+    // Skip if the extreme of the run cannot be exceeded by more than the tolerance.
     if (best + NodePolynomial::k_overshoot * spread + error <= record + slack) continue;
     if (!NodePolynomial::may_exceed(record + slack, error, level, v, sign, best)) continue;
     if (error > slack) return false;
-    // Beyond its pole's bound it is followed by its size, which the nodes have told: between them a polynomial of one over
-    // rounding may have any sign.
+    // Beyond the bound for poles only the magnitude matters, which the nodes have shown. Between them a polynomial through reciprocals of
+    // rounding errors may have any sign.
     if (ranges_[c].channel->unit.empty() && std::abs(best) > k_at_pole) continue;
-    const double bit = k_bit_of_slack * slack; // the top is looked for in all gaps between nodes
+    const double bit = k_bit_of_slack * slack; // the maximum is searched in all gaps between nodes
     const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
     if (!top || !(top->value + bit + error > record + slack)) continue;
-    // At the first level the error is what one guess was off by, which is small by chance where the guess happens to cross the curve.
+    // The error of the first level is that of a single guess, which may cross the curve by chance.
     if (level == 1 || k_safety * error > slack) {
       unchecked_.push_back({c, top->theta, sign * top->value});
       continue;
@@ -392,7 +396,7 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   return true;
 }
 
-// Evaluates the tops that settle() left unchecked. Channels whose polynomial is off there are open again.
+// Evaluates the maxima that settle() left unchecked. Channels whose polynomial is wrong there are searched further.
 void ExtremeFinder::check_tops(Integrator& integrator, Dynamics& dynamics) {
   for (const Top& top : unchecked_) {
     const double value = ranges_[top.channel].channel->value(look(top.theta, integrator, dynamics));
@@ -410,16 +414,18 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
     const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = look(theta, integrator, dynamics);
     const NodePolynomial::Weights* const weights = level > 1 ? &NodePolynomial::weights_at(level - 1, theta) : nullptr;
-    // What the ends did not show the middle may, for every channel: it has been evaluated. Steps whose error nothing controls are not
-    // looked into so closely: about the end of a slip they know its direction too badly.
+    // The value in the middle can reveal an extreme that the ends did not indicate. This is checked for all channels, since everything has
+    // been evaluated there anyway. Not for fixed steps: near the end of a slip their accuracy of its direction is too low.
     if (level == 1 && integrator.is_adaptive()) {
       for (const std::size_t c : tracked_) {
         Curve& curve = curve_[c];
-        if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c)) continue; // rates tell whether places and velocities turn
+        if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c))
+          continue; // the rates at the ends already show extremes of positions
+                    // and velocities
         const ChannelRange& r = ranges_[c];
         const double a = at(c, 0), b = at(c, k_last), reach = k_within_reach * (r.high.value - r.low.value);
         if (std::max(a, b) + reach < r.high.value && std::min(a, b) - reach > r.low.value) continue;
-        if (a == b && a == before_[c]) continue; // it rests
+        if (a == b && a == before_[c]) continue; // at rest
         const double slack = tolerance(c);
         const auto may_be_beyond = [&](double above, double below, double bend) {
           const double gain = k_surprise * bend / 8.0;
@@ -444,7 +450,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
       if (level > 1) guess = interpolated(node_, c, level - 1, *weights);
-      else if (h_last_ > 0.0) { // the parabola through this stretch's ends and the last one's beginning
+      else if (h_last_ > 0.0) { // the parabola through the ends of this stretch and the start of the previous one
         const double h = t1_ - t_, a = at(c, 0), b = at(c, k_last);
         const double bend = ((b - a) - (a - before_[c]) * (h / h_last_)) / (1.0 + h_last_ / h);
         guess = 0.5 * (a + b) - 0.25 * bend;
@@ -456,7 +462,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 }
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
-  // Of channels that were ruled out at an end of the stretch.
+  // Evaluates, at an end of the stretch, the channels that their bounds had excluded there.
   const auto look_at_end = [&](int node) {
     const auto is_missing = [&](std::size_t c) { return screened_slot_[c] >= 0 && std::isnan(node_[node][c]); };
     if (std::none_of(open_.begin(), open_.end(), is_missing)) return;
@@ -470,7 +476,7 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
     refine(level, integrator, dynamics);
     if (level == 1)
       for (const int node : {0, k_last}) look_at_end(node);
-    if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
+    if (wanted > 1 << level) continue; // oscillating loads between the nodes would be missed
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
     check_tops(integrator, dynamics);
   }
@@ -478,18 +484,19 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
   for (const std::size_t c : open_) section(c, integrator, dynamics);
 }
 
-// How far apart are the values at the outermost node and beside it?
+// Returns the larger difference between the values at the outermost node and its neighbours.
 double ExtremeFinder::spread_about(std::size_t c, int middle) const {
   return std::max(std::abs(at(c, middle + 1) - at(c, middle)), std::abs(at(c, middle) - at(c, middle - 1)));
 }
 
-// In a large scene what accelerations change by in a short stretch is rounding of places far from the origin: no polynomial goes
-// through it, and to follow each channel for itself would cost the square of the scene. What a hair's breadth of time changes by
-// as much as its nodes differ is told by a few looks at all of them together, and its extremes are known no better.
+// Excludes channels that contain rounding noise. In a large scene the changes of accelerations in a short stretch are rounding errors of
+// positions far from the origin. No polynomial approximates them, and separate searches for all channels would cost the square of the
+// scene. A channel is noise if it changes within a tiny time shift as much as between its nodes; this is tested by a few common
+// evaluations. Its extremes are then known only to that accuracy.
 void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
   if (open_.size() <= k_few) return;
   constexpr std::size_t k_places = k_last / 2;
-  std::vector<std::array<double, k_places>> changes(open_.size()); // the largest at each place
+  std::vector<std::array<double, k_places>> changes(open_.size()); // largest change at each place
   for (int probe = 0; probe < k_most_probes && open_.size() > k_few; ++probe) {
     for (std::size_t place = 0; place < k_places; ++place) {
       const int node = 2 * static_cast<int>(place) + 1;
@@ -505,7 +512,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
     for (std::size_t k = 0; k < open_.size(); ++k) {
       std::array<double, k_places> sorted = changes[k];
       std::sort(sorted.begin(), sorted.end());
-      if (is_jitter(open_[k], sorted[k_places - 2])) continue; // at two places: one alone may be a jump
+      if (is_jitter(open_[k], sorted[k_places - 2])) continue; // at two places, as a single one may be a jump
       changes[left] = changes[k];
       open_[left++] = open_[k];
     }
@@ -513,7 +520,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
   }
 }
 
-// Is a change over a hair's breadth all that the nodes show? Then it is kept in mind.
+// Returns true if a change over a tiny time shift is as large as the differences between nodes, and stores it.
 bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   double spread = 0.0;
   for (int i = 1; i < k_last; ++i) spread = std::max(spread, spread_about(c, i));
@@ -523,12 +530,12 @@ bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   return true;
 }
 
-// The first time that a share passes 1, by bisection.
+// Finds by bisection the first time at which a channel without unit exceeds 1.
 void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
   for (const std::size_t c : dimensionless_) {
     ChannelRange& r = ranges_[c];
     if (r.first_above_one || !(r.high.value > 1.0)) continue;
-    if (r.high.t <= t_) { // noted on this side of an event
+    if (r.high.t <= t_) { // reached before the present stretch
       r.first_above_one = r.high.t;
       continue;
     }
@@ -543,7 +550,7 @@ void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
   }
 }
 
-// How far the line through the ends of two stretches is off at the third tells how well the curves are resolved.
+// The error of the linear extrapolation from two stretches to a third one shows how well the curves are resolved.
 void ExtremeFinder::adapt_length() {
   if (steps_ == 0) return;
   const double h = t1_ - t_;

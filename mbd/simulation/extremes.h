@@ -1,23 +1,21 @@
-// The least and the largest value of every channel over a whole run, whatever is written and how often.
+// Minimum and maximum of every channel over a whole run, independent of the output.
 //
-// A run is cut into *stretches* in which everything is smooth: one accepted step (several of a fixed-step
-// method, as long as the curves are well resolved), up to an event or a breakpoint, whose two sides are both
-// looked at. All channels are evaluated at the stretch's ends. Where a channel may have passed its extreme so
-// far inside the stretch, which its second difference over three ends tells, all are evaluated on the dense
-// output as well (of a body's coordinates and velocities also the slopes at both ends tell): at the middle, then at the 5 and the 9 points of Chebyshev and Lobatto, until the
-// polynomial through them tells the next ones within `k_resolution` of the channel's range. The extreme is
-// the polynomial's. Where none is found (a kink) the search goes on by sections around the outermost point, for each channel by
-// itself; of many channels those that are rounding are told first, all together, and left as they are.
+// A run is divided into stretches in which everything is smooth. A stretch is one accepted step (for fixed steps several, as long as the
+// curves are well resolved), up to an event or breakpoint, both sides of which are evaluated. All channels are evaluated at the ends of a
+// stretch. If the second difference over three ends (for coordinates and velocities of bodies also the slopes at both ends) indicates a
+// possible extreme inside, the channels concerned are evaluated on the dense output: in the middle, then at 5 and 9 Chebyshev–Lobatto
+// points, until the interpolating polynomial predicts the next points to `k_resolution` of the channel's range. The extreme is that of the
+// polynomial. If this fails (a kink), golden sections around the outermost point follow, for each channel separately. If there are many
+// such channels, those that contain only rounding noise are first identified together and excluded.
 //
-// Channels that are formulas of others are bounded instead (formula_extremes.h): kinks and peaks of theirs may be anywhere.
+// Channels that are formulas of others can have kinks and peaks anywhere; they are bounded instead (formula_extremes.h).
 //
-// Where a slip that ends is slower than rates are known to, nobody knows which way it goes, nor its wrench and what hangs on that. What is
-// met there counts, and by how much it goes beyond all that was met elsewhere is told (ChannelRange::unsure_low).
+// When a slip velocity is below the accuracy of rates, its direction is unknown, and so are its wrench and all that depends on it. Values
+// at such times are included, and the amount by which they exceed all other values is reported (ChannelRange::unsure_low).
 //
-// What is looked at depends on the steps alone: not on the samples written. Limits: a peak that rises and
-// falls within one step of which neither the ends nor the curve before show anything is not seen, nor is it
-// by the integrator's own error control; of methods that decide contact modes themselves (moreau, storms) the
-// ends of steps are all there is, and of formulas what the straight lines between them make of them.
+// The evaluated points depend on the steps only, not on the samples written. Limits: a peak that rises and falls within one step without
+// any sign at its ends or in the curve before is not found; the integrator's error control does not detect it either. For methods that
+// determine contact modes themselves (moreau, storms) only the ends of steps are used, and for formulas the straight lines between them.
 #pragma once
 
 #include "mbd/integrators/integrator.h"
@@ -32,78 +30,77 @@ namespace steplap {
 
 /// One end of a channel's range.
 struct Extreme {
-  double value = std::numeric_limits<double>::quiet_NaN(); ///< in the channel's unit; not-a-number: none
-  double t = 0.0;                                          ///< s, when it was reached
+  double value = std::numeric_limits<double>::quiet_NaN(); ///< value in the unit of the channel; NaN: none
+  double t = 0.0;                                          ///< time at which it was reached, s
 };
 
-/// What a run tells of one channel.
+/// Results for one channel.
 struct ChannelRange {
-  const Channel* channel = nullptr; ///< of the system, which has to outlive it
-  Extreme low, high;                ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
-  double first = 0.0;               ///< at the start
-  double final = 0.0;               ///< at the end
-  double final_rate = std::numeric_limits<double>::quiet_NaN(); ///< per s, at the end; not-a-number: unknown
-  /// Extremes are located to within this; smaller ones were not looked for. Infinite: they may be anywhere beyond.
+  const Channel* channel = nullptr; ///< a channel of the system, which must outlive this object
+  Extreme low, high;                ///< NaN if the channel had no value or has no extremes (Channel::has_extremes)
+  double first = 0.0;               ///< value at the start
+  double final = 0.0;               ///< value at the end
+  double final_rate = std::numeric_limits<double>::quiet_NaN(); ///< derivative at the end, per s; NaN: unknown
+  /// Accuracy to which the extremes are located; smaller ones were not searched for. Infinite: they may be arbitrarily larger.
   double resolution = 0.0;
-  /// By how much they go beyond what was met where each slip was known to go its way; not-a-number: nothing was.
+  /// Amount by which low and high exceed the values met while the direction of each slip was known; NaN: there were none.
   double unsure_low = 0.0, unsure_high = 0.0;
-  bool had_no_value = false;                              ///< it was not-a-number at some time
-  bool is_low_singular = false, is_high_singular = false; ///< met beside a singular position of the joints, where reactions may diverge
-  std::optional<double> first_above_one;                  ///< s; of channels without a unit: the first time they passed 1
+  bool had_no_value = false;                              ///< the value was NaN at some time
+  bool is_low_singular = false, is_high_singular = false; ///< reached near a singular position of joints, where reactions may diverge
+  std::optional<double> first_above_one;                  ///< time, s, at which a channel without unit first exceeded 1
 
-  /// Whichever is further from zero.
+  /// Returns low or high, whichever has the larger absolute value.
   [[nodiscard]] const Extreme& largest() const;
 };
 
-/// Follows all channels through one run. Made, fed and asked by Simulation.
+/// Computes the ranges of all channels during one run. Used by Simulation.
 class ExtremeFinder {
 public:
-  /// `max_dimension`: of the packed state. Refers to the system.
+  /// `max_dimension`: upper limit of the dimension of the packed state. Keeps a reference to the system.
   ExtremeFinder(const System& system, int max_dimension);
 
-  /// A state from which the motion goes on anew: the start, the far side of an event. `snapshot` is there.
+  /// Starts anew at a state: the start of the run, or after an event. `snapshot` belongs to this state.
   void begin(double t, const Snapshot& snapshot);
-  /// The same of a method that finds events; `dynamics` was last evaluated there.
+  /// As above, for a method that locates events. Precondition: the last evaluation of `dynamics` was at this state.
   void begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics);
-  /// After a step. `is_at_end`: `dynamics` was last evaluated at the step's end. `is_last`: of its stretch.
+  /// To be called after each step. `is_at_end`: the last evaluation of `dynamics` was at its end. `is_last`: the step ends the stretch.
   void add_step(Integrator& integrator, Dynamics& dynamics, bool is_at_end, bool is_last);
-  /// The stretch ends at t, inside the step made.
+  /// Ends the stretch at time t within the last step.
   void end_at(double t, Integrator& integrator, Dynamics& dynamics);
-  /// The end of the run.
+  /// To be called at the end of the run.
   void finish(const Snapshot& snapshot);
-  /// Behind finish(): the same motion `before` seconds earlier, from which the rates at the end follow.
+  /// Computes the rates at the end from the state `before` seconds earlier on the same motion. Precondition: finish().
   void finish_rates(const Snapshot& snapshot, double before);
 
-  /// Of every channel, in the system's order; complete after finish().
+  /// Returns the ranges in the order of the system's channels; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
 
-  static constexpr double k_resolution = 1e-6; ///< of a channel's range
-  static constexpr double k_at_pole = 1e9;     ///< numbers without a unit beyond it
+  static constexpr double k_resolution = 1e-6; ///< relative to the range of the channel
+  static constexpr double k_at_pole = 1e9;     ///< a channel without unit beyond this value counts as a pole
 
 private:
-  static constexpr int k_nodes = 9;           ///< at most, inside a stretch
-  static constexpr int k_longest = 16;        ///< steps of a fixed size in a stretch
-  static constexpr double k_noise = 1e-9;     ///< of the largest range of channels in the same unit
-  static constexpr double k_rounding = 1e-12; ///< of the largest value in the same unit
+  static constexpr int k_nodes = 9;           ///< largest number of nodes inside a stretch
+  static constexpr int k_longest = 16;        ///< largest number of fixed steps in a stretch
+  static constexpr double k_noise = 1e-9;     ///< relative to the largest range of channels with the same unit
+  static constexpr double k_rounding = 1e-12; ///< relative to the largest value of channels with the same unit
   class Site;
-  /// Pivots of the constraints, squares of distances in rad²: nearer than a hundredth of a milliradian nothing but a singular
-  /// position is met.
+  /// Smallest pivot of the constraints, the square of a distance in rad²: a state nearer than 0.01 mrad to a singular position is at it.
   static constexpr double k_singular_pivot = 1e-10;
-  /// What is known of a channel's curve in the stretch being looked at.
+  /// Progress of the search for one channel in the present stretch.
   struct Curve {
-    bool is_open = false; ///< it may still have an extreme that is not found
-    double error = 0.0;   ///< of the polynomial through the nodes
+    bool is_open = false; ///< an extreme may remain to be found
+    double error = 0.0;   ///< error of the polynomial through the nodes
   };
-  struct Kind { ///< of channels in the same unit
+  struct Kind { ///< channels with the same unit
     double range = 0.0, largest = 0.0;
-    double scale = 0.0; ///< size of what moves, where nothing moves yet
+    double scale = 0.0; ///< expected magnitude, used as long as nothing moves
   };
 
-  struct Top { ///< of the polynomial through a channel's nodes
+  struct Top { ///< maximum of the polynomial through the nodes of a channel
     std::size_t channel = 0;
     double theta = 0.0, value = 0.0;
   };
-  struct Sure { ///< met where each slip was known to go its way
+  struct Sure { ///< range while the direction of each slip was known
     double low = std::numeric_limits<double>::quiet_NaN(), high = low;
   };
 
@@ -142,34 +139,34 @@ private:
   std::size_t count_; ///< of channels
   std::vector<ChannelRange> ranges_;
   std::vector<Kind> kinds_;
-  std::vector<int> kind_;            ///< per channel
-  std::vector<int> screened_slot_;   ///< per channel with bounds: place in bounds_, else −1
-  std::vector<int> rate_of_;         ///< per channel: the channel that is its rate, −1 if there is none
+  std::vector<int> kind_;            ///< index in kinds_ of each channel
+  std::vector<int> screened_slot_;   ///< per channel: index in bounds_ if it has cheap bounds, otherwise −1
+  std::vector<int> rate_of_;         ///< per channel: index of the channel that is its rate; −1: none
   std::vector<std::size_t> tracked_; ///< channels that have extremes
   std::vector<std::size_t> dimensionless_;
 
-  double t_ = 0.0, t_last_ = 0.0, h_last_ = 0.0; ///< the stretch begins at t_; length of the one before, 0: none
-  double t1_ = 0.0;                              ///< its end
-  std::vector<double> before_;                   ///< values at the beginning of the stretch before
-  std::vector<std::vector<double>> node_;        ///< values at the nodes, 0 and 8 are the ends
+  double t_ = 0.0, t_last_ = 0.0, h_last_ = 0.0; ///< start of the stretch; start and length (0: none) of the previous one
+  double t1_ = 0.0;                              ///< end of the stretch
+  std::vector<double> before_;                   ///< values at the start of the previous stretch
+  std::vector<std::vector<double>> node_;        ///< values at the nodes; 0 and 8 are the ends
   std::vector<Curve> curve_;
-  std::vector<double> curvature_; ///< second derivative as seen lately, per s²
-  std::vector<std::size_t> open_; ///< channels still followed in this stretch
-  std::vector<Top> unchecked_;    ///< whose polynomial may be off by more than the tolerance
-  std::vector<double> jitter_;    ///< per channel: what rounding was seen to change it by; empty as long as nobody had to ask
+  std::vector<double> curvature_; ///< recent second derivative, per s²
+  std::vector<std::size_t> open_; ///< channels still searched in this stretch
+  std::vector<Top> unchecked_;    ///< maxima whose error may exceed the tolerance
+  std::vector<double> jitter_;    ///< per channel: change found to be rounding noise; empty until first needed
   std::vector<ValueBounds> bounds_, bounds_before_;
-  std::vector<char> is_wanted_; ///< per screened channel: it may be beyond its extremes at the last end
+  std::vector<char> is_wanted_; ///< per channel with bounds: it may exceed its extremes at the last end
 
-  int steps_ = 0, longest_ = 1;                  ///< steps in the stretch, and how many there may be
-  std::vector<double> step_t_, step_y_, step_k_; ///< their beginnings
+  int steps_ = 0, longest_ = 1;                  ///< number of steps in the stretch, and its limit
+  std::vector<double> step_t_, step_y_, step_k_; ///< starts of these steps
   std::size_t stride_;
   std::vector<double> y_, dy_, scratch_;
   bool is_begun_ = false;
-  double slip_ = std::numeric_limits<double>::infinity(); ///< speed of the slowest slip that may turn at the last end, m/s
-  bool is_unsure_ = false;                                ///< that is less than it is known to
-  std::vector<Sure> sure_;                                ///< per channel; empty as long as that is all
-  bool is_singular_ = false;                              ///< what was looked at last lies beside a singular position of the joints
-  std::unique_ptr<FormulaExtremes> formulas_;             ///< of channels that are formulas
+  double slip_ = std::numeric_limits<double>::infinity(); ///< speed of the slowest slip whose direction may change, at the last end, m/s
+  bool is_unsure_ = false;                                ///< this speed is below its accuracy
+  std::vector<Sure> sure_;                                ///< per channel; empty until the first unsure slip
+  bool is_singular_ = false;                              ///< the last evaluated state is near a singular position of joints
+  std::unique_ptr<FormulaExtremes> formulas_;             ///< search for channels that are formulas
 };
 
 } // namespace steplap

@@ -1,12 +1,14 @@
-// Extremes of channels that are formulas of others (mbd/formula/). A formula may have kinks anywhere and peaks as narrow as one
-// likes, of which neither values nor slopes beside them show anything; so it is not sampled but bounded. Its operands are
-// curves that steps resolve: polynomials with an error (operand_curves.h). Of these the formula's tree makes an enclosure over
-// any span of time (mbd/formula/enclosure.h), and the span whose bound lies furthest out is halved, until no bound is beyond
-// what was reached by more than is asked for (R. E. Moore, Interval Analysis, 1966; E. Hansen, Numer. Math. 34 (1980) 247).
-// What was reached is a value of the motion itself, looked at where the enclosure is certain.
+// Extremes of channels that are formulas of others (mbd/formula/).
 //
-// Work is bounded: in spans, in looks, and of both in the whole run. What cannot be closed within it (a pole, a tie of
-// infinitely many peaks, an operand with a kink of its own) is kept as a bound: the extreme lies between it and the value found.
+// A formula can have kinks anywhere and arbitrarily narrow peaks that no samples show; it is therefore bounded. Its operands are
+// polynomials with an error over each stretch (operand_curves.h). The formula's tree gives an enclosure over any time interval
+// (mbd/formula/enclosure.h). The interval with the largest upper bound is bisected until no bound exceeds the best value found by more than
+// the tolerance (R. E. Moore, Interval Analysis, 1966; E. Hansen, Numer. Math. 34 (1980) 247). The value found is one of the motion itself,
+// evaluated where the enclosure is sharp.
+//
+// Work is limited: numbers of intervals and evaluations, per stretch and per run. If the search cannot be completed within these limits (a
+// pole, a tie of infinitely many peaks, an operand with a kink), the remaining bound is kept: the extreme lies between it and the value
+// found.
 #pragma once
 
 #include "mbd/simulation/operand_curves.h"
@@ -19,56 +21,56 @@ namespace steplap {
 
 struct ChannelRange;
 
-/// What the search needs of the run, whose stretch it looks into.
+/// Access to the run for the search in one stretch.
 class ExtremeSite {
 public:
   virtual ~ExtremeSite() = default;
-  /// Where the channel's extremes are kept.
+  /// Returns the range in which the channel's extremes are stored.
   [[nodiscard]] virtual ChannelRange& range(std::size_t channel) = 0;
-  /// What an extreme of the channel has to be known to.
+  /// Returns the required accuracy of an extreme of the channel.
   [[nodiscard]] virtual double tolerance(std::size_t channel) const = 0;
-  /// The motion at theta of the stretch.
+  /// Returns the motion at theta of the stretch.
   [[nodiscard]] virtual Snapshot look(double theta) = 0;
-  /// Notes a value of the channel met at theta.
+  /// Stores a value of the channel found at theta.
   virtual void note(std::size_t channel, double value, double theta) = 0;
 };
 
-/// Bounds channels that are formulas, stretch by stretch.
+/// Computes extremes of all channels that are formulas, stretch by stretch.
 class FormulaExtremes {
 public:
-  /// `rate_of`: per channel the one that is its rate, −1 if there is none.
+  /// `rate_of`: per channel the index of the channel that is its rate; −1: none.
   FormulaExtremes(const System& system, const std::vector<int>& rate_of);
 
-  /// Is no channel a formula?
+  /// Returns true if no channel is a formula.
   [[nodiscard]] bool is_empty() const { return formulas_.empty(); }
-  /// Is this channel a formula?
+  /// Returns true if the channel is a formula.
   [[nodiscard]] bool is_formula(std::size_t channel) const { return is_formula_[channel] != 0; }
 
-  /// At the beginning of a stretch: a state from which the motion goes on anew.
+  /// To be called at the first state of a stretch, after a jump of the motion.
   void begin(const Snapshot& snapshot);
-  /// At its end.
+  /// To be called at the end of a stretch.
   void arrive(const Snapshot& snapshot);
-  /// Looks for extremes in the stretch from t, h long, between begin() or the last end, and arrive().
+  /// Searches the stretch of length h from t. Precondition: begin() or pass() at its start, arrive() at its end.
   void search(double t, double h, ExtremeSite& site);
-  /// The same where there is nothing between the ends but the straight line, as between the ends of steps of time stepping.
+  /// As search(), with linear interpolation between the ends, as between the ends of time steps.
   void search_straight(double t, double h, ExtremeSite& site);
-  /// The next stretch begins where this one ended.
+  /// Makes the end of this stretch, of length h, the start of the next one.
   void pass(double h);
-  /// By how much the least and the largest value of a channel may lie beyond those found; 0 of what is no formula.
+  /// Returns by how much the minimum and maximum of a channel may lie beyond those found; 0 for channels that are not formulas.
   [[nodiscard]] double unclosed(std::size_t channel, const ChannelRange& found) const;
 
 private:
   struct Sought {
     std::size_t channel = 0;
     const FormulaChannel* formula = nullptr;
-    std::vector<std::size_t> leaves; ///< of the formula's operands
-    bool is_number = false;          ///< it has no unit
-    /// Beyond what was found it may go as far as this, where bounds could not be closed.
+    std::vector<std::size_t> leaves; ///< indices of the formula's operands
+    bool is_number = false;          ///< the channel has no unit
+    /// Limits up to which the extremes may exceed the values found, where bounds could not be closed.
     double low_bound = std::numeric_limits<double>::infinity(), high_bound = -std::numeric_limits<double>::infinity();
   };
   struct Span {
-    double bound = 0.0;  ///< of the value times the sign
-    double likely = 0.0; ///< where the largest value may be, from −1 at its begin to 1
+    double bound = 0.0;  ///< upper bound of sign · value
+    double likely = 0.0; ///< expected position of the maximum, from −1 (start) to 1
     int panel = 0, depth = 0;
     double begin = 0.0, end = 0.0;
   };
@@ -100,16 +102,16 @@ private:
   std::vector<Sought> formulas_;
   std::vector<char> is_formula_;
   OperandCurves curves_;
-  std::vector<std::function<double(const Snapshot&)>> rate_; ///< per operand; null: not known
+  std::vector<std::function<double(const Snapshot&)>> rate_; ///< per operand: function for its rate; null: unknown
   std::vector<double> rate_factor_;
 
   double t_ = 0.0, h_ = 0.0, h_last_ = 0.0;
   bool is_straight_ = false, has_looked_ = false;
   std::vector<double> first_, last_, before_, first_rate_, last_rate_, curvature_, error_;
-  std::vector<Span> spans_; ///< a heap
+  std::vector<Span> spans_; ///< heap
   std::vector<Whole> leaf_, node_;
   std::vector<Enclosure<0>> leaf_at_, node_at_;
-  long run_spans_ = 0; ///< looked at so far
+  long run_spans_ = 0; ///< number of intervals evaluated in the run so far
   int run_panels_ = 0;
 };
 

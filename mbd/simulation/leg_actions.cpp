@@ -1,4 +1,4 @@
-// RunLeg: where an action interrupts it, and how the next one begins.
+// RunLeg: interruption by an action, and the start of the following leg.
 #include "mbd/simulation/run_leg.h"
 
 #include "mbd/base/number_text.h"
@@ -31,7 +31,7 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
     const EventKind was = sliding_of(*unit.group, state_.mode[u]);
     const UnitMode before_it = state_.mode[u];
     state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
-    // What it loses with that is booked with all that is stored otherwise.
+    // Energy lost by the change of mode is included in the difference of stored energies below.
     if (state_.mode[u] != before_it) (void)unit.group->enter_mode(unit.index, state_.mode[u], dynamics_.evaluation(), state_.inner.data());
     if (const EventKind is = sliding_of(*unit.group, state_.mode[u]); is != was)
       record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});
@@ -42,7 +42,7 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
   make_parts(before.ledger_.get(), unhurt);
 }
 
-// True, and the leg is interrupted, where one is due; `known`: events that there were before this one was handled.
+// Interrupts the leg and returns true if an action is due. `known`: number of events before the present one was handled.
 bool RunLeg::is_action_due(std::size_t known) {
   if (!actions_ || is_over()) return false;
   const bool is_stepped = integrator_->stepped_state() != nullptr;

@@ -9,9 +9,9 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_roundings = 64.0; // of a coordinate: below that a displacement is rounding, however small the body
-constexpr long k_quiet_looks = 16;   // without a new direction: then looks become half as frequent
-constexpr long k_most_stride = 32;   // steps between looks: a direction that is moved is hardly ever moved for less
+constexpr double k_roundings = 64.0; // in units of a coordinate's rounding: a smaller displacement is rounding, however small the body
+constexpr long k_quiet_looks = 16;   // consecutive states without a new direction, after which recording becomes half as frequent
+constexpr long k_most_stride = 32;   // largest number of steps between records; a direction hardly ever moves for a shorter time
 constexpr std::size_t k_most_states = 16;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -38,7 +38,7 @@ MotionSpan::MotionSpan(const System& system, const State& begin)
 }
 
 void MotionSpan::remove(std::vector<double>& displacement) const {
-  for (int pass = 0; pass < 2; ++pass) // the second pass takes away what the first left by rounding
+  for (int pass = 0; pass < 2; ++pass) // the second pass removes rounding errors of the first
     for (const std::vector<double>& direction : directions_) {
       const double share = dot(direction, displacement);
       for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] -= share * direction[i];
@@ -60,14 +60,14 @@ bool MotionSpan::add(double t, const std::vector<double>& q) {
     displacement_[i] = weights_[i] * (q[i + 3] - begin_[i]);
     is_moved = is_moved || std::abs(displacement_[i]) > least_[i];
   }
-  if (!is_moved) return false; // what is small in every coordinate is small beyond the span
+  if (!is_moved) return false; // small in every coordinate, therefore small outside of the span
   const double whole = std::sqrt(dot(displacement_, displacement_));
   remove(displacement_);
   double beyond = 0.0;
   for (std::size_t i = 0; i < begin_.size(); ++i)
     if (least_[i] > 0.0) beyond = std::max(beyond, std::abs(displacement_[i]) / least_[i]);
   const double length = std::sqrt(dot(displacement_, displacement_));
-  constexpr double k_cancelled = 1e-12; // of a displacement: beyond the span it is rounding of the projections
+  constexpr double k_cancelled = 1e-12; // relative to the displacement: rounding errors of the projections
   if (!(beyond > 1.0) || !(length > k_cancelled * whole)) return false;
   for (double& part : displacement_) part /= length;
   directions_.push_back(displacement_);

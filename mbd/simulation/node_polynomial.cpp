@@ -11,19 +11,21 @@ namespace steplap {
 namespace {
 
 constexpr int k_points = NodePolynomial::k_last + 1;
-// Cuts of a gap between points: at the top one or two are enough, halvings take 24 to be off by 4^-24 of what the coefficients differ by.
+// Largest number of divisions of a gap. A division at the maximum rarely needs more than two; 24 bisections leave an error of 4^-24 of the
+// differences of the coefficients.
 constexpr int k_most_cuts = 24;
-constexpr int k_newton_steps = 4;        // towards the top: from a control point's place they leave rounding
-constexpr double k_beside_an_end = 0.02; // of a part: cut nearer, one of the two would hardly be smaller
+constexpr int k_newton_steps = 4;        // Newton iterations for the maximum; from the position of a control point they converge to
+                                         // rounding
+constexpr double k_beside_an_end = 0.02; // relative to a part: a division nearer to an end would hardly reduce the larger piece
 
 using Coefficients = std::array<double, k_points>;
 
-// Made before main(): threads that run side by side find it made.
+// Constructed before main(), so threads need no synchronisation.
 struct Tables {
-  /// Of level l, in the gap behind point j: what value i adds to coefficient k.
+  /// For level l and the gap after point j: contribution of value i to coefficient k.
   double bernstein[NodePolynomial::k_levels + 1][NodePolynomial::k_last][k_points][k_points] = {};
-  /// Of level l: what the sum (k even) or difference (k odd) of values i and n − i adds to the largest |p″| by Chebyshev's
-  /// polynomial T_k, whose second derivative is k² (k² − 1)/3 at most, and four times that on [0, 1].
+  /// For level l: contribution of the sum (k even) or difference (k odd) of values i and n − i to the bound of |p″| by Chebyshev polynomial
+  /// T_k, whose second derivative is at most k² (k² − 1)/3, and four times that on [0, 1].
   double bend[NodePolynomial::k_levels + 1][k_points][k_points] = {};
 
   Tables() {
@@ -39,7 +41,7 @@ struct Tables {
         for (int i = 0; i <= 1 << level; ++i) set(level, gap, i);
   }
 
-  // Lagrange's polynomial of point i is a product of factors that are linear in the gap: each raises the degree by one.
+  // Computes the Lagrange polynomial of point i as a product of factors that are linear in the gap; each raises the degree by one.
   void set(int level, int gap, int i) {
     const int step = NodePolynomial::spacing(level), n = 1 << level;
     const auto theta = [](int node) { return NodePolynomial::theta(node); };
@@ -77,8 +79,8 @@ constexpr auto k_weights = [] {
   return tables;
 }();
 
-// Three points in a row: the gaps between them, before · behind (before + behind), and what of `down` (may_exceed) the parabola
-// exceeds them by at most: in a gap w by a quarter of w² times its leading coefficient.
+// Three consecutive points: the gaps between them, before · behind (before + behind), and the largest excess of their parabola over them
+// per unit of `down` (may_exceed()). In a gap of width w it is w²/4 times the leading coefficient.
 struct Triple {
   double before = 0.0, behind = 0.0, product = 0.0, most = 0.0;
 };
@@ -96,14 +98,14 @@ constexpr auto k_triples = [] {
   return triples;
 }();
 
-// Looks for the top in a gap, or a part of one.
+// Searches the maximum in a gap, or in a part of one.
 class TopSearch {
 public:
   TopSearch(int degree, double floor, double slack) : degree_(degree), best_(floor), slack_(slack) {}
 
   [[nodiscard]] bool is_below(double bound) const { return bound <= best_ + slack_; }
 
-  // The part from `from` on, `width` wide.
+  // Searches the part that begins at `from` and has the given width.
   void look(const Coefficients& b, double from, double width, int cuts) {
     take(b[0], from);
     take(b[degree_], from + width);
@@ -129,12 +131,13 @@ public:
   [[nodiscard]] const std::optional<NodePolynomial::Top>& found() const { return found_; }
 
 private:
-  // By Newton's method from the highest coefficient's place. The middle where that leads to an end, or the part is not curved as about a top.
+  // Returns the position of the maximum by Newton's method from the largest coefficient; the middle if that leads to an end, or if the
+  // curvature is not that of a maximum.
   [[nodiscard]] double place_of_top(const Coefficients& b) const {
     const auto highest = std::max_element(b.begin(), b.begin() + degree_ + 1) - b.begin();
     double s = std::clamp(static_cast<double>(highest) / degree_, k_beside_an_end, 1.0 - k_beside_an_end);
     for (int step = 0; step < k_newton_steps; ++step) {
-      Coefficients d; // of the slope
+      Coefficients d; // coefficients of p′, without the factor n
       for (int j = 0; j < degree_; ++j) d[j] = b[j + 1] - b[j];
       for (int k = 1; k < degree_ - 1; ++k)
         for (int j = 0; j < degree_ - k; ++j) d[j] += s * (d[j + 1] - d[j]);
@@ -153,7 +156,7 @@ private:
 
 } // namespace
 
-// Barycentric.
+// Barycentric interpolation.
 double NodePolynomial::at(double theta) const {
   const int step = spacing(level_), n = 1 << level_;
   double above = 0.0, below = 0.0, sign = 1.0;
@@ -176,17 +179,18 @@ const NodePolynomial::Weights& NodePolynomial::weights_at(int level, double thet
 }
 
 bool NodePolynomial::may_exceed(double limit, double error, int level, const Values& values, double sign, double best) {
-  constexpr double k_rounded = 1e-14; // of values, and far more than they are rounded by here
+  constexpr double k_rounded = 1e-14; // relative to the values, far above their rounding errors here
   if (!(best + error <= limit)) return true;
   const int n = 1 << level;
   for (int i = 1; i < n; ++i) {
     const double p = sign * (values[i] - values[i - 1]), q = sign * (values[i] - values[i + 1]);
     if ((p < 0.0 || q < 0.0) && i != 1 && i != n - 1) continue;
     const Triple& t = k_triples[level][i];
-    const double down = p * t.behind + q * t.before; // of the parabola: its leading coefficient times the product
+    const double down = p * t.behind + q * t.before; // leading coefficient of the parabola times the product
     if (!(down > 0.0)) continue;
     const double middle = sign * values[i], three = middle + std::max({0.0, -p, -q});
-    if (three + 2.0 * t.most * down + k_rounded * (std::abs(middle) + std::abs(three)) + error <= limit) continue; // wherever its top is
+    if (three + 2.0 * t.most * down + k_rounded * (std::abs(middle) + std::abs(three)) + error <= limit)
+      continue; // the limit is not exceeded, wherever its maximum is
     const double slope = (p * t.behind * t.behind - q * t.before * t.before) / t.product;
     const double curve = down / t.product, shift = std::clamp(0.5 * slope / curve, -t.before, t.behind);
     const double top = middle + shift * (slope - curve * shift);
@@ -221,7 +225,7 @@ std::optional<NodePolynomial::Top> NodePolynomial::top_above(double floor, doubl
   TopSearch search(n, floor, slack);
   search.take(*most, theta(static_cast<int>(most - values_.begin()) * step));
   const double bend = largest_bend();
-  // The gaps beside the highest point first, for what they have rules out most of the others.
+  // The gaps next to the highest point come first, since their maximum excludes most of the others.
   const int first = std::max(static_cast<int>(most - values_.begin()) - 1, 0);
   for (int k = 0; k < n; ++k) {
     const int gap = (first + k) % n;

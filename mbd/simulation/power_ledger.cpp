@@ -9,7 +9,7 @@ namespace steplap {
 namespace {
 
 constexpr int k_most = 7;
-using Basis = std::array<std::array<double, k_most>, k_most>; // coefficients of each node's polynomial, 1 there and 0 at the others
+using Basis = std::array<std::array<double, k_most>, k_most>; // coefficients of the Lagrange polynomial of each node
 
 constexpr std::array<double, 7> k_seven = {0.0, 0.5 - 0.5 * 0.83022389627856693, 0.5 - 0.5 * 0.46884879347071421,
                                            0.5, 0.5 + 0.5 * 0.46884879347071421, 0.5 + 0.5 * 0.83022389627856693,
@@ -85,7 +85,7 @@ void PowerLedger::end(const Snapshot& snapshot) {
 }
 
 void PowerLedger::begin(double t, const Snapshot& snapshot) {
-  // What blows have taken as the motion began is remembered; nothing else that is stored hangs on what is remembered.
+  // Energy lost by impulses at the start is counted from the memory before them. No other stored energy depends on the memory.
   if (known_ == 0) {
     Snapshot unhurt = snapshot;
     unhurt.memory = unhurt_.data();

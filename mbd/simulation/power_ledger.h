@@ -1,11 +1,10 @@
-// Integrals of power that channels on request ask for (System::integrands): energy that single elements have dissipated,
-// work that they have done.
+// Time integrals of powers for channels on request (System::integrands): dissipated energy and work of single elements.
 //
-// They are no part of the state, so that asking for them changes no step and no bit of the motion. Over each step, up to an
-// event inside it, the powers are taken on the dense output at the points of Gauss and Lobatto: seven of methods that
-// choose their steps (exact to degree 11 at the step's end, 6 within), three of those that do not (3 and 2, as good as their own
-// order). Time stepping takes the power of a step's end for all of it, as it books the energies of the whole. What an event takes
-// from stored energy at once (a tie that breaks) counts with the integral of that element.
+// They are not part of the state, so that requesting them does not change steps or motion in any bit. Over each step (up to an event in it)
+// the powers are evaluated on the dense output at Gauss–Lobatto points: seven for adaptive methods (exact to degree 11 at the end of the
+// step, 6 within), three for fixed steps (3 and 2, sufficient for their order). Time stepping uses the power at the end of a step for the
+// whole step, as in its energy account. A sudden decrease of stored energy at an event (a tie that breaks) is added to the integral of that
+// element.
 #pragma once
 
 #include "mbd/integrators/integrator.h"
@@ -14,43 +13,44 @@
 
 namespace steplap {
 
-/// Integrates powers beside a run; one per Simulation.
+/// Integrates powers during a run; one per Simulation.
 class PowerLedger final : public Integrals {
 public:
-  /// `max_dimension`: of the packed state; `memory`: the state's, before the blows that it took as the motion began. Refers to the system.
+  /// `max_dimension`: upper limit of the dimension of the packed state; `memory`: State::memory before the impulses at the start. Keeps a
+  /// reference to the system.
   PowerLedger(const System& system, int max_dimension, std::vector<double> memory);
 
-  /// What `before` had come to counts from here on: of another system with the same integrands.
+  /// Continues with the integrals of `before`, whose system has the same integrands.
   void go_on_from(const PowerLedger& before) { total_ = before.total_; }
-  /// A state from which the motion goes on anew: the start, the far side of an event.
+  /// Starts anew at a state: the start of the run, or after an event.
   void begin(double t, const Snapshot& snapshot);
-  /// The step just made counts up to t.
+  /// Adds the last step up to time t.
   void add_step(double t, Integrator& integrator, Dynamics& dynamics);
-  /// The same of time stepping, since t was last known; `snapshot` at t.
+  /// Adds an interval of time stepping, from the last known time to t; `snapshot` belongs to t.
   void add_stepped(double t, const Snapshot& snapshot);
-  /// An event is about to be handled, at `snapshot`.
+  /// To be called before an event is handled, with the state before it.
   void end(const Snapshot& snapshot);
-  /// Does any integrand take energy from what is stored at events?
+  /// Returns true if some integrand includes stored energy.
   [[nodiscard]] bool has_stored() const { return has_stored_; }
 
   [[nodiscard]] double value(int slot, double t) const override;
 
 private:
-  static constexpr int k_nodes = 7;         ///< at most
-  static constexpr std::size_t k_kept = 40; ///< stretches that may still be asked for (ExtremeFinder::k_longest, twice)
+  static constexpr int k_nodes = 7;         ///< largest number of nodes
+  static constexpr std::size_t k_kept = 40; ///< number of pieces kept; older ones are not requested (ExtremeFinder::k_longest, twice)
   /// ∫ power over part of a step: base + h Σ coefficient_k θ^(k+1)/(k+1).
   struct Piece {
     double t0 = 0.0, h = 0.0;
-    std::vector<double> base, coefficient; ///< per integrand; k_nodes of each
+    std::vector<double> base, coefficient; ///< per integrand; coefficient: k_nodes numbers each
   };
 
   Piece& next_piece(double t0, double h);
   void close(const Piece& piece);
 
   const System& system_;
-  std::vector<double> unhurt_; ///< memory before the first blows
+  std::vector<double> unhurt_; ///< memory (State::memory) before the first impulses
   std::size_t count_;
-  std::vector<Piece> pieces_; ///< a ring
+  std::vector<Piece> pieces_; ///< ring buffer
   std::size_t last_ = 0, known_ = 0;
   double t_ = 0.0;
   std::vector<double> total_, stored_;

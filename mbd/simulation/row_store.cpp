@@ -15,7 +15,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_block = std::size_t{1} << 17; // numbers, about: 1 MB
+constexpr std::size_t k_block = std::size_t{1} << 17; // approximate number of values in a block, 1 MB
 
 std::string spill_folder() {
   const char* wanted = std::getenv("TMPDIR");
@@ -23,13 +23,13 @@ std::string spill_folder() {
   return ::access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
 }
 
-// A file without a name.
+// Opens an unnamed file.
 int open_unnamed(const std::string& folder) {
 #ifdef O_TMPFILE
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0) return file;
 #endif
-  std::string name = folder + "/steplap.XXXXXX"; // file systems that know no such files
+  std::string name = folder + "/steplap.XXXXXX"; // for file systems without unnamed files
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) ::unlink(name.c_str());
   return named;
@@ -52,16 +52,16 @@ double* RowStore::add_row() {
   const std::size_t full_size = (mask_ + 1) * width_;
   if (tail_.size() == full_size) {
     if (file_ < 0 && (full_ + 2) * full_size > most_in_memory_) move_to_disk();
-    cached_ = ~std::size_t{0}; // it may be the tail's
+    cached_ = ~std::size_t{0}; // the cached block may be the tail
     if (file_ >= 0) write_block(full_, tail_);
     else blocks_.push_back(std::exchange(tail_, {}));
     ++full_;
     tail_.clear();
   }
-  if (tail_.empty()) tail_.reserve(full_size); // what is not used of it takes no memory: rows do not move as they come
+  if (tail_.empty()) tail_.reserve(full_size); // unused capacity takes no physical memory, and rows are not moved when others are added
   const double* before = tail_.data();
   tail_.resize(tail_.size() + width_);
-  if (cache_ == before) cached_ = ~std::size_t{0}; // it has moved, or may have
+  if (cache_ == before) cached_ = ~std::size_t{0}; // the cached block has moved or may have moved
   ++size_;
   return tail_.data() + (tail_.size() - width_);
 }
@@ -110,7 +110,7 @@ void RowStore::write_block(std::size_t block, const std::vector<double>& values)
 
 void RowStore::fail(int code, const std::string& folder) {
   has_failed_ = true;
-  if (file_ >= 0 && !blocks_.empty()) { // what is in memory still stays there
+  if (file_ >= 0 && !blocks_.empty()) { // blocks still in memory remain there
     ::close(file_);
     file_ = -1;
   }

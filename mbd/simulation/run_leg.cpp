@@ -19,18 +19,18 @@ namespace steplap {
 
 namespace {
 
-// Events within this relative distance of each other count as one instant; more of them than the
-// limit means that modes chase each other without the motion getting anywhere.
+// Events within this relative distance count as simultaneous. More simultaneous events than the limit mean that modes alternate without
+// progress of the motion.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
 constexpr long k_steps_between_looks = 1L << 16;
-// By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
-// capacities and finds events to rounding; what is a thousand times that is neither.
+// Relative amount by which a sticking joint may exceed its limit. The mode problem determines wrenches to 1e-9 of the capacities, and
+// events are located to rounding; a thousand times that is an error.
 constexpr double k_held_beyond = 1e-6;
-// Kinks of tables are no sign of anything wrong, and cost little; but a list of more than a million is read by nobody.
+// Number of kinks of tables after which a run is aborted. They are harmless and cheap, but a longer list is of no use.
 constexpr long k_least_kinks = 1000000;
 constexpr long k_kinks_per_event = 10;
-constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
+constexpr double k_output_slack = 1e-9; // relative to the output step: a sample due within this distance of an end is taken there
 
 } // namespace
 
@@ -51,7 +51,7 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   if (options_.output_step > 0.0) record_sample(state_.t);
 }
 
-// Places and velocities are such that what holds is met to rounding by now, or to the digits of the file.
+// Precondition: the constraints are satisfied to rounding, or to the digits of the file.
 void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& unhurt) {
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
@@ -78,7 +78,7 @@ void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& un
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
 }
 
-// Time stepping is linear in absolute coordinates.
+// Time stepping requires absolute coordinates, in which positions are linear in velocities.
 Coordinates RunLeg::chosen_coordinates() const {
   return method(options_.integrator).is_time_stepping ? Coordinates::absolute : options_.coordinates;
 }
@@ -97,15 +97,16 @@ void RunLeg::refuse_time_stepping() const {
       "integrator, auto for one");
 }
 
-// Where something begins to move otherwise, or a law to change: no method steps over that.
+// Returns the next time at which a motion or a law changes abruptly. No step may pass it.
 double RunLeg::next_motion_limit() const {
   const auto next = std::upper_bound(system_.motion_breakpoints.begin(), system_.motion_breakpoints.end(), state_.t);
   return next == system_.motion_breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
 
-// Up to where `step` may go that takes forces by their means: over what is too near for a step of its own.
+// Returns the limit of a step of length `step` for methods that average forces: breakpoints of forces that are too near for a step of their
+// own are passed.
 double RunLeg::next_limit_of_steps(double step) const {
-  constexpr double k_own_step = 1e-4; // of a step: far above what time stepping takes for rounding
+  constexpr double k_own_step = 1e-4; // relative to a step; far above the tolerance for rounding in time stepping
   const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);
   return next == system_.breakpoints.end() ? next_motion_limit() : std::min(*next, next_motion_limit());
 }
@@ -116,7 +117,7 @@ double RunLeg::next_limit() const {
   return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
 
-// What signals do up to the next breakpoint.
+// Lets signals be read as left limits of the next breakpoint.
 void RunLeg::approach_limit() {
   limit_ = next_limit();
   dynamics_.set_time_limit(limit_);
@@ -128,7 +129,7 @@ void RunLeg::approach_limit() {
   integrator_->limit_step(longest);
 }
 
-// `is_evaluated`: by the handler, as this state is.
+// `is_evaluated`: the handler has just evaluated this state.
 void RunLeg::restart(bool is_evaluated) {
   is_evaluated = is_evaluated && next_limit() == limit_;
   if (!is_evaluated) dynamics_.set_state(state_);
@@ -150,7 +151,7 @@ void RunLeg::restart(bool is_evaluated) {
   is_between_events_ = true;
 }
 
-// What no method may pass on.
+// Throws if the state at the end of the step contains numbers that are not finite.
 void RunLeg::check_finite() {
   const double* y = integrator_->y1();
   for (int i = 0; i < dynamics_.dimension(); ++i)
@@ -167,9 +168,8 @@ void RunLeg::fail_infinite(double t) const {
   throw ElementFailure(message.str(), {std::string(record_->events.back().element)});
 }
 
-// A joint that is part of the motion holds as long as it can: one that holds beyond its limit is a fault of the event
-// finder or of the mode problem, and whatever it is taken to bear is wrong. Of a group that shares a load the watch is the
-// group's.
+// A joint that sticks must be within its limit; otherwise the event finder or the mode problem has failed and the results are wrong. For a
+// group that shares a load the event function is that of the group.
 void RunLeg::check_holding(double t, const std::vector<double>& watch) const {
   for (const int f : joints_) {
     const double left = watch[system_.frictions[f].watch];
@@ -182,7 +182,7 @@ void RunLeg::check_holding(double t, const std::vector<double>& watch) const {
   }
 }
 
-// y_ holds the state to sample.
+// Precondition: y_ contains the state to be sampled.
 void RunLeg::record_sample(double t) {
   dynamics_.rates(t, y_.data(), dy_.data());
   const Snapshot snapshot = dynamics_.snapshot(dy_.data());
@@ -191,13 +191,13 @@ void RunLeg::record_sample(double t) {
   if (options_.progress) options_.progress(t);
 }
 
-// Before anything is looked at in the step made, up to t.
+// To be called before the step is evaluated inside, up to t.
 void RunLeg::keep_ledger(double t) {
   if (ledger_) ledger_->add_step(t, *integrator_, dynamics_);
 }
 
-// Between the ends of a step a curve through them meets the joints to the accuracy of the step only, where no coordinates of
-// the joints carry it. Beside a singular position it stays as it is.
+// Projects a state within a step onto the joints. In absolute coordinates the dense output satisfies them only to the accuracy of the step.
+// Near a singular position the state is left unchanged.
 static void close_joints(Dynamics& dynamics, double t, std::vector<double>& y, double tolerance) {
   const Residual off = dynamics.residual(t, y.data());
   if (!(off.position > tolerance)) return;
@@ -209,7 +209,7 @@ static void close_joints(Dynamics& dynamics, double t, std::vector<double>& y, d
   }
 }
 
-// Samples due in the step made, up to t.
+// Takes the samples that are due in the step made, up to t.
 void RunLeg::sample_until(double t) {
   if (options_.output_step <= 0.0) return;
   for (;;) {
@@ -222,7 +222,7 @@ void RunLeg::sample_until(double t) {
   }
 }
 
-// Whose switching value it is.
+// Returns the name of the element to which an event function belongs.
 std::string RunLeg::owner_of(int slot) const {
   int element = -1;
   for (const Unit& unit : system_.units)
@@ -243,7 +243,7 @@ void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
   message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
                                                       : "more events than simulation.max_events by t = ")
           << t << " s; ";
-  if (record_->events.empty()) { // of a kind that is not written
+  if (record_->events.empty()) { // no reported event so far
     message << "a switching value of '" << owner_of(fired.back()) << "' keeps changing its sign";
     throw ElementFailure(message.str(), {owner_of(fired.back())});
   }
@@ -254,7 +254,7 @@ void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
   throw ElementFailure(message.str(), {std::string(record_->events.back().element)});
 }
 
-// A method that chooses its steps may choose such small ones that the run would never end.
+// Throws if the steps have become so small that the run would never end.
 void RunLeg::guard_against_crawl() {
   if (integrator_->steps() < next_look_) return;
   const double t = integrator_->t1(), passed = t - last_look_;
@@ -271,7 +271,8 @@ void RunLeg::guard_against_crawl() {
   throw NumericalFailure(message.str());
 }
 
-// The force of a joint that slides is none where its sheets have parted: the step went on past that kink.
+// Returns true if all event functions belong to sliding joints. When its sheets separate such a joint has no force; the step has continued
+// beyond this kink.
 bool RunLeg::are_joints(const std::vector<int>& slots) const {
   return std::all_of(slots.begin(), slots.end(), [this](int slot) {
     return std::any_of(system_.frictions.begin(), system_.frictions.end(), [slot](const FrictionUnit& unit) {
@@ -317,8 +318,8 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
   restart(handler_.is_evaluated());
 }
 
-// `evaluations`: as many as there were when the step was made; none since means that `dynamics_` is at its end. (A method
-// that chooses its steps may have used it for more than evaluations.)
+// `evaluations`: number of evaluations when the step was made. If there were none since, `dynamics_` is at the end of the step. (An
+// adaptive method may have used it for other purposes.)
 void RunLeg::look_for_extremes(long evaluations, bool is_last) {
   if (!extremes_) return;
   const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
@@ -326,10 +327,10 @@ void RunLeg::look_for_extremes(long evaluations, bool is_last) {
   if (options_.has_growth) keep_growth(integrator_->t1(), false);
 }
 
-// Times that are kept are spread evenly over what has been run: where they are too many, every other one is dropped.
+// Keeps times evenly distributed over the run so far. When there are too many, every other one is dropped.
 void RunLeg::keep_growth(double t, bool is_last) {
   constexpr std::size_t k_most = 128;
-  constexpr double k_finest = 1e-4; // of the whole run: it may be ended early
+  constexpr double k_finest = 1e-4; // smallest interval, relative to the duration of the run, which may end early
   std::vector<ExtremesSoFar>& kept = record_->growth;
   if (record_->growth_step == 0.0) record_->growth_step = k_finest * options_.end;
   if (!is_last && !kept.empty() && t < kept.back().t + record_->growth_step) return;
@@ -342,19 +343,19 @@ void RunLeg::keep_growth(double t, bool is_last) {
   kept.resize(count);
 }
 
-// False at the end.
+// Returns false at the end.
 bool RunLeg::begin_advance() {
   if (is_over()) return false;
   integrator_->begin_step(dynamics_, next_limit());
   return true;
 }
 
-// True once the step is made. Throws NumericalFailure.
+// Returns true once the step is made. Throws NumericalFailure.
 bool RunLeg::conclude_try() {
   bool is_made = false;
   try {
     is_made = integrator_->conclude_try(dynamics_);
-  } catch (const JointsNearSingular&) { // rounding is spread otherwise over places and angles
+  } catch (const JointsNearSingular&) { // in absolute coordinates rounding errors differ, so the step may succeed
     state_ = current_state();
     options_.coordinates = Coordinates::absolute;
     dynamics_.use_coordinates(Coordinates::absolute);
@@ -371,7 +372,7 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
-// Ends the step where the condition of an armed action becomes true inside it. Returns true if the step is withdrawn for that.
+// Ends the step where the condition of an armed action becomes true inside it. Returns true if the step is withdrawn for this purpose.
 bool RunLeg::ends_at_truth() {
   if (!integrator_->bears_look(dynamics_)) return true;
   const double place = conditions_->place_of_truth(*integrator_, dynamics_, actions_->is_armed);
@@ -381,10 +382,10 @@ bool RunLeg::ends_at_truth() {
   return false;
 }
 
-// Events in the step made, its samples, its end. False: the step is withdrawn, and another try of it due.
+// Handles the events in the step made, its samples and its end. Returns false if the step is withdrawn and must be tried again.
 bool RunLeg::pass_step() {
   const double limit = next_limit();
-  constexpr long k_now_and_then = 64; // steps: also where no sample is due for long
+  constexpr long k_now_and_then = 64; // number of steps after which progress is reported even if no sample is due
   if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
@@ -440,9 +441,9 @@ bool RunLeg::pass_step() {
   return true;
 }
 
-// The last row, wherever the run ends, and the values that channels end with.
+// Takes the last row, wherever the run ends, and the final values of channels.
 void RunLeg::end_run() {
-  if (!is_between_events_) return; // it broke off at an event
+  if (!is_between_events_) return; // the run was aborted at an event
   is_between_events_ = false;
   const double t = integrator_->t0();
   std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
@@ -453,15 +454,15 @@ void RunLeg::end_run() {
   finish_extremes();
 }
 
-// At y_.
+// Precondition: y_ contains the final state.
 void RunLeg::finish_extremes() {
   if (!extremes_) return;
   const double t = integrator_->t0();
   dynamics_.rates(t, y_.data(), dy_.data());
   extremes_->finish(dynamics_.snapshot(dy_.data()));
   if (options_.has_growth) keep_growth(t, true);
-  // A straight line backwards: within a ten-millionth of the run velocities change by too little to matter for a rate, and places of the
-  // size of the scene are still known to a millionth of what they change by.
+  // Extrapolates linearly backwards. Within 1e-7 of the run velocities change too little to affect a rate, and the change of positions is
+  // still accurate to 1e-6.
   constexpr double k_before = 1e-7;
   const double before = k_before * options_.end;
   for (int i = 0; i < dynamics_.dimension(); ++i) y_[static_cast<std::size_t>(i)] -= before * dy_[static_cast<std::size_t>(i)];
@@ -471,17 +472,17 @@ void RunLeg::finish_extremes() {
   extremes_->finish_rates(dynamics_.snapshot(dy_.data()), before);
 }
 
-// Bodies have the impulse of what a step of time stepping passes over, but no force or acceleration shows it.
+// Reports a part of a load that a time step has averaged: bodies get its impulse, but no force or acceleration shows it.
 void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
-  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // times that were meant to be the same
+  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
   const std::vector<double>& times = system_.breakpoints;
   for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;
        ++next)
     if (*(next + 1) - *next > k_rounding * *(next + 1)) statistics_.passed_pulse = *next;
 }
 
-// A step that has decided the modes itself: they are taken over, and noted where they changed.
+// Takes over the modes from a method that determines them itself, and reports the changes.
 void RunLeg::pass_stepped() {
   const double t1 = integrator_->t1();
   note_passed(state_.t, t1);
@@ -490,7 +491,7 @@ void RunLeg::pass_stepped() {
     ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
   }
   sample_until(t1);
-  energy_.note(dynamics_, t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
+  energy_.note(dynamics_, t1, integrator_->y1()); // before the next statement, which may discard the layout of the step
   const std::size_t known = record_->events.size();
   handler_.note_changes(state_, *integrator_->stepped_state(), record_->events);
   state_ = *integrator_->stepped_state();
@@ -508,12 +509,12 @@ State RunLeg::current_state() const {
 }
 
 void RunLeg::read_state(State& into) const {
-  into = state_; // of the same size
+  into = state_; // same size, so no allocation
   dynamics_.unpack(integrator_->t0(), integrator_->y0(), into);
 }
 
-// Layouts are made anew, since bodies that are merged in them are where they were. What is displaced along the constraints meets them to
-// the square of the displacement.
+// Layouts are recomputed, since they contain the relative poses of merged bodies. A displacement along the constraints violates them by its
+// square only.
 void RunLeg::displace(const std::vector<double>& by) {
   state_ = current_state();
   for (std::size_t i = 0; i < by.size(); ++i) state_.q[i] += by[i];

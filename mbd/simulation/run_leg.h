@@ -1,7 +1,7 @@
-// A leg of a run: as far as the same elements act. Steps, events between them, samples, and the account of energy and accuracy.
+// A leg of a run: the part during which the same elements are active, with its steps, events, samples, and accounts of energy and accuracy.
 //
-// A run without actions is one leg. Where an action is due the leg is interrupted: Simulation does what it says, and goes on with
-// this leg or with one in another system.
+// A run without actions has one leg. When an action is due the leg is interrupted; Simulation executes the action and continues with this
+// leg, or with one in another system.
 #pragma once
 
 #include "mbd/events/event_finder.h"
@@ -22,49 +22,50 @@
 
 namespace steplap {
 
-/// Steps through a leg; owns everything that changes. One object per thread.
+/// Computes one leg; owns all that changes. One object per thread.
 class RunLeg {
 public:
-  /// The first one starts at `initial`: poses and velocities are first moved onto the constraints. `actions`: null if the model has none.
+  /// First leg: starts at `initial`, projected onto the constraints. `actions`: null if the model has none.
   RunLeg(const System& system, const State& initial, SimulationOptions options, ActionTriggers* actions);
-  /// Goes on where `before` was interrupted, with what `change` says. Throws ElementFailure for what cannot close.
+  /// Continues after the interruption of `before`, with the changes in `change`. Throws ElementFailure if an activated joint or rope does
+  /// not fit.
   RunLeg(RunLeg& before, const Changeover& change);
   RunLeg(const RunLeg&) = delete; // its parts refer to each other
   RunLeg& operator=(const RunLeg&) = delete;
 
-  /// One accepted step, or up to an event and through it. False at the end, or where it is interrupted.
+  /// Makes one accepted step, or a step up to an event and through it. Returns false at the end, or if the leg is interrupted.
   bool advance();
-  /// An action is due: nothing more is done before go_on(), close() or another leg.
+  /// Returns true if an action is due. Then go_on(), close() or another leg must follow.
   [[nodiscard]] bool is_interrupted() const { return is_interrupted_; }
-  /// No action is due any more.
+  /// Continues after an interruption. To be called when no action is due any more.
   void go_on();
-  /// Its last values, where it was interrupted.
+  /// Computes the last values at the interruption.
   void close(bool is_end_of_run);
-  /// Asks the actions whether one is due at state(), with the events from `known` on.
+  /// Sets the interruption if an action is due at state(), given the events from index `known` on.
   void look_for_actions(std::size_t known) { is_interrupted_ = is_action_due(known); }
-  /// At the end of the run, or where an element ended it.
+  /// Returns true at the end of the run, or after an element has ended it.
   [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
 
-  [[nodiscard]] const System& system() const { return system_; } ///< that it is computed in
+  [[nodiscard]] const System& system() const { return system_; } ///< system in which the leg is computed
   [[nodiscard]] const State& state() const { return state_; }    ///< at the last event or the end
-  /// The state after the last step, whether or not an event ended it.
+  /// Returns the state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
-  /// Writes the state into `into`, which belongs to this leg's system, without allocating.
+  /// Writes the state to `into`, a state of this leg's system, without allocating.
   void read_state(State& into) const;
-  /// Goes on with the bodies displaced by `by` (Simulation::displace).
+  /// Continues with the bodies displaced by `by` (Simulation::displace).
   void displace(const std::vector<double>& by);
-  [[nodiscard]] RunRecord& record() const { return *record_; } ///< of the whole run so far
-  /// Not empty if an element ended the run before its time ("'front joint' came apart").
+  [[nodiscard]] RunRecord& record() const { return *record_; } ///< record of the whole run so far
+  /// Returns why an element ended the run ("'front joint' came apart"); empty if none did.
   [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }
-  /// Of this leg, without its time.
+  /// Returns the statistics of this leg, without CPU time.
   [[nodiscard]] RunStatistics statistics() const;
-  /// Of all channels, if they were asked for; complete behind close() or the end.
+  /// Returns the ranges of all channels, if requested; complete after close() or the end.
   [[nodiscard]] std::vector<ChannelRange> ranges() const { return extremes_ ? extremes_->ranges() : std::vector<ChannelRange>{}; }
-  /// Of a run that failed: its last values, as far as they are known.
+  /// Computes the last values of a failed run, as far as known.
   void break_off();
 
 private:
-  void make_parts(const PowerLedger* before, const std::vector<double>& unhurt); // memory before the blows of the start
+  void make_parts(const PowerLedger* before, const std::vector<double>& unhurt); // `unhurt`: memory before the impulses at the start
   void finish_extremes();
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
@@ -99,8 +100,8 @@ private:
   [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();
 
-  // rad, of a harmonic of a load or drive in a step whose error nothing controls: of the fourth order it then takes half a wave
-  // to 1e-5.
+  // Largest angle, rad, by which a harmonic of a load or drive may turn in a step without error control. A method of order 4 then
+  // integrates half a wave with an error of 1e-5.
   static constexpr double k_turn_of_fixed_steps = 0.4;
 
   const System& system_;
@@ -111,27 +112,27 @@ private:
   EventFinder finder_;
   SwallowedCheck swallowed_;
   std::unique_ptr<Integrator> integrator_;
-  std::unique_ptr<ExtremeFinder> extremes_; ///< null if they are not asked for
-  std::unique_ptr<PowerLedger> ledger_;     ///< null if no channel asks for one
-  std::shared_ptr<RunRecord> record_;       ///< shared with the legs before and behind
-  ActionTriggers* actions_ = nullptr;       ///< of the run; null if the model has none
-  const ActionGroup* group_ = nullptr;      ///< of this system; null if the model has none
-  /// Null if no condition is a formula that steps may leap over.
+  std::unique_ptr<ExtremeFinder> extremes_; ///< null if extremes are not requested
+  std::unique_ptr<PowerLedger> ledger_;     ///< null if no channel needs it
+  std::shared_ptr<RunRecord> record_;       ///< shared with the legs before and after
+  ActionTriggers* actions_ = nullptr;       ///< triggers of the run; null if the model has no actions
+  const ActionGroup* group_ = nullptr;      ///< actions of this system; null if the model has none
+  /// Null if no condition is a formula that could be true within a step only.
   std::unique_ptr<ConditionSearch> conditions_;
-  bool is_interrupted_ = false; ///< some action is due
+  bool is_interrupted_ = false; ///< an action is due
   EventStorm storm_;
-  std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it
+  std::unique_ptr<TimeStepping> stepping_; ///< created when the first storm occurs
   std::vector<double> y_, dy_;
-  std::vector<int> joints_; ///< friction elements of several dimensions that may slip
+  std::vector<int> joints_; ///< friction elements with several rows that may slip
   EnergyAccount energy_;
-  bool is_between_events_ = false; ///< the integrator and state_ fit each other
-  double limit_ = 0.0;             ///< up to which signals are read: the last breakpoint set, or the end
+  bool is_between_events_ = false; ///< the integrator and state_ are consistent
+  double limit_ = 0.0;             ///< time up to which signals are read as left limits: the next breakpoint, or the end
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
-  long kinks_ = 0;                  ///< of characteristics, which long tables have many of: max_events leaves them out
-  long next_look_ = 0;              ///< steps at which the pace is looked at
-  double last_look_ = 0.0;          ///< t at the last look
-  long evaluations_behind_end_ = 0; ///< for rates at the end: no part of the motion
+  long kinks_ = 0;                  ///< kinks of force laws; not counted in max_events, since tables can have many
+  long next_look_ = 0;              ///< number of steps at which progress is checked next
+  double last_look_ = 0.0;          ///< time of the last check
+  long evaluations_behind_end_ = 0; ///< evaluations for rates at the end, which are not part of the motion
   RunStatistics statistics_;
 };
 

@@ -1,4 +1,4 @@
-// What is asked of a run, and what it leaves behind.
+// Options and results of a run.
 #pragma once
 
 #include "mbd/events/event_handler.h"
@@ -17,68 +17,70 @@ namespace steplap {
 
 struct LegMotion;
 
-/// How a run is made. What is wrong with it is thrown as std::invalid_argument when the run begins.
+/// Options of a run. Invalid ones are reported by std::invalid_argument at its start.
 struct SimulationOptions {
   double end = 1.0;                                 ///< s
   std::string integrator = "auto";                  ///< name of a method (mbd/model/method.h)
-  IntegratorSettings settings;                      ///< step, tolerance and the like, of the method
+  IntegratorSettings settings;                      ///< settings of the method: step, tolerance and others
   Coordinates coordinates = Coordinates::automatic; ///< moreau: always absolute
-  StageCode stage_code = StageCode::when_it_pays;   ///< of explicit methods
-  std::size_t kept_layouts = 0;                     ///< at a time (layout_store.h); 0: as memory allows. Changes no result
+  StageCode stage_code = StageCode::when_it_pays;   ///< for explicit methods
+  std::size_t kept_layouts = 0;                     ///< largest number of cached layouts (layout_store.h); 0: by memory. Does not affect
+                                                    ///< results
   double output_step = 0.0;                         ///< s; 0: no samples
-  std::vector<std::string> channels;                ///< patterns of those sampled; empty: all
-  bool has_extremes = false;                        ///< look for the extremes of all channels, sampled or not
+  std::vector<std::string> channels;                ///< patterns of the channels to be sampled; empty: all
+  bool has_extremes = false;                        ///< compute the extremes of all channels, sampled or not
   bool has_growth = false;                          ///< keep how these have grown (RunResult::growth); needs has_extremes
   bool notes_motion = false;                        ///< keep RunResult::legs. Changes no other result
   double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
   long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;                         ///< beyond which the run is given up
-  std::function<void(double t)> progress;           ///< called now and then, if given
+  std::function<void(double t)> progress;           ///< called from time to time, if given
 };
 
-/// The options a model asks for.
+/// Returns the options given in a model.
 [[nodiscard]] SimulationOptions options_of(const Model& model);
 
-/// What a run took and how exact it was.
+/// Effort and accuracy of a run.
 struct RunStatistics {
-  long steps = 0, rejections = 0, evaluations = 0, events = 0; ///< steps that counted, tries refused, evaluations of all forces, events
+  long steps = 0, rejections = 0, evaluations = 0, events = 0; ///< accepted steps, rejected tries, evaluations of all forces, events
   long coded_stages = 0;                                       ///< evaluations made by machine code
-  long storms = 0;                                             ///< stretches that time stepping went over
+  long storms = 0;                                             ///< intervals of time stepping through storms of events
   double max_position_residual = 0.0;                          ///< before projection, m or rad
-  double max_velocity_residual = 0.0;                          ///< the same of velocities, m/s or rad/s
+  double max_velocity_residual = 0.0;                          ///< before projection, m/s or rad/s
   double energy_residual = 0.0;                                ///< largest |E + dissipated − work − E₀| met, J
-  double energy_exchanged = 0.0;                               ///< largest change of kinetic energy, work, dissipation met at any step, J
-  double energy_scale = 0.0;                                   ///< what the residual is measured against (EnergyAccount::scale), J
-  double energy_worst_step = 0.0;                              ///< largest energy a step made or lost, of what its tolerance lets it
-  double energy_rounding = 0.0;                                ///< below this a residual is rounding of the energies, J
+  double energy_exchanged = 0.0;                               ///< largest change of kinetic energy, work or dissipation at any step, J
+  double energy_scale = 0.0;                                   ///< energy relative to which the residual is judged (EnergyAccount::scale),
+                                                               ///< J
+  double energy_worst_step = 0.0;                              ///< largest energy error of a step relative to its bound
+  double energy_rounding = 0.0;                                ///< rounding error of the energies, J
   double dissipated = 0.0, work = 0.0;                         ///< J
-  std::optional<double> passed_pulse;        ///< s: where time stepping passed over a part of a load that is far shorter than its step
-  Integrator::DividedSteps divided_steps;    ///< fixed steps in which bodies would have turned too far
-  std::optional<double> undecided_condition; ///< s: where nobody knows whether the condition of an action was true for an instant
-  double cpu_seconds = 0.0;                  ///< of this thread, samples included
+  std::optional<double> passed_pulse;        ///< time, s, at which time stepping passed over part of a load much shorter than its step
+  Integrator::DividedSteps divided_steps;    ///< fixed steps that were divided because bodies would have turned too far
+  std::optional<double> undecided_condition; ///< time, s, at which it is unknown whether the condition of an action was briefly true
+  double cpu_seconds = 0.0;                  ///< CPU time of this thread, including samples
 };
 
-/// Extremes as they were at some time of a run, of what went before.
+/// Extremes up to some time of a run.
 struct ExtremesSoFar {
   double t = 0.0;                               ///< s
-  std::vector<std::pair<double, double>> range; ///< per channel: least and largest value; not-a-number: none yet
+  std::vector<std::pair<double, double>> range; ///< per channel: minimum and maximum; NaN: none yet
 };
 
-/// What a run leaves behind. Channels in it belong to the system, which has to outlive it.
+/// Results of a run. Its channels belong to the system, which must outlive it.
 struct RunResult {
-  std::unique_ptr<Trajectory> trajectory; ///< the samples; never nullptr
-  std::vector<ChannelRange> ranges;       ///< of every channel of the system, if they were asked for
+  std::unique_ptr<Trajectory> trajectory; ///< samples; not null
+  std::vector<ChannelRange> ranges;       ///< for every channel of the system, if requested
   std::vector<ExtremesSoFar> growth;      ///< of these, at some tens of times spread over the run, if that was asked for
   std::vector<Event> events;              ///< ascending in time
   RunStatistics statistics;               ///< what it took, and how exact it was
   State final_state;                      ///< at the end, or where the run stopped
-  std::string stop_reason;                ///< empty if it ran to its end; else which element ended it, and why
-  std::string ended_by;                   ///< name of the action that ended it as the model says; empty: none
-  /// How each leg of the run moved (leg_motion.h); null if that was not asked for.
+  std::string stop_reason;                ///< reason why an element ended the run early; empty if it reached its end
+  std::string ended_by;                   ///< name of the action that ended the run; empty: none
+  /// Motion of each leg (leg_motion.h); null if not requested.
   std::shared_ptr<const std::vector<LegMotion>> legs;
 };
 
-/// What all parts of a run add to.
+/// Record to which all legs of a run contribute.
 struct RunRecord {
   std::unique_ptr<Trajectory> trajectory; ///< never nullptr
   std::vector<Event> events;              ///< ascending in time
@@ -87,7 +89,7 @@ struct RunRecord {
   long samples = 0;                       ///< taken so far
 };
 
-/// CPU time of this thread, s.
+/// Returns the CPU time of this thread, s.
 [[nodiscard]] double thread_cpu_seconds();
 
 } // namespace steplap

@@ -1,7 +1,7 @@
-// A run: its legs, and what happens between them.
+// A run, consisting of one or more legs.
 //
-// Which elements act is fixed in a compiled system. Where an action changes that, the run goes on in another system that is compiled
-// from the same model (run_leg.h, changeover.h): whatever holds of a model holds of each leg.
+// The active elements of a compiled system are fixed. When an action changes them, the run continues in another system compiled from the
+// same model (run_leg.h, changeover.h).
 #pragma once
 
 #include "mbd/simulation/run_record.h"
@@ -16,40 +16,40 @@ class ActionFollower;
 class MotionNotes;
 class RunLeg;
 
-/// The options a model asks for.
+/// Returns the options given in a model.
 [[nodiscard]] SimulationOptions options_of(const Model& model);
 
-/// Steps through a run; owns everything that changes. One object per thread.
+/// Computes a run; owns all that changes. One object per thread.
 class Simulation {
 public:
-  /// Starts at `initial`: poses and velocities are first moved onto the constraints.
+  /// Starts at `initial`, after projecting positions and velocities onto the constraints.
   Simulation(const System& system, const State& initial, SimulationOptions options);
   Simulation(const Simulation&) = delete; // its parts refer to each other
   Simulation& operator=(const Simulation&) = delete;
   ~Simulation();
 
-  /// To options.end. Throws NumericalFailure (with the state kept in state()).
+  /// Runs to options.end. Throws NumericalFailure; the state is then that of the last step.
   void run();
-  /// One accepted step, or up to an event and through it. False at the end.
+  /// Makes one accepted step, or a step up to an event and through it. Returns false at the end.
   bool advance();
 
-  [[nodiscard]] const State& state() const; ///< at the last event or the end; as the leg has it that the run is in
-  /// The state after the last step, whether or not an event ended it.
+  [[nodiscard]] const State& state() const; ///< state at the last event or the end, in the system of the present leg
+  /// Returns the state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
-  /// Goes on with the bodies displaced by `by`: (x, y, θ) of each, the ground included, along the constraints as far as a motion as small
-  /// as that feels it. Modes and friction stay as they are.
+  /// Continues with the bodies displaced by `by`, (x, y, θ) for each including the ground. Displacements along the constraints must be
+  /// small enough to satisfy them by projection. Modes and friction states are kept.
   void displace(const std::vector<double>& by);
-  /// Legs that ended before the present one.
+  /// Returns the number of legs before the present one.
   [[nodiscard]] std::size_t past_legs() const;
-  /// So far, ascending in time.
+  /// Returns the events so far, in ascending time.
   [[nodiscard]] const std::vector<Event>& events() const;
-  /// The samples so far.
+  /// Returns the samples so far.
   [[nodiscard]] const Trajectory& trajectory() const;
-  /// Not empty if an element ended the run before its time ("'front joint' came apart").
+  /// Returns why an element ended the run early ("'front joint' came apart"); empty if none did.
   [[nodiscard]] const std::string& stop_reason() const;
-  /// So far.
+  /// Returns the statistics so far.
   [[nodiscard]] RunStatistics statistics() const;
-  /// All that the run leaves behind; of a run that ended or that failed. The Simulation is used up.
+  /// Returns all results of a run that has ended or failed. The object cannot be used afterwards.
   [[nodiscard]] RunResult result() &&;
 
 private:
@@ -57,12 +57,12 @@ private:
 
   double cpu_start_;
   const System& system_;
-  std::unique_ptr<ActionFollower> actions_; ///< null if the model has none
-  std::unique_ptr<RunLeg> leg_;             ///< never nullptr
-  std::unique_ptr<MotionNotes> motion_;     ///< null if nobody asked for it
+  std::unique_ptr<ActionFollower> actions_; ///< null if the model has no actions
+  std::unique_ptr<RunLeg> leg_;             ///< not null
+  std::unique_ptr<MotionNotes> motion_;     ///< null if not requested
 };
 
-/// Compiled, started (from equilibrium if `model` says so) and run to the end.
+/// Runs from `initial` to the end and returns the results.
 [[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options);
 
 } // namespace steplap

@@ -1,4 +1,5 @@
-// What has come to lie wholly within what it presses on feels nothing any more and would fall on for ever: no run passes over that.
+// Check for bodies that lie completely inside the contact region of another one, where no force acts on them any more. The run must stop
+// there.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -8,12 +9,13 @@
 
 namespace steplap {
 
-/// Looks at each step's end whether one body of a contact lies wholly within the other.
+/// Checks at the end of each step whether one body of a contact is completely inside the other.
 class SwallowedCheck {
 public:
-  /// Of the system's contacts in which that can be.
+  /// Checks those contacts of the system for which this is possible.
   explicit SwallowedCheck(const System& system);
-  /// In the state y at t in s, with the modes of all units and all watch values there. Throws ElementFailure that names the contact.
+  /// Checks the packed state y at time t in s, with the modes of all units and all event functions. Throws ElementFailure that names the
+  /// contact.
   void check(Dynamics& dynamics, double t, const double* y, const std::vector<UnitMode>& modes, const std::vector<double>& watch) const;
 
 private:

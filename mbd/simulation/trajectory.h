@@ -1,5 +1,4 @@
-// What a run leaves behind: named channels at uniform times. However many rows there are, the memory they take is bounded
-// (row_store.h).
+// Samples of a run: channels at uniform times. Memory is bounded for any number of rows (row_store.h).
 #pragma once
 
 #include "mbd/base/name_pattern.h"
@@ -13,38 +12,38 @@
 
 namespace steplap {
 
-/// The samples of one run: a row per time, a column per channel.
+/// The samples of one run: one row per time, one column per channel.
 class Trajectory {
 public:
-  /// The channels of `system` whose names match one of `patterns` (* and ?; none = all).
+  /// Samples the channels of `system` whose names match one of `patterns` (* and ?; none: all).
   Trajectory(const System& system, const std::vector<std::string>& patterns);
 
-  /// `t`: the time the sample is due; snapshot.t may lie a hair before it, left of a breakpoint. `system`: that of the snapshot, with the
-  /// same channels in the same order.
+  /// Adds a row. `t` is the sampling time; snapshot.t may be slightly before it, left of a breakpoint. `system` is that of the snapshot and
+  /// must have the same channels in the same order.
   void add(double t, const Snapshot& snapshot, const System& system);
 
-  /// Those sampled, in the system's order.
+  /// Returns the sampled channels, in the system's order.
   [[nodiscard]] const std::vector<const Channel*>& channels() const { return channels_; }
-  /// Rows there are.
+  /// Returns the number of rows.
   [[nodiscard]] std::size_t size() const { return rows_->size(); }
-  /// Of a row, s.
+  /// Returns the time of a row, s.
   [[nodiscard]] double time(std::size_t row) const { return rows_->row(row)[0]; }
-  /// Row after row is fast; column after column reads rows that are on disk again and again.
+  /// Returns one value. Reading by rows is fast; reading by columns reads rows on disk repeatedly.
   [[nodiscard]] double value(std::size_t row, std::size_t channel) const { return rows_->row(row)[channel + 1]; }
-  /// Time and values of a row; valid until another is asked for.
+  /// Returns time and values of a row; valid until the next call.
   [[nodiscard]] std::span<const double> row(std::size_t i) const { return {rows_->row(i), channels_.size() + 1}; }
-  /// All of them at once, in memory.
+  /// Returns all times.
   [[nodiscard]] const std::vector<double>& times() const;
-  /// Column of a channel by name; throws std::out_of_range for an unknown one.
+  /// Returns the column of a channel. Throws std::out_of_range for an unknown name.
   [[nodiscard]] std::size_t column(const std::string& name) const;
-  /// All values of a channel by its name, in its unit, one per row; throws std::out_of_range for an unknown one.
+  /// Returns all values of a channel in its unit, one per row. Throws std::out_of_range for an unknown name.
   [[nodiscard]] std::vector<double> series(const std::string& name) const;
 
 private:
   std::vector<const Channel*> channels_;
-  std::vector<std::size_t> places_;   ///< of them in System::channels
+  std::vector<std::size_t> places_;   ///< indices of the channels in System::channels
   std::unique_ptr<RowStore> rows_;    ///< time, then the channels
-  mutable std::vector<double> times_; ///< as far as they were asked for
+  mutable std::vector<double> times_; ///< filled on request
 };
 
 } // namespace steplap

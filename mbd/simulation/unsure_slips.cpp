@@ -1,4 +1,4 @@
-// What a slip that all but rests adds to extremes: the slower a joint slides, the less is known of which way, and with that of its wrench.
+// Contribution of very slow slips to extremes: the slower a joint slides, the less accurate are its direction and its wrench.
 #include "mbd/simulation/extremes.h"
 
 #include <algorithm>
@@ -9,16 +9,16 @@ namespace steplap {
 
 namespace {
 
-// Times what a step lets through: steps' errors add up, and a slip that is so much faster knows its way to some thousandths.
+// Multiple of the accuracy of a step: errors of steps add up, and at this speed the direction is accurate to some thousandths.
 constexpr double k_unsure = 300.0;
 
-// Places and velocities do not turn with the way that a slip goes.
+// Returns true if the channel depends on the direction of slips. Positions, velocities and energies do not.
 bool turns_with_slips(const Channel& channel) {
   const std::string_view unit = channel.unit;
   return unit != "m" && unit != "rad" && unit != "m/s" && unit != "rad/s" && unit != "J";
 }
 
-// A slip that is as slow as its law tells no directions any more.
+// Returns true if a slip is so slow that its law is regularised and no longer has a direction.
 bool is_slip_ending(const State& state) {
   return std::any_of(state.friction.begin(), state.friction.end(), [](const FrictionState& friction) {
     return friction.phase == FrictionPhase::slip && !friction.is_starting && friction.stage != 0;
@@ -27,8 +27,8 @@ bool is_slip_ending(const State& state) {
 
 } // namespace
 
-// At the last evaluation of `dynamics`. A slip that begins knows its way, however slow it is: its velocity grows from nothing.
-// `is_new`: behind an event, where what was unsure before it may have ended, but nothing becomes unsure.
+// Updates slip_ at the last evaluation of `dynamics`. At the onset of slip the direction is known from the multipliers, even at zero speed.
+// `is_new`: after an event, where values can become certain again, but not uncertain.
 void ExtremeFinder::look_at_slips(const Integrator& integrator, Dynamics& dynamics, bool is_new) {
   const double before = slip_;
   slip_ = std::numeric_limits<double>::infinity();

@@ -1,11 +1,11 @@
-// `[[action]]`s of a compiled system: their conditions as watch values, and what they do.
+// `[[action]]` tables of a compiled system: their conditions as event functions, and their steps.
 //
-// A condition gives no force. A comparison is made of switches (FormulaProgram), each with a watch value, so that the event finder
-// locates where it comes true as it does the kinks of a force. A time is a breakpoint. An event of an element is one of those that the
-// event handler notes.
+// The group applies no forces. A comparison consists of switches (FormulaProgram), each with an event function, so that the event finder
+// locates the time at which the condition becomes true. A time is a breakpoint. An event of an element is one reported by the event
+// handler.
 //
-// What acts is fixed in a system: an element that an action releases acts in one system and not in another, compiled from the same
-// model with its `active` or some other field changed. A run goes on from the one to the other (mbd/simulation/changeover.h).
+// A system is constant. An action therefore does not change a system but leads to another one, compiled from the same model with changed
+// fields, and the run continues there (mbd/simulation/changeover.h).
 #pragma once
 
 #include "mbd/model/action.h"
@@ -20,37 +20,37 @@
 
 namespace steplap {
 
-/// One thing that an action does.
+/// One compiled step of an action.
 struct ActionStep {
   ActionVerb verb = ActionVerb::stop;
-  int target = -1;   ///< index in Model::elements; of arm and disarm in ActionGroup::entries
-  std::string field; ///< of set
-  FieldValue value;  ///< of set, in SI
+  int target = -1;   ///< index in Model::elements; for arm and disarm in ActionGroup::entries
+  std::string field; ///< for set only
+  FieldValue value;  ///< for set only, in SI
 };
 
-/// What a formula, a time or an event has to be for an action.
+/// Compiled condition of an action: a comparison, a time or an event.
 struct ActionTrigger {
   std::optional<MotionFormula> formula;      ///< a comparison
-  std::vector<SwitchScale> switches = {};    ///< of it
+  std::vector<SwitchScale> switches = {};    ///< scales of its switches
   std::optional<double> time = std::nullopt; ///< s
-  int element = -1;                          ///< of an event: index in System::element_names
+  int element = -1;                          ///< element of the event: index in System::element_names
   EventKind event = EventKind::none;
 };
 
-/// All actions of a model, in the order of the file. Gives no force.
+/// All actions of a model, in the order of the file. Applies no forces.
 class ActionGroup final : public ForceGroup {
 public:
   struct Entry {
-    std::string name, text; ///< text: of all its steps, for people
+    std::string name, text; ///< text: all steps, for messages
     ActionTrigger trigger;
     std::vector<ActionStep> steps;
     bool is_once = true, is_armed = true;
-    int unit = -1, watch = 0; ///< of a comparison
+    int unit = -1, watch = 0; ///< mode and event functions of a comparison
   };
   std::vector<Entry> entries;
-  std::shared_ptr<const Model> model;                    ///< completed, as it is at the start of a run
-  std::optional<std::vector<std::string>> channels = {}; ///< that were wanted of the system; not given: all
-  /// What else was done to the system once it was compiled: it is done to those, too, that actions make of it. May add channels.
+  std::shared_ptr<const Model> model;                    ///< completed model with the values at the start of a run
+  std::optional<std::vector<std::string>> channels = {}; ///< channels that were requested; not given: all
+  /// Changes made to the system after compilation, such as added channels. They are repeated for the systems that actions create.
   std::vector<std::function<void(System&)>> additions = {};
 
   void add_forces(Evaluation& e) const override;
@@ -63,14 +63,15 @@ public:
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
 
-  /// Of a comparison or a time: is it true at `state`? `is_stepped`: modes of units are not followed from event to event.
+  /// Returns whether the comparison or time condition is true at `state`. `is_stepped`: the run uses time stepping, so the modes of units
+  /// are not up to date and the formula is evaluated anew.
   [[nodiscard]] bool holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const;
 
 private:
   template <class S, class AtTime> void watch(Evaluated<S>& e, const AtTime& at_time) const;
 };
 
-/// Nullptr if the system has no actions.
+/// Returns the actions of the system, or nullptr.
 [[nodiscard]] const ActionGroup* action_group(const System& system);
 [[nodiscard]] ActionGroup* action_group(System& system);
 

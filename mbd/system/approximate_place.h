@@ -1,20 +1,21 @@
-// Friction over a face that touches, held at one place which stands for all of it: polygon_contact. Which place that is changes
-// as the bodies rock within the depth by which they press, and where the new place is not the old one, what held there
-// moves here by what turning makes of that depth. This is an error of the place, not a motion: friction goes on holding.
+// Friction of a face that is represented by a single contact point (polygon_contact). The point changes while the bodies rock within the
+// contact penetration, and the new point may then have a small apparent velocity although the face sticks. This is an error of the
+// approximation, not a motion, and must not start slip.
 #pragma once
 
 #include "mbd/system/system.h"
 
 namespace steplap {
 
+/// Additional interface of a friction element with an approximate contact point.
 class ApproximatePlace {
 public:
   virtual ~ApproximatePlace() = default;
-  /// The rate, m/s, at which the place `to` may move while the face holds as it did at the place `from`.
+  /// Returns the speed, m/s, that contact point `to` may have although the face sticks at contact point `from`.
   [[nodiscard]] virtual double rate_error(const Evaluation& e, const FrictionState& from, const FrictionState& to) const = 0;
 };
 
-/// Zero of friction that acts at places of its own, such as feet.
+/// The same for any friction element; 0 for those with real contact points, such as feet.
 [[nodiscard]] inline double rate_error(const FrictionElement& friction, const Evaluation& e, const FrictionState& from,
                                        const FrictionState& to) {
   const auto* const approximate = dynamic_cast<const ApproximatePlace*>(&friction);

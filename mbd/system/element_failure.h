@@ -1,4 +1,4 @@
-// A computation that fails at an element: whoever knows the model can say where in its file that one stands.
+// Failure of a computation at certain elements. A caller that knows the model adds their locations in the file.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -14,7 +14,7 @@ public:
   ElementFailure(const std::string& message, std::vector<std::string> elements)
       : NumericalFailure(message), elements_(std::move(elements)) {}
 
-  /// Names of elements or bodies, the worst first.
+  /// Returns names of elements or bodies, the worst first.
   [[nodiscard]] const std::vector<std::string>& elements() const { return elements_; }
 
 private:

@@ -1,6 +1,5 @@
-// What an evaluation of doubles works on beside motions: the arrays that elements write, and the scratch of friction elements.
-//
-// Whoever evaluates elements (Dynamics, Statics, a tape's calls, tests) has one of each kind for itself, sized once for a system.
+// Arrays that elements read and write in an evaluation, and scratch memory of friction elements. Each evaluator (Dynamics, Statics, the
+// calls of a tape, tests) has its own, allocated once for a system.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -11,11 +10,11 @@
 
 namespace steplap {
 
-/// Watch values begin as holding (1), their rates as unknown (NaN), all else at zero.
+/// Initial values: event functions 1 (not triggered), their rates NaN (unknown), all others 0.
 struct EvaluationArrays {
   std::vector<BodyForce> force;          ///< per slot (LinkTable)
   std::vector<double> contact_force;     ///< per contact
-  std::vector<double> watch, watch_rate; ///< per watch slot
+  std::vector<double> watch, watch_rate; ///< per event function
   std::vector<double> inner_rate;        ///< per inner state
 
   explicit EvaluationArrays(const System& system)
@@ -23,7 +22,7 @@ struct EvaluationArrays {
         watch(static_cast<std::size_t>(system.watch_count), 1.0), watch_rate(watch.size(), std::numeric_limits<double>::quiet_NaN()),
         inner_rate(static_cast<std::size_t>(system.inner_count()), 0.0) {}
 
-  /// Lets `e` write here; `motion` per slot is what it reads. Both must outlive it.
+  /// Makes `e` write to these arrays and read `motion`, which has one entry per slot. Both must outlive `e`.
   void connect(Evaluation& e, const std::vector<Motion<double>>& motion) {
     e.motion = e.link_motion = motion.data();
     e.force = e.link_force = force.data();
@@ -34,12 +33,12 @@ struct EvaluationArrays {
   }
 };
 
-/// Motions of all links of a system, from those of its bodies before them; `motion` per slot.
+/// Computes the motions of all links from those of the bodies; `motion` has one entry per slot, bodies first.
 inline void place_links(const LinkTable& links, std::vector<Motion<double>>& motion) {
   for (int i = 0; i < links.size(); ++i) motion[links.slot(i)] = seen_from(motion[links[i].a], motion[links[i].b]);
 }
 
-/// Adds the forces in all links to those of their bodies; both per slot.
+/// Adds the forces in all links to those of their bodies; `motion` and `force` have one entry per slot.
 inline void add_link_forces(const LinkTable& links, const std::vector<Motion<double>>& motion, std::vector<BodyForce>& force) {
   for (int i = 0; i < links.size(); ++i) {
     const int slot = links.slot(i);
@@ -47,7 +46,7 @@ inline void add_link_forces(const LinkTable& links, const std::vector<Motion<dou
   }
 }
 
-/// The scratch of each friction element of a system, null where it wants none: one per thread.
+/// Scratch objects of the friction elements of a system, for one thread; null for elements that need none.
 class FrictionScratches {
 public:
   explicit FrictionScratches(const System& system) {

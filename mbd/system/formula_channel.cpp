@@ -19,7 +19,7 @@ double factor_of(const std::string& unit) {
 
 } // namespace
 
-// Makes one tree of several. What is there already is not made again: formulas of formulas would else double with every level.
+// Merges nested formulas into one tree. Nodes that already exist are shared; otherwise the size could double with each level of nesting.
 class FormulaChannel::Joining {
 public:
   explicit Joining(FormulaChannel& made) : made_(made) {}
@@ -42,7 +42,7 @@ public:
     number.number = factor;
     return add(FormulaOp::multiply, add(number), node);
   }
-  // With nodes of here in the place of its operands.
+  // Adds the nodes of `tree`, with its operands replaced by nodes of the merged tree.
   int add_tree(const FormulaTree& tree, const std::vector<int>& operands) {
     std::vector<int> place;
     for (FormulaNode node : tree) {
@@ -81,7 +81,7 @@ FormulaChannel::FormulaChannel(const FormulaTree& tree, const std::vector<const 
   std::vector<int> nodes;
   for (const Channel* channel : operands) nodes.push_back(joining.add_operand(*channel));
   const int value = joining.scaled(joining.add(FormulaOp::finite, joining.add_tree(tree, nodes)), factor);
-  FormulaNode last; // the formula, even where it is nothing but an operand
+  FormulaNode last; // root node, also if the formula is just an operand
   last.op = FormulaOp::finite;
   last.of = {value, -1, -1};
   tree_.push_back(last);

@@ -1,4 +1,4 @@
-// A channel that is a formula of others: one tree over the channels that are none, also where it is a formula of formulas.
+// A channel defined by a formula of other channels. Nested formulas are merged into one tree whose leaves are not formulas.
 #pragma once
 
 #include "mbd/formula/formula_tree.h"
@@ -11,20 +11,25 @@
 
 namespace steplap {
 
+/// The value of a channel that is a formula of other channels.
 class FormulaChannel {
 public:
+  /// A channel that is not a formula itself.
   struct Leaf {
-    std::string name; ///< of the channel
+    std::string name; ///< name of the channel
     std::function<double(const Snapshot&)> value;
-    double factor; ///< of its unit: so many SI units
+    double factor; ///< value of one unit of the channel in SI
   };
 
-  /// `operands`: what `tree` calls by their numbers. The value is `factor` times the tree's, which is in SI.
+  /// `operands` are the channels that `tree` refers to by number. The value of the channel is `factor` times the value of the tree, which
+  /// is in SI.
   FormulaChannel(const FormulaTree& tree, const std::vector<const Channel*>& operands, double factor);
 
-  /// Over the leaves, in SI; its last node is the channel's value.
+  /// Returns the merged tree over the leaves, in SI; its last node is the value.
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
+  /// Returns the operands of the merged tree.
   [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
+  /// Returns the value at `snapshot`, in the unit of the channel.
   [[nodiscard]] double value(const Snapshot& snapshot) const;
 
 private:
@@ -34,13 +39,13 @@ private:
   std::vector<Leaf> leaves_;
 };
 
-/// What the channel of a formula calls.
+/// Callable stored in Channel::value of a formula channel.
 struct FormulaValue {
   std::shared_ptr<const FormulaChannel> formula;
   double operator()(const Snapshot& snapshot) const { return formula->value(snapshot); }
 };
 
-/// What a channel is a formula of; null where it is none.
+/// Returns the formula of a channel, or null if it is not a formula.
 [[nodiscard]] inline const FormulaChannel* formula_of(const Channel& channel) {
   const FormulaValue* const value = channel.value.target<FormulaValue>();
   return value ? value->formula.get() : nullptr;

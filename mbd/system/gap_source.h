@@ -1,9 +1,7 @@
-// How near bodies are to touching, and how much of that a small motion can use up: what lets a search move bodies by finite
-// steps without passing through a thin part.
+// Lower bounds of the distances between bodies, for searches that move bodies by finite steps and must not pass through thin parts.
 //
-// A gap is a lower bound of the distance of what touches, negative while it presses. Points of the touching parts lie within
-// `reach_a` and `reach_b` of the bodies' centres of gravity. So a relative displacement d of these and turns φ_a, φ_b lessen the
-// gap by at most |d| + |φ_a| reach_a + |φ_b| reach_b.
+// The gap is negative in contact. The points of the touching surfaces are within `reach_a` and `reach_b` of the centres of gravity. A
+// relative displacement d of the centres and rotations φ_a, φ_b therefore reduce the gap by at most |d| + |φ_a| reach_a + |φ_b| reach_b.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -16,31 +14,33 @@
 
 namespace steplap {
 
+/// Bounds for the gap of one contact between bodies a and b.
 struct GapBounds {
   int a = k_ground, b = k_ground;
   double gap = 0.0;                    ///< m
-  Pair<double> normal;                 ///< ground axes, of the force that would press on a: its side
+  Pair<double> normal;                 ///< unit normal, ground axes, in the direction of a contact force on a
   double reach_a = 0.0, reach_b = 0.0; ///< m
-  /// m: pressed so deep one part is through the other, and the force pushes out on the far side. Infinite where it never does.
+  /// Penetration, m, at which one part is entirely through the other, so that the force would push it out on the far side. Infinite if this
+  /// cannot happen.
   double through = std::numeric_limits<double>::infinity();
 };
 
-/// A group of contacts that knows its gaps.
+/// A group of contacts that can compute gap bounds.
 class GapSource {
 public:
   virtual ~GapSource() = default;
-  /// Appends those of all its contacts with bodies at `motion`, in whatever modes they are.
+  /// Appends the gap bounds of all contacts for bodies at `motion`, whatever their modes.
   virtual void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const = 0;
 };
 
-/// Of a point of a over a line of b, closed where `measure` is below `offset`. The line has no far side.
+/// Bounds for a point of a above a line of b, in contact where `measure` is below `offset`. The line has no far side.
 inline GapBounds gap_bounds(const AxisMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   const auto m = measure.at<false, double>(a, b);
   GapBounds bounds;
   bounds.gap = m.value - offset;
   bounds.normal = m.direction;
   bounds.reach_a = measure.point_a.norm();
-  // The point may come as much further from b's centre as it comes nearer to the line.
+  // The nearest point of the line can move away from b's centre by as much as the gap closes.
   bounds.reach_b = portable::hypot(m.lever_b.x, m.lever_b.y) + std::max(0.0, bounds.gap);
   return bounds;
 }
@@ -50,7 +50,7 @@ GapBounds gap_bounds(const CoordinateMeasure<K>& measure, double offset, const M
   return gap_bounds(measure.along_axis(), offset, a, b);
 }
 
-/// Along a shaft of a the gap is the distance from the line over the cosine between them.
+/// If the contact axis is fixed in a, the gap along it is the distance from the line divided by the cosine of their angle.
 inline GapBounds gap_bounds(const GapMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   GapBounds bounds = gap_bounds(AxisMeasure{measure.point_a, measure.point_b, measure.normal}, 0.0, a, b);
   if (!measure.is_axis_in_a) {
@@ -63,7 +63,7 @@ inline GapBounds gap_bounds(const GapMeasure& measure, double offset, const Moti
   return bounds;
 }
 
-/// Of two circles outside each other; `offset` is the sum of their radii.
+/// Bounds for two circles outside each other; `offset` is the sum of their radii.
 inline GapBounds gap_bounds(const DistanceMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   const auto m = measure.at<false, double>(a, b);
   GapBounds bounds;

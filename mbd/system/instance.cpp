@@ -43,9 +43,9 @@ std::unique_ptr<System> instantiate(const Model& given, const ModelValues& value
   return compile(completed(model));
 }
 
-// Which parts of completion (completion.h) read the field? Markers get places from bodies' centres of gravity, bodies from joints,
-// elements from tables such as [[core]], which look at bodies and at what is completed before them; validation compares
-// the settings of a run with each other.
+// Determines which parts of completion (completion.h) read the field. Markers depend on centres of gravity, bodies on joints, elements on
+// tables such as [[core]], which read bodies and everything completed before them; validation compares the settings of a run with each
+// other.
 Variants::Redone Variants::redone_for(const std::string& path) const {
   const auto if_any_table = [&](bool TableKind::*reads) {
     const bool is_any = std::any_of(given_.tables.begin(), given_.tables.end(), [&](const TableEntry& e) { return e.kind->*reads; });
@@ -83,16 +83,18 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
     : given_(given), completed_(completed(given)), paths_(std::move(paths)) {
   if (channels) channels_ = *channels;
   for (const std::string& path : paths_) {
-    static_cast<void>(number_of(given_, path)); // it is there, and a number
+    static_cast<void>(number_of(given_, path)); // throws unless the path leads to a number
     redone_ = std::max(redone_, redone_for(path));
   }
   const bool is_any_builder =
       std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
-  if (redone_ == Redone::tables && is_any_builder) redone_ = Redone::all; // bodies and markers would have to be made anew, too
+  if (redone_ == Redone::tables && is_any_builder)
+    redone_ = Redone::all; // tables that add bodies and markers require a complete
+                           // repetition
   if (redone_ == Redone::tables) note_tables();
 }
 
-// Does the path lead there, or a field that follows from it as a parameter?
+// Returns true if the path leads to `head`, or to a parameter on which a field there depends.
 bool Variants::is_set_by(const std::string& path, const std::string& head) const {
   if (path.starts_with(head)) return true;
   if (!path.starts_with("parameters.")) return false;
@@ -109,10 +111,10 @@ void Variants::note_tables() {
       redone_ = Redone::all;
   Model without = given_;
   without.tables.clear();
-  std::vector<Diagnostic> problems; // none, as completed() has told
+  std::vector<Diagnostic> problems; // none, since completed() has reported them
   complete(without, {}, problems);
   bodies_ = without.bodies;
-  without.tables = given_.tables; // they look at each other
+  without.tables = given_.tables; // tables may read each other
   for (std::size_t i = 0; i < given_.tables.size(); ++i) {
     const auto count_others = [&] { return without.plots.size() + without.criteria.size() + without.channels.size(); };
     const std::size_t before = count_others();
@@ -122,7 +124,7 @@ void Variants::note_tables() {
     else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); }))
       redone_ = Redone::all;
   }
-  for (std::size_t i = 0; i < completed_.markers.size(); ++i) // those that stand for bodies are behind the given ones
+  for (std::size_t i = 0; i < completed_.markers.size(); ++i) // markers made for bodies follow the given ones
     if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);
   for (std::size_t i = count; i < completed_.elements.size(); ++i)
     added_.emplace_back(completed_.elements[i].kind, completed_.elements[i].element->name);
@@ -136,7 +138,7 @@ void Variants::place_at_centres() {
   }
 }
 
-// False where that is not enough: what is wrong then, or another number of elements, is for completed().
+// Applies the tables again. Returns false if this does not suffice: an error, or another number of elements. completed() is then required.
 bool Variants::apply_tables() {
   place_at_centres();
   try {

@@ -1,15 +1,17 @@
-// All elements that share one measure (measure.h) and one law, contiguous, evaluated in one loop.
+// All elements with the same measure (measure.h) and the same force law, in one array that is evaluated in one loop.
 //
 // A law is a value type with
-//   static constexpr int k_watches           0: smooth for ever; n: a unit with n watch values
-//   static constexpr bool k_is_contact       true: its force counts as a normal force for friction
-//   S force(S value, S rate, mode)           force along the measure's gradient
+//
+//   static constexpr int k_watches           0: smooth everywhere; n: a unit with n event functions
+//   static constexpr bool k_is_contact       true: its force is a normal force, available to friction
+//   S force(S value, S rate, mode)           force along the gradient of the measure
 //   S elastic_force(S value, mode)           −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
-//   and, if k_watches > 0: mode_at, next_mode (with the value's rounding), watch, transition, and if it can tell, is_surely_positive;
-//   with k_watches_beyond_rounding its watch() is told what value and rate are known to, and there is a watch_kind(slot).
-// It dissipates (elastic_force − force)·rate. A law that takes doubles only where S or watch() stands is not written down
-// (mbd/tape/traced.h).
+//
+// and, if k_watches > 0, mode_at(), next_mode() (with the rounding error of the value), watch() and transition(); optionally
+// is_surely_positive(). A law with k_watches_beyond_rounding also gets the rounding errors of value and rate in watch(), and defines
+// watch_kind(slot). The law dissipates (elastic_force − force)·rate. A law whose functions take only double instead of S cannot be recorded
+// for machine code (mbd/tape/traced.h).
 #pragma once
 
 #include "mbd/base/dual.h"
@@ -22,7 +24,7 @@
 
 namespace steplap {
 
-/// The motion of the j-th of N bodies with its derivatives: by its pose at 3 j, by its velocity at 3 N + 3 j.
+/// Returns the motion of body j of N as dual numbers. Derivatives by its pose have indices 3 j …, those by its velocity 3 N + 3 j ….
 template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double>& m, int j) {
   using D = Dual<6 * N>;
   const int pose = 3 * j, velocity = 3 * N + 3 * j;
@@ -40,10 +42,11 @@ template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double
   return s;
 }
 
-/// Of two bodies: pose at derivative indices first…first+2, velocity at 6+first….
+/// The same for two bodies: pose at derivative indices first … first+2, velocity at 6+first ….
 inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) { return seeded_of<2>(m, first / 3); }
 
-/// Appends the derivatives of force(value, rate), which acts along the measure; returns the force.
+/// Appends the derivatives of force(value, rate), acting along the measure, with respect to poses and velocities of a and b. Returns the
+/// force.
 template <class Measure, class Force>
 Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluation& e, const Force& force, std::vector<PairJacobian>& out) {
   const auto m = measure.template at<false, Dual<12>>(seeded(e.motion[a], 0), seeded(e.motion[b], 3));
@@ -62,7 +65,7 @@ Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluatio
   return f;
 }
 
-/// ForceGroup::is_surely_positive by a law; false of those that do not say.
+/// Calls the law's is_surely_positive(); false if it has none.
 template <class Law> [[nodiscard]] bool is_surely_positive(const Law& law, UnitMode mode, int slot, double value, double rounding) {
   if constexpr (requires { law.is_surely_positive(mode, slot, value, rounding); })
     return law.is_surely_positive(mode, slot, value, rounding);
@@ -71,14 +74,14 @@ template <class Law> [[nodiscard]] bool is_surely_positive(const Law& law, UnitM
 
 template <class Law> inline constexpr bool k_watches_beyond_rounding = requires { requires Law::k_watches_beyond_rounding; };
 
-/// Laws whose functions are templates can be written down.
+/// Laws whose functions are templates over the number type; these can be recorded for machine code.
 template <class Law>
 concept TraceableLaw = requires(const Law& law, const Traced& x, Traced* watch) {
   law.elastic_force(x, UnitMode{});
   requires Law::k_watches == 0 || k_watches_beyond_rounding<Law> || requires { law.watch(x, x, UnitMode{}, watch, watch); };
 };
 
-/// What groups of elements that are no contacts are instead of a GapSource.
+/// Base class in place of GapSource for elements that are not contacts.
 struct NoGaps {};
 
 template <class Measure, class Law>
@@ -88,9 +91,9 @@ public:
     int a = k_ground, b = k_ground;
     Measure measure;
     Law law;
-    int link = 0;    ///< slot of (a, b)
+    int link = 0;    ///< slot of (a, b) in the arrays of motions and forces
     int unit = 0;    ///< index of its mode
-    int watch = 0;   ///< index of its first watch value
+    int watch = 0;   ///< index of its first event function
     int contact = 0; ///< index of its normal force
   };
   std::vector<Entry> entries;
@@ -133,7 +136,7 @@ public:
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
-  /// Overrides GapSource's, where the law is a contact's.
+  /// Overrides GapSource::add_gaps() if the law is a contact.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
     if constexpr (Law::k_is_contact)
       for (const Entry& entry : entries) {
@@ -170,7 +173,7 @@ public:
     return EventKind::none;
   }
 
-  /// Value and rate of one element's measure, and its force, for channels.
+  /// Returns value and rate of one element's measure, for channels.
   [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const {
     const Entry& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
@@ -185,12 +188,12 @@ private:
     return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
   }
   template <class S> STEPLAP_INLINE void add_forces_to(Evaluated<S>& e) const {
-    S dissipation{0.0}; // in a register: a sum in memory would chain the elements to each other
+    S dissipation{0.0}; // in a register: a sum in memory would serialise the elements
     for (const Entry& entry : entries) dissipation += add_force_to(entry, e);
     e.dissipation += dissipation;
   }
 
-  /// Returns what it dissipates.
+  /// Returns the dissipated power, W.
   template <class S> STEPLAP_INLINE static S add_force_to(const Entry& entry, Evaluated<S>& e) {
     const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
     const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));

@@ -1,8 +1,8 @@
-// Links: the ordered pairs of bodies (a, b) that elements act between.
+// Links: the ordered pairs of bodies (a, b) between which elements act.
 //
-// Whatever joins two bodies depends only on how b sees a. So the motion of a in b's frame is found once
-// for all elements of the pair, they add their forces there, and the sum goes back to the two bodies
-// once: fewer turns of axes, and action = reaction without a further thought.
+// The force of an element between two bodies depends only on the motion of a relative to b. This motion is computed once for all elements
+// of a pair, in the axes of b; the elements add their forces in these axes, and the sum is applied once to a and, with opposite sign, to b.
+// This saves rotations of axes, and action equals reaction by construction.
 #pragma once
 
 #include "mbd/system/motion.h"
@@ -13,23 +13,28 @@
 
 namespace steplap {
 
+/// A pair of bodies, by index.
 struct Link {
   int a = k_ground, b = k_ground;
 };
 
-/// Every link has a *slot* in the arrays of motions and forces, behind those of the bodies: what the ground
-/// sees is the body's own motion, so there the slot is the body's.
+/// Set of all links. Each has a slot (an index) in the arrays of motions and forces: first the slots of the bodies, then those of links
+/// between two bodies. A link to the ground uses the slot of its body a, since the motion relative to the ground is that of the body
+/// itself.
 class LinkTable {
 public:
-  /// Slots below `body_count` are bodies.
+  /// Sets the number of bodies, ground included; slots below it are bodies. To be called before add().
   void start(int body_count) { body_count_ = body_count; }
-  /// Slot of the link (a, b), which is added if it is not there.
+  /// Returns the slot of the link (a, b), which is added if missing.
   int add(int a, int b);
+  /// Returns the slot of a link that was added; throws std::out_of_range otherwise.
   [[nodiscard]] int slot_of(int a, int b) const { return b == k_ground ? a : slot(index_.at(key(a, b))); }
-  /// Links between two bodies, in the order of their slots.
+  /// Returns link i of size() links between two bodies, in the order of their slots.
   [[nodiscard]] const Link& operator[](int i) const { return links_[i]; }
   [[nodiscard]] int size() const { return static_cast<int>(links_.size()); }
+  /// Returns the slot of link i.
   [[nodiscard]] int slot(int i) const { return body_count_ + i; }
+  /// Returns the number of slots of bodies and links.
   [[nodiscard]] int slot_count() const { return body_count_ + size(); }
 
 private:
@@ -39,7 +44,7 @@ private:
   std::unordered_map<std::uint64_t, int> index_;
 };
 
-/// Motion of a in b's axes, about b's centre of gravity.
+/// Returns the motion of a relative to b: position and velocity relative to the centre of gravity of b, in the rotating axes of b.
 template <class S> STEPLAP_INLINE Motion<S> seen_from(const Motion<S>& a, const Motion<S>& b) {
   Motion<S> m;
   const S dx = a.x - b.x, dy = a.y - b.y, dvx = a.vx - b.vx, dvy = a.vy - b.vy;
@@ -54,7 +59,7 @@ template <class S> STEPLAP_INLINE Motion<S> seen_from(const Motion<S>& a, const 
   return m;
 }
 
-/// Adds the force on a member of a cluster, given at its centre, to the cluster's.
+/// Adds the force on a member of a cluster, given at the member's centre of gravity, to the sum at the centre of gravity of the cluster.
 template <class S>
 STEPLAP_INLINE void add_member_force(const BodyForceOf<S>& f, const Motion<S>& member, const Motion<S>& cluster, BodyForceOf<S>& sum) {
   sum.fx += f.fx;
@@ -62,12 +67,13 @@ STEPLAP_INLINE void add_member_force(const BodyForceOf<S>& f, const Motion<S>& m
   sum.m += f.m + (member.x - cluster.x) * f.fy - (member.y - cluster.y) * f.fx;
 }
 
-/// Second rate of (x, y) of that motion at zero accelerations of both bodies: centrifugal and Coriolis.
+/// Returns the second time derivative of (x, y) of the motion `link` (seen_from) if both bodies have zero acceleration: the sum of the
+/// centrifugal term ω² (x, y) and the Coriolis term 2 ω (ẏ, −ẋ), with ω the angular velocity of b.
 template <class S> STEPLAP_INLINE Pair<S> frame_acceleration(const Motion<S>& link, const S& omega_b) {
   return {omega_b * (omega_b * link.x + 2.0 * link.vy), omega_b * (omega_b * link.y - 2.0 * link.vx)};
 }
 
-/// Adds the force on a, given at a's centre in b's axes, to both bodies.
+/// Adds the force f on a, given at the centre of gravity of a in the axes of b, to the force on a, and its reaction to the force on b.
 template <class S>
 STEPLAP_INLINE void add_link_force(const BodyForceOf<S>& f, const Motion<S>& link, const Motion<S>& b, BodyForceOf<S>& on_a,
                                    BodyForceOf<S>& on_b) {

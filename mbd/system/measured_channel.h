@@ -1,7 +1,7 @@
-// A channel that is a measure of two bodies, or its rate: what a formula in the equations of motion may read.
+// Channels that are a measure of two bodies or its rate. Formulas in the equations of motion may use them.
 //
-// Such a formula needs its operands as numbers of other kinds, too: with derivatives, or written down. A channel whose value is made
-// by MeasuredValue says how.
+// Such formulas need their operands also as dual numbers or on a tape. A channel whose value is a MeasuredValue contains the measure from
+// which these can be computed.
 #pragma once
 
 #include "mbd/system/row.h"
@@ -12,20 +12,21 @@
 
 namespace steplap {
 
-/// What a channel calls: `shown` gives its value, which is that of `measure` less `zero`, or its rate.
+/// Callable stored in Channel::value. `shown` computes the value of the channel, which equals the value of `measure` minus `zero`, or its
+/// rate.
 struct MeasuredValue {
   std::function<double(const Snapshot&)> shown;
-  RowSpec measure;   ///< a measure of two bodies and no more
-  double zero = 0.0; ///< in the measure's unit
+  RowSpec measure;   ///< single measure of two bodies
+  double zero = 0.0; ///< in the unit of the measure
   bool is_rate = false;
 
   double operator()(const Snapshot& snapshot) const { return shown(snapshot); }
 };
 
-/// What a channel measures; null where it says nothing.
+/// Returns the measure of a channel, or null if the channel has none.
 [[nodiscard]] inline const MeasuredValue* measured_by(const Channel& channel) { return channel.value.target<MeasuredValue>(); }
 
-/// The measures as rows.
+/// Return the measures as rows.
 [[nodiscard]] inline RowSpec row_of(int a, int b, const AxisMeasure& m) {
   RowSpec row;
   row.a = a;

@@ -13,13 +13,13 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_chunk = 8; // operands differentiated at a time
+constexpr int k_chunk = 8; // operands differentiated together
 using Chunk = Dual<k_chunk>;
 
 constexpr std::array<const char*, 6> k_coordinates = {"x", "y", "theta", "vx", "vy", "omega"};
 constexpr std::array<const char*, 6> k_coordinate_units = {"m", "m", "rad", "m/s", "m/s", "rad/s"};
 
-constexpr int k_deepest_channel = 32; // formulas of formulas of …
+constexpr int k_deepest_channel = 32; // largest depth of nested formulas
 
 } // namespace
 
@@ -32,7 +32,7 @@ const Signal& clock_signal() {
   return clock;
 }
 
-// Turns names into operands and formulas of formulas into one tree.
+// Resolves names to operands and merges nested formulas into one tree.
 class MotionFormula::Resolver {
 public:
   Resolver(SystemBuilder& builder, const MotionFormulaText& asked, MotionFormula& made) : builder_(builder), asked_(asked), made_(made) {
@@ -99,7 +99,7 @@ private:
     return {static_cast<int>(tree_.size()) - 1, powers};
   }
 
-  // The same name stands for the same operand.
+  // Returns the operand for a name; the same name always gives the same operand.
   Made operand(const std::string& name) {
     const auto known = std::find_if(names_.begin(), names_.end(), [&](const auto& entry) { return entry.first == name; });
     if (known != names_.end()) return known->second;
@@ -115,7 +115,7 @@ private:
       operand.kind = MotionOperand::Kind::own_rate;
       return enter(operand, powers_of(asked_.own_rate));
     }
-    constexpr std::string_view k_channel = ".value"; // of a state: what `[[channel]]`s call it
+    constexpr std::string_view k_channel = ".value"; // suffix of a state's channel in `[[channel]]` formulas
     const OwnState* state = find_own_state(builder_.model(), name);
     if (!state && name.ends_with(k_channel)) state = find_own_state(builder_.model(), name.substr(0, name.size() - k_channel.size()));
     if (state) {
@@ -226,7 +226,7 @@ MotionFormula::MotionFormula(SystemBuilder& builder, const MotionFormulaText& te
   FormulaTree tree;
   try {
     tree = Resolver(builder, text, *this).run();
-  } catch (const ModelError& error) { // of a formula: it knows no better place than the element
+  } catch (const ModelError& error) { // the error belongs to a formula, which has no location other than that of its element
     builder.error(error.diagnostics().front().message);
     return;
   } catch (const std::invalid_argument& error) {
@@ -348,7 +348,7 @@ std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluatio
 }
 
 void MotionFormula::enter_turns(TurnTable& turns) const {
-  constexpr int k_angle = 2; // of a body's coordinates
+  constexpr int k_angle = 2; // index of the angle among a body's coordinates
   const bool is_linear = !is_valid() || program().is_linear();
   for (const MotionOperand& operand : operands_) {
     if (operand.kind == MotionOperand::Kind::coordinate && operand.coordinate == k_angle && !is_linear) turns.add(operand.body, k_ground);

@@ -1,14 +1,16 @@
-// Formulas in the equations of motion: of places, angles and velocities, of states, signals, parameters and time.
+// Formulas in the equations of motion: functions of positions, angles, velocities, states, signals, parameters and time.
 //
-// What a name stands for, in this order:
-//   value, rate            of the element's own coordinate, where it has one
-//   a state's name         `[[state]]`
-//   a parameter's name     `[parameters]`
-//   a signal's name        at the time; a number without a unit, for a signal has none: drive * '1 N'
+// Names are looked up in this order:
+//
+//   value, rate            own coordinate of the element, if it has one
+//   name of a state        `[[state]]`
+//   name of a parameter    `[parameters]`
+//   name of a signal       its value at time t; dimensionless, so a force is written as drive * '1 N'
 //   B.x .y .theta .vx .vy .omega   of body B;  M.x .y .vx .vy  of marker M: as the channels of these names
-//   a channel that is a measure of two bodies, or its rate (measured_channel.h): "spring.elongation", "pin.angle"
-//   a `[[channel]]` whose formula is made of these
-// Forces, reactions and accelerations are none: they follow from the forces that such a formula gives.
+//   a channel that is a measure of two bodies or its rate (measured_channel.h): "spring.elongation", "pin.angle"
+//   a `[[channel]]` defined by these
+//
+// Forces, reactions and accelerations are not allowed: they depend on the forces that the formula determines.
 #pragma once
 
 #include "mbd/formula/formula_program.h"
@@ -21,87 +23,89 @@
 
 namespace steplap {
 
-/// What a motion formula reads.
+/// One operand of a motion formula.
 struct MotionOperand {
   enum class Kind : unsigned char { own_value, own_rate, coordinate, measure, state, signal };
   Kind kind = Kind::own_value;
-  int body = k_ground, coordinate = 0; ///< coordinate: 0 … 5, x, y, θ and their rates
-  RowSpec row;                         ///< of a measure
-  double zero = 0.0;                   ///< what is taken from its value
-  bool is_rate = false;                ///< of a measure
-  int inner = 0;                       ///< of a state: in State::inner
-  double unit = 1.0;                   ///< of a state: SI for one of what is kept there
+  int body = k_ground, coordinate = 0; ///< coordinate: 0 … 5 for x, y, θ and their rates
+  RowSpec row;                         ///< for kind measure
+  double zero = 0.0;                   ///< subtracted from the value of the measure
+  bool is_rate = false;                ///< for kind measure: its rate
+  int inner = 0;                       ///< for kind state: index in State::inner
+  double unit = 1.0;                   ///< for kind state: SI value of one unit in State::inner
   const Signal* signal = nullptr;
 };
 
-/// What the formula of an element is asked with.
+/// A formula to be compiled, with the units of its names.
 struct MotionFormulaText {
   std::string text;
-  std::string field;                    ///< that holds it, for messages
-  std::string unit;                     ///< that its value must have; nothing is converted: values are in SI
-  std::string own_value, own_rate = {}; ///< units of `value` and `rate`; "-": there is no such name
+  std::string field;                    ///< name of the field, for messages
+  std::string unit;                     ///< required unit of the result; values are in SI and not converted
+  std::string own_value, own_rate = {}; ///< units of `value` and `rate`; "-": the name is not available
 };
 
-/// `value` and `rate` of the element's own coordinate, where it has one.
+/// Value and rate of the element's own coordinate, if it has one.
 template <class S> struct OwnCoordinate {
   S value{0}, rate{0};
 };
 
+/// A compiled formula of motions, signals, own states and time.
 class MotionFormula {
 public:
-  /// Reports what is wrong through the builder's errors; then the formula is not valid. To be called at stage 1.
+  /// Compiles the formula. Errors are reported to the builder; is_valid() is then false. To be called at stage 1.
   MotionFormula(SystemBuilder& builder, const MotionFormulaText& text);
 
   [[nodiscard]] bool is_valid() const { return !programs_.empty(); }
   [[nodiscard]] const FormulaProgram& program() const { return programs_.front(); }
-  /// Returns the tree that the program was made of.
+  /// Returns the tree from which the program was made.
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
   [[nodiscard]] const std::vector<MotionOperand>& operands() const { return operands_; }
-  /// Bodies whose motion it reads, besides that of its own coordinate.
+  /// Returns the bodies whose motion the formula reads, in addition to those of the own coordinate.
   [[nodiscard]] const std::vector<int>& bodies() const { return bodies_; }
 
-  /// Enters the angles on which it depends other than linearly, besides its own coordinate.
+  /// Adds the angles on which the formula depends nonlinearly, except its own coordinate.
   void enter_turns(TurnTable& turns) const;
 
-  /// The value in an evaluation. `at_time(signal)`: what a signal is at the time; `quantity` as in FormulaProgram.
+  /// Returns the value. `at_time(signal)` returns the value of a signal; `quantity` receives the switch quantities, as in FormulaProgram.
   template <class S, class AtTime>
   S value(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const;
-  /// Bits of its switches as they are now, but for those given.
+  /// Sets the bits of its switches for the current values, except those already given.
   void find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const;
-  /// Value with its derivatives by all operands: into `derivatives`, which has room for them.
+  /// Returns the value; writes its derivatives by all operands to `derivatives`, one number each.
   double differentiate(const Evaluation& e, const OwnCoordinate<double>& own, SwitchBits bits, double* derivatives) const;
-  /// By what each switch's quantity changes with places and velocities in this pose, all together: at least a little.
+  /// Returns for each switch the sum of absolute derivatives of its quantity by positions and velocities, at least a small positive number.
   [[nodiscard]] std::vector<double> gains(const Evaluation& e, const OwnCoordinate<double>& own, SwitchBits bits) const;
 
 private:
   class Resolver;
   template <class S, class AtTime> void read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
 
-  std::vector<FormulaProgram> programs_; ///< one, if it is valid
+  std::vector<FormulaProgram> programs_; ///< empty if the formula is not valid
   std::vector<MotionOperand> operands_;
   std::vector<int> bodies_;
   FormulaTree tree_;
 };
 
-/// A body's share of the derivatives of an operand: by its pose and its velocity.
+/// Derivatives of an operand by pose and velocity of one body.
 struct MotionShare {
   int body = k_ground;
   Vec3 pose = Vec3::Zero(), velocity = Vec3::Zero();
 };
-/// Of an operand that is no state and no signal; `own`: the element's coordinate by poses and velocities of `own_a` and `own_b`.
+/// Returns the derivatives of an operand that is neither state nor signal. `own` is the element's coordinate as dual numbers of poses and
+/// velocities of `own_a` and `own_b`.
 [[nodiscard]] std::array<MotionShare, 2> shares_of(const MotionOperand& operand, const Evaluation& e, const OwnCoordinate<Dual<12>>& own,
                                                    int own_a, int own_b);
 
-/// How a switch's quantity becomes a watch value.
+/// Conversion of a switch quantity to an event function: weight · quantity + slack.
 struct SwitchScale {
-  double weight = 1.0; ///< of |a|, min and max: to what places and velocities change by
-  double slack = 0.0;  ///< by which a piece goes on beyond its end: what joints hold at zero is known no better
+  double weight = 1.0; ///< of |a|, min and max: scales the quantity to a change of positions and velocities
+  double slack = 0.0;  ///< allowed violation, since constrained quantities are zero only up to rounding
 };
-/// Before a formula is evaluated: what does not count is far from its end.
+/// Initialises the quantities before an evaluation: switches that are not evaluated are far from switching.
 template <class S> void preset_quantities(int count, SwitchBits bits, S* quantity) {
   for (int s = 0; s < count; ++s) quantity[s] = S(((bits >> static_cast<unsigned>(s)) & 1U) != 0 ? 1.0 : -1.0);
 }
-/// After it: watch values that hold while they are ≥ 0.
+/// Computes the event functions after an evaluation; they are ≥ 0 while the bits are valid.
 template <class S>
 void watch_switches(SwitchBits bits, const S* quantity, const std::vector<SwitchScale>& scales, S* watch, S* watch_rate) {
   for (std::size_t s = 0; s < scales.size(); ++s) {
@@ -110,16 +114,16 @@ void watch_switches(SwitchBits bits, const S* quantity, const std::vector<Switch
     watch_rate[s] = S(std::numeric_limits<double>::quiet_NaN());
   }
 }
-/// The bits after that of `slot` has changed: what did not count before is found anew.
+/// Returns one scale per switch, for the current motion.
 [[nodiscard]] SwitchBits next_bits(const MotionFormula& formula, SwitchBits bits, int slot, const Evaluation& e,
                                    const OwnCoordinate<double>& own);
 /// Per switch, from where the motion is.
 [[nodiscard]] std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluation& e, const OwnCoordinate<double>& own);
 
-/// The time as a signal.
+/// Returns a signal that represents the time t itself.
 [[nodiscard]] const Signal& clock_signal();
 
-/// What signals are in an evaluation of doubles, and in one that is written down.
+/// Value of a signal in an evaluation with doubles, and on a tape.
 struct SignalsNow {
   double t;
   double operator()(const Signal& signal) const { return &signal == &clock_signal() ? t : signal.value(t); }
@@ -138,7 +142,7 @@ template <class S> [[nodiscard]] const S& coordinate_of(const Motion<S>& m, int 
   return *all[k];
 }
 
-/// Room that one evaluation needs.
+/// Scratch memory of one evaluation, kept per thread.
 template <class S> struct Room {
   std::vector<S> operands, values;
   void grow(std::size_t operand_count, std::size_t value_count) {

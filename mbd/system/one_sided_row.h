@@ -1,11 +1,13 @@
-// A way that pulls and never pushes: the row of an inextensible rope, which comes and goes. The way is a distance of two
-// points, or a sum of such (RowSpec::next) over pulleys that move.
+// Unilateral distance constraint: an inextensible rope, which pulls but does not push. Its length is a distance of two points, or a sum of
+// such distances over moving pulleys (RowSpec::next).
 //
-// Among the friction elements, for its row holds and lets go as those of friction do; of their phases it has two:
-//   stick   taut: the length is a constraint, the tension T = −λ its multiplier, admissible while T ≥ 0
-//   slip    slack: no force, admissible while the length is below the rope's
-// What a taut rope bears has no bound, so it never slips in the sense of friction. A slack rope that reaches its length
-// while that grows is caught: velocities jump (mbd/events/blow.h), and the memory notes the blow.
+// The row is activated and deactivated like those of friction, so the class is a friction element with two phases:
+//
+//   stick   taut: the length is a constraint, the tension T = −λ its multiplier; valid while T ≥ 0
+//   slip    slack: no force; valid while the length is below that of the rope
+//
+// The tension has no upper bound, so a taut rope never slips like friction. When a slack rope becomes taut with a positive rate, velocities
+// jump (mbd/events/blow.h), and the impulse is stored in the memory.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -20,20 +22,21 @@
 
 namespace steplap {
 
+/// The constraint of one rope.
 class OneSidedRow final : public FrictionElement {
 public:
-  static constexpr double k_at_length = 1e-9;  ///< of its length: nearer than this it starts taut
-  static constexpr double k_too_long = 1e-6;   ///< of its length: what the digits of a file may be off by
-  static constexpr double k_least_part = 1e-6; ///< of its length: a straight part that is shorter has run onto its pulley
+  static constexpr double k_at_length = 1e-9;  ///< relative: the rope starts taut if it is nearer than this to its full length
+  static constexpr double k_too_long = 1e-6;   ///< relative: excess of length that is accepted as rounding in the model file
+  static constexpr double k_least_part = 1e-6; ///< relative: a shorter straight part has run onto its pulley
 
-  RowSpec row;               ///< a distance, or the first of several; its memory holds what they may be at most
-  double length = 0.0;       ///< the same, m
-  double dead_band = 0.0;    ///< m: a slack rope is caught beyond it; far above the rounding of places
-  double rest_tension = 0.0; ///< N: less than it is rounding
-  int blow = 0;              ///< slots of the memory: impulse of the last blow, N s; energy lost in all of them, J
-  std::vector<std::pair<std::string, std::string>> points; ///< names of the ends of each part
+  RowSpec row;               ///< the first distance; its memory contains the length of the rope
+  double length = 0.0;       ///< length of the rope, m
+  double dead_band = 0.0;    ///< excess of length, m, at which a slack rope becomes taut; far above the rounding of positions
+  double rest_tension = 0.0; ///< N; smaller tensions are rounding
+  int blow = 0;              ///< index in the memory of the impulse of the last blow, N s, followed by the energy lost in all blows, J
+  std::vector<std::pair<std::string, std::string>> points; ///< names of the end points of each part
 
-  /// The ways between bodies, one at least.
+  /// Sets the distances that make up the length, at least one.
   void set_parts(std::vector<RowSpec> parts) {
     further_.assign(parts.begin() + 1, parts.end());
     row = parts.front();
@@ -41,7 +44,7 @@ public:
     for (std::size_t i = 0; i + 1 < further_.size(); ++i) further_[i].next = &further_[i + 1];
   }
   [[nodiscard]] bool is_long() const { return row.next != nullptr; }
-  /// Between moving points, one after the other, as of RowSpec::next.
+  /// Calls f for each straight part, in order.
   template <class F> void for_parts(const F& f) const {
     for (const RowSpec* part = &row; part; part = part->next) f(*part);
   }
@@ -59,7 +62,7 @@ public:
     });
     return shortest;
   }
-  /// Sum of the speeds of all points that it joins, m/s: rounding of its rate is a share of it.
+  /// Returns the sum of the absolute velocities of all its points, m/s; the rounding error of its rate is proportional to it.
   [[nodiscard]] double speed(const Motion<double>* motion) const {
     const auto of_point = [](const Motion<double>& m, const Pair<double>& lever) {
       return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x);
@@ -94,7 +97,7 @@ public:
   }
   void begin_slip(const Evaluation&, FrictionState&, const double*) const override {}
   void aim(FrictionState& state, const double*) const override { state.sign = 0; }
-  /// w ≤ 0: it pulls.
+  /// Tension only: w ≤ 0.
   [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
                                           bool /*kinetic*/) const override {
     FrictionBlock block;
@@ -105,25 +108,25 @@ public:
   }
 
 private:
-  std::vector<RowSpec> further_; ///< parts beyond the first
+  std::vector<RowSpec> further_; ///< all parts but the first
 };
 
-/// Null where a friction element is none.
+/// Returns the element as a one-sided row, or null if it is another kind of friction.
 [[nodiscard]] inline const OneSidedRow* one_sided_row(const FrictionElement& friction) {
   return friction.never_slips() ? dynamic_cast<const OneSidedRow*>(&friction) : nullptr;
 }
-/// One of a system's one-sided rows, and which of its friction elements it is.
+/// A one-sided row with the index of its friction element.
 struct OneSidedUnit {
   const OneSidedRow* row = nullptr;
   std::size_t friction = 0;
 };
-/// All of them, in the order of the friction elements. `system` must outlive what is made of it.
+/// Returns a range over all one-sided rows, in the order of the friction elements. `system` must outlive it.
 [[nodiscard]] inline auto one_sided_rows(const System& system) {
   const auto of = [&system](std::size_t f) { return OneSidedUnit{one_sided_row(*system.frictions[f].friction), f}; };
   return std::views::iota(std::size_t{0}, system.frictions.size()) | std::views::transform(of) |
          std::views::filter([](const OneSidedUnit& unit) { return unit.row != nullptr; });
 }
-/// Null where there is none.
+/// Returns the first one-sided row, or null.
 [[nodiscard]] inline const OneSidedRow* first_one_sided_row(const System& system) {
   for (const OneSidedUnit& unit : one_sided_rows(system)) return unit.row;
   return nullptr;

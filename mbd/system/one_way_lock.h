@@ -1,7 +1,7 @@
-// A friction element of one dimension that holds without bound against one direction of its rate: a one-way clutch.
+// A one-dimensional friction element that holds any force against one direction of its rate: a one-way clutch.
 //
-// No force within a bound turns a rate round at once, but what has no bound does: where its bodies begin, or are brought by a blow,
-// to move the way that it refuses, they are joined by an impulse as those of a rope are (mbd/events/blow.h).
+// A bounded friction force cannot reverse a velocity instantaneously, but an unbounded one can. If its bodies start to move in the locked
+// direction, or a blow makes them do so, an impulse stops the relative motion, as for ropes (mbd/events/blow.h).
 #pragma once
 
 #include "mbd/system/one_sided_row.h"
@@ -10,24 +10,24 @@ namespace steplap {
 
 class OneWayLock : public FrictionElement {
 public:
-  static constexpr double k_without_bound = 1e30; ///< N or N m: no machine bears as much
+  static constexpr double k_without_bound = 1e30; ///< bound that no machine reaches, N or N m
 
-  int blow = 0; ///< slots of the memory: size of the last impulse, N s or N m s; energy lost in all of them, J
+  int blow = 0; ///< index in the memory of the last impulse, N s or N m s, followed by the energy lost in all impulses, J
 
-  /// Sign of the rate that it refuses whatever it takes; 0: what it holds has a bound either way.
+  /// Returns the sign of the rate that is locked; 0 if the force is bounded in both directions.
   [[nodiscard]] virtual int refuses() const = 0;
-  /// N or N m: what it holds the way that it lets go.
+  /// Returns the friction in the free direction, N or N m.
   [[nodiscard]] virtual double drag() const = 0;
 };
 
-/// Null where a friction element is none, or one whose bounds are finite.
+/// Returns the element as a one-way lock, or null if it is another kind of friction or currently has finite bounds.
 [[nodiscard]] inline const OneWayLock* one_way_lock(const FrictionElement& friction) {
   if (friction.dimension() != 1 || friction.never_slips()) return nullptr;
   const auto* const lock = dynamic_cast<const OneWayLock*>(&friction);
   return lock && lock->refuses() != 0 ? lock : nullptr;
 }
 
-/// Of what takes blows, the first slot of the memory in which it notes them: impulse, and behind it the energy lost; −1 if it takes none.
+/// Returns the index in the memory of the last impulse, followed by the lost energy; −1 for elements without impulses.
 [[nodiscard]] inline int blow_slot(const FrictionElement& friction) {
   if (const OneSidedRow* rope = one_sided_row(friction)) return rope->blow;
   const OneWayLock* const lock = one_way_lock(friction);

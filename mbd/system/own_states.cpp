@@ -11,7 +11,7 @@ namespace {
 
 constexpr OwnCoordinate<double> k_no_coordinate{};
 
-// Of the bodies, as error scales take it.
+// Returns the largest radius of gyration of the bodies, as used for error scales.
 double length_of(const Model& model) {
   double length = 0.0;
   for (const Body& body : model.bodies)
@@ -39,8 +39,8 @@ const OwnState* find_own_state(const Model& model, const std::string& name) {
   return nullptr;
 }
 
-// Error scales of inner states are a thousandth of the bodies' size, or of 1 m if that is larger (Integrator::update_weights): what is
-// kept is worth as much of the scale as that is of such a length.
+// Integrators take 1/1000 of the characteristic length, at most 1 m, as error scale of inner states (Integrator::update_weights). The
+// stored value is therefore scaled so that `scale` corresponds to this length.
 StatePlace place_of_state(SystemBuilder& builder, const OwnState& state) {
   auto& group = builder.group<OwnStateGroup>();
   const std::vector<const OwnState*> states = own_states(builder.model());

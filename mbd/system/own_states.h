@@ -1,8 +1,7 @@
-// `[[state]]`: a number of the model that follows a differential equation of its own, ż = rate(motion, states, parameters, t).
+// `[[state]]` tables: scalar variables with their own differential equation ż = rate(motion, states, parameters, t).
 //
-// It is an inner state (roles.h) that no body owns: formulas in the equations of motion read it by its name. It is kept in parts of
-// its scale, so that all methods control its error as they control places: to the tolerance times a thousandth of the scale,
-// or times what it has changed since the start.
+// Each is an inner state (roles.h) that formulas read by name. It is stored divided by a scale, so that all integration methods control its
+// error like that of positions: tolerance × scale/1000, or tolerance × its change since the start if that is larger.
 #pragma once
 
 #include "mbd/system/motion_formula.h"
@@ -15,43 +14,43 @@
 namespace steplap {
 
 struct OwnState : TableObject {
-  std::string unit;            ///< of its value: made of kg, m and s, or any other, which counts as a number in formulas
-  double start = 0.0;          ///< in its unit
-  std::string rate;            ///< formula of its rate
-  std::optional<double> scale; ///< in its unit: what it is usually like; not given: the size of its start, or 1
-  std::string meaning, sign;   ///< for documents; may be empty
+  std::string unit;            ///< unit of the value; a unit that is not a product of kg, m and s counts as dimensionless in formulas
+  double start = 0.0;          ///< initial value, in `unit`
+  std::string rate;            ///< formula of ż
+  std::optional<double> scale; ///< typical magnitude, in `unit`; not given: |start|, or 1 if that is 0
+  std::string meaning, sign;   ///< description and sign convention; may be empty
 
-  /// So many SI units is one of its unit; 1 of one that is not made of kg, m and s.
+  /// Returns the SI value of one unit; 1 for a unit that is not a product of kg, m and s.
   [[nodiscard]] double factor() const;
 };
 
-/// All of the model, in its order.
+/// Returns all states of the model, in order.
 [[nodiscard]] std::vector<const OwnState*> own_states(const Model& model);
-/// Nullptr if there is none of that name.
+/// Returns the state with this name, or nullptr.
 [[nodiscard]] const OwnState* find_own_state(const Model& model, const std::string& name);
 
-/// Where a state is kept.
+/// Index and unit of a stored state.
 struct StatePlace {
-  int inner = 0;     ///< in State::inner
-  double unit = 1.0; ///< SI for one of what is kept there
+  int inner = 0;     ///< index in State::inner
+  double unit = 1.0; ///< SI value of one unit in State::inner
 };
-/// All states of the model have their places from the first call on.
+/// Returns the index of a state. The first call assigns indices to all states of the model.
 [[nodiscard]] StatePlace place_of_state(SystemBuilder& builder, const OwnState& state);
-/// State::inner as it starts, as far as own states reach in it.
+/// Returns the initial values in State::inner, up to the last own state.
 [[nodiscard]] std::vector<double> start_of_states(SystemBuilder& builder);
 
-/// All own states of a model.
+/// All own states of a model, as a force group without forces.
 class OwnStateGroup final : public ForceGroup, public StateReader {
 public:
   struct Entry {
     MotionFormula rate;
     StatePlace place;
-    int unit = -1; ///< index of its mode; -1: its rate has no switches
-    int watch = 0; ///< index of its first watch value
+    int unit = -1; ///< index of its mode; −1: the formula has no switches
+    int watch = 0; ///< index of its first event function
     std::vector<SwitchScale> switches = {};
   };
   std::vector<Entry> entries;
-  int first_inner = -1; ///< of the model's states, one after another; -1: they have no places yet
+  int first_inner = -1; ///< first index in State::inner, the others follow; −1: not yet assigned
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override;
@@ -69,7 +68,7 @@ private:
   template <class S, class AtTime> void add_rates(Evaluated<S>& e, const AtTime& at_time) const;
 };
 
-/// Nullptr if the system has no own states.
+/// Returns the own states of the system, or nullptr.
 [[nodiscard]] const OwnStateGroup* own_state_group(const System& system);
 
 } // namespace steplap

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* k_whole = "whole";
 
-// What one element alone does at a snapshot, put aside.
+// Power dissipated and supplied by one element at a snapshot.
 struct Alone {
   double dissipation = 0.0, work = 0.0;
 };
@@ -64,7 +64,7 @@ bool wants_energies(const std::vector<std::string>* wanted) {
          });
 }
 
-// States and actions.
+// Returns true for states and actions.
 bool has_no_energy(const ForceGroup& group) {
   return dynamic_cast<const OwnStateGroup*>(&group) != nullptr || dynamic_cast<const ActionGroup*>(&group) != nullptr;
 }
@@ -99,7 +99,7 @@ RequestedChannels::RequestedChannels(SystemBuilder& builder)
   names.erase(std::unique(names.begin(), names.end()), names.end());
 }
 
-// Channels that formulas of elements read have to be there, too.
+// Channels that formulas of elements read must exist, too.
 void RequestedChannels::note_operands_of_elements() {
   for (const ElementEntry& entry : model_.elements)
     for (const std::string& name : names_in_formulas(entry)) builder_.operand_names_.push_back(name);
@@ -131,7 +131,7 @@ Channel* RequestedChannels::make(bool is_on_request, std::string_view owner, std
   return &channel;
 }
 
-// --- shares of elements ---------------------------------------------------------------------------
+// --- energies of single elements -------------------------------------------------------------------
 
 void RequestedChannels::begin_element() {
   if (!wants_shares_) return;
@@ -187,7 +187,7 @@ void RequestedChannels::end_inactive_element(System& acting) {
   shares_.push_back(std::move(share));
 }
 
-// What it had turned into heat, and the work that it had done, stay as they were.
+// An inactive element keeps the energies that it had.
 void RequestedChannels::add_inactive_share(const Share& share) {
   const auto none = [](const Snapshot&) { return 0.0; };
   if (share.dissipates) add_energy(share, "dissipated", "energy that it has turned into heat since the start", {none, {}});
@@ -223,7 +223,7 @@ void RequestedChannels::add_share(const Share& share) {
   for (std::size_t r = share.first_row; r < share.row_end; ++r)
     if (system.rows[r].drive) driven.push_back(r);
 
-  std::vector<int> blows; // of ropes and one-way clutches: where the memory keeps what they have lost
+  std::vector<int> blows; // indices in the memory of the energy that ropes and one-way clutches have lost
   for (const std::size_t f : frictions)
     if (const int slot = blow_slot(*system.frictions[f].friction); slot >= 0) blows.push_back(slot + 1);
 
@@ -264,7 +264,7 @@ void RequestedChannels::add_share(const Share& share) {
   }
 }
 
-// --- markers and the whole ------------------------------------------------------------------------
+// --- markers and the whole system -----------------------------------------------------------------
 
 void RequestedChannels::add_markers() {
   struct Part {
@@ -280,7 +280,7 @@ void RequestedChannels::add_markers() {
                                      {"ax", "m/s^2", "acceleration of the marker, from the equations of motion", 2, 0},
                                      {"ay", "m/s^2", "acceleration of the marker, from the equations of motion", 2, 1}};
   for (const Marker& marker : model_.markers) {
-    if (builder_.body_index_.contains(marker.name)) continue; // a body's own channels tell it
+    if (builder_.body_index_.contains(marker.name)) continue; // the channels of the body itself already show it
     const CompiledMarker& compiled = builder_.marker_index_.at(marker.name);
     for (const Part& part : k_parts)
       make(true, marker.name, part.name, part.unit,
@@ -327,7 +327,7 @@ void RequestedChannels::add_whole() {
 
 const Channel* RequestedChannels::find(const std::string& name) const { return made_channel(builder_, name); }
 
-// By its name, or as trajectory.csv heads it: then its unit has to be the one.
+// Returns the channel with this name. A name with a unit, as in the header of trajectory.csv, is accepted if it is the channel's unit.
 const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::string& name) const {
   if (const Channel* exactly = find(name)) return *exactly;
   const std::string subject = "channel '" + d.name + "'", bare = without_unit(name);
@@ -341,7 +341,7 @@ const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::st
   return *found;
 }
 
-// The unit that the channel is given in, and what SI is to be multiplied by for it.
+// Returns the unit of the channel and the factor from SI to this unit.
 std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& d, const UnitDimension& derived) {
   const std::string subject = "channel '" + d.name + "'";
   if (d.unit.empty()) {
@@ -359,7 +359,7 @@ std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& 
   return {d.unit == "1" ? std::string() : d.unit, 1.0 / given->factor};
 }
 
-// Others that it uses first.
+// Adds a formula, after the formulas that it uses.
 void RequestedChannels::add_formula(Defined& formula) {
   const DefinedChannel& d = *formula.definition;
   if (formula.mark == Defined::Mark::done) return;
@@ -372,7 +372,7 @@ void RequestedChannels::add_formula(Defined& formula) {
       for (Defined& other : formulas_)
         if (other.definition->name == each) add_formula(other);
   std::vector<std::string> units;
-  std::vector<const Channel*> operands; // good as long as no channel is added
+  std::vector<const Channel*> operands; // pointers are valid as long as no channel is added
   for (const std::string& name : formula.expression->names()) {
     operands.push_back(&operand(d, name));
     units.push_back(operands.back()->unit);
@@ -398,9 +398,9 @@ void RequestedChannels::add_formulas() {
     }
 }
 
-// --- what cannot be meant -------------------------------------------------------------------------
+// --- names that match nothing ---------------------------------------------------------------------
 
-// With everything that could be asked for.
+// Returns the names of all channels that could be requested.
 std::vector<std::string> RequestedChannels::all_names() const {
   std::vector<std::string> names;
   for (const DefinedChannel& d : model_.channels) names.push_back(d.name);
@@ -410,7 +410,7 @@ std::vector<std::string> RequestedChannels::all_names() const {
   try {
     const std::unique_ptr<System> system = compile(everything);
     for (const Channel& channel : system->channels) names.push_back(channel.name);
-  } catch (const ModelError&) { // told by whoever compiles the model itself
+  } catch (const ModelError&) { // reported when the model itself is compiled
   }
   return names;
 }
@@ -437,7 +437,7 @@ void RequestedChannels::check_patterns() {
   }
 }
 
-// Of the channels named outright, which elements and bodies have not made.
+// Returns true if a channel wanted by name has not been made by elements and bodies.
 bool RequestedChannels::is_anything_missing() const {
   return builder_.wanted_ &&
          std::any_of(builder_.wanted_->begin(), builder_.wanted_->end(), [this](const std::string& name) { return !find(name); });
@@ -448,7 +448,7 @@ void RequestedChannels::add() {
   add_markers();
   for (const Share& share : shares_) share.acts ? add_share(share) : add_inactive_share(share);
   add_whole();
-  if (!builder_.errors_.empty()) return; // elements without their channels
+  if (!builder_.errors_.empty()) return; // after errors, channels of elements may be missing
   add_formulas();
   check_names();
   if (!builder_.wanted_) check_patterns();

@@ -1,7 +1,7 @@
-// Channels that a model asks for, made beside those that elements make: motion of markers, energies of the whole and of single
-// elements, formulas (formula_channel.h). What nobody asks for is not made.
+// Channels made only on request of the model, in addition to those of elements: motion of markers, energies of the whole system and of
+// single elements, formulas (formula_channel.h).
 //
-//   M.x .y .vx .vy .ax .ay        of marker M, ground axes; accelerations as the equations of motion give them
+//   M.x .y .vx .vy .ax .ay        marker M, ground axes; accelerations from the equations of motion
 //   whole.kinetic .potential .dissipated .work .balance
 //   E.dissipated .stored .work    of element E, since the start
 #pragma once
@@ -16,22 +16,23 @@
 
 namespace steplap {
 
+/// Compiles the channels that a model requests: formulas, and energies of single elements.
 class RequestedChannels {
 public:
-  /// Reads the formulas; what is wrong with them goes to the builder's errors.
+  /// Parses the formulas. Errors are reported to the builder.
   explicit RequestedChannels(SystemBuilder& builder);
 
-  /// Around an element's compilation: what of the system is its share.
+  /// To be called before and after the compilation of an element; determines which parts of the system belong to it.
   void begin_element();
   void end_element();
-  /// The same of one that does not act: its energies stay as they are, so that they have their places. `acting`: the system being made.
+  /// As end_element(), for an inactive element, whose energies are constant. `acting` is the system being made.
   void end_inactive_element(System& acting);
-  /// When the system is complete but for these.
+  /// Adds the requested channels. To be called after all elements are compiled.
   void add();
 
-  /// A channel that elements before this one have made, or nullptr.
+  /// Returns a channel made by an element compiled before, or nullptr.
   [[nodiscard]] static const Channel* made_channel(const SystemBuilder& builder, const std::string& name);
-  /// Names of those that are measures (measured_channel.h).
+  /// Returns the names of channels that are measures (measured_channel.h).
   [[nodiscard]] static std::vector<std::string> measured_names(const SystemBuilder& builder);
 
 private:
@@ -40,13 +41,13 @@ private:
     std::optional<Formula> expression;
     enum class Mark { untouched, open, done } mark = Mark::untouched;
   };
-  struct Share { ///< of an element
+  struct Share { ///< parts of the system that belong to one element
     int element = 0;
     std::vector<const ForceGroup*> groups;
     std::vector<std::size_t> first, count;
     std::vector<char> does_work;
     std::size_t first_row = 0, row_end = 0, first_friction = 0, friction_end = 0;
-    bool dissipates = false, stores = false, works = false; ///< its channels
+    bool dissipates = false, stores = false, works = false; ///< energy channels requested
     bool acts = true;
   };
 
@@ -73,10 +74,10 @@ private:
   const Model& model_;
   std::vector<Defined> formulas_;
   std::vector<Share> shares_;
-  std::vector<std::size_t> counts_; ///< of entries in groups, before the element
+  std::vector<std::size_t> counts_; ///< number of entries in each group before the current element
   std::size_t rows_ = 0, frictions_ = 0;
-  bool has_requests_; ///< the model asks for something
-  bool wants_shares_; ///< there may be energies of elements among it
+  bool has_requests_; ///< the model requests channels
+  bool wants_shares_; ///< energies of elements may be among them
 };
 
 } // namespace steplap

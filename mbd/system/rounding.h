@@ -1,7 +1,7 @@
-// To what values and rates of measures are known: sums of a few terms, each rounded.
+// Bounds of the rounding errors of measures.
 //
-// A gap of a picometre between bodies a kilometre from the origin is none. What a mode of an element hangs on is compared with
-// these, so that it does not hang on the last bits of where the bodies are.
+// A gap of a picometre between bodies a kilometre from the origin is only rounding. Decisions about modes compare with these bounds, so
+// that they do not depend on the last bits of positions.
 #pragma once
 
 #include "mbd/system/measure.h"
@@ -11,11 +11,11 @@
 
 namespace steplap {
 
-/// A place or a velocity comes out of a few turns of axes and sums, each of which rounds terms as large as these.
+/// Relative rounding error of a measure: positions and velocities result from a few rotations and sums, each rounding terms of this size.
 inline constexpr double k_rounded_sum = 32.0 * std::numeric_limits<double>::epsilon();
 
-/// m, rad, m/s, rad/s: what joints hold at zero is known no better. Ten times what projection leaves of them
-/// (SimulationSettings::projection_tolerance as it is if nobody sets it), for levers longer than between the joints.
+/// Residual of joints, m, rad, m/s, rad/s: values below it count as zero. It is ten times the default residual after projection
+/// (SimulationSettings::projection_tolerance), to allow for levers longer than the distances between joints.
 inline constexpr double k_met = 1e-11;
 
 namespace rounding {
@@ -27,7 +27,8 @@ template <class S> [[nodiscard]] S size(const Pair<S>& p) {
 
 } // namespace rounding
 
-/// Of a measure's value, `m` taken at these motions or in a link's frame. An angle that is off moves the end of its lever.
+/// Returns a bound of the rounding error of a measure's value. An error of an angle moves the end of its lever. `m` may be relative to a
+/// link's frame.
 template <class S> [[nodiscard]] S value_rounding(const MeasureValue<S>& m, const Motion<S>& a, const Motion<S>& b) {
   using rounding::size;
   using std::abs;
@@ -37,7 +38,7 @@ template <class S> [[nodiscard]] S value_rounding(const MeasureValue<S>& m, cons
   return S(k_rounded_sum) * (size(m.direction) * (places + levers) + abs(m.couple) * (turned_a + turned_b) + abs(m.value));
 }
 
-/// The same of its rate.
+/// Returns a bound of the rounding error of a measure's rate.
 template <class S> [[nodiscard]] S rate_rounding(const MeasureValue<S>& m, const Motion<S>& a, const Motion<S>& b) {
   using rounding::size;
   using std::abs;

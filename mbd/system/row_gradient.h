@@ -1,19 +1,17 @@
-// The gradient of a row: J of (27), what a unit multiplier does to the place and angle of either body.
-//
-// evaluate_row() of row.h is the only place that tells measures apart. Whoever wants a gradient takes it from the functions
-// below, with numbers of any kind: doubles in an evaluation, Traced where an evaluation is written down (traced.h), Dual where
-// it is differentiated (dual.h).
+// Gradient of a row: J of (27), the generalised force on both bodies for a unit multiplier.
 //
 //   J_a = ( d,  r_a × d + couple),   J_b = −( d,  r_b × d + couple)
-// with d the direction of the measure and r the way to its point from the centre that the coordinates belong to: that of the
-// body, or of the cluster that the body rides on.
+//
+// d is the direction of the measure, r the vector to its point of application from the reference point of the coordinates: the centre of
+// gravity of the body, or of its cluster. Only evaluate_row() (row.h) distinguishes measures; the functions here apply to all of them and
+// to all number types: double, Traced (traced.h) and Dual (dual.h).
 #pragma once
 
 #include "mbd/system/row.h"
 
 namespace steplap {
 
-/// Three numbers of one side (0: a, 1: b); `lever`: r.
+/// Writes the three components for one side (0: a, 1: b); `lever` is r.
 template <class S> STEPLAP_INLINE void put_gradient(const MeasureValue<S>& m, int side, const Pair<S>& lever, S* j) {
   const S couple = cross(lever, m.direction) + m.couple;
   j[0] = side == 0 ? m.direction.x : -m.direction.x;
@@ -33,7 +31,7 @@ template <class S> [[nodiscard]] STEPLAP_INLINE RowGradient<S> gradient_of(const
   return g;
 }
 
-/// Of a row of two bodies, or of one part of a longer row.
+/// Returns the gradient of a row of two bodies, or of one part of a longer row.
 template <class S> [[nodiscard]] RowGradient<S> row_gradient(const RowSpec& part, const Motion<S>& a, const Motion<S>& b) {
   return gradient_of(evaluate_row<false>(part, a, b));
 }

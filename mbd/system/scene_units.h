@@ -1,13 +1,14 @@
-// The scene's own length and times, from which follows what counts as many events in a short time: a model whose lengths and times
-// are scaled is judged the same way. Not all tolerances follow them yet (KNOWN_ISSUES.md).
+// Characteristic length and times of a scene. Thresholds such as "many events in a short time" scale with them, so that a scaled model gets
+// the same result. Some tolerances do not use them yet (KNOWN_ISSUES.md).
 #pragma once
 
 namespace steplap {
 
+/// Characteristic values of one scene.
 struct SceneUnits {
-  double length = 1.0;   ///< m: the largest radius of gyration, √(J/m)
-  double duration = 1.0; ///< s: that the model runs for
-  double rate = 1.0;     ///< 1/s: √(g/length), by gravity g; without it π/duration
+  double length = 1.0;   ///< largest radius of gyration √(J/m), m
+  double duration = 1.0; ///< duration of the run, s
+  double rate = 1.0;     ///< √(g/length), 1/s; π/duration without gravity
 
   [[nodiscard]] double time() const { return 1.0 / rate; }
 };

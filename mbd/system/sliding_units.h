@@ -1,4 +1,4 @@
-// Units whose modes say of a contact and of its friction at once: where the contact closes, its friction may slide from there.
+// Units whose mode describes both a contact and its friction, so that the friction may start to slide when the contact closes.
 #pragma once
 
 #include "mbd/base/event_kind.h"
@@ -6,7 +6,7 @@
 
 namespace steplap {
 
-/// A role that a ForceGroup may have besides.
+/// Additional interface of a ForceGroup with such units.
 class SlidingUnits {
 public:
   SlidingUnits() = default;
@@ -14,11 +14,11 @@ public:
   SlidingUnits& operator=(const SlidingUnits&) = delete;
   virtual ~SlidingUnits() = default;
 
-  /// How its friction slides in this mode: an event that would begin it; none: it does not.
+  /// Returns the event that begins the sliding of this mode (such as `slips_forward`); `none` if it does not slide.
   [[nodiscard]] virtual EventKind sliding_in(UnitMode mode) const = 0;
 };
 
-/// How the friction of a unit of `group` slides in a mode; none: it does not, or has none of its own.
+/// The same for a unit of any group; `none` if it has no friction of its own.
 [[nodiscard]] inline EventKind sliding_of(const ForceGroup& group, UnitMode mode) {
   const auto* const sliding = dynamic_cast<const SlidingUnits*>(&group);
   return sliding ? sliding->sliding_in(mode) : EventKind::none;

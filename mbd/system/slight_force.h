@@ -1,4 +1,4 @@
-// What is slight for the bodies that a row joins, where nothing else tells: a bound that is zero, or none.
+// Threshold for negligible forces in a row, used where no bound of friction defines a scale.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -8,7 +8,8 @@
 
 namespace steplap {
 
-/// N, of an angle N m: a millionth of what gives the lighter of the row's bodies the scene's acceleration. `row`: of a body that moves.
+/// Returns 1e-6 of the force (N, for an angle N m) that gives the lighter of the row's bodies the characteristic acceleration of the scene.
+/// Precondition: at least one body of `row` moves.
 [[nodiscard]] inline double slight_force(const System& system, const RowSpec& row) {
   constexpr double k_slight = 1e-6;
   double lightest = std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
-// What laws of slip are told by the run that they are in.
+// Tolerance of the run, for slip laws that depend on it.
 //
-// A law whose beginning and end are followed only as closely as a run asks for (a step-lap joint's) hangs on the tolerance. A run
-// at a finer one leaves out less, so that estimates by finer runs see what is left out.
+// The onset and end of slip in a step-lap joint are resolved only as accurately as the tolerance requires. A run with a finer tolerance
+// neglects less, so error estimates by finer runs include the neglected part.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -10,13 +10,13 @@
 
 namespace steplap {
 
-/// Scratch of elements whose slip law hangs on the tolerance.
+/// Base class of the scratch memory of such friction elements.
 struct SlipScratch : FrictionScratch {
-  /// Of a method that chooses its steps by it. Not called where it does not.
+  /// Sets the relative tolerance. Not called for methods without a tolerance.
   virtual void follow(double tolerance) = 0;
 };
 
-/// Tells all of an evaluation's friction elements.
+/// Sets the tolerance of all friction elements of an evaluation.
 inline void tell_slip_laws(const Evaluation& e, double tolerance, std::size_t frictions) {
   for (std::size_t f = 0; f < frictions; ++f)
     if (auto* scratch = dynamic_cast<SlipScratch*>(e.scratch[f])) scratch->follow(tolerance);

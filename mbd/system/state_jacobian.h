@@ -1,4 +1,4 @@
-// Derivatives of and by own states of the model (own_states.h), for implicit methods.
+// Jacobian terms of own states of the model (own_states.h), for implicit methods.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// What own states do to the motion, and what they follow. SI per what is kept in State::inner, as sparse lists.
+/// Derivatives as sparse lists, with states in the units of State::inner and all else in SI.
 struct StateJacobian {
   struct ByMotion { ///< ∂ż/∂(pose of a body), ∂ż/∂(its velocity)
     int inner = 0, body = k_ground;
@@ -32,10 +32,11 @@ struct StateJacobian {
   }
 };
 
-/// A role of force groups that read own states. Entries come in the same order while the modes of its elements stay.
+/// Additional interface of force groups that read own states. The entries have the same order as long as modes do not change.
 class StateReader {
 public:
   virtual ~StateReader() = default;
+  /// Adds the derivatives of rates of own states, and of forces by own states, to `out`.
   virtual void add_state_jacobian(const Evaluation& e, StateJacobian& out) const = 0;
 };
 

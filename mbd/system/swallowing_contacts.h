@@ -1,4 +1,4 @@
-// Contacts in which one body can come to lie wholly within the other, where nothing pushes it out any more.
+// Contacts in which one body can get completely inside the other, where no force pushes it out.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -8,12 +8,13 @@
 
 namespace steplap {
 
-/// A group of contacts whose law has an end: no motion may be shown that goes on beyond it.
+/// A group of such contacts. A run must stop when one body is inside the other, because the contact law is not valid there.
 class SwallowingContacts {
 public:
   virtual ~SwallowingContacts() = default;
-  /// Index in System::units of the first closed contact in which one body lies wholly within the other; −1: none. `modes`: of all
-  /// units; `watch`: all watch values; `motion`: of all bodies, found where a watch value does not tell already.
+  /// Returns the index in System::units of the first closed contact with one body completely inside the other; −1 if there is none. `modes`
+  /// has one entry per unit, `watch` one per event function; `motion` returns the motions of all bodies and is called only if the event
+  /// functions do not decide.
   [[nodiscard]] virtual int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& watch,
                                             const std::function<const Motion<double>*()>& motion) const = 0;
 };

@@ -26,9 +26,8 @@ void place_bodies(const std::vector<double>& q, const std::vector<double>& v, st
   }
 }
 
-// A drive read as a velocity or an acceleration begins where the body is; one read as an acceleration
-// also begins with the speed that the body has. A position is absolute: the base is what the signal's
-// increment since t = 0 leaves out.
+// A drive read as velocity or acceleration starts at the position of the body; one read as acceleration also starts with its velocity. A
+// drive read as position is absolute: its base is f(0), the part that Signal::drive() omits.
 void start_drives(const System& system, State& state, const std::vector<char>* begins) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -135,8 +134,8 @@ void SystemBuilder::compile_bodies() {
   State state = system_->initial_state();
   place_bodies(state.q, state.v, reference_);
 
-  // A marker's point is measured from the centre of gravity; on a fixed body it becomes a point of
-  // the ground, so that fixed bodies cost nothing.
+  // Marker positions are relative to the centre of gravity. A marker on a fixed body becomes a point of the ground, so that fixed bodies
+  // need no computation.
   const auto compiled = [&](const std::string& body_name, const std::optional<Vec2>& point, const std::optional<Vec2>& at, double angle) {
     CompiledMarker marker;
     marker.body = body_index_.at(body_name);
@@ -208,7 +207,7 @@ void SystemBuilder::compile_elements(RequestedChannels& requested) {
 
 namespace {
 
-// A contact that does not act: open, without a normal force.
+// A contact that does not act: always open, zero normal force.
 class InactiveContacts final : public ForceGroup {
 public:
   struct Entry {
@@ -230,9 +229,8 @@ public:
 
 } // namespace
 
-// An element that does not act is compiled into a system that is thrown away, so that what is wrong with it is found and its
-// channels have their places: they are zero, but for what follows from the motion alone. Who refers to it as a contact finds one that
-// is open.
+// An inactive element is compiled into a temporary system that is then discarded. In this way its errors are found, and its channels exist:
+// they are zero, except for those that depend on the motion only. Elements that refer to it as a contact get an open one.
 void SystemBuilder::compile_inactive(const ElementEntry& entry, RequestedChannels& requested) {
   auto aside = std::make_unique<System>();
   aside->bodies = system_->bodies;
@@ -277,7 +275,7 @@ void SystemBuilder::finish() {
   s.force_link_count = s.links.size();
   for (const RowSpec& row : s.rows) s.links.add(row.a, row.b);
   for (const FrictionUnit& unit : s.frictions) {
-    const RowSpec& row = *unit.friction->rows({}); // the same two bodies at each of its places
+    const RowSpec& row = *unit.friction->rows({}); // its rows have the same two bodies at all contact points
     s.links.add(row.a, row.b);
   }
   s.has_work = std::any_of(group_types_.begin(), group_types_.end(), [](const GroupType& type) { return type.does_work; }) ||
@@ -389,9 +387,10 @@ int SystemBuilder::add_memory(double base, double base_rate) {
 
 int SystemBuilder::add_inner(const ForceGroup& group, double start) {
   const std::string& integrator = model_.simulation.integrator;
-  const bool is_first = system_->inner_elements.empty() || system_->inner_elements.back() != element_; // said once an element
+  const bool is_first =
+      system_->inner_elements.empty() || system_->inner_elements.back() != element_; // at most one message for each element
   const auto cannot = [&](const Method& m) { return m.name == integrator && m.is_time_stepping; };
-  const bool is_stepped = dynamic_cast<const OwnStateGroup*>(&group) != nullptr; // a differential equation, and no more
+  const bool is_stepped = dynamic_cast<const OwnStateGroup*>(&group) != nullptr; // own states, which time stepping can integrate
   if (is_first && !is_stepped && std::any_of(methods().begin(), methods().end(), cannot))
     error("'" + integrator +
           "' does not follow what it remembers (the slid distance of an elastic joint, whether a tie has "
@@ -407,7 +406,7 @@ void SystemBuilder::add_rows(std::vector<RowSpec> rows, bool is_rigid, int coord
   const int first = static_cast<int>(system_->rows.size());
   for (RowSpec& row : rows) {
     row.element = element_;
-    if (row.drive) { // elements have refused those that jump within the model's own run
+    if (row.drive) { // jumps within the run itself were reported by the element
       constexpr double k_ever = std::numeric_limits<double>::infinity();
       const auto jump = row.drive->first_jump(row.level, std::nextafter(model_.simulation.end, 0.0), k_ever);
       if (jump) system_->drives_end = std::min(system_->drives_end, jump->t);
@@ -426,7 +425,7 @@ int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
 
 namespace {
 
-// A measure of the motion goes on; all else is zero.
+// Measures of the motion continue; all other channels are zero.
 std::function<double(const Snapshot&)> value_while_inactive(const std::function<double(const Snapshot&)>& value) {
   const auto* const measured = value.target<MeasuredValue>();
   if (!measured) return [](const Snapshot&) { return 0.0; };

@@ -1,5 +1,5 @@
-// The compiled system: what a model becomes before it runs. Flat arrays, indices instead of names, and
-// only what the scene needs; const while running. What changes is in State, scratch is in Dynamics.
+// The compiled system: a model prepared for simulation, with flat arrays and indices instead of names. It is constant during a run. The
+// quantities that change are in State, scratch memory is in Dynamics.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -22,28 +22,28 @@ namespace steplap {
 class RequestedChannels;
 class System;
 
-/// Everything that changes during a run. Body 0 is the ground; q and v hold (x, y, θ) and its rate of
-/// each body's centre of gravity.
+/// Everything that changes during a run. q and v contain (x, y, θ) of each body's centre of gravity and their rates, 3 numbers per body;
+/// body 0 is the ground.
 struct State {
   double t = 0.0;                      ///< s
   std::vector<double> q, v;            ///< m and rad; m/s and rad/s
   std::vector<UnitMode> mode;          ///< per unit
   std::vector<FrictionState> friction; ///< per friction element
-  std::vector<double> memory;          ///< bases of rows
-  std::vector<double> inner;           ///< inner states of force elements
-  double dissipated = 0.0;             ///< J, since the start
-  double work = 0.0;                   ///< J, of loads and drives since the start
+  std::vector<double> memory;          ///< constants of rows that are set during the run (RowSpec::memory)
+  std::vector<double> inner;           ///< internal states of force elements
+  double dissipated = 0.0;             ///< dissipated energy since the start, J
+  double work = 0.0;                   ///< work of loads and drives since the start, J
 };
 
-/// Integrals over time that a run keeps beside the motion (System::integrands).
+/// Time integrals that a run computes in addition to the motion (System::integrands).
 class Integrals {
 public:
   virtual ~Integrals() = default;
-  /// Of integrand `slot`, from the start to t, which is not before the run's last stretch.
+  /// Returns the integral of integrand `slot` from the start to t. Precondition: t is not before the last step.
   [[nodiscard]] virtual double value(int slot, double t) const = 0;
 };
 
-/// What a channel may look at: a state with the accelerations and reactions that belong to it.
+/// Data from which channels compute their values: a state with its accelerations and reactions.
 struct Snapshot {
   double t = 0.0;                         ///< s
   const Motion<double>* motion = nullptr; ///< per body
@@ -51,63 +51,63 @@ struct Snapshot {
   const Evaluation* evaluation = nullptr; ///< contact forces, modes, friction states
   const double* row_force = nullptr;      ///< multiplier of every bilateral row
   const double* friction_force = nullptr; ///< wrench of every friction element along its rows
-  const double* memory = nullptr;         ///< of driven rows and anchors (State::memory)
-  double dissipated = 0.0, work = 0.0;    ///< J, of all since the start
-  const Integrals* integrals = nullptr;   ///< null where no run keeps any: nothing has passed yet
+  const double* memory = nullptr;         ///< constants of driven rows and anchors (State::memory)
+  double dissipated = 0.0, work = 0.0;    ///< dissipated energy and work of the whole system since the start, J
+  const Integrals* integrals = nullptr;   ///< null outside a run; integrals are then zero
 };
 
-/// Between which a value lies.
+/// Interval that contains a value.
 struct ValueBounds {
   double low = 0.0, high = 0.0; ///< in the value's unit
 };
 
-/// What a channel means, in words, given where it is made.
+/// Documentation of a channel.
 struct ChannelText {
-  std::string_view meaning; ///< what it measures
-  std::string_view sign;    ///< when it is positive, in whose axes; "" where its meaning says so
-  std::string_view codes;   ///< of a mode: "0 free, 1 sticks, 2 slips"
+  std::string_view meaning; ///< measured quantity
+  std::string_view sign;    ///< direction in which it is positive, and axes; "" if `meaning` states it
+  std::string_view codes;   ///< codes of a mode: "0 free, 1 sticks, 2 slips"
 
-  /// All three from texts.
+  /// Sets all three texts.
   ChannelText(std::string_view meaning_, std::string_view sign_ = {}, std::string_view codes_ = {})
       : meaning(meaning_), sign(sign_), codes(codes_) {}
-  /// Its meaning alone.
+  /// Sets the meaning only.
   ChannelText(const char* meaning_) : meaning(meaning_) {}
-  /// Its meaning alone.
+  /// Sets the meaning only.
   ChannelText(const std::string& meaning_) : meaning(meaning_) {}
 };
 
-/// A named number that a run writes, bounds and judges.
+/// A named result of a run: a scalar function of the snapshot.
 struct Channel {
   std::string name;                             ///< "<element>.<quantity>"
   std::string unit;                             ///< SI; "" = none
-  std::string doc;                              ///< its meaning
-  std::function<double(const Snapshot&)> value; ///< at a moment of a run, in `unit`
-  /// Of a value that costs much: bounds that cost little, for whoever only wants to know its extremes.
+  std::string doc;                              ///< ChannelText::meaning
+  std::function<double(const Snapshot&)> value; ///< returns the value, in `unit`
+  /// Cheap bounds of an expensive value, for the search of extremes; may be empty.
   std::function<ValueBounds(const Snapshot&)> bounds = {};
-  bool has_extremes = true;          ///< false: it passes through infinity
-  std::string sign = {}, codes = {}; ///< ChannelText
-  bool is_on_request = false;        ///< made for a model that asks for it
+  bool has_extremes = true;          ///< false if the value can be infinite
+  std::string sign = {}, codes = {}; ///< as in ChannelText
+  bool is_on_request = false;        ///< computed only if a model requests it
 };
 
-/// A power that a run integrates over time, since some channel wants to know (Snapshot::integrals).
+/// A power that a run integrates over time because a channel needs the integral (Snapshot::integrals).
 struct Integrand {
   std::function<double(const Snapshot&)> power;  ///< W
-  std::function<double(const Snapshot&)> stored; ///< J; what an event takes from it at once counts with the integral. Null: nothing
+  std::function<double(const Snapshot&)> stored; ///< energy, J, whose decrease at an event is added to the integral; null: none
 };
 
-/// Mass properties and start of a body; index 0 is the ground.
+/// Mass properties and initial state of a body; index 0 is the ground.
 struct BodyData {
-  std::string name;                 ///< of the model; "ground" for the ground
+  std::string name;                 ///< name in the model; "ground" for the ground
   double mass = 0.0, inertia = 0.0; ///< kg; kg m², about the centre of gravity
   Vec3 pose = Vec3::Zero();         ///< (x, y, θ) of the centre of gravity in the reference pose, m and rad
-  Vec3 velocity = Vec3::Zero();     ///< its rate at the start, m/s and rad/s
+  Vec3 velocity = Vec3::Zero();     ///< rates of `pose` at the start, m/s and rad/s
 };
 
-/// Rows that belong together: a joint's, or a drive's.
+/// Consecutive rows of one joint or drive.
 struct RowBlock {
-  int first = 0, count = 0; ///< in System::rows
-  bool is_rigid = false;    ///< two axis rows at one point and the angle: holds a and b rigidly together
-  int coordinate = -1;      ///< 0, 1, 2: it drives x, y or θ of the centre of gravity of a, and nothing else
+  int first = 0, count = 0; ///< range in System::rows
+  bool is_rigid = false;    ///< two axis rows at one point and an angle row, which hold a and b rigidly together
+  int coordinate = -1;      ///< 0, 1, 2: the row drives x, y or θ of the centre of gravity of a, and nothing else; −1: otherwise
   int element = 0;          ///< index in System::element_names
 };
 
@@ -115,168 +115,166 @@ struct RowBlock {
 struct Unit {
   const ForceGroup* group = nullptr; ///< never nullptr
   int index = 0;                     ///< in its group
-  int watch = 0, watch_count = 0;    ///< its first watch value, and how many it has
+  int watch = 0, watch_count = 0;    ///< index of its first event function, and their number
   int element = 0;                   ///< index in System::element_names
 };
 
-/// A friction element, with the places that it has in the arrays of a run.
+/// A friction element with its indices in the arrays of a run.
 struct FrictionUnit {
   std::unique_ptr<FrictionElement> friction; ///< never nullptr
-  int row = 0;                               ///< first slot of its wrench in Snapshot::friction_force
-  int watch = 0;                             ///< its first watch value
+  int row = 0;                               ///< index of its first component in Snapshot::friction_force
+  int watch = 0;                             ///< index of its first event function
   int element = 0;                           ///< index in System::element_names
 };
 
-/// A compiled model: read by any number of threads at a time. It does not refer to the model.
+/// A compiled model. It does not refer to the model and may be used by several threads at once.
 class System {
 public:
   System() = default;
   System(const System&) = delete; // channels and rows refer to what it owns
   System& operator=(const System&) = delete;
 
-  std::string title;                                           ///< of the model
+  std::string title;                                           ///< title of the model
   Vec2 gravity = Vec2::Zero();                                 ///< m/s², ground axes
-  SceneUnits scale;                                            ///< the scene's own length and times
+  SceneUnits scale;                                            ///< characteristic length and times of the scene
   std::vector<BodyData> bodies;                                ///< the ground first
   std::vector<std::string> element_names;                      ///< in the order of the model
   std::vector<std::string> element_kinds;                      ///< of each element
   std::vector<std::unique_ptr<ForceGroup>> groups;             ///< one for each combination of measure and law
-  std::vector<RowSpec> rows;                                   ///< bilateral and driven
-  std::vector<RowBlock> row_blocks;                            ///< of `rows`, in their order
-  LinkTable links;                                             ///< those of force elements first
-  int force_link_count = 0;                                    ///< how many of `links` force elements act in
+  std::vector<RowSpec> rows;                                   ///< bilateral and driven rows
+  std::vector<RowBlock> row_blocks;                            ///< blocks of `rows`, in the same order
+  LinkTable links;                                             ///< pairs of bodies; those of force elements come first
+  int force_link_count = 0;                                    ///< number of `links` used by force elements
   std::vector<Unit> units;                                     ///< force elements with modes
-  std::vector<FrictionUnit> frictions;                         ///< friction elements, in the order in which they were compiled
-  std::vector<Channel> channels;                               ///< all that can be written of a run
-  std::vector<Integrand> integrands;                           ///< of channels on request
-  std::vector<std::unique_ptr<Channel>> operands;              ///< of expressions, where they are no channels themselves
-  std::vector<std::unique_ptr<ForceGroup>> shares;             ///< of single elements, whose energy channels ask for
-  std::vector<double> breakpoints;                             ///< of all signals in use, ascending
-  std::vector<double> motion_breakpoints;                      ///< of those that are no mere forces (SignalUse), ascending
-  double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
-  std::vector<double> initial_memory;                          ///< where State::memory starts
-  std::vector<int> memory_elements;                            ///< of each number in it
-  std::vector<double> initial_inner;                           ///< where State::inner starts
-  std::vector<int> inner_elements;                             ///< of each inner state
-  std::vector<const ForceGroup*> inner_groups;                 ///< those with inner states
-  std::vector<char> is_body_used;                              ///< per body: some force element or friction refers to it
-  bool has_work = false;                                       ///< some load, motor or drive may do work
-  int contact_count = 0;                                       ///< of normal forces (Evaluated::contact_force)
-  int watch_count = 0;                                         ///< of values watched for events
-  int friction_row_count = 0;                                  ///< of rows of all friction elements together
+  std::vector<FrictionUnit> frictions;                         ///< in the order of compilation
+  std::vector<Channel> channels;                               ///< all available channels
+  std::vector<Integrand> integrands;                           ///< powers to be integrated for channels on request
+  std::vector<std::unique_ptr<Channel>> operands;              ///< operands of formulas that are not channels themselves
+  std::vector<std::unique_ptr<ForceGroup>> shares;             ///< copies of the entries of single elements, for their energy channels
+  std::vector<double> breakpoints;                             ///< breakpoints of all signals in use, ascending, s
+  std::vector<double> motion_breakpoints;                      ///< breakpoints of signals with SignalUse::motion, ascending, s
+  double drives_end = std::numeric_limits<double>::infinity(); ///< time at which a drive would jump, s; no run may continue beyond it
+  std::vector<double> initial_memory;                          ///< initial State::memory
+  std::vector<int> memory_elements;                            ///< element of each number in initial_memory
+  std::vector<double> initial_inner;                           ///< initial State::inner
+  std::vector<int> inner_elements;                             ///< element of each inner state
+  std::vector<const ForceGroup*> inner_groups;                 ///< groups with inner states
+  std::vector<char> is_body_used;                              ///< per body: a force or friction element acts on it
+  bool has_work = false;                                       ///< a load, motor or drive may do work
+  int contact_count = 0;                                       ///< number of normal forces (Evaluated::contact_force)
+  int watch_count = 0;                                         ///< number of event functions
+  int friction_row_count = 0;                                  ///< number of rows of all friction elements
 
-  /// The ground included.
+  /// Returns the number of bodies, including the ground.
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies.size()); }
-  /// Numbers in State::inner.
+  /// Returns the length of State::inner.
   [[nodiscard]] int inner_count() const { return static_cast<int>(initial_inner.size()); }
-  /// Of the packed state, where nothing is merged (dynamics.h).
+  /// Returns the dimension of the packed state if no bodies are merged (dynamics.h), an upper bound.
   [[nodiscard]] int largest_dimension() const { return 6 * body_count() + inner_count() + 2; }
-  /// The reference pose and velocity, modes and anchors that belong to it.
+  /// Returns the reference pose and velocity with the modes and anchors that follow from them.
   [[nodiscard]] State initial_state() const;
-  /// Potential energy: gravity and all that is stored in elements.
+  /// Returns the potential energy of gravity and of all elements, J; `motion` has one entry per body.
   [[nodiscard]] double potential_energy(const Motion<double>* motion) const;
-  /// Of all bodies, J.
+  /// Returns the kinetic energy of all bodies, J.
   [[nodiscard]] double kinetic_energy(const State& state) const;
-  /// Angular frequency of the fastest harmonic of all loads and drives between the breakpoints about t, rad/s; 0: none.
+  /// Returns the highest angular frequency of all loads and drives between the breakpoints around t, rad/s; 0 if there is none.
   [[nodiscard]] double fastest_at(double t) const;
-  /// Nullptr if there is none of that name.
+  /// Returns the channel with this name, or nullptr.
   [[nodiscard]] const Channel* find_channel(const std::string& name) const;
 
 private:
   friend class SystemBuilder;
   std::vector<std::unique_ptr<Signal>> signals_;
-  std::vector<const Signal*> motion_signals_; ///< those with SignalUse::motion
+  std::vector<const Signal*> motion_signals_; ///< signals with SignalUse::motion
 };
 
-/// Fills per-body motions from q and v; `motion` has one entry per body.
+/// Computes the motions of all bodies from q and v; `motion` has one entry per body.
 void place_bodies(const std::vector<double>& q, const std::vector<double>& v, std::vector<Motion<double>>& motion);
 
-/// Bases of driven rows, so that the drives begin at the pose and velocity of `state`: of all, or of those elements alone
-/// (by System::element_names) that `begins` marks.
+/// Sets the constants of driven rows in `state`.memory so that the drives start from the pose and velocity of `state`. `begins` restricts
+/// this to the marked elements (index as in System::element_names); null: all.
 void start_drives(const System& system, State& state, const std::vector<char>* begins = nullptr);
 
-/// Where a marker ends up: a compiled body and a point and angle in its frame (from its centre of
-/// gravity).
+/// A marker after compilation: body, position relative to the centre of gravity, and angle.
 struct CompiledMarker {
   int body = k_ground;       ///< index in System::bodies
-  Vec2 point = Vec2::Zero(); ///< m, from the centre of gravity, body axes
-  double angle = 0.0;        ///< rad, of its axes against the body's
+  Vec2 point = Vec2::Zero(); ///< position relative to the centre of gravity, m, body axes
+  double angle = 0.0;        ///< angle of its axes relative to those of the body, rad
 };
 
-/// Indices of a contact's normal force and of its unit.
+/// Indices of the normal force and of the unit of a contact.
 struct ContactIndex {
   int force = 0, unit = 0; ///< in Evaluated::contact_force; in System::units
 };
 
-/// What an element takes a signal for. The impulse of a force is known for a step of any length from the signal's
-/// integral; what moves something, or enters a law otherwise, acts through what follows it: no step may pass over a part.
+/// Use of a signal by an element. A force is averaged exactly over a step of any length by the integral of the signal. A signal used in
+/// another way (a drive, a parameter of a law) must be resolved by the steps.
 enum class SignalUse : unsigned char { motion, force };
 
-/// Handed to ElementKind::compile: names in, indices out.
+/// Interface for ElementKind::compile: resolves names and collects the parts of the system.
 class SystemBuilder {
 public:
-  /// Of the channels, those named in `wanted`; null: all.
+  /// Makes only the channels named in `wanted`; null: all.
   SystemBuilder(const Model& model, const std::vector<std::string>* wanted);
 
   // --- references -------------------------------------------------------------------------------
-  /// By its name. Throws ModelError if there is none.
+  /// Returns the marker with this name. Throws ModelError if there is none.
   [[nodiscard]] CompiledMarker marker(const std::string& name) const;
-  /// Its index in System::bodies. Throws ModelError if there is none.
+  /// Returns the index of the body in System::bodies. Throws ModelError if there is none.
   [[nodiscard]] int body(const std::string& name) const;
-  /// Null for an empty name.
+  /// Returns the signal; null for an empty name. Throws ModelError if the name is unknown.
   [[nodiscard]] const Signal* signal(const std::string& name, SignalUse use = SignalUse::motion);
-  /// Pose and velocity of a body in the reference pose.
+  /// Returns pose and velocity of a body in the reference pose.
   [[nodiscard]] const Motion<double>& reference(int body) const { return reference_[body]; }
-  /// In the reference pose, ground axes, m.
+  /// Returns the position of the marker in the reference pose, ground axes, m.
   [[nodiscard]] Vec2 marker_position(const CompiledMarker& marker) const;
-  /// A direction given in a marker's axes, in the axes of its body, length 1.
+  /// Returns the unit vector of `local`, given in the axes of the marker, in the axes of its body.
   [[nodiscard]] Vec2 direction(const CompiledMarker& marker, const Vec2& local) const;
-  /// A contact element compiled at an earlier stage; null if `element` is none.
+  /// Returns the contact element compiled at an earlier stage; null if `element` is not a contact.
   [[nodiscard]] const ContactIndex* contact(const std::string& element) const;
-  /// Of the model, by its name; nullptr if there is none.
+  /// Returns the element of the model with this name, or nullptr.
   [[nodiscard]] const ElementEntry* element(const std::string& name) const;
-  /// Of the channels, those that are wanted; not given: all.
+  /// Returns the names of the channels to be made; nullopt: all.
   [[nodiscard]] std::optional<std::vector<std::string>> wanted_channels() const {
     return wanted_ ? std::optional<std::vector<std::string>>(*wanted_) : std::nullopt;
   }
-  /// No step passes over this time, s.
+  /// Adds a time, s, at which a step must end.
   void add_breakpoint(double t) {
     system_->breakpoints.push_back(t);
     system_->motion_breakpoints.push_back(t);
   }
-  /// The completed model that is being compiled.
+  /// Returns the completed model that is being compiled.
   [[nodiscard]] const Model& model() const { return model_; }
 
   // --- contributions ------------------------------------------------------------------------------
-  /// The group of type Group, made on first use; append to its `entries`.
+  /// Returns the group of type Group, which is created on the first call. Elements append to its `entries`.
   template <class Group> Group& group();
-  /// Makes a unit of an entry: sets its mode and watch indices.
+  /// Makes the last entry of the group a unit: assigns its mode and the indices of its event functions.
   template <class Group> void add_unit(Group& group, int watch_count);
-  /// Index of a new normal force, registered under the current element's name; `unit` tells whether
-  /// it is pressed (mode 1).
+  /// Adds a normal force for the current element and returns its index. The contact is pressed while `unit` is in mode 1.
   int add_contact(int unit);
-  /// Room for a base and its rate in State::memory; returns the index of the base.
+  /// Reserves two numbers in State::memory, a base and its rate. Returns the index of the base.
   int add_memory(double base = 0.0, double base_rate = 0.0);
-  /// One number of the inner state of an element of `group`: where it starts.
+  /// Adds one internal state with initial value `start` for an element of `group`. Returns its index.
   int add_inner(const ForceGroup& group, double start);
-  /// Rows of the current element. `is_rigid`, `coordinate`: as in RowBlock.
+  /// Adds rows of the current element; `is_rigid` and `coordinate` as in RowBlock.
   void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
-  /// Returns its index in System::frictions.
+  /// Adds a friction element and returns its index in System::frictions.
   int add_friction(std::unique_ptr<FrictionElement> friction);
-  /// "<element>.<name>"; what is returned is good until the next one is added. A channel that nobody wants is not made:
-  /// what is returned then is forgotten.
+  /// Adds the channel "<element>.<name>". The reference is valid until the next channel is added. If the channel is not wanted, it is not
+  /// added; the reference then refers to a dummy.
   template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
-  /// The same for one that is made for a model that asks for it ([output] also, an expression), and costs nothing else.
+  /// Adds a channel that is computed only if the model requests it ([output] also, or a formula). Otherwise as add_channel().
   template <class Value> Channel& offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
-  /// Index in System::rows that the next row will get.
+  /// Returns the index in System::rows of the next row to be added.
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
-  /// Slot in Snapshot::friction_force that the next friction element will get.
+  /// Returns the index in Snapshot::friction_force of the next friction element's first component.
   [[nodiscard]] int next_friction_row() const { return system_->friction_row_count; }
-  /// Index in System::frictions that the next friction element will get.
+  /// Returns the index in System::frictions of the next friction element.
   [[nodiscard]] int next_friction() const { return static_cast<int>(system_->frictions.size()); }
-  /// Of the element that is being compiled, in System::element_names.
+  /// Returns the index of the current element in System::element_names.
   [[nodiscard]] int element_index() const { return element_; }
-  /// Notes an error at the current element: compile goes on and reports all of them.
+  /// Reports an error of the current element. Compilation continues, so that all errors are reported together.
   void error(const std::string& message);
 
 private:
@@ -284,7 +282,7 @@ private:
   friend std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted);
   friend class RequestedChannels;
   enum class Use { none, operand, channel };
-  struct GroupType { ///< what to do with a group of a type known where it was made
+  struct GroupType { ///< functions of a group whose type is known only where it is created
     const std::type_info* type;
     std::size_t (*count)(const ForceGroup& group);
     std::unique_ptr<ForceGroup> (*share)(const ForceGroup& group, std::size_t first, std::size_t count);
@@ -298,7 +296,7 @@ private:
   void compile_bodies();
   void compile_elements(RequestedChannels& requested);
   void compile_inactive(const ElementEntry& entry, RequestedChannels& requested);
-  /// What signals and channels belong to, whatever the element being compiled adds to.
+  /// Returns the system that signals and channels belong to, also while an inactive element is compiled into a temporary system.
   [[nodiscard]] System& acting() { return acting_ ? *acting_ : *system_; }
   void finish();
   void add_body_channels();
@@ -315,23 +313,23 @@ private:
   std::vector<Diagnostic> errors_;
   int element_ = -1;
   const std::vector<std::string>* wanted_;
-  std::vector<std::string> operand_names_; ///< of expressions, sorted
-  std::vector<GroupType> group_types_;     ///< of each of the system's groups
-  System* acting_ = nullptr;               ///< while system_ takes what an inactive element adds: the system being made
+  std::vector<std::string> operand_names_; ///< operands of formulas, sorted
+  std::vector<GroupType> group_types_;     ///< one for each group of the system
+  System* acting_ = nullptr;               ///< the real system, while system_ is the temporary one of an inactive element
   Channel unwanted_;
 };
 
-/// Per element of a completed model: it acts, and so does that on which it hangs, as a sheet interface on its joint.
+/// Returns, per element of a completed model, whether it acts. An element that depends on another, such as a sheet interface on its joint,
+/// acts only if that one does.
 [[nodiscard]] std::vector<char> acting_elements(const Model& model);
 
-/// Compiles a completed model. Of the channels, only those named in `wanted` are made; null: all. Throws ModelError with
-/// all errors found.
+/// Compiles a completed model. Only the channels named in `wanted` are made; null: all. Throws ModelError with all errors found.
 [[nodiscard]] std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted = nullptr);
 
 // ---------------------------------------------------------------------------------------------
 
 template <class Group> Group& SystemBuilder::group() {
-  std::size_t i = 0; // a dozen at most
+  std::size_t i = 0; // linear search; there are a dozen groups at most
   while (i < group_types_.size() && *group_types_[i].type != typeid(Group)) ++i;
   if (i == group_types_.size()) {
     system_->groups.push_back(std::make_unique<Group>());
@@ -340,8 +338,8 @@ template <class Group> Group& SystemBuilder::group() {
   return static_cast<Group&>(*system_->groups[i]);
 }
 
-// A copy of some entries keeps their places among modes, watches and links. Work is done by groups that say so, with
-// k_does_work; all others dissipate and store.
+// A share is a copy of some entries with the same indices of modes, event functions and links. Groups with k_does_work do work; all others
+// only dissipate and store energy.
 template <class Group> SystemBuilder::GroupType SystemBuilder::type_of() {
   GroupType type{};
   type.type = &typeid(Group);

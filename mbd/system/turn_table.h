@@ -1,11 +1,9 @@
-// Angles on which something of a scene depends other than linearly: pairs of bodies, the ground among them.
+// Relative angles on which forces, event functions or channels depend nonlinearly, as pairs of bodies (including the ground).
 //
-// A rotation at a constant rate is a straight line in its angle: no error estimate shortens a step for it, however many turns the step
-// takes, while the tip of a body passes whatever stands in its way twice a turn. Step control therefore bounds the angle by which
-// such a pair turns within one step (mbd/integrators/turn_limit.h), so that every sine in a gap is resolved by the places inside a step.
-// Groups declare their pairs (ForceGroup::enter_turns); those of rows follow from the measure.
-//
-// A curve over such an angle, as the lift of a cam, may do between two of its knots whatever it likes: each knot also ends a step.
+// A constant angular velocity is integrated exactly, so error control allows steps of many turns, although the tip of the body may pass an
+// obstacle in each turn. Step control therefore limits the change of these angles in one step (mbd/integrators/turn_limit.h), so that the
+// samples within a step resolve them. Groups declare their pairs (ForceGroup::enter_turns); those of rows follow from the measure. Curves
+// over such an angle, for example the lift of a cam, may have features between any two knots; a step therefore also ends at each knot.
 #pragma once
 
 #include "mbd/system/row.h"
@@ -18,12 +16,12 @@
 
 namespace steplap {
 
-/// On the angles of which of its bodies, a and b, a measure depends other than linearly.
+/// Whether a measure depends nonlinearly on the angles of its bodies a and b.
 struct Turning {
   bool a = false, b = false;
 };
 
-/// Does a point of a body, from its centre of gravity, move when the body turns? What is nearer than a nanometre is rounding of its place.
+/// Returns true if the point moves when the body turns. Points within 1 nm of the centre of gravity count as its centre.
 [[nodiscard]] inline bool moves_by_turning(const Vec2& point) { return point.squaredNorm() > 1e-18; }
 
 [[nodiscard]] inline Turning turning_of(const AxisMeasure& m) { return {moves_by_turning(m.point_a), true}; }
@@ -31,50 +29,50 @@ template <int K> [[nodiscard]] Turning turning_of(const CoordinateMeasure<K>& m)
 [[nodiscard]] inline Turning turning_of(const DistanceMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 [[nodiscard]] inline Turning turning_of(const AngleMeasure&) { return {}; }
 [[nodiscard]] inline Turning turning_of(const GapMeasure& m) { return {m.is_axis_in_a || moves_by_turning(m.point_a), true}; }
-/// Considers a row's own measure, without its further parts.
+/// Returns which rotations the row's measure depends on nonlinearly. Further parts of the row (RowSpec::next) are not included.
 [[nodiscard]] Turning turning_of(const RowSpec& row);
 
-/// Knots of a curve over an angle θ_a − θ_b + zero, rad.
+/// Knots of a curve over the angle θ_a − θ_b + zero, rad.
 struct TurnKnots {
   double zero = 0.0;
-  std::vector<double> at; ///< ascending, at least two; of a periodic curve the last is the first one a whole turn later
+  std::vector<double> at; ///< ascending, at least two; for a periodic curve the last is the first plus one turn
   bool is_periodic = false;
 
-  /// Knots between which x lies; infinite where there is none. `direction`: positive if x grows. x nearer to the knot ahead than a
-  /// share of the interval counts as having passed it.
+  /// Knots on both sides of x; infinite if there is none. `direction` is positive if x grows. If x is very near to the next knot in this
+  /// direction, that knot counts as passed.
   struct Interval {
     double low, high;
   };
   [[nodiscard]] Interval about(double x, double direction) const;
 };
 
-/// A pair of bodies, and the curves over its angle.
+/// A pair of bodies with the curves over its angle.
 struct Turn {
   int a = k_ground, b = k_ground; ///< a > b
   std::vector<TurnKnots> knots = {};
 };
 
-/// The pairs of a system's bodies, each once.
+/// All pairs of a system, each once.
 class TurnTable {
 public:
   explicit TurnTable(std::size_t body_count) : body_count_(body_count) {}
 
-  /// Adds the angle of a against b, unless they are the same body.
+  /// Adds the relative angle of a and b, unless they are the same body.
   void add(int a, int b);
   /// Adds the pair with the knots of a curve over its relative angle.
   void add(int a, int b, TurnKnots knots);
-  /// Adds the angles on which a measure between a and b depends: of each body that turns it, against the ground, and against each other
-  /// if both do.
+  /// Adds the angles on which a measure of a and b depends: of each body concerned relative to the ground, and relative to each other if
+  /// both are.
   void add(int a, int b, Turning turning);
-  /// Adds the angles of all these bodies against each other and against the ground.
+  /// Adds the angles of all these bodies relative to each other and to the ground.
   void add_all(std::span<const int> bodies);
   void add_all(std::initializer_list<int> bodies) { add_all(std::span(bodies.begin(), bodies.size())); }
 
-  /// Adds all pairs of the marked bodies; if there are many, only each body against the ground.
+  /// Adds all pairs of the marked bodies; if there are many, only each body relative to the ground.
   void add_marked(const std::vector<char>& is_marked);
 
   [[nodiscard]] const std::vector<Turn>& turns() const { return turns_; }
-  /// Number of bodies of the system, the ground among them.
+  /// Returns the number of bodies including the ground.
   [[nodiscard]] std::size_t body_count() const { return body_count_; }
 
 private:
@@ -85,7 +83,7 @@ private:
 };
 
 class System;
-/// Returns the pairs of all elements, joints and frictions of a system.
+/// Returns the pairs of all elements, joints and friction elements of a system.
 [[nodiscard]] TurnTable turn_table_of(const System& system);
 
 } // namespace steplap

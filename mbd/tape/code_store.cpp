@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t k_most_tapes = 500, k_most_families = 4000;
 
-// FNV-1a, a step at a time.
+// FNV-1a hash, one step at a time.
 std::uint64_t hash_of(const Tape& tape) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const TapeStep& s : tape.steps) {
@@ -25,7 +25,7 @@ struct Store {
   std::unordered_map<std::uint64_t, std::shared_ptr<TapeFamily>> families;
 };
 
-Store all_code; // made before main(): threads use it
+Store all_code; // constructed before main(), as threads use it
 
 } // namespace
 

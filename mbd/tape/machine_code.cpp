@@ -20,14 +20,14 @@ namespace {
 namespace x86 = asmjit::x86;
 using Kind = PlannedInstruction::Kind;
 
-constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
+constexpr int k_most_frame = 1 << 18; ///< largest stack frame, bytes
 constexpr int k_page = 4096;
 constexpr int k_mask_copies = 4;
-constexpr int k_line = 64; ///< bytes of the cache
-/// Bytes before the first instruction: −0 and the bits besides its sign, a line; and a line of literals.
+constexpr int k_line = 64; ///< cache line, bytes
+/// Bytes before the first instruction: a cache line with −0 and its complement, and one with the literals.
 constexpr int k_masks_size = 2 * k_line;
 static_assert(2 * 8 * k_mask_copies == k_line && sizeof k_literals <= k_line);
-// What the frame begins with where functions are called: the arguments, and whether all is wanted.
+// Beginning of the frame if functions are called: the arguments of the code, and whether all outputs are requested.
 constexpr int k_saved_inputs = 0, k_saved_arrays = 8, k_saved_outputs = 16, k_saved_wish = 24;
 constexpr int k_saved_size = 64;
 
@@ -38,7 +38,7 @@ InstructionSet find_best_instructions() {
   return has_512 ? InstructionSet::avx512 : InstructionSet::avx2;
 }
 
-// Before main(): threads that meet it first would need a lock.
+// Determined before main(), so threads need no lock.
 const InstructionSet k_best_instructions = find_best_instructions();
 
 void sin_cos_of_one(const double* x, double* sine, double* cosine) {
@@ -51,7 +51,7 @@ template <int lanes, void (*sin_cos)(const double*, double*, double*)> void sin_
   for (int l = 0; l < 8; l += lanes) sin_cos(x + l, sines + l, cosines + l);
 }
 
-/// Instructions by what they work on.
+/// Codes of the instructions for each operation, in their two- or three-operand form.
 struct InstructionNames {
   using Id = asmjit::InstId;
   Id load, move, add, subtract, multiply, divide, square_root, minimum, maximum, exclusive_or, bit_and, compare;
@@ -73,7 +73,7 @@ RegisterRules rules_for(InstructionSet instructions) {
   return rules;
 }
 
-/// An instruction that there is not would be a fault of this file.
+/// An invalid instruction would be an error of this file.
 class Faults : public asmjit::ErrorHandler {
 public:
   void handleError(asmjit::Error, const char* message, asmjit::BaseEmitter*) override {
@@ -81,7 +81,7 @@ public:
   }
 };
 
-/// Writes the instructions of a plan.
+/// Emits the instructions of a plan.
 class Writer {
 public:
   Writer(x86::Assembler& to, const RegisterPlan& plan, InstructionSet instructions)
@@ -121,7 +121,7 @@ private:
       const int size = call_slots_begin() + 8 * plan_.call_slots;
       a_.sub(x86::rsp, size);
       a_.and_(x86::rsp, -64);
-      // A page after the other, so that a stack that ends is met where it ends.
+      // Touches page after page, so that a stack overflow is detected at the end of the stack.
       for (int offset = size - k_page; offset > 0; offset -= k_page) a_.test(x86::ptr(x86::rsp, offset), x86::eax);
     }
     if (plan_.has_calls) {
@@ -133,7 +133,7 @@ private:
     take_arrays();
   }
 
-  // That of constants last: their register has the address of all.
+  // The array of constants comes last, because its register contains the address of all of them.
   void take_arrays() {
     const auto take = [this](x86::Gp to, std::size_t from) { a_.mov(to, x86::ptr(x86::rsi, static_cast<std::int32_t>(from))); };
     if (plan_.has_later_inputs) take(x86::r8, offsetof(CodeArrays, later_inputs));
@@ -222,7 +222,7 @@ private:
     }
   }
 
-  // min a, b is a < b ? a : b, of the processor as of the tape; max a, b is a > b ? a : b, hence b and a change places.
+  // min a, b is a < b ? a : b in the processor and on the tape; max a, b is a > b ? a : b, so a and b are exchanged.
   void arithmetic(const PlannedInstruction& i) {
     const asmjit::InstId name = name_of(i.operation);
     if (i.operation == TapeOperation::square_root) {
@@ -235,10 +235,10 @@ private:
     }
   }
 
-  // first is b, second a: where a < b, b is above.
+  // first is b and second is a: a < b means that b is above.
   void condition(const PlannedInstruction& i) {
     a_.emit(names_.compare, reg(i.first), operand(i.second));
-    if (i.operation == TapeOperation::if_less) a_.jbe(failed_); // a NaN among them counts as below
+    if (i.operation == TapeOperation::if_less) a_.jbe(failed_); // NaN counts as below
     else a_.ja(failed_);
   }
 
@@ -259,7 +259,7 @@ private:
     take_arguments();
   }
 
-  // Behind a call: those of the code itself.
+  // Restores the arguments of the code after a call.
   void take_arguments() {
     a_.mov(x86::rdi, x86::ptr(x86::rsp, k_saved_inputs));
     a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_arrays));
@@ -275,8 +275,8 @@ private:
   asmjit::Label sign_bits_, value_bits_, literals_, failed_, done_;
 };
 
-// Pages are written first and executed then, never both at a time. Where the system lets no page be executed that could once be
-// written (Linux' MDWE, SELinux), a file in memory is mapped twice. Null: it lets neither.
+// Copies code to executable memory, which is never writable and executable at the same time. If the system forbids execution of pages that
+// were once writable (Linux MDWE, SELinux), a memory file is mapped twice. Returns null if this is forbidden, too.
 void* executable_copy(const std::uint8_t* bytes, std::size_t size) {
   namespace pages = asmjit::VirtMem;
   void* memory = nullptr;

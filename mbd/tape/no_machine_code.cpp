@@ -1,4 +1,4 @@
-// What stands for machine_code.cpp where the program is built without machine code.
+// Replaces machine_code.cpp if the program is built without machine code.
 #include "mbd/tape/machine_code.h"
 
 #include "mbd/base/portable_math.h"

@@ -15,9 +15,9 @@ using Kind = PlannedInstruction::Kind;
 
 constexpr std::int32_t k_never = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t k_none = -1;
-constexpr std::int64_t k_worth_of_store = 100; ///< steps that a value which needs no store may be used sooner and leaves all the same
-constexpr std::int32_t k_store_outputs = -1;   ///< in the order: outputs known so far are stored
-constexpr std::int32_t k_leave = -2;           ///< in the order: usual outputs are stored
+constexpr std::int64_t k_worth_of_store = 100; ///< a value that needs no store is evicted even if it is used sooner by this number of steps
+constexpr std::int32_t k_store_outputs = -1;   ///< marker in the order: outputs known so far are stored
+constexpr std::int32_t k_leave = -2;           ///< marker in the order: usual outputs are stored
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
@@ -44,25 +44,25 @@ public:
   }
 
 private:
-  struct alignas(32) Value {     // so that its place is found by a shift
+  struct alignas(32) Value {     // aligned so that its address is computed by a shift
     std::int32_t next = k_never; ///< position of the next use
     std::int32_t position = -1;  ///< in the order
     std::int8_t reg = -1;
-    OperandPlace home;             ///< where it lies in memory
-    std::int32_t output = k_none;  ///< first of its outputs
-    std::int32_t partner = k_none; ///< the cosine of a sine, the sine of a cosine, of the same argument
+    OperandPlace home;             ///< location in memory
+    std::int32_t output = k_none;  ///< its first output
+    std::int32_t partner = k_none; ///< for a sine the cosine of the same argument, and vice versa
   };
   struct Call {
     std::vector<std::int32_t> arguments; ///< steps
-    std::vector<std::int32_t> next;      ///< position of the next use of each, behind the call
-    std::int32_t first_result = 0;       ///< of the slots of results
+    std::vector<std::int32_t> next;      ///< position of the next use of each argument after the call
+    std::int32_t first_result = 0;       ///< slot of the first result
   };
   struct NextUses {
     std::int32_t a = k_never, b = k_never, result = k_never;
   };
 
   void arrange(const std::vector<std::int32_t>& order) {
-    std::size_t last = 0; // behind the last condition
+    std::size_t last = 0; // after the last condition
     for (std::size_t p = 0; p < order.size(); ++p)
       if (is_condition(tape_.steps[at(order[p])].operation)) last = p + 1;
     order_.reserve(order.size() + 1);
@@ -75,7 +75,7 @@ private:
     if (tape_.usual_outputs > 0 && tape_.usual_outputs < tape_.outputs.size()) place_leave();
   }
 
-  // Behind the last usual output and the last condition; and behind the place where outputs known so far are stored.
+  // Places k_leave after the last usual output and the last condition, and after k_store_outputs.
   void place_leave() {
     std::size_t last = stores_;
     for (std::size_t p = stores_; p < order_.size(); ++p)
@@ -108,7 +108,7 @@ private:
 
   static OperandPlace place(OperandPlace::Kind kind, std::int32_t index) { return {kind, 0, index}; }
 
-  // Inputs and constants lie in memory; a sine and a cosine of the same are found together.
+  // Inputs and constants are in memory; sine and cosine of the same argument are computed together.
   void look_at_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
@@ -116,7 +116,7 @@ private:
       if (is_given(s.operation)) values_[i].home = place_of_given(s);
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
-      std::int32_t& other = call_of_[at(s.a)]; // one without a partner
+      std::int32_t& other = call_of_[at(s.a)]; // sine or cosine of this argument without partner
       if (other != k_none && tape_.steps[at(other)].operation != s.operation) {
         values_[at(other)].partner = static_cast<std::int32_t>(i);
         values_[i].partner = std::exchange(other, k_none);
@@ -126,7 +126,7 @@ private:
     }
   }
 
-  // All calls share the room for arguments. Results have their own: when they are used last is no call's affair.
+  // All calls share the slots of arguments. Results have slots of their own, since they may be used later.
   void look_at_call(std::size_t i) {
     const TapeStep& s = tape_.steps[i];
     Call& call = calls_[static_cast<std::int32_t>(i)];
@@ -139,7 +139,7 @@ private:
 
   bool is_before(std::int32_t step, std::size_t p) const { return values_[at(step)].position < static_cast<std::int32_t>(p); }
 
-  // From the end: where each value is used next. Of an operand that nobody wants there is no use.
+  // Determines the next use of each value, from the end. Operands of unused steps have no use.
   void find_next_uses() {
     next_.resize(order_.size());
     output_next_.resize(tape_.outputs.size());
@@ -182,7 +182,7 @@ private:
     } else if (takes_two(s.operation)) {
       Value& b = values_[at(s.b)];
       a.next = next_[p].a;
-      b.next = next_[p].b; // behind a's: they may be the same
+      b.next = next_[p].b; // after a's, since both may be the same step
       if (is_condition(s.operation)) condition(s);
       else binary(p, s);
     } else {
@@ -193,7 +193,7 @@ private:
 
   // --- registers and slots ---
 
-  // One that is nobody's, but not yet taken.
+  // Returns a free register, evicting a value if necessary.
   int free_register() {
     if (free_ == 0) evict(farthest());
     return std::countr_zero(free_);
@@ -228,7 +228,7 @@ private:
   }
 
   void free_register_of(Value& v) {
-    const bool goes = v.next == k_never && v.reg >= 0; // either is as likely: no branches
+    const bool goes = v.next == k_never && v.reg >= 0; // both cases are equally frequent, so branches are avoided
     free_ |= std::uint32_t{goes} << (v.reg & 31);
     v.reg = static_cast<std::int8_t>(goes ? -1 : v.reg);
   }
@@ -274,19 +274,19 @@ private:
     i.second = second;
   }
 
-  // While this step is made.
+  // Prevents eviction of the value while this step is planned.
   void keep(std::int32_t step) {
     const int r = values_[at(step)].reg;
     busy_ |= std::uint32_t{r >= 0} << (r & 31);
   }
 
-  // A register that holds the value, for this step; whether it stays there is its own affair.
+  // Returns a register that contains the value for this step.
   int in_register(std::int32_t step) {
     Value& v = values_[at(step)];
     if (v.reg < 0) {
       const int r = free_register();
       load(r, v.home);
-      // Kept where nothing has to leave for it.
+      // The value stays there only if no other must be evicted for it.
       if (rules_.has_three_operands && v.next != k_never && std::popcount(free_) > 2) take(r, step);
       else free_ &= ~(1u << r), passing_ |= 1u << r;
       busy_ |= 1u << r;
@@ -305,7 +305,7 @@ private:
     return v.home;
   }
 
-  // Free are, from here on, the registers of operands that are used no more.
+  // Frees the registers of operands that are not used any more.
   void let_operands_go(const TapeStep& s) {
     free_register_of(values_[at(s.a)]);
     if (takes_two(s.operation)) free_register_of(values_[at(s.b)]);
@@ -319,7 +319,7 @@ private:
 
   bool stays(int r) const { return (passing_ >> r & 1) == 0 && values_[at(owner_[r])].next != k_never; }
 
-  // Where the result of `first` and others goes, first already copied there if it has to be.
+  // Returns the destination register of the result; `first` is copied to it if necessary.
   int destination(const TapeStep& s, int first) {
     if (rules_.has_three_operands) {
       let_operands_go(s);
@@ -411,7 +411,7 @@ private:
 
   void find_sine(std::size_t p, const TapeStep& s) {
     Value& v = values_[at(order_[p])];
-    if (v.home.kind != OperandPlace::Kind::nowhere) { // found with its partner
+    if (v.home.kind != OperandPlace::Kind::nowhere) { // already computed with its partner
       v.next = next_[p].result;
       store_known(order_[p]);
       let_operands_go(s);
@@ -436,7 +436,7 @@ private:
 
   // --- outputs ---
 
-  // The step's value is in register r.
+  // Registers that the value of the step is in register r.
   void define(std::size_t p, int r) {
     const std::int32_t step = order_[p];
     Value& v = values_[at(step)];
@@ -453,7 +453,7 @@ private:
     if (v.home.kind == OperandPlace::Kind::nowhere) v.home = to;
   }
 
-  // Outputs of a value that lies in memory.
+  // Stores the outputs of a value that is in memory.
   void store_known(std::int32_t step) {
     Value& v = values_[at(step)];
     if (v.position > static_cast<std::int32_t>(stores_))
@@ -482,16 +482,16 @@ private:
   const Tape& tape_;
   const RegisterRules rules_;
   std::vector<std::int32_t> order_;
-  std::size_t stores_ = 0; ///< where outputs known so far are stored; later ones as soon as they are known
+  std::size_t stores_ = 0; ///< position at which outputs known so far are stored; later ones are stored immediately
   std::vector<Value> values_;
   std::vector<NextUses> next_;
-  std::vector<std::int32_t> next_output_;        ///< of the same value
-  std::vector<std::int32_t> output_next_;        ///< next use of the value of an output behind `stores_`
-  std::vector<std::int32_t> call_of_;            ///< of an argument: its sine or cosine that has no partner
-  std::unordered_map<std::int32_t, Call> calls_; ///< by their steps
+  std::vector<std::int32_t> next_output_;        ///< next output with the same value
+  std::vector<std::int32_t> output_next_;        ///< next use of the value of an output after `stores_`
+  std::vector<std::int32_t> call_of_;            ///< per argument: its sine or cosine without partner
+  std::unordered_map<std::int32_t, Call> calls_; ///< by step
   std::int32_t argument_slots_ = 0, result_slots_ = 0;
-  std::uint32_t free_;        ///< registers
-  std::uint32_t busy_ = 0;    ///< operands of this step: must not leave
+  std::uint32_t free_;        ///< bit set of registers
+  std::uint32_t busy_ = 0;    ///< operands of this step, which must not be evicted
   std::uint32_t passing_ = 0; ///< loaded for this step only
   std::int32_t owner_[32] = {};
   std::vector<std::int32_t> free_slots_;
@@ -512,7 +512,7 @@ std::vector<std::int32_t> order_of_steps(const Tape& tape) {
       if (is_done(tape.steps[at(i)])) order.push_back(i);
     return order;
   }
-  // What calls hang on, what conditions and usual outputs hang on, the rest.
+  // Rank of each step: 0 if calls depend on it, 1 if conditions or usual outputs do, otherwise 2.
   std::vector<char> turn(tape.steps.size(), has_rest ? char{2} : char{1});
   for (std::size_t k = 0; has_rest && k < tape.usual_outputs; ++k) turn[at(tape.outputs[k])] = 1;
   for (std::int32_t i = n; i-- > 0;) {

@@ -1,15 +1,15 @@
-// Sines and cosines of the lanes of a register. Each is compiled for the instructions that it needs: whoever calls it has to
-// know that the processor has them.
+// Sines and cosines of several numbers at once by SIMD instructions. Each function is compiled for its instruction set; the caller must
+// know that the processor has it.
 #pragma once
 
 namespace steplap {
 
-/// sines[l], cosines[l] = portable::sin_cos(x[l]), the same bits, for l up to 2, 4, 8. `x` may be one of the others.
+/// Computes sines[l], cosines[l] = portable::sin_cos(x[l]), bit-identical, for 2, 4 or 8 lanes l. `x` may be the same array as an output.
 void sin_cos_of_two(const double* x, double* sines, double* cosines);   ///< SSE2
 void sin_cos_of_four(const double* x, double* sines, double* cosines);  ///< AVX2
 void sin_cos_of_eight(const double* x, double* sines, double* cosines); ///< AVX-512 F and DQ
 
-/// As sin_cos_of_eight, the same bits, on any processor: with the best instructions that it has.
+/// As sin_cos_of_eight, bit-identical, on any processor with its best instructions.
 void sin_cos_of_block(const double* x, double* sines, double* cosines);
 
 } // namespace steplap

@@ -1,6 +1,6 @@
-// For the sources that are compiled for one set of instructions each (sine_two.cpp and its like). Nothing is defined here but
-// templates on the number of lanes, and nothing of the standard library is called: no other source may come to run code that
-// was compiled for instructions which the processor lacks.
+// Implementation for the sources that are compiled for one instruction set each (sine_two.cpp and others). The header contains only
+// templates over the number of lanes and calls nothing of the standard library. Otherwise the linker could use a copy compiled for
+// instructions that the processor lacks in other code.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -15,9 +15,9 @@ template <int lanes> struct Pack {
   using Bits __attribute__((vector_size(8 * lanes))) = std::uint64_t;
 };
 
-// In bits, numbers without their signs are in order, ∞ and NaN behind all others.
+// As integers, bit patterns without sign are in the order of the numbers; ∞ and NaN come last.
 constexpr std::uint64_t k_far_bits = 0x412e848000000000;     // portable::k_far
-constexpr std::uint64_t k_quarter_bits = 0x3fe921fb54442d18; // π/4, up to which there is nothing to take away
+constexpr std::uint64_t k_quarter_bits = 0x3fe921fb54442d18; // π/4, below which no reduction is needed
 constexpr std::uint64_t k_tiny_bits = 0x3e30000000000000;    // 2⁻²⁸, below which sin x = x and cos x = 1
 
 template <int lanes> [[gnu::noinline]] inline void sin_cos_one_by_one(const double* x, double* sines, double* cosines) {
@@ -28,8 +28,8 @@ template <int lanes> [[gnu::noinline]] inline void sin_cos_one_by_one(const doub
   }
 }
 
-/// As portable::sin_cos, whose branches are selections here, but for arguments that are far away or not finite: then each lane
-/// asks for its own. Taking zero times π/2 away leaves a number as it is, so that lanes need not agree on whether to do so.
+/// Vectorised portable::sin_cos, with selects instead of branches. Lanes with |x| ≤ π/4 subtract zero, which is exact, if another lane
+/// needs reduction. If one argument is large or not finite, all lanes are computed one by one.
 template <int lanes> inline void sin_cos_of(const double* x, double* sines, double* cosines) {
   using Doubles = typename Pack<lanes>::Doubles;
   using Bits = typename Pack<lanes>::Bits;
@@ -45,7 +45,7 @@ template <int lanes> inline void sin_cos_of(const double* x, double* sines, doub
     s = of.sin;
     c = of.cos;
   } else {
-    const Doubles shifted = v * portable::k_two_over_pi + portable::k_nearest_integer; // its last bits are those of k
+    const Doubles shifted = v * portable::k_two_over_pi + portable::k_nearest_integer; // its last bits are those of the multiple k
     const auto rest = portable::beyond_multiple<Doubles>(v, shifted - portable::k_nearest_integer);
     const auto of = portable::sine_series<Doubles>(rest.hi, rest.lo);
     const Bits quarter = reinterpret_cast<Bits>(shifted);

@@ -1,10 +1,10 @@
-// Debian's asmjit is an archive of code for programs. A shared object can hold it but for one thing, the address of `stderr`, which is another
-// library's. With --wrap=stderr all that is linked in finds this one, which is the module's own.
+// Debian's asmjit is a static library built for programs. A shared library can contain it except for its reference to the address of
+// `stderr` in another library. With --wrap=stderr that reference is to this variable of the module.
 #include <cstdio>
 
 extern "C" {
-extern std::FILE* __real_stderr;                                          // NOLINT: the linker's name for the library's
-__attribute__((visibility("hidden"))) std::FILE* __wrap_stderr = nullptr; // NOLINT: the linker's name
+extern std::FILE* __real_stderr;                                          // name defined by the linker
+__attribute__((visibility("hidden"))) std::FILE* __wrap_stderr = nullptr; // name defined by the linker
 }
 
 namespace {

@@ -33,7 +33,7 @@ double result_of(TapeOperation o, double a, double b) {
   }
 }
 
-// A tape that takes what there is not, or not yet, is a fault of what wrote it: better said than computed with.
+// A tape whose steps use steps that do not exist, or not yet, is an error of the recorder and must be reported.
 class TapeCheck {
 public:
   explicit TapeCheck(const Tape& tape) : tape_(tape), has_constants_(!tape.constants.empty()) {}
@@ -72,15 +72,14 @@ private:
   const bool has_constants_;
 };
 
-/// A value of the simplified tape, or that with its sign turned, for which no step need be made where what takes it can turn
-/// its own sign: x + (−y) = x − y, (−x) y = −(x y) to the bit.
+/// A value of the simplified tape, possibly with opposite sign. No step is needed for the negation if the operation using it can take it
+/// over: x + (−y) = x − y, (−x) y = −(x y), bit-identical.
 struct Signed {
   std::int32_t step = -1;
   bool is_negative = false;
 };
 
-/// Makes each step once. Steps made, at most one and its negative for each of the tape, are found again by a hash table with
-/// open addresses.
+/// Makes each step only once. At most two steps are made for each step of the tape; they are found by a hash table with open addressing.
 class Simplifier {
 public:
   explicit Simplifier(const Tape& tape) : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
@@ -105,7 +104,7 @@ private:
   Signed at(std::int32_t step) const { return value_[static_cast<std::size_t>(step)]; }
 
   std::int32_t make(TapeOperation o, std::int32_t a, std::int32_t b = 0) {
-    if (is_commutative(o) && b < a) std::swap(a, b); // rounds the same
+    if (is_commutative(o) && b < a) std::swap(a, b); // gives the same rounding
     const std::size_t mask = table_.size() - 1;
     std::uint64_t hash = (static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b)) * 0x9e3779b97f4a7c15u;
     hash = (hash ^ hash >> 32 ^ static_cast<std::uint64_t>(o)) * 0xd6e8feb86659fd93u;
@@ -127,7 +126,7 @@ private:
     return make(negate, x.step);
   }
 
-  // Is it that literal, its sign left aside?
+  // Returns true if x is that literal, whatever its sign.
   bool is(Signed x, std::int32_t literal) const { return made_[static_cast<std::size_t>(x.step)] == TapeStep{constant, literal, 0}; }
 
   Signed given(const TapeStep& s) {
@@ -137,7 +136,7 @@ private:
 
   static Signed turned(Signed x, bool is_turned) { return {x.step, x.is_negative != is_turned}; }
 
-  // Nothing changes what −0 is added to, not even its sign if it is zero. Both terms negative: −a − b is not −(a + b), whose zero has
+  // Adding −0 changes nothing, not even the sign of a zero. If both terms are negative, −a − b is not replaced by −(a + b), whose zero has
   // the other sign.
   Signed sum(Signed a, Signed b) {
     if (b.is_negative && is(b, k_zero)) return a;
@@ -174,9 +173,9 @@ private:
     }
   }
 
-  // Steps that an output or a condition hangs on, numbered anew.
+  // Returns the tape with only those steps that an output or a condition depends on, renumbered.
   Tape with_what_counts(std::vector<std::int32_t> outputs) {
-    std::vector<std::int32_t> number(made_.size(), 0); // of those that count: 1, then the number
+    std::vector<std::int32_t> number(made_.size(), 0); // 1 for the steps needed, then their numbers
     for (const std::int32_t output : outputs) number[static_cast<std::size_t>(output)] = 1;
     for (std::size_t i = made_.size(); i-- > 0;) {
       const TapeStep& s = made_[i];
@@ -200,12 +199,12 @@ private:
   }
 
   const Tape& tape_;
-  std::vector<std::int32_t> table_; ///< steps made, −1: none; a power of two
+  std::vector<std::int32_t> table_; ///< indices of steps by hash, −1: empty; the size is a power of two
   std::vector<TapeStep> made_;
-  std::vector<Signed> value_; ///< of the steps of the tape
+  std::vector<Signed> value_; ///< for each step of the original tape
 };
 
-// Of a step that has a value and is no call's.
+// Returns the value of a step that has one and is not the result of a call.
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
   if (s.operation == constant) return is_literal(s.a) ? k_literals[literal_index(s.a)] : constants[s.a];
@@ -213,7 +212,7 @@ double value_of(const TapeStep& s, const double* inputs, const double* constants
                    takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0);
 }
 
-/// What the calls of a tape have found.
+/// Results of the calls of a tape.
 class CallResults {
 public:
   void call(const Tape& tape, std::size_t i, const std::vector<double>& values) {
@@ -227,7 +226,7 @@ public:
   double of(const TapeStep& s) const { return of_call_.at(s.a)[static_cast<std::size_t>(s.b)]; }
 
 private:
-  std::unordered_map<std::int32_t, std::vector<double>> of_call_; ///< by its step
+  std::unordered_map<std::int32_t, std::vector<double>> of_call_; ///< by step
 };
 
 } // namespace

@@ -1,10 +1,9 @@
-// A number that writes down what is done with it (tape.h).
+// A number type that records the operations made with it on a tape (tape.h).
 //
-// Templates of the equations of motion that take doubles take these as well: beside the value, which is computed as a double
-// is, each carries the step of the tape that makes it. What is known when the tape is written (masses, places in the
-// file) is a constant; what constants alone make is one, too. A comparison that hangs on anything else decides for the
-// values at hand, and what it found becomes a condition of the tape: another branch is never taken in silence. There is no
-// way from a traced number back to a double but value_of(), which is for those who look at results.
+// It is used in the templates of the equations of motion in place of double. Each object has its value, computed as for double, and the
+// step of the tape that produces it. Numbers known at recording (masses, positions in the file) are constants, and so are results of
+// constants only. A comparison that depends on anything else is decided for the present values, and its result becomes a condition of the
+// tape; another branch is never taken unnoticed. The value is accessible only by value_of(), for evaluating results.
 //
 // A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, §4 (evaluation traces).
 #pragma once
@@ -19,17 +18,17 @@
 
 namespace steplap {
 
-/// What is asked of the values at hand does not hold: no tape of them.
+/// Thrown if the evaluation cannot be recorded for the present values.
 struct NotTraceable {};
 
-/// Where a thread writes at present. Steps and constants are kept in memory that has grown to what tapes take.
+/// State of recording in a thread. Steps and constants are kept in memory that is reused.
 struct TapeWriter {
-  /// Steps that an operation may take: itself, and a constant for each operand.
+  /// Largest number of steps of one operation: itself, and a constant for each operand.
   static constexpr std::ptrdiff_t k_room = 3;
 
   TapeStep *step = nullptr, *last_with_room = nullptr;
-  double *constant = nullptr, *first_constant = nullptr; ///< room for as many as for steps
-  std::int32_t count = 0;                                ///< of steps
+  double *constant = nullptr, *first_constant = nullptr; ///< capacity as for steps
+  std::int32_t count = 0;                                ///< number of steps
   std::vector<TapeStep> steps;
   std::vector<double> constants;
   std::vector<std::int32_t> outputs;
@@ -37,13 +36,13 @@ struct TapeWriter {
   std::size_t usual_outputs = 0;
   std::int32_t input_count = 0;
 
-  /// For k_room steps.
+  /// Returns true if there is capacity for k_room steps.
   [[nodiscard]] bool has_room() const { return step <= last_with_room; }
   void make_room() {
     if (!has_room()) [[unlikely]]
       grow();
   }
-  /// Precondition of these: there is room.
+  /// Precondition of the following functions: has_room().
   std::int32_t put(TapeOperation operation, std::int32_t a, std::int32_t b) {
     *step++ = {operation, a, b};
     return count++;
@@ -58,26 +57,27 @@ struct TapeWriter {
   static inline constinit thread_local TapeWriter* now = nullptr;
 };
 
+/// A recorded number.
 class Traced {
 public:
   Traced() = default;
-  Traced(double constant) : value_(constant) {} // NOLINT: a number of the file is a Traced
+  Traced(double constant) : value_(constant) {} // conversion of constants
 
-  /// What this thread does from start() on is written down, until finish() has put it into `tape` or gives it up (null). With a
-  /// tape that is `known`, constants alone go into `tape`, and finish() tells whether all else is as in the known one.
+  /// Starts recording in this thread, until finish() moves the result to `tape` or discards it (null). With a `known` tape only constants
+  /// are stored in `tape`, and finish() returns whether everything else equals the known one.
   static void start(const Tape* known = nullptr);
   static bool finish(Tape* tape);
-  /// The next input; its value now.
+  /// Returns the next input, with its present value.
   [[nodiscard]] static Traced input(double value);
-  /// To be the next output.
+  /// Makes x the next output.
   static void output(const Traced& x);
-  /// What is no operation of a tape: `function` finds `results` from its own address and `arguments`. Constants, where all
-  /// arguments are: a function that hangs on anything else needs an argument that is none.
+  /// Records a call of `function`, for operations that a tape does not have. It computes `results` from its own address and `arguments`. If
+  /// all arguments are constants, so are the results; a function that depends on anything else needs an argument that is not constant.
   static void call(TapeFunction function, std::span<const Traced> arguments, std::span<Traced> results);
-  /// Those up to here are the usual ones (Tape::usual_outputs).
+  /// Marks the outputs so far as the usual ones (Tape::usual_outputs).
   static void end_usual_outputs() { TapeWriter::now->usual_outputs = TapeWriter::now->outputs.size(); }
 
-  /// Known whatever the inputs are?
+  /// Returns true if the value is the same for all inputs.
   [[nodiscard]] bool is_constant() const { return step_ < 0; }
   friend double value_of(const Traced& x) { return x.value_; }
 
@@ -95,7 +95,7 @@ public:
 
   friend Traced sqrt(const Traced& a) { return made(TapeOperation::square_root, a, a, std::sqrt(a.value_)); }
   friend Traced abs(const Traced& a) { return made(TapeOperation::absolute, a, a, std::abs(a.value_)); }
-  /// As std::min and std::max do it where both are equal, or one is no number.
+  /// Minimum and maximum with the conventions of std::min and std::max for equal numbers and NaN.
   friend Traced least_of(const Traced& a, const Traced& b) {
     return made(TapeOperation::minimum, b, a, b.value_ < a.value_ ? b.value_ : a.value_);
   }
@@ -115,7 +115,7 @@ public:
   }
 
 private:
-  // Nothing is called here, but where there is no room, as the last thing: so no register has to be kept.
+  // Calls nothing except as the last statement, when memory must grow, so that the compiler saves no registers.
   static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value) {
     Traced x(value);
     if (a.is_constant() && b.is_constant()) return x;
@@ -129,14 +129,14 @@ private:
   }
   static Traced made_after_growing(TapeOperation operation, const Traced& a, const Traced& b, double value);
   static bool decided(const Traced& a, const Traced& b);
-  // Precondition, of a constant: there is room.
+  // Precondition for a constant: has_room().
   [[nodiscard]] std::int32_t step() const { return step_ >= 0 ? step_ : TapeWriter::now->put_constant(value_); }
 
   double value_ = 0.0;
-  std::int32_t step_ = -1; ///< −1: a constant
+  std::int32_t step_ = -1; ///< −1: constant
 };
 
-/// Zero whatever the inputs are; of a double: zero. What is skipped then adds nothing to a sum that began with +0.
+/// Returns true if x is zero for all inputs; for a double, if it is zero. Skipping such terms does not change a sum that began with +0.
 inline bool is_surely_zero(double x) { return x == 0.0; }
 inline bool is_surely_zero(const Traced& x) { return x.is_constant() && value_of(x) == 0.0; }
 

@@ -13,14 +13,14 @@ namespace steplap {
 
 namespace {
 
-// Given steel lighter or heavier than this share of what its sheets weigh cannot be meant: tie plates, bindings and the
-// like add some per cent. Between it and the shares that are plausible (plausible.cpp) a check warns.
+// Ratio of the given mass of a body to that of its sheets outside which the model is refused; tie plates, bindings and the like add a few
+// percent. Between this and the plausible range (plausible.cpp) there is a remark.
 constexpr double k_least_steel = 0.8, k_most_steel = 1.6;
 
-// The middle of the limb in its body's frame: its origin. The paper's strips lie about the centre of gravity.
+// Returns the middle of the limb in its body's frame: the origin. The paper's strips are relative to the centre of gravity.
 Vec2 middle_in_frame(const Core& core, const Body& limb) { return core.has_strips() ? limb.cg : Vec2(Vec2::Zero()); }
 
-// One [[core]] on its way into a model; says all that is wrong with it at once.
+// Expands one [[core]]; collects all errors before it reports them.
 class CoreBuilder {
 public:
   CoreBuilder(const Core& core, Model& model) : core_(core), model_(model), limbs_(core.all_limbs()) {}
@@ -46,7 +46,7 @@ public:
   }
 
 private:
-  // At the field that the message is about, if the table gives it.
+  // Adds an error with the location of `field`, or of the table if the field is not given.
   void error(const std::string& message, const std::string& field = "") {
     problems_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
   }
@@ -88,11 +88,11 @@ private:
   const Core& core_;
   Model& model_;
   std::vector<std::string> limbs_;  ///< outer ones, then middle ones
-  std::vector<double> part_shares_; ///< of the limb at hand; empty: packets are not told apart
+  std::vector<double> part_shares_; ///< for the present limb; empty: packets are not distinguished
   std::vector<Diagnostic> problems_;
 };
 
-// --- what it refers to ------------------------------------------------------------------------------
+// --- references -------------------------------------------------------------------------------------
 
 const Element* CoreBuilder::find_element(const std::string& name) const {
   for (const ElementEntry& entry : model_.elements)
@@ -134,7 +134,7 @@ void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
           "limbs");
 }
 
-// Limbs of one core cannot stand in each other.
+// Checks that two limbs of a core do not overlap.
 void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& active_part) {
   const Body *a = model_.find_body(limbs_[i]), *b = model_.find_body(limbs_[j]);
   if (!a || !b || a == b || a == &active_part || b == &active_part) return;
@@ -159,7 +159,7 @@ void CoreBuilder::check_joint(const std::string& name, const std::string& limb) 
   check_settings(*joint);
 }
 
-// What is given here for the joints must be what a joint declared elsewhere has.
+// Checks that settings for the joints given here agree with those of a joint declared elsewhere.
 void CoreBuilder::check_settings(const StepLapJoint& joint) {
   const auto check = [&](const char* field, bool is_same) {
     if (is_given(field) && !is_same)
@@ -171,7 +171,7 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   check("on_apart", core_.on_apart == joint.on_apart);
   check("least_margin", core_.least_margin == joint.least_margin);
   check("most_slide", core_.most_slide == joint.most_slide);
-  // What the joint says itself of these counts for it alone; what it leaves out would be passed over in silence.
+  // Settings given in the joint apply to it alone; settings given here but missing there would be ignored, which is an error.
   const auto check_said = [&](const char* field, bool is_said) {
     if (is_given(field) && !is_said)
       error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
@@ -187,7 +187,7 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   check_said("transverse_acceleration", !joint.transverse_acceleration.empty());
 }
 
-// --- into the model -----------------------------------------------------------------------------------
+// --- additions to the model ----------------------------------------------------------------------------
 
 void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
   if (!find_element(core_.joint_name(i))) {
@@ -211,10 +211,10 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
   }
 }
 
-// Holes and edges of sheets may leave nothing of what the lines of a book promise.
+// Checks that overlaps remain after holes and edges of sheets are removed.
 void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry) {
   const Stack& stack = geometry.stack();
-  if (core_.is_counted() || !problems_.empty()) return; // once is enough
+  if (core_.is_counted() || !problems_.empty()) return; // report only once
   for (std::size_t p = 0; p < stack.packets.size(); ++p) {
     if (!stack.is_by_place && likeness(stack, p) != p) continue;
     const auto holds = [&](const Lap& lap) { return !lap.is_between && geometry.packet_of(lap) == p && lap.area > 0.0; };
@@ -225,8 +225,8 @@ void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const C
   }
 }
 
-// Which packets the interfaces of a joint hold: where there is more than one, each has to be held by itself. Of a limb that several
-// tables share, the shares in all of its steel are not known here.
+// Determines the packets held by the interfaces of a joint. If there are several, each must be held by itself. For a limb described by
+// several tables, the fractions of its total steel are unknown here.
 void CoreBuilder::find_parts(std::size_t i, const CoreGeometry& geometry) {
   part_shares_.clear();
   if (count_cores_of(model_, limbs_[i]) > 1) return;
@@ -255,9 +255,9 @@ void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner&
   face.transverse_pressure = pressure.transverse;
   face.transverse_spread = pressure.transverse_spread;
   if (pressure.least >= 0.0) return;
-  face.pressure = core_.pressure; // what is wrong with it is said here
+  face.pressure = core_.pressure; // errors in it are reported here
   face.pressure_gradient = Vec2::Zero();
-  if (!problems_.empty()) return; // once is enough
+  if (!problems_.empty()) return; // report only once
   const std::string field = !corner.is_top && core_.bottom_pressure_gradient ? "bottom_pressure_gradient" : "pressure_gradient";
   const std::string level = !corner.is_top && core_.bottom_pressure ? "bottom_pressure" : "pressure";
   error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] + "' sheets would be pressed by " +
@@ -303,9 +303,9 @@ bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
          std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
 }
 
-// The same sheets at the same place twice would bear twice as much.
+// Throws if the same sheets are given twice at the same place, which would double the capacity.
 void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
-  if (!problems_.empty()) return; // once is enough
+  if (!problems_.empty()) return; // report only once
   const std::string own = core_.name + ": ";
   for (const ElementEntry& entry : model_.elements) {
     const auto* other = dynamic_cast<const StepLapInterface*>(entry.element.get());
@@ -317,7 +317,7 @@ void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
   }
 }
 
-// --- the limbs' steel -------------------------------------------------------------------------------------
+// --- steel of the limbs -----------------------------------------------------------------------------------
 
 void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
   if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
@@ -343,9 +343,9 @@ void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
     body->cg = rotated(steel.centre, active_part().angle - body->angle);
 }
 
-// The active part holds the yokes, and more.
+// The active part contains the yokes and more.
 void CoreBuilder::check_yokes() {
-  const Core* last = nullptr; // of several tables the last one says it
+  const Core* last = nullptr; // for several tables the last one reports it
   for (const TableEntry& entry : model_.tables)
     if (const auto* core = dynamic_cast<const Core*>(entry.table.get()); core && core->active_part == core_.active_part) last = core;
   if (!problems_.empty() || (last && last->name != core_.name) || active_part().mass <= 0.0) return;
@@ -356,9 +356,10 @@ void CoreBuilder::check_yokes() {
                                                   number_text(std::round(steel)) + " kg"});
 }
 
-// --- outlines, for bodies whose model gives none ---------------------------------------------------------
+// --- outlines of bodies without one in the model ---------------------------------------------------------
 
-// Of the largest packet, counter-clockwise from the bottom, in the active part's axes about the middle of the limb.
+// Returns the outline of the largest packet, counter-clockwise from the bottom, in the axes of the active part about the middle of the
+// limb.
 std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& geometry) const {
   const bool is_middle = core_.is_middle(i);
   const Mitre mitre = geometry.mitre(geometry.largest(), is_middle);
@@ -373,7 +374,7 @@ std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& g
       const CornerFrame corner = corner_frame(mitre, side, level);
       end = {corner.origin, corner.origin + corner.length * corner.along};
     }
-    // From left to right at the bottom, back again at the top.
+    // Order: from left to right at the bottom, back again at the top.
     std::sort(end.begin(), end.end(), [level](const Vec2& a, const Vec2& b) { return level * a.x() > level * b.x(); });
     corners.insert(corners.end(), end.begin(), end.end());
   }
@@ -389,7 +390,7 @@ void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
     }
 }
 
-// What lies between the outer limbs: yokes, windings and all.
+// Outline of the active part: the area between the outer limbs, with yokes and windings.
 void CoreBuilder::draw_active_part(const CoreGeometry& geometry) {
   const Body* rear = nullptr;
   const Body* front = nullptr;
@@ -435,7 +436,7 @@ std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model) {
 
 namespace {
 
-// Can its yokes be those of the other table: as many sheets of the same heights?
+// Returns true if both tables can describe the same yokes: equal numbers of sheets of equal heights.
 bool has_same_yokes(const Core& a, const Core& b) {
   const Stack one = stack_of(a), two = stack_of(b);
   const auto is_same = [](const Packet& p, const Packet& q) { return p.yoke_height == q.yoke_height && p.depth == q.depth; };
@@ -451,7 +452,7 @@ bool shares_limb(const Core& a, const Core& b) {
   return false;
 }
 
-// Tables of one pair of yokes, with what their limbs take of it.
+// Tables with the same pair of yokes, and the parts of the yokes replaced by their limbs.
 struct Yokes {
   struct Limb {
     LimbPlace place;

@@ -1,4 +1,4 @@
-// What a [[core]] stands for, put into the model: joints, interfaces, the limbs' steel and outlines.
+// Expands a [[core]] to joints, interfaces, and the steel and outlines of its limbs.
 #pragma once
 
 #include "transformer/core/core_geometry.h"
@@ -9,21 +9,20 @@
 
 namespace steplap {
 
-/// Throws ModelError with all that is wrong.
+/// Adds everything to the model. Throws ModelError with all errors found.
 void build_core(const Core& core, Model& model);
 
-/// Where the middle of a limb is, from the active part's centre of gravity, in its axes.
+/// Returns the position of the middle of a limb relative to the active part's centre of gravity, in its axes, m.
 [[nodiscard]] Vec2 middle_of_limb(const Core& core, const Body& limb, const Body& active_part);
-/// +1 for a limb ahead of the active part, −1 behind.
+/// Returns +1 for a limb in front of the active part, −1 for one behind it.
 [[nodiscard]] double side_of_limb(const Core& core, const Body& limb, const Body& active_part);
-/// All limbs of a core, as CoreGeometry wants them.
+/// Returns the positions of all limbs of a core.
 [[nodiscard]] std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model);
-/// Of all yokes of an active part, between the outer faces of the outer limbs of each, kg. Tables with the same yokes share
-/// them (limbs of other widths), others add to them (a further part of the stack). Empty where it cannot be told: a table
-/// with counted overlaps or with fields that contradict each other, a limb that is no body, a yoke without an outer limb at
-/// either end.
+/// Returns the mass of all yokes of an active part, each between the outer faces of its outer limbs, kg. Tables with the same yokes (limbs
+/// of different width) count once; others add up (further parts of the stack). Nothing if it cannot be determined: counted overlaps,
+/// inconsistent fields, a limb that is not a body, or a yoke without an outer limb at either end.
 [[nodiscard]] std::optional<double> yoke_steel(const Model& model, const std::string& active_part);
-/// Tables that name the limb: with several, each is a part of its steel.
+/// Returns the number of tables that name the limb; if several, each describes a part of its steel.
 [[nodiscard]] std::size_t count_cores_of(const Model& model, const std::string& limb);
 
 } // namespace steplap

@@ -13,12 +13,12 @@ namespace steplap {
 
 namespace {
 
-// A mitre flatter or steeper against the yoke is none: limb and yoke would meet edge to edge.
+// With a mitre flatter or steeper relative to the yoke, limb and yoke would meet edge to edge.
 constexpr double k_least_angle = 10.0 * std::numbers::pi / 180.0;
 constexpr double k_largest_angle = 80.0 * std::numbers::pi / 180.0;
-constexpr long k_most_sheets = 10'000'000; // more are a slip of the pen, and would not be counted in a long
+constexpr long k_most_sheets = 10'000'000; // more are probably a mistake, and would overflow a long
 
-// Computed lengths have more digits than anybody reads.
+// Formats a computed length with a reasonable number of digits.
 std::string metres(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g m", value);
@@ -38,7 +38,7 @@ public:
     else check_stack();
     check_strips();
     check_holes();
-    if (!problems_.empty()) return std::move(problems_); // the rest needs them sound
+    if (!problems_.empty()) return std::move(problems_); // the following checks require valid values
     check_angles();
     if (problems_.empty() && !core_.is_counted()) check_books();
     if (problems_.empty() && !core_.has_strips()) check_cuts();
@@ -47,7 +47,7 @@ public:
   }
 
 private:
-  // At the field that the message is about, if the table gives it.
+  // Adds an error with the location of `field`, or of the table if the field is not given.
   void error(const std::string& message, const std::string& field = "") {
     problems_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
   }
@@ -253,7 +253,7 @@ void DimensionCheck::check_holes() {
               "bolt_holes");
 }
 
-// A hole that no sheet has is a slip of the pen.
+// A hole outside of all sheets is an error.
 void DimensionCheck::check_places_of_holes() {
   const Stack stack = stack_of(core_);
   double width = 0.0, height = 0.0;
@@ -326,7 +326,7 @@ void DimensionCheck::check_books() {
   if (problems_.empty()) check_laps(stack, geometry);
 }
 
-// Packets with mitres of their own have pitches of their own, and a duct may lie between any two layers of a thin one.
+// Packets with different mitres have different pitches, and a duct may be between any two layers of a thin packet.
 void DimensionCheck::check_laps(const Stack& stack, const CoreGeometry& geometry) {
   for (const bool is_middle : {false, true}) {
     if ((is_middle ? core_.middle_limbs : core_.limbs).empty()) continue;
@@ -352,7 +352,7 @@ void DimensionCheck::check_ducts(const Stack& stack) {
   }
 }
 
-// Every line at which sheets meet must cross limb and yoke.
+// Checks that each line at which sheets meet crosses limb and yoke.
 void DimensionCheck::check_cuts() {
   const CoreGeometry geometry(core_);
   const Stack& stack = geometry.stack();
@@ -363,7 +363,7 @@ void DimensionCheck::check_cuts() {
       if (!core_.is_counted())
         half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) + stack.book.clearance);
       check_cut(p, is_middle, -half, half);
-      if (!problems_.empty()) return; // said once
+      if (!problems_.empty()) return; // report only once
     }
 }
 

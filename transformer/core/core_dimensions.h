@@ -1,11 +1,11 @@
-// Are the fields of a [[core]] complete, and do they agree with each other?
+// Check that the fields of a [[core]] are complete and consistent.
 #pragma once
 
 #include "transformer/core/core.h"
 
 namespace steplap {
 
-/// All that is wrong, each at the field that it is about; empty: a CoreGeometry can be made of it.
+/// Returns all errors, each with the location of its field. If there are none, a CoreGeometry can be made.
 [[nodiscard]] std::vector<Diagnostic> check_dimensions(const Core& core);
 
 } // namespace steplap

@@ -20,10 +20,10 @@ namespace steplap {
 namespace {
 
 constexpr double k_usual_notch = 45.0 * std::numbers::pi / 180.0;
-constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02; // m, of strips that do not say: matter once slid so far
+constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02; // m, defaults for strips; significant only after large slides
 constexpr long k_hole_sides = 24;
 
-// Is the circle wholly inside the convex ring, or wholly outside?
+// Position of a circle relative to a convex ring.
 enum class Place { inside, outside, across };
 Place place_of(const Vec2& centre, double radius, const Ring& ring) {
   double nearest = 1e300;
@@ -34,7 +34,7 @@ Place place_of(const Vec2& centre, double radius, const Ring& ring) {
   return nearest > radius ? Place::inside : nearest < -radius ? Place::outside : Place::across;
 }
 
-// ∫ dA, ∫ r dA, ∫ r² dA over what a ring encloses, about the origin.
+// Integrals ∫ dA, ∫ r dA, ∫ r² dA over a ring, about the origin.
 struct Moments {
   double area = 0.0, second = 0.0;
   Vec2 first = Vec2::Zero();
@@ -58,7 +58,7 @@ struct Moments {
 
 struct CoreGeometry::End {
   bool is_middle = false;
-  double side = 1.0, level = 1.0, reach = 0.0; ///< of a middle limb: the side of its axis
+  double side = 1.0, level = 1.0, reach = 0.0; ///< side: for a middle limb the side of its axis
 };
 
 Stack stack_of(const Core& core) {
@@ -91,7 +91,7 @@ CoreGeometry::CoreGeometry(const Core& core) : core_(core), stack_(stack_of(core
   largest_ = likeness(stack_, static_cast<std::size_t>(most - stack_.packets.begin()));
 }
 
-// Yokes stepped on both sides share an axis, those stepped on one side their other edge.
+// Yokes stepped on both sides have a common axis; those stepped on one side a common edge on the other.
 Mitre CoreGeometry::mitre(std::size_t packet, bool is_middle) const {
   const Packet& own = stack_.packets[packet];
   const double lower = stack_.packets[largest_].yoke_height - own.yoke_height;
@@ -106,7 +106,7 @@ double CoreGeometry::angle(std::size_t packet, bool is_middle) const {
   return m.angle ? *m.angle : portable::atan2(m.yoke_height, m.limb_width);
 }
 
-// A sheet moved along its own length by s' moves its cut by s' cos α (limb) or s' sin α (yoke) across the mitre.
+// A sheet shifted by s' along its length shifts its cut by s' cos α (limb) or s' sin α (yoke) across the mitre.
 double CoreGeometry::pitch(std::size_t packet, bool is_middle) const {
   const double pitch = stack_.book.pitch;
   if (core_.pitch_direction == "along_limb") return pitch * portable::cos(angle(packet, is_middle));
@@ -140,7 +140,7 @@ CornerFrame CoreGeometry::frame(std::size_t packet, const End& end) const {
   return end.is_middle ? notch_frame(m, -end.side, end.level) : corner_frame(m, end.side, end.level);
 }
 
-// Without what its bolt holes take.
+// Returns the sheet without its bolt holes.
 Polygon CoreGeometry::punched(const std::vector<Vec2>& ring, double side, std::initializer_list<double> levels) const {
   Polygon sheet{ring, {}};
   if (core_.bolt_holes.empty() || ring.size() < 3) return sheet;
@@ -205,7 +205,8 @@ void CoreGeometry::add_counted(const End& end, std::vector<Lap>& laps) const {
   laps.push_back(std::move(only));
 }
 
-// "packet 2, slice 3", "": within a packet, of a stack by place within the zone.
+// Returns the name of a packet, such as "packet 2", or in a stack by place that of a zone, such as "packet 2, slice 3"; "" for the only
+// packet of a stack that is not by place.
 std::string CoreGeometry::zone_name(std::size_t packet, std::size_t zone) const {
   if (!stack_.is_by_place) return stack_.packets.size() == 1 ? "" : "packet " + std::to_string(packet + 1);
   const auto slices = static_cast<std::size_t>(stack_.slices);
@@ -214,10 +215,10 @@ std::string CoreGeometry::zone_name(std::size_t packet, std::size_t zone) const 
   return name;
 }
 
-// Of two layers the yoke sheet of either may cover the limb sheet of the other.
+// For two layers, the yoke sheet of either may overlap the limb sheet of the other.
 void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
   const double half_gap = 0.5 * stack_.book.clearance;
-  std::map<std::array<std::size_t, 3>, long> number; // in a zone, of two packets
+  std::map<std::array<std::size_t, 3>, long> number; // counter for each zone and pair of packets
   const auto add = [&](const LayerShape& yoke, const LayerShape& limb, const LayerPair& pair) {
     const double inner = line(limb, end.is_middle) + half_gap, outer = line(yoke, end.is_middle) - half_gap;
     const bool is_one_packet = yoke.packet == limb.packet;
@@ -252,8 +253,8 @@ void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
   for (const auto& [packet, zone] : kinds) merge(end, packet, zone, laps);
 }
 
-// The laps of one packet as one of their mean area, about the middle of the mitre: its width is found by secants, the
-// area being all but proportional to it.
+// Replaces the laps of one packet by one with their mean area about the middle of the mitre. Its width is found by the secant method, since
+// the area is nearly proportional to it.
 void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, std::vector<Lap>& laps) const {
   const auto is_own = [&](const Lap& lap) { return !lap.is_between && lap.packet == packet && lap.zone == zone; };
   double count = 0.0, area = 0.0, width = 0.0, before = 0.0;
@@ -265,7 +266,7 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, s
     count += lap.count;
     area += lap.count * lap.area;
     width += lap.count * (lap.outer - lap.inner);
-    before += lap.count * lap.area * lap.before; // as the pressures add up
+    before += lap.count * lap.area * lap.before; // weighted like the pressures
   }
   if (!(area > 0.0)) return;
   std::erase_if(laps, is_own);
@@ -276,7 +277,7 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, s
   for (int i = 0; i < 20 && mean.area != target && mean.area != area_before; ++i) {
     const double next = w + (target - mean.area) * (w - w_before) / (mean.area - area_before);
     Lap better = of_width(next);
-    if (!(std::abs(better.area - target) < std::abs(mean.area - target))) break; // rounding is all that is left
+    if (!(std::abs(better.area - target) < std::abs(mean.area - target))) break; // only rounding is left
     w_before = w;
     area_before = mean.area;
     w = next;
@@ -329,7 +330,7 @@ LimbSteel CoreGeometry::limb_steel(bool is_middle, double side) const {
   LimbSteel steel;
   steel.centre = sum.first / sum.area;
   if (core_.is_counted()) return steel;
-  const double surface = core_.density * stack_.sheet_thickness; // kg/m² of a sheet
+  const double surface = core_.density * stack_.sheet_thickness; // mass per area of a sheet, kg/m²
   steel.mass = surface * sum.area;
   steel.inertia = surface * (sum.second - sum.area * steel.centre.squaredNorm());
   return steel;
@@ -372,7 +373,7 @@ double CoreGeometry::yoke_cut(const LimbPlace& limb) const {
     const Mitre m = mitre(layer.shape.packet, limb.is_middle);
     const double half = 0.5 * m.limb_width, top = 0.5 * m.core_height, low = top - m.yoke_height;
     const double q = line(layer.shape, limb.is_middle) - 0.5 * stack_.book.clearance;
-    // A cut that lies on the yoke's side of the mitre leaves the yoke beside the limb: towards the window, by |q|/sin α.
+    // A cut on the yoke side of the mitre leaves a part of the yoke next to the limb: |q|/sin α towards the window.
     const double beside = m.limb_width;
     const double inner = half + beside, outer = limb.is_middle ? inner : half;
     std::vector<Vec2> crossing = {{-inner, low}, {outer, low}, {outer, top}, {-inner, top}};
@@ -385,9 +386,9 @@ double CoreGeometry::yoke_cut(const LimbPlace& limb) const {
   return mass;
 }
 
-// Accelerated by a from the front face towards the back, sheets bear the more on each other the more of them are pushed
-// from in front. Held by the front face alone, a force that does not change on the back, an interface gains what lies behind
-// it; held by the back it loses what lies in front; held by both alike, the mean of the two.
+// For an acceleration a from the front face to the back, the contact forces increase with the number of sheets pushed from the front. If
+// only the front face is held (and a constant force acts on the back), an interface is loaded additionally by the mass behind it; if only
+// the back is held, it is relieved by the mass in front of it; if both are held equally, the mean applies.
 LapPressure CoreGeometry::pressure(const CoreCorner& corner, const Lap& lap, double share) const {
   const double level = corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure);
   const std::optional<Vec2>& given =

@@ -1,7 +1,7 @@
-// What a [[core]] comes to: the overlaps at its corners and the steel of its limbs, as the stack is built.
+// Geometry of a [[core]]: overlaps at its corners and the steel of its limbs.
 //
-// Places are in the active part's axes, from the middle of a limb (corner.h). Everything here is for a core
-// whose fields are complete and sound (core_builder.h sees to that).
+// Positions are in the axes of the active part, from the middle of a limb (corner.h). Precondition of everything here: the fields of the
+// core are complete and valid (core_builder.h).
 #pragma once
 
 #include "elements/step_lap/patch/polygon.h"
@@ -14,92 +14,97 @@
 
 namespace steplap {
 
-/// One kind of interface at a corner: where a yoke sheet of one layer and a limb sheet of a neighbouring layer overlap.
+/// One kind of interface at a corner: the overlap of a yoke sheet of one layer and a limb sheet of a neighbouring layer.
 struct Lap {
-  std::string name; ///< within its corner: "", "3", "packet 2, 3", "packets 2 and 3, 1"
+  std::string name; ///< name within its corner: "", "3", "packet 2, 3", "packets 2 and 3, 1"
   Polygon yoke, limb;
-  double inner = 0.0, outer = 0.0; ///< m, across the mitre: limb sheet beyond the one, yoke sheet before the other
-  double count = 0.0;              ///< of such interfaces in the stack
-  double area = 0.0;               ///< m², of one
-  double pressure = 1.0;           ///< share of the corner's
-  std::size_t packet = 0;          ///< the one that both layers are like
-  bool is_between = false;         ///< layers of two packets instead
-  std::size_t zone = 0;            ///< of a stack by place (stack.h)
-  double before = 0.0;             ///< sheets in front of it, in the mean; of a stack by place
-  long first = 0, last = 0;        ///< sheets in front of the foremost and the rearmost of these interfaces
-  Vec2 middle = Vec2::Zero();      ///< of the overlap
-  std::vector<Vec2> overlap;       ///< its vertices
+  double inner = 0.0, outer = 0.0; ///< positions of the cuts across the mitre, m: the limb sheet is beyond `inner`, the yoke sheet before
+                                   ///< `outer`
+  double count = 0.0;              ///< number of such interfaces in the stack
+  double area = 0.0;               ///< area of one interface, m²
+  double pressure = 1.0;           ///< relative to the pressure of the corner
+  std::size_t packet = 0;          ///< packet of both layers
+  bool is_between = false;         ///< the layers belong to two packets
+  std::size_t zone = 0;            ///< zone in a stack by place (stack.h)
+  double before = 0.0;             ///< mean number of sheets in front of it, in a stack by place
+  long first = 0, last = 0;        ///< number of sheets in front of the first and the last of these interfaces
+  Vec2 middle = Vec2::Zero();      ///< centroid of the overlap, m
+  std::vector<Vec2> overlap;       ///< vertices of the overlap, m
 };
 
-/// One mitre: an outer limb has one at either end, a middle limb two.
+/// One mitre: an outer limb has one at each end, a middle limb two.
 struct CoreCorner {
   bool is_top = true;
   std::string place;       ///< "top", "bottom front"
-  CornerFrame frame;       ///< of the widest packet
-  Vec2 out = Vec2::Ones(); ///< signs of x outwards (at a T-joint off the limb's axis) and of y away from the window
+  CornerFrame frame;       ///< frame of the widest packet
+  Vec2 out = Vec2::Ones(); ///< signs of x outwards (at a T-joint away from the limb's axis) and of y away from the window
   std::vector<Lap> laps;
 };
 
-/// By which the sheets of one kind of interface are pressed on each other; active part's axes.
+/// Pressure on one kind of interface, in the axes of the active part.
 struct LapPressure {
-  double middle = 0.0;            ///< Pa, at the middle of the overlap
+  double middle = 0.0;            ///< at the centroid of the overlap, Pa
   Vec2 gradient = Vec2::Zero();   ///< Pa/m
-  double least = 0.0;             ///< Pa, anywhere in the overlap
-  double transverse = 0.0;        ///< Pa per m/s² of acceleration across the stack, from the front face to the back
-  double transverse_spread = 0.0; ///< the same, by which the outermost of these interfaces differs from their mean
+  double least = 0.0;             ///< smallest value in the overlap, Pa
+  double transverse = 0.0;        ///< change per acceleration across the stack, from the front face to the back, Pa per m/s²
+  double transverse_spread = 0.0; ///< difference of `transverse` between the outermost of these interfaces and their mean
 };
 
+/// Position of a limb in the core.
 struct LimbPlace {
   bool is_middle = false;
-  double side = 1.0; ///< of an outer limb
-  double x = 0.0;    ///< of its axis, m
+  double side = 1.0; ///< +1 or −1, for an outer limb
+  double x = 0.0;    ///< position of its axis, m
 };
 
-/// Of a limb's sheets.
+/// Steel of one limb.
 struct LimbSteel {
-  double mass = 0.0;          ///< kg; zero where the stack is not known (overlaps counted)
+  double mass = 0.0;          ///< kg; zero if the stack is unknown (counted overlaps)
   double inertia = 0.0;       ///< kg m², about the centre of gravity
-  Vec2 centre = Vec2::Zero(); ///< of gravity, m
+  Vec2 centre = Vec2::Zero(); ///< centre of gravity, m
 };
 
+/// Computes the overlaps and the steel of one core.
 class CoreGeometry {
 public:
   explicit CoreGeometry(const Core& core);
 
-  [[nodiscard]] const Stack& stack() const { return stack_; } ///< of a counted core: one packet, no sheets
-  /// The widest packet of the highest yoke: its place among the packets.
+  [[nodiscard]] const Stack& stack() const { return stack_; } ///< for a core with counted overlaps: one packet without sheets
+  /// Returns the index of the widest packet with the highest yoke.
   [[nodiscard]] std::size_t largest() const { return largest_; }
+  /// Returns the dimensions of the mitre of a packet.
   [[nodiscard]] Mitre mitre(std::size_t packet, bool is_middle) const;
-  /// Angle against the yoke, rad.
+  /// Returns the angle of the mitre relative to the yoke, rad.
   [[nodiscard]] double angle(std::size_t packet, bool is_middle) const;
-  /// From layer to layer, across the mitre, m.
+  /// Returns the shift from layer to layer across the mitre, m.
   [[nodiscard]] double pitch(std::size_t packet, bool is_middle) const;
-  /// Do two layers of the packet overlap anywhere in it? Without that nothing holds its sheets but its neighbours'.
+  /// Returns true if two layers of the packet overlap anywhere within it. Otherwise its sheets are held only by neighbouring packets.
   [[nodiscard]] bool overlaps_within(std::size_t packet, bool is_middle) const;
-  /// Middle of the line at which sheets of that shape meet, across the mitre, m.
+  /// Returns the position across the mitre of the middle of the line at which sheets of this shape meet, m.
   [[nodiscard]] double line(const LayerShape& shape, bool is_middle) const;
 
-  /// All corners of a limb that stands on that side of the active part, `reach` from it. Throws PolygonError where a
-  /// bolt hole cuts a sheet in two.
+  /// Returns all corners of a limb on this side of the active part, at distance `reach` from it. Throws PolygonError if a bolt hole divides
+  /// a sheet.
   [[nodiscard]] std::vector<CoreCorner> corners(bool is_middle, double side, double reach) const;
+  /// Returns mass, inertia and centre of gravity of the sheets of one limb.
   [[nodiscard]] LimbSteel limb_steel(bool is_middle, double side) const;
-  /// Of a limb's steel, the share that each packet has; of a stack that is not by place, packets alike count as their first one,
-  /// and the others have none. Empty where the stack is not known.
+  /// Returns the fraction of a limb's steel in each packet. If the stack is not by place, equal packets count as the first of them and the
+  /// others have none. Empty if the stack is unknown.
   [[nodiscard]] std::vector<double> packet_shares(bool is_middle, double side) const;
-  /// The packet whose share a lap holds.
+  /// Returns the packet held by an interface.
   [[nodiscard]] std::size_t packet_of(const Lap& lap) const {
     return stack_.is_by_place ? lap.zone / static_cast<std::size_t>(stack_.slices) : lap.packet;
   }
-  /// Of both yokes from x = 0 to the outer face of an outer limb, as if no limb stood there, kg; negative where that face
-  /// lies behind x = 0 as seen from its side. Zero where the stack is not known (overlaps counted).
+  /// Returns the mass of both yokes from x = 0 to the outer face of an outer limb, as if there were no limb, kg; negative if that face is
+  /// on the other side of x = 0. Zero if the stack is unknown (counted overlaps).
   [[nodiscard]] double yoke_strip(const LimbPlace& outer) const;
-  /// What a limb takes of both yokes: where its sheets and the clearance are, kg. Bolt holes are not taken off.
+  /// Returns the mass of both yokes replaced by a limb, its sheets and the clearance, kg. Bolt holes are not deducted.
   [[nodiscard]] double yoke_cut(const LimbPlace& limb) const;
-  /// `share`: of the joint.
+  /// Returns the pressure on an interface; `share` is that of the joint.
   [[nodiscard]] LapPressure pressure(const CoreCorner& corner, const Lap& lap, double share) const;
 
 private:
-  struct End; // of a limb: which of its corners
+  struct End; // end of a limb with its corner
   [[nodiscard]] CoreCorner corner(const End& end) const;
   [[nodiscard]] CornerFrame frame(std::size_t packet, const End& end) const;
   [[nodiscard]] Polygon limb_sheet(std::size_t packet, const End& end, double q) const;
@@ -116,7 +121,7 @@ private:
   std::size_t largest_ = 0;
 };
 
-/// The stack that the fields describe; of a counted core one packet without sheets.
+/// Returns the stack described by the fields; for counted overlaps one packet without sheets.
 [[nodiscard]] Stack stack_of(const Core& core);
 
 } // namespace steplap

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// The part of a convex ring where sign·(n·(p − origin) − q) ≥ 0.
+// Returns the part of a convex ring with sign·(n·(p − origin) − q) ≥ 0.
 std::vector<Vec2> cut(const std::vector<Vec2>& ring, const CornerFrame& frame, double q, double sign) {
   const auto beyond = [&](const Vec2& p) { return sign * (frame.across.dot(p - frame.origin) - q); };
   std::vector<Vec2> left;
@@ -95,7 +95,7 @@ std::vector<Vec2> yoke_half(const Mitre& m, double side, double level, double q,
   return before(strip, notch_frame(m, -side, level), q);
 }
 
-// Of the two corners that the mitre does not begin or end at, the nearer one.
+// Distance to the nearer of the two corners of the rectangle that are not on the mitre.
 double least_shift(const Mitre& m) {
   const CornerFrame f = corner_frame(m, 1.0, 1.0);
   const Vec2 below(m.limb_width, 0.0), above(0.0, m.yoke_height);

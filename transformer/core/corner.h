@@ -1,19 +1,16 @@
-// A corner of a core: where a limb and a yoke meet at a mitre, and the outlines of the two sheets there.
+// A corner of a core: the mitre between a limb and a yoke, and the outlines of the two sheets there.
 //
-// Axes: those of the active part, origin in the middle of the limb, on its axis at half the core's height;
-// `side` +1 for a limb ahead of the active part, −1 behind it, `level` +1 top, −1 bottom. The mitre runs from
-// the corner of the window, (−side·W/2, level·(H/2 − Y)), outwards along t = (side cos α, level sin α);
-// n = (side sin α, −level cos α) points away from the yoke. W limb width, H height of the core, Y height of a
-// yoke, α angle of the mitre against the yoke: from corner to corner of the rectangle where limb and yoke cross
-// (tan α = Y/W), or given.
+// Axes are those of the active part, with the origin in the middle of the limb, on its axis at half the height of the core. `side` is +1
+// for a limb in front of the active part, −1 behind it; `level` is +1 at the top, −1 at the bottom. The mitre runs from the corner of the
+// window, (−side·W/2, level·(H/2 − Y)), outwards along t = (side cos α, level sin α); n = (side sin α, −level cos α) points away from the
+// yoke. W is the limb width, H the height of the core, Y the height of a yoke, α the angle of the mitre relative to the yoke: from corner
+// to corner of the rectangle common to limb and yoke (tan α = Y/W), or given.
 //
-// Sheets are cut along a line parallel to the mitre, at q across it: the limb's sheet is what the limb's strip
-// (|x| < W/2) has beyond q, the yoke's what the yoke's strip has before it, both cut off flush where limb and
-// yoke end. A middle limb ends in a point that enters a notch of the yoke (T-joint): two such cuts, `side` +1
-// and −1, each from a corner of the window to the limb's axis; the yoke's sheet is given in two halves, parted
-// along that axis, so that all outlines are convex.
-//
-// The paper's own idealisation are strips along the mitre with square ends, `band`.
+// Sheets are cut along a line parallel to the mitre, at q across it. The limb sheet is the part of the limb strip (|x| < W/2) beyond q, the
+// yoke sheet the part of the yoke strip before q; both end flush with limb and yoke. A middle limb ends in a point in a notch of the yoke
+// (T-joint): two such cuts, `side` +1 and −1, each from a corner of the window to the limb's axis. The yoke sheet is then given in two
+// halves, divided at that axis, so that all outlines are convex. The idealisation of the paper uses strips along the mitre with square
+// ends, `band`.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -23,43 +20,48 @@
 
 namespace steplap {
 
+/// Dimensions of limb and yoke at a corner.
 struct Mitre {
   double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
-  std::optional<double> angle;                                   ///< rad against the yoke; none: from corner to corner
+  std::optional<double> angle;                                   ///< relative to the yoke, rad; not given: from corner to corner
 };
 
+/// Position and directions of one mitre, in axes with the origin in the middle of the limb, m.
 struct CornerFrame {
   Vec2 origin = Vec2::Zero(); ///< corner of the window
   Vec2 along = Vec2::Zero();  ///< t
   Vec2 across = Vec2::Zero(); ///< n, away from the yoke
-  double length = 0.0;        ///< of the mitre, m
+  double length = 0.0;        ///< length of the mitre, m
 };
 
+/// Returns the frame of the mitre at an outer limb.
 [[nodiscard]] CornerFrame corner_frame(const Mitre& mitre, double side, double level);
 
-/// One side of a middle limb's point: the mitre that rises towards `side`. Needs mitre.angle.
+/// Returns the frame of one side of a middle limb's point: the mitre that rises towards `side`. Precondition: mitre.angle is given.
 [[nodiscard]] CornerFrame notch_frame(const Mitre& mitre, double side, double level);
 
-/// The points s₀…s₁ along × q₀…q₁ across: four corners.
+/// Returns the four corners of the rectangle s₀…s₁ along × q₀…q₁ across the mitre.
 [[nodiscard]] std::vector<Vec2> band(const CornerFrame& frame, double s0, double s1, double q0, double q1);
 
-/// What the ring, convex, has on the far side of the line at q across the mitre, or before it.
+/// Return the part of a convex ring beyond the line at q across the mitre, or before it.
 [[nodiscard]] std::vector<Vec2> beyond(const std::vector<Vec2>& ring, const CornerFrame& frame, double q);
 [[nodiscard]] std::vector<Vec2> before(const std::vector<Vec2>& ring, const CornerFrame& frame, double q);
 
-/// The end of a limb at a level, from half its height on, cut at q; empty if nothing is left.
+/// Returns the end of a limb from half its height on, cut at q; empty if nothing is left.
 [[nodiscard]] std::vector<Vec2> limb_end(const Mitre& mitre, double side, double level, double q);
+/// The same for a middle limb, which ends in a point.
 [[nodiscard]] std::vector<Vec2> pointed_end(const Mitre& mitre, double level, double q);
-/// The whole limb, both ends cut at q.
+/// Returns the whole limb with both ends cut at q.
 [[nodiscard]] std::vector<Vec2> whole_limb(const Mitre& mitre, double side, double q);
+/// The same for a middle limb.
 [[nodiscard]] std::vector<Vec2> whole_pointed_limb(const Mitre& mitre, double q);
 
-/// The yoke's end at an outer limb, as far as `reach` from the limb's axis towards the active part.
+/// Returns the end of the yoke at an outer limb, up to `reach` from the limb's axis towards the active part.
 [[nodiscard]] std::vector<Vec2> yoke_end(const Mitre& mitre, double side, double level, double q, double reach);
-/// The half of a notched yoke that lies towards `side` of a middle limb's axis.
+/// Returns the half of a notched yoke on this side of a middle limb's axis.
 [[nodiscard]] std::vector<Vec2> yoke_half(const Mitre& mitre, double side, double level, double q, double reach);
 
-/// How far the line at q may lie from the mitre before it leaves the rectangle where limb and yoke cross.
+/// Returns the largest distance of the line at q from the mitre for which it stays in the rectangle common to limb and yoke, m.
 [[nodiscard]] double least_shift(const Mitre& mitre);
 
 } // namespace steplap

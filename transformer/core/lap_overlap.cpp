@@ -39,7 +39,7 @@ void compute_overlap(Lap& lap) {
   for (const Polygon& piece : region) lap.overlap.insert(lap.overlap.end(), piece.outer.begin(), piece.outer.end());
 }
 
-/// What there is to be known of a lap.
+/// A cached lap.
 struct KnownLap {
   Polygon yoke, limb;
   double area = 0.0;
@@ -50,7 +50,7 @@ struct KnownLap {
 } // namespace
 
 void find_overlap(Lap& lap) {
-  constexpr std::size_t k_most = 4096; // a core of thirty packets has some hundreds
+  constexpr std::size_t k_most = 4096; // a core with thirty packets has some hundreds
   static thread_local std::unordered_map<std::uint64_t, KnownLap> all_known;
   if (lap.yoke.outer.size() < 3 || lap.limb.outer.size() < 3) return;
   Fingerprint print;

@@ -1,6 +1,5 @@
-// Is a core as cores usually are? What is outside of its usual range is allowed, and worth a second look.
-//
-// Ranges are of power transformers' cores; each names where it comes from. Where nothing is published it says so.
+// Remarks on cores with unusual values. Values outside the usual range are allowed. Ranges are those of power transformers' cores; each
+// names its source, or states that nothing is published.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -10,7 +9,7 @@
 
 namespace steplap {
 
-/// What a value of a [[core]] usually is.
+/// Usual range of a field of [[core]].
 struct UsualRange {
   const char* field;
   double low, high; ///< SI
@@ -18,18 +17,18 @@ struct UsualRange {
   const char* source;
 };
 
-/// Of all fields that have one.
+/// Returns the ranges of all fields that have one.
 [[nodiscard]] const std::vector<UsualRange>& usual_ranges();
 
 struct CoreRemark {
-  Location where;   ///< in the model's file: of the field if the table gives it, else of the table
-  std::string text; ///< without the place
-  /// What may well be meant, and is worth knowing: no doubt of the core.
+  Location where;   ///< location of the field if given, otherwise of the table
+  std::string text; ///< text without location
+  /// The value may well be intended; the remark is for information only.
   bool is_note = false;
 };
 
-/// Of a completed model: each names the value, what is usual and by which source; given masses that hardly agree
-/// with the sheets', too. A mitre that nobody gave and that is not cut at 45° is a note.
+/// Returns the remarks for a completed model. Each names the value, the usual range and its source. Masses that disagree with the sheets
+/// are remarked, too. A mitre angle that was not given and is not 45° is a note.
 [[nodiscard]] std::vector<CoreRemark> implausible_cores(const Model& model);
 
 } // namespace steplap

@@ -10,10 +10,10 @@ namespace steplap {
 
 namespace {
 
-// A depth made as a whole number of sheets must not lose one to rounding.
+// Tolerance, so that a depth that is a whole number of sheets does not lose one by rounding.
 constexpr double k_rounding = 1e-9;
 
-// Of the numbers 0 … n−1: those that leave `rest` when divided by `period`.
+// Returns how many of the numbers 0 … n−1 leave the remainder `rest` when divided by `period`.
 long count_of(long n, long rest, long period) { return n > rest ? (n - 1 - rest) / period + 1 : 0; }
 
 class PairCounter {
@@ -23,7 +23,7 @@ public:
   std::vector<LayerPair> count() {
     for (std::size_t p = 0; p < stack_.packets.size(); ++p) count_within(p);
     for (std::size_t p = 0; p + 1 < stack_.packets.size(); ++p) count_between(p);
-    std::set<long> gaps; // two ducts between the same sheets are one
+    std::set<long> gaps; // two ducts between the same sheets count once
     for (const Duct& duct : stack_.ducts) gaps.insert(sheets_before(stack_, duct));
     for (const long gap : gaps) part(gap);
     std::vector<LayerPair> pairs;
@@ -33,7 +33,7 @@ public:
     return pairs;
   }
 
-  // One interface after the other.
+  // Counts interface by interface.
   std::vector<LayerPair> count_by_place() {
     std::set<long> gaps;
     for (const Duct& duct : stack_.ducts) gaps.insert(sheets_before(stack_, duct));
@@ -42,8 +42,8 @@ public:
     const auto add = [&](std::size_t zone, const Shapes& shapes) {
       if (gaps.count(before) > 0) return;
       LayerPair& pair = found.try_emplace({zone, shapes}, LayerPair{shapes.first, shapes.second, 0, zone, 0.0}).first->second;
-      pair.before += static_cast<double>(before); // a sum until the end
-      if (pair.count == 0) pair.first = before;   // they come from the front to the back
+      pair.before += static_cast<double>(before); // sum; divided by the count at the end
+      if (pair.count == 0) pair.first = before;   // pairs are visited from front to back
       pair.last = before;
       ++pair.count;
     };
@@ -80,11 +80,11 @@ private:
     for (long i = 0; i < std::min(pairs, period); ++i) counts_[ordered(shape(p, i), shape(p, i + 1))] += count_of(pairs, i, period);
   }
 
-  // Packets without a sheet are none: the core refuses them.
+  // Precondition: both packets have sheets; the core refuses empty ones.
   [[nodiscard]] Shapes seam(std::size_t p) const { return ordered(shape(p, layers_in(stack_, stack_.packets[p]) - 1), shape(p + 1, 0)); }
   void count_between(std::size_t p) { ++counts_[seam(p)]; }
 
-  // Takes out the pair that a duct behind so many sheets parts, if it lies between two layers.
+  // Removes the pair separated by a duct after this number of sheets, if the duct is between two layers.
   void part(long gap) {
     for (std::size_t p = 0; p < stack_.packets.size(); ++p) {
       const long sheets = sheets_in(stack_, stack_.packets[p]);

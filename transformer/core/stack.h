@@ -1,10 +1,9 @@
-// The stack of a core's sheets, packet on packet: how many layers lie how, and which lie on each other.
+// Stack of a core's sheets, packet after packet: numbers of layers of each shape, and of pairs of neighbouring layers.
 //
-// Packets follow each other from the front face to the back; each begins a book of its own. A packet of depth
-// D, stacking factor f (steel's share) and sheet thickness d has ⌊f D/d⌋ sheets; its last layer may have fewer
-// sheets than the others, its last book fewer layers: both are counted as they are. An oil duct parts two
-// sheets, which then do not touch; between which, its place tells (measured from the front face, ducts not
-// counted). Where packets meet, the last layer of one lies on the first of the next.
+// Packets are listed from the front face to the back; each begins a book of its own. A packet of depth D with stacking factor f (fraction
+// of steel) and sheet thickness d has ⌊f D/d⌋ sheets. Its last layer may have fewer sheets than the others, and its last book fewer layers;
+// both are counted exactly. An oil duct separates two sheets; its position, measured from the front face without ducts, determines which.
+// Where packets meet, the last layer of one is next to the first layer of the next.
 #pragma once
 
 #include "transformer/core/book.h"
@@ -14,33 +13,36 @@
 
 namespace steplap {
 
+/// Packet of equal sheets.
 struct Packet {
-  double width = 0.0;       ///< of the limb's sheets, m
-  double yoke_height = 0.0; ///< of the yoke's, m
-  double depth = 0.0;       ///< of steel and insulation, m
-  double pressure = 1.0;    ///< share of the corner's clamping pressure
+  double width = 0.0;       ///< width of the limb sheets, m
+  double yoke_height = 0.0; ///< height of the yoke, m
+  double depth = 0.0;       ///< depth of steel and insulation, m
+  double pressure = 1.0;    ///< relative to the clamping pressure of the corner
 };
 
+/// Cooling duct in the stack.
 struct Duct {
   double place = 0.0; ///< m
   double width = 0.0; ///< m
 };
 
+/// The sheets of a core from front to back.
 struct Stack {
   std::vector<Packet> packets;
   double stacking_factor = 1.0;
-  double sheet_thickness = 0.0; ///< of the steel, m
+  double sheet_thickness = 0.0; ///< thickness of the steel, m
   std::vector<Duct> ducts;
   Book book;
-  /// Do interfaces alike in different packets, and in as many slices of each, count apart? For pressures that differ with
-  /// the place in the stack.
+  /// True: equal interfaces in different packets, and in different slices of a packet, are counted separately, for pressures that depend on
+  /// the position in the stack.
   bool is_by_place = false;
   long slices = 1;
 };
 
-/// Sheets of one outline: the packet that they are like, and the line at which they are cut.
+/// Sheets of one outline: packet and line of the cut.
 struct LayerShape {
-  std::size_t packet = 0; ///< the first of its width, yoke height and pressure
+  std::size_t packet = 0; ///< first packet with the same width, yoke height and pressure
   long position = 0;
   friend bool operator<(const LayerShape& a, const LayerShape& b) {
     return a.packet != b.packet ? a.packet < b.packet : a.position < b.position;
@@ -48,35 +50,38 @@ struct LayerShape {
   friend bool operator==(const LayerShape& a, const LayerShape& b) { return a.packet == b.packet && a.position == b.position; }
 };
 
-/// Two layers that touch, `a` not after `b`: which of them is in front does not matter.
+/// Two neighbouring layers with `a` not after `b`; their order in the stack does not matter.
 struct LayerPair {
   LayerShape a, b;
-  long count = 0;           ///< times in the stack
-  std::size_t zone = 0;     ///< of a stack by place: packet · slices + slice
-  double before = 0.0;      ///< of a stack by place: sheets in front of it, in the mean
-  long first = 0, last = 0; ///< of a stack by place: sheets in front of the foremost and of the rearmost such pair
+  long count = 0;           ///< number of occurrences in the stack
+  std::size_t zone = 0;     ///< in a stack by place: packet · slices + slice
+  double before = 0.0;      ///< in a stack by place: mean number of sheets in front of it
+  long first = 0, last = 0; ///< in a stack by place: number of sheets in front of the first and the last such pair
 };
 
+/// Number of sheets with one outline.
 struct LayerCount {
   LayerShape shape;
   long sheets = 0;
 };
 
+/// Return the number of sheets in a packet, or in the whole stack.
 [[nodiscard]] long sheets_in(const Stack& stack, const Packet& packet);
 [[nodiscard]] long sheets_in(const Stack& stack);
-/// The last one of a packet may be incomplete.
+/// Returns the number of layers. The last layer of a packet may be incomplete.
 [[nodiscard]] long layers_in(const Stack& stack, const Packet& packet);
 [[nodiscard]] long layers_in(const Stack& stack);
-/// Sheets in front of a duct.
+/// Returns the number of sheets in front of a duct.
 [[nodiscard]] long sheets_before(const Stack& stack, const Duct& duct);
-/// Of steel, insulation and ducts.
+/// Returns the depth of steel, insulation and ducts, m.
 [[nodiscard]] double depth_of(const Stack& stack);
-/// The first packet of the same width, yoke height and pressure.
+/// Returns the first packet with the same width, yoke height and pressure.
 [[nodiscard]] std::size_t likeness(const Stack& stack, std::size_t packet);
 
-/// All pairs of layers that touch, each kind once (by place: once in a zone), those of one packet first.
+/// Returns all kinds of pairs of neighbouring layers with their number (in a stack by place once for each zone), those within a packet
+/// first.
 [[nodiscard]] std::vector<LayerPair> layer_pairs(const Stack& stack);
-/// All sheets by their outline.
+/// Returns the number of sheets of each outline.
 [[nodiscard]] std::vector<LayerCount> layer_counts(const Stack& stack);
 
 } // namespace steplap

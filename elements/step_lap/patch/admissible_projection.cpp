@@ -13,15 +13,15 @@ namespace {
 
 constexpr int k_max_newton = 100;
 constexpr double k_tolerance = 1e-11;       // on z + ∇h(η), in units of the capacity
-constexpr double k_gauge_tolerance = 1e-10; // on the direction; u is good to its square
-constexpr double k_rank = 1e-12;            // eigenvalues of A below this share of the largest: zero
-constexpr double k_touches = 1e-12;         // a load beyond the bound by this share of itself: below the tolerance
-constexpr double k_no_slip = 1e-15;         // η below this share of b is rounding of b + A z
+constexpr double k_gauge_tolerance = 1e-10; // on the direction; the error of u is of the order of its square
+constexpr double k_rank = 1e-12;            // relative to the largest eigenvalue of A: smaller ones are zero
+constexpr double k_touches = 1e-12;         // relative excess of a load over the bound that is below the tolerance
+constexpr double k_no_slip = 1e-15;         // relative to b: a smaller η is the rounding error of b + A z
 
-/// Pseudo-inverse and range of a symmetric positive semidefinite matrix.
+/// Pseudo-inverse of a symmetric positive semidefinite matrix, and the projector onto its range.
 struct Inverse {
   Mat3 inverse = Mat3::Zero();
-  Mat3 range = Mat3::Zero(); ///< projector
+  Mat3 range = Mat3::Zero(); ///< projector onto the range
   bool full = true;
   explicit Inverse(const Mat3& a) {
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(a);
@@ -38,11 +38,11 @@ struct Inverse {
   }
 };
 
-/// A point of the dual problem, all in the patch's own units.
+/// A point of the dual problem, in the patch's own units.
 struct Point {
   Vec3 z, eta;
   Dissipation d;
-  /// ½ zᵀA z + h, with A z taken as η − b: a stiff A would drown it in rounding.
+  /// Returns ½ zᵀA z + h, with A z computed as η − b, because for a large A the product would be mostly rounding.
   [[nodiscard]] double value(const Vec3& b) const { return 0.5 * z.dot(eta - b) + d.h; }
   [[nodiscard]] Vec3 residual() const { return z + d.gradient; }
 };
@@ -52,28 +52,30 @@ Point point_at(const ScaledPatch& patch, const Vec3& z, const Vec3& eta, int& ev
   return {z, eta, patch.evaluate(eta)};
 }
 
-/// Full friction against the free acceleration.
+/// Initial point: full friction against the free acceleration.
 Point start_opposed(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Vec3& along, int& evaluations) {
   const Vec3 z = -patch.evaluate(along).gradient;
   ++evaluations;
   return point_at(patch, z, b + a * z, evaluations);
 }
 
-/// On the ray η = −λn, n the normal at which the unlimited wrench z0 leaves the set: there the
-/// dual has its minimum at λ = (n·z0 − h(n))/(n·A⁻¹n). Good when z0 is only just outside.
+/// Initial point on the ray η = −λn, with n the normal where the line from 0 to the unlimited wrench z0 leaves the set. The dual has its
+/// minimum on the ray at λ = (n·z0 − h(n))/(n·A⁻¹n). Accurate if z0 is only slightly outside.
 Point start_on_ray(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Inverse& inverse, const Vec3& z0, const Gauge& exit,
                    int& evaluations) {
   const Vec3 n = exit.y, along = inverse.inverse * n;
   const double used = z0.norm() * exit.value; // n·z0 / h(n) > 1
   const double lambda = n.dot(z0) * (1 - 1 / used) / n.dot(along);
-  // among the wrenches that hold b, start from the one that uses least
+  // among the wrenches that hold b, start from the one with the smallest utilisation
   Vec3 z = z0.norm() * exit.wrench - lambda * along;
   const Vec3 eta = -lambda * n;
-  for (int i = 0; i < 2; ++i) z += inverse.inverse * (eta - b - a * z); // η small beside b: keep b + A z = η to rounding
+  for (int i = 0; i < 2; ++i)
+    z += inverse.inverse * (eta - b - a * z); // corrects z so that b + A z = η up to rounding, although η is
+                                              // small compared with b
   return point_at(patch, z, eta, evaluations);
 }
 
-/// Newton on the dual; true when the residual is within tolerance.
+/// Newton's method for the dual. Returns true if the residual is within the tolerance.
 bool minimise(const ScaledPatch& patch, const Mat3& a, const Vec3& b, Point& p, int& evaluations) {
   for (int i = 0; i < k_max_newton; ++i) {
     const Vec3 residual = p.residual();
@@ -105,7 +107,7 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
   const Mat3 a = scaled.scaled_mobility(mobility);
   const Vec3 b = scaled.scaled_twist(free_acceleration);
   const Inverse inverse(a);
-  Vec3 z0 = -inverse.inverse * b; // holds b, as far as any wrench can
+  Vec3 z0 = -inverse.inverse * b; // wrench that cancels b as far as possible
   z0 -= inverse.inverse * (b + a * z0);
   const bool holdable = (b - inverse.range * b).norm() <= k_rank * (b.norm() + a.norm() * z0.norm());
   const double size = z0.norm();
@@ -113,7 +115,7 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
 
   Gauge need;
   if (holdable) {
-    // Of all wrenches that hold b, the one that uses least of the capacity.
+    // Takes the wrench with the smallest utilisation of all that hold b.
     need = find_gauge(scaled, z0 / size, Vec3::Zero(), k_gauge_tolerance, inverse.range);
     out.evaluations = need.evaluations;
     out.residual = need.residual;
@@ -123,8 +125,8 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
       return out;
     }
   }
-  // At the bound η is rounding of b + A z and has no direction that Newton could find. The bound's own wrench is then
-  // off by that share, and the slip goes along its normal.
+  // At the bound η is the rounding error of b + A z and has no direction for Newton's method. The wrench on the bound then has this
+  // relative error, and the slip is along the normal there.
   if (holdable && size * need.value - 1 <= k_touches) {
     out.slips = true;
     out.wrench = scaled.wrench(need.wrench / need.value);
@@ -135,17 +137,17 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
   Point other = p;
   if (holdable) {
     const Point q = start_on_ray(scaled, a, b, inverse, z0, need, out.evaluations);
-    // At the bound itself the values differ by rounding only, but the ray is the solution.
+    // At the bound the values differ by rounding only, but the point on the ray is the solution.
     const bool is_solved = q.residual().norm() <= k_tolerance;
     (is_solved || q.value(b) < p.value(b) ? p : other) = q;
   }
   out.converged = minimise(scaled, a, b, p, out.evaluations);
-  if (!out.converged) { // the dual is convex: any other start leads to the same point
+  if (!out.converged) { // the dual is convex, so any other start leads to the same point
     out.converged = minimise(scaled, a, b, other, out.evaluations);
     if (out.converged || other.residual().norm() < p.residual().norm()) p = other;
   }
   out.residual = p.residual().norm();
-  // Beyond the bound by a rounding, η is below what b + A z can tell: held at the bound is nearer than any slip found.
+  // Beyond the bound by rounding only, η cannot be determined from b + A z; holding at the bound is then closer than any slip found.
   if (!out.converged && holdable && size * need.value - 1.0 < out.residual) {
     out.residual = size * need.value - 1.0;
     out.wrench = scaled.wrench(Vec3(need.wrench / need.value));

@@ -1,5 +1,4 @@
-// The rings of a polygon as one list of edges, with a tree of boxes over them, for overlaps that are
-// traced along the boundaries (traced_overlap.h).
+// Edges of a polygon in one list, with a tree of bounding boxes, for overlaps traced along boundaries (traced_overlap.h).
 #pragma once
 
 #include "elements/step_lap/patch/convex_cut.h"
@@ -16,17 +15,18 @@ struct Boundary {
   };
   Ring corners;
   std::vector<Span> rings;
-  std::vector<std::size_t> next; ///< by corner: the one after it round its ring
+  std::vector<std::size_t> next; ///< per corner: the next one around its ring
 };
 
+/// Returns the boundary of a polygon: outer ring first, then the holes.
 [[nodiscard]] Boundary boundary_of(const Polygon& polygon);
 
-/// Boxes of neighbouring items in pairs, of these again in pairs, and so on. Does not allocate once its storage has grown.
+/// Binary tree of bounding boxes over consecutive items. Does not allocate once its storage is large enough.
 class BoxTree {
 public:
   static constexpr std::size_t k_root = 1;
 
-  /// Over `items` of them, `bundle` to a leaf; their boxes by box_at(i).
+  /// Builds the tree over `items` items, `bundle` per leaf; box_at(i) returns the box of item i.
   template <class BoxAt> void build(std::size_t items, std::size_t bundle, BoxAt box_at) {
     items_ = items;
     bundle_ = bundle;
@@ -58,7 +58,7 @@ private:
   std::size_t items_ = 0, bundle_ = 1, leaves_ = 1;
 };
 
-/// Of a boundary's edges, its corners being those of `corners`.
+/// Builds the tree over the edges of a boundary with the given corners.
 void build_edge_tree(const Boundary& boundary, const Ring& corners, BoxTree& tree);
 
 } // namespace steplap

@@ -9,16 +9,16 @@ namespace steplap {
 
 namespace {
 
-/// Of an edge seen from c: its foot distance and abscissae, and the differences between its ends
-/// that the antiderivatives need.
+/// An edge seen from c: distance and abscissae relative to the foot of the perpendicular, and the differences between its ends needed by
+/// the antiderivatives.
 struct EdgeView {
   double d, s1, s2, rho1, rho2;
   double log_term; ///< Λ = ∫ ds/ρ
   double d_rho;    ///< ρ₂ − ρ₁
 };
 
-/// 2 atanh(x) = 2x (1 + x²/3 + x⁴/5 …) for |x| ≤ (√2−1)/(√2+1) = 0.1716, summed in pairs to keep
-/// the chain short. The first term left out is x²⁰/21 < 3e-17 relative.
+/// Returns 2 atanh(x) = 2x (1 + x²/3 + x⁴/5 …) for |x| ≤ (√2−1)/(√2+1) = 0.1716, summed in pairs to shorten the dependency chain. The first
+/// omitted term is x²⁰/21 < 3e-17 relative.
 constexpr double k_series_limit = 0.1715;
 double twice_atanh(double x) {
   const double y = x * x, y2 = y * y, y4 = y2 * y2;
@@ -27,7 +27,7 @@ double twice_atanh(double x) {
   return 2 * x * (low + y4 * (high + y4 * (1.0 / 17 + y * (1.0 / 19))));
 }
 
-/// A positive normal number as 2^exponent × mantissa in [1, 2).
+/// A positive normal number as 2^exponent × mantissa, mantissa in [1, 2).
 struct Binary {
   std::int64_t exponent;
   double mantissa;
@@ -38,8 +38,8 @@ struct Binary {
   }
 };
 
-/// log(above/below) with one division and no call, and the same bits on every machine: the powers
-/// of two apart, the rest by log(a/b) = 2 atanh((a−b)/(a+b)), a − b being exact.
+/// Returns log(above/below) with one division and no call, bit-identical on every machine: powers of two are separated, the rest is
+/// log(a/b) = 2 atanh((a−b)/(a+b)), where a − b is exact.
 double log_ratio(double above, double below) {
   const Binary a(above), b(below);
   const bool large = a.mantissa > std::numbers::sqrt2 * b.mantissa;
@@ -49,8 +49,8 @@ double log_ratio(double above, double below) {
   return twos * std::numbers::ln2 + twice_atanh((ma - mb) / (ma + mb));
 }
 
-/// Λ without a difference of nearly equal numbers, whichever side of the foot the ends are:
-/// asinh(s/|d|) = ±log((|s| + ρ)/|d|).
+/// Returns Λ without subtracting nearly equal numbers, for any position of the ends relative to the foot: asinh(s/|d|) = ±log((|s| +
+/// ρ)/|d|).
 double log_term(const EdgeView& e) {
   const double p1 = std::abs(e.s1) + e.rho1, p2 = std::abs(e.s2) + e.rho2;
   const bool foot_between = e.s1 < 0 && e.s2 > 0;
@@ -66,7 +66,7 @@ void complete(EdgeView& e, double length) {
   e.log_term = x < k_series_limit ? twice_atanh(x) : log_term(e);
 }
 
-/// Rows of ∬(I−uuᵀ)/|r| in the edge's own axes (m, t), to be turned into x, y.
+/// Components of ∬(I−uuᵀ)/|r| in the axes of the edge (m, t), to be rotated to x, y.
 struct EdgeCurvature {
   double mm, mt, tt;
 };
@@ -78,7 +78,7 @@ void add_turned(CentreIntegrals& out, const Vec2& t, const EdgeCurvature& k) {
   out.xy += k.mm * mx * my + k.mt * (mx * ty + my * tx) + k.tt * tx * ty;
 }
 
-/// The part of the traction that is uniform: w × degrees 1, 0, −1.
+/// Uniform part of the traction: w × integrals of degree 1, 0, −1.
 template <bool WithCurvature> void add_uniform(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, double w) {
   const double d = e.d, wd = w * d, s = e.s1 + e.s2;
   const double s_rho = 0.5 * (e.d_rho * s + length * (e.rho1 + e.rho2)); // s₂ρ₂ − s₁ρ₁
@@ -94,7 +94,7 @@ template <bool WithCurvature> void add_uniform(CentreIntegrals& out, const EdgeV
   }
 }
 
-/// The part of the traction that grows as β·r, r from c: degrees 2, 1, 0.
+/// Part of the traction proportional to β·r, r from c: degrees 2, 1, 0.
 template <bool WithCurvature> void add_linear(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, const Vec2& beta) {
   const double d = e.d;
   const double bm = d * (beta.x() * t.y() - beta.y() * t.x()), bt = beta.dot(t);
@@ -119,7 +119,7 @@ template <bool WithCurvature> void add_linear(CentreIntegrals& out, const EdgeVi
 
 template <bool WithCurvature>
 CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& c) {
-  // An edge whose line passes within this of c contributes nothing that a double could hold.
+  // An edge whose line passes c at a smaller distance contributes nothing that a double could represent.
   constexpr double no_foot = 1e-140;
   CentreIntegrals out;
   const double w = traction.at_centroid + traction.gradient.dot(c); // traction at c

@@ -1,21 +1,22 @@
-// Closed forms of the friction integrals over a polygon that turns about a near point c.
+// Closed forms of the friction integrals over a polygon that rotates about a near point c.
 //
-// With r measured from c, t and m = (t_y, −t_x) the direction and outward normal of an edge from
-// a to b, d = a×t, s₁ = a·t, s₂ = b·t, ρᵢ = √(d² + sᵢ²), Λ = asinh(s₂/|d|) − asinh(s₁/|d|), the
-// divergence theorem turns an integrand homogeneous of degree k into Σ_edges d/(k+2) ∫ ds:
+// With r measured from c, unit tangent t and outward normal m = (t_y, −t_x) of an edge from a to b, d = a×t, s₁ = a·t, s₂ = b·t, ρᵢ = √(d²
+// + sᵢ²), Λ = asinh(s₂/|d|) − asinh(s₁/|d|), the divergence theorem converts an integrand that is homogeneous of degree k to Σ_edges
+// d/(k+2) ∫ ds:
+//
 //   ∬ |r| dA           = Σ d/6 [s₂ρ₂ − s₁ρ₁ + d²Λ]
 //   ∬ r/|r| dA         = Σ d/2 [t(ρ₂−ρ₁) + d m Λ]
 //   ∬ (I−uuᵀ)/|r| dA   = Σ d [m mᵀ(Λ−Δ(s/ρ)) + t tᵀ Δ(s/ρ) + d(m tᵀ+t mᵀ) Δ(1/ρ)],  u = r/|r|,
-// and the same with a factor β·r for a linear pressure field. Derived in docs/explanation/limit_surface.md.
 //
-// Rounding grows like |c|²/area: for c beyond k_far_ratio radii use far_field.h instead.
+// and the same with a factor β·r for a linear pressure. Derivation: docs/explanation/limit_surface.md. Rounding errors grow like |c|²/area;
+// for c beyond k_far_ratio radii use far_field.h.
 #pragma once
 
 #include "elements/step_lap/patch/polygon.h"
 
 namespace steplap {
 
-/// One edge of a piece, relative to the piece's centroid.
+/// An edge of a piece, relative to the piece's centroid.
 struct PatchEdge {
   Vec2 start{0, 0};
   Vec2 along{1, 0};  ///< unit
@@ -36,8 +37,8 @@ struct CentreIntegrals {
   double xx = 0, xy = 0, yy = 0; ///< ∬ w (I−uuᵀ)/|r| dA [N/m]
 };
 
-/// Closed form for the centre of rotation `c` (relative to the piece's centroid, anywhere, also on
-/// an edge or a vertex). The second derivatives are left zero unless `WithCurvature`.
+/// Computes the closed form for the centre of rotation `c` relative to the piece's centroid, which may be anywhere, also on an edge or a
+/// vertex. Second derivatives are computed only with `WithCurvature`, otherwise zero.
 template <bool WithCurvature>
 [[nodiscard]] CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& c);
 

@@ -14,7 +14,7 @@ Corner corner(const RingView& ring, std::size_t i, bool is_second) {
   return {ring.corners[i], ring.sides ? ring.sides[i] : PartSide{}, is_second};
 }
 
-/// A line that cuts: what is on its left stays.
+/// A clipping line; the part on its left is kept.
 struct Cutter {
   Vec2 from, along;
   PartSide side;
@@ -25,9 +25,9 @@ struct Cutter {
 
 Vec2 crossing(const Vec2& from, double d_from, const Vec2& to, double d_to) { return from + (to - from) * (d_from / (d_from - d_to)); }
 
-// --- few corners -------------------------------------------------------------------------------
+// --- few corners: edge by edge -----------------------------------------------------------------
 
-/// False when nothing is left.
+/// Clips w.ring by one line. Returns false if nothing is left.
 bool cut(const Cutter& by, ClipWorkspace& w) {
   const std::size_t n = w.ring.size();
   w.beyond.resize(n);
@@ -58,7 +58,7 @@ void clip_few(const RingView& a, const RingView& b, ClipWorkspace& w) {
     if (!cut(Cutter(b, i), w)) return w.ring.clear();
 }
 
-// --- many ----------------------------------------------------------------------------------------
+// --- many corners: following the cuts -----------------------------------------------------------
 
 class Walk {
 public:
@@ -67,13 +67,13 @@ public:
     for (std::size_t i = 0; i < a.count; ++i) links_.push_back({corner(a, i, false), next(i, a.count), i == 0 ? a.count - 1 : i - 1});
   }
 
-  /// To the corner farthest out. Consecutive cutters turn to the left, and so does that corner move.
+  /// Moves to the corner farthest outside. Consecutive clipping lines turn to the left, and so does this corner.
   void go_out(const Cutter& by, bool is_first) {
     double d = by.inwards(at(here_));
     if (is_first)
       for (std::size_t i = 1; i < links_.size(); ++i)
         if (const double there = by.inwards(at(i)); there < d) d = there, here_ = i;
-    while (true) { // past a side so short that rounding hides its direction
+    while (true) { // continues past sides so short that rounding hides their direction
       const std::size_t one = links_[here_].next, two = links_[one].next;
       const double d_one = by.inwards(at(one)), d_two = by.inwards(at(two));
       if (!(std::min(d_one, d_two) < d)) return;
@@ -82,14 +82,14 @@ public:
     }
   }
 
-  /// False when nothing is left.
+  /// Clips by one line. Returns false if nothing is left.
   bool cut(const Cutter& by) {
     if (by.inwards(at(here_)) >= 0) return true;
     std::size_t after = links_[here_].next, before = links_[here_].prev;
     for (; by.inwards(at(after)) < 0; after = links_[after].next)
       if (after == here_) return false;
     while (by.inwards(at(before)) < 0) before = links_[before].prev;
-    const Corner out = links_[links_[after].prev].corner; // the last one outside
+    const Corner out = links_[links_[after].prev].corner; // last corner outside
     const std::size_t start = links_.size(), end = start + 1;
     links_.push_back({{between(by, before, links_[before].next), by.side, true}, end, before});
     links_.push_back({{between(by, links_[after].prev, after), out.side, out.is_second}, after, start});
@@ -131,7 +131,7 @@ void clip_many(const RingView& a, const RingView& b, ClipWorkspace& w) {
 void drop_sides_without_length(std::vector<Corner>& ring) {
   const std::size_t n = ring.size();
   std::size_t kept = 0;
-  const Vec2 first = n > 0 ? ring[0].at : Vec2::Zero(); // may be overwritten before the last is looked at
+  const Vec2 first = n > 0 ? ring[0].at : Vec2::Zero(); // may be overwritten before the last side is tested
   for (std::size_t i = 0; i < n; ++i)
     if (ring[i].at != (i + 1 == n ? first : ring[i + 1].at)) ring[kept++] = ring[i];
   ring.resize(kept);

@@ -1,9 +1,7 @@
-// Clipping one convex ring by another whose edges remember where they come from, and the widest gap
-// between two, for rings of few corners and of many.
+// Clipping of one convex ring by another, whose edges keep their origin, and the largest gap between two rings.
 //
-// Few corners are cut edge by edge. With many, consecutive edges of the one cut the other at places
-// that follow each other round it: the place is followed instead of looked for, and n + m steps do
-// for n·m. Both find a cut's corners by the same arithmetic.
+// Rings with few corners are clipped edge by edge. For many corners, consecutive edges of one ring cut the other at positions that follow
+// each other around it; following them takes n + m steps instead of n·m. Both methods compute the corners of a cut by the same arithmetic.
 #pragma once
 
 #include "elements/step_lap/patch/convex_cut.h"
@@ -12,17 +10,17 @@
 
 namespace steplap {
 
-/// A corner and the side that starts there: of the first of two sheets, or of the second.
+/// A corner and the side that starts there, with the sheet to which the side belongs.
 struct Corner {
   Vec2 at{0, 0};
   PartSide side;
   bool is_second = false;
 };
 
-/// From this product of their corners on, two rings are treated as having many.
+/// Product of the numbers of corners from which two rings are treated by the second method.
 inline constexpr std::size_t k_many_corners = 400;
 
-/// Storage that repeated calls reuse.
+/// Scratch memory, reused by repeated calls.
 struct ClipWorkspace {
   struct Link {
     Corner corner;
@@ -33,18 +31,18 @@ struct ClipWorkspace {
   std::vector<Link> links;
 };
 
-/// A convex ring: its corners and, unless null, the sides that start at them.
+/// A convex ring: corners and, if not null, the sides that start there.
 struct RingView {
   const Vec2* corners = nullptr;
   const PartSide* sides = nullptr;
   std::size_t count = 0;
 };
 
-/// w.ring := a ∩ b without sides of length zero; empty or fewer than three corners: no area.
+/// Sets w.ring to a ∩ b without sides of zero length; fewer than three corners mean no area.
 void clip(const RingView& a, const RingView& b, ClipWorkspace& w);
 
-/// Greatest signed distance of the nearest corner of `other` from an edge of `ring`, outwards
-/// positive: positive means that the edge separates them. Not looked for further once it is `enough`.
+/// Returns the largest, over the edges of `ring`, of the signed distance of the nearest corner of `other` (positive outwards). A positive
+/// value means that the edge separates them. The search stops at `enough`.
 [[nodiscard]] double widest_gap(const RingView& ring, const RingView& other, double enough = std::numeric_limits<double>::infinity());
 
 } // namespace steplap

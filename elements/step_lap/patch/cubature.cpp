@@ -13,7 +13,7 @@ using Two = Eigen::Array2d; // two nodes at once
 
 constexpr int k_most = 10; // nodes along a side at k_far_ratio radii
 
-/// Nodes two by two; behind an odd number one without weight.
+/// Nodes in pairs; an odd number is completed by a node with zero weight.
 struct PairedRule {
   int count = 0;
   std::array<double, k_most> x{}, w{};
@@ -38,7 +38,7 @@ const std::array<PairedRule, k_most + 1>& rules() {
   return all;
 }
 
-/// The least n with x^(2n−3−more)/4ⁿ below 2^-57, from the binary exponent of x⁴: x < 2^(-k/4).
+/// Returns the smallest n with x^(2n−3−more)/4ⁿ below 2^-57, from the binary exponent of x⁴: x < 2^(-k/4).
 int nodes_at(double x, int more) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 2 + more;
@@ -54,7 +54,7 @@ const bool has_three_operands = __builtin_cpu_supports("avx") != 0;
 
 double spin(double a_x, double a_y, double b_x, double b_y) { return a_x * b_y - a_y * b_x; }
 
-/// A twist about the piece's centroid, and what it makes of quadrilaterals there.
+/// Integrals over quadrilaterals for one twist about the piece's centroid.
 template <bool WithCurvature> class Integral {
 public:
   Integral(const Traction& traction, double radius, const Vec2& v, double omega)
@@ -62,7 +62,7 @@ public:
         by_half_length_(std::abs(omega) / (std::sqrt(v.squaredNorm()) - std::abs(omega) * radius)),
         more_(traction.gradient.isZero(0) ? 0 : 1) {}
 
-  /// A ring of `count` corners, `corner(i)` from the centre.
+  /// Adds a ring of `count` corners; corner(i) is relative to the centre.
   template <class Corner> void add_ring(std::size_t count, Corner corner) {
     const Vec2 first = corner(0);
     for (std::size_t i = 1; i + 1 < count; i += 2) add(first, corner(i), corner(i + 1), corner(std::min(i + 2, count - 1)));
@@ -82,7 +82,7 @@ private:
   }
 
 #if defined(__x86_64__)
-  // The same operations, without the copies that instructions of two operands need.
+  // The same operations compiled for AVX, whose three-operand instructions save copies.
   template <bool IsUniform>
   [[gnu::target("avx")]] void add_by_three_operands(const Vec2& p0, const Vec2& p1, const Vec2& p2, const Vec2& p3) {
     add_quadrilateral<IsUniform>(p0, p1, p2, p3);
@@ -107,7 +107,7 @@ private:
     return rules()[static_cast<std::size_t>(nodes_at(0.5 * length * by_half_length_, more_))];
   }
 
-  /// r = p + t d, Jacobian j0 + t j1. A traction that is the same everywhere is not added up anew: to the bit it is what it is.
+  /// Adds a row of nodes r = p + t d with Jacobian j0 + t j1. A uniform traction is not summed, so that it enters exactly.
   template <bool IsUniform>
   [[gnu::always_inline]] inline void add_row(const Vec2& p, const Vec2& d, double j0, double j1, const PairedRule& rule) {
     const double ax = v_.x() - omega_ * p.y(), ay = v_.y() + omega_ * p.x();
@@ -141,7 +141,7 @@ private:
     if constexpr (WithCurvature) add_curvature({ax, ay}, {bx, by}, p.dot(v_), d.dot(v_), c0.sum(), c1.sum(), c2.sum());
   }
 
-  // e⊥e⊥ᵀ/|V| with e⊥ = ẑ×V/|V| and, by ω, e⊥·(ẑ×r) = r·v/|V|. V = a + t b, r·v = r0 + t r1.
+  // Adds e⊥e⊥ᵀ/|V| with e⊥ = ẑ×V/|V|, and for ω e⊥·(ẑ×r) = r·v/|V|. V = a + t b, r·v = r0 + t r1.
   void add_curvature(const Vec2& a, const Vec2& b, double r0, double r1, double c0, double c1, double c2) {
     const double x0 = a.x() * c0 + b.x() * c1, x1 = a.x() * c1 + b.x() * c2; // Σ of V_x, V_x t
     const double y0 = a.y() * c0 + b.y() * c1, y1 = a.y() * c1 + b.y() * c2;
@@ -156,7 +156,7 @@ private:
   Traction traction_;
   Vec2 v_;
   double omega_;
-  double by_half_length_; // x of a side, over its half length
+  double by_half_length_; // x of a side divided by its half length
   int more_;
   PieceDissipation out_;
 };

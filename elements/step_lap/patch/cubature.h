@@ -1,16 +1,17 @@
-// Friction over a piece whose centre of rotation is far away, asked once: product Gauss rules over quadrilaterals.
+// Friction integrals over a piece with a far centre of rotation, for a single evaluation, by product Gauss rules over quadrilaterals.
 //
-// The piece is a fan of quadrilaterals from the first corner of each ring, those of holes and of dents with their signs: they
-// lie within its circle, and what is outside cancels. On one of them, r = P + t D with P, D linear in s, the Jacobian and a
-// linear traction are linear in t, and so is V = v + ω ẑ×r = A + t B. With the weights w_i of a rule in t
+// The piece is decomposed into a fan of quadrilaterals from the first corner of each ring; those of holes and concave corners count with
+// their sign. They are within the piece's circle, and parts outside the piece cancel. On each, r = P + t D with P, D linear in s; the
+// Jacobian and a linear traction are linear in t, and so is V = v + ω ẑ×r = A + t B. With the weights w_i of a rule in t
+//
 //   σ_k = Σ w_i J w tᵏ/|V|,  c_k = Σ w_i J w tᵏ/|V|³,
-// the force of a row is A σ₀ + B σ₁ and its couple P×(A σ₀ + B σ₁) + D×(A σ₁ + B σ₂). Second derivatives are sums of the c_k
-// up to k = 2, for r·V = r·v. The dissipation follows by homogeneity, h = f·v + m ω.
 //
-// Along a side of half length l, V = V_m (1 + q s) with |q| ≤ x = |ω| l/(|v| − |ω| R): what n nodes leave out of the series
-// of |V|, of degree 2n − 1 less those of the Jacobian, of a lever twice and of the traction, is of the order of
-// x^(2n−3)/4ⁿ, x^(2n−4)/4ⁿ with a linear traction. Nodes are as many as take that below 2^-57, so that a change of their
-// number shows as rounding.
+// the force of a row of nodes is A σ₀ + B σ₁ and its moment P×(A σ₀ + B σ₁) + D×(A σ₁ + B σ₂). Second derivatives are sums of the c_k up to
+// k = 2, because r·V = r·v. By homogeneity h = f·v + m ω.
+//
+// Along a side of half length l, V = V_m (1 + q s) with |q| ≤ x = |ω| l/(|v| − |ω| R). The truncation error of n nodes in the series of |V|
+// (degree 2n − 1 minus the degrees of Jacobian, lever twice and traction) is of the order x^(2n−3)/4ⁿ, or x^(2n−4)/4ⁿ with linear traction.
+// The number of nodes is chosen so that this is below 2^-57; a change of their number then only appears as rounding.
 #pragma once
 
 #include "elements/step_lap/patch/far_field.h"
@@ -18,13 +19,13 @@
 
 namespace steplap {
 
-/// About the piece's centroid. Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.
+/// Integrates about the piece's centroid. Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.
 template <bool WithCurvature>
 [[nodiscard]] PieceDissipation integrate_far(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius,
                                              const Vec2& v, double omega);
 
-/// The same, without curvature, of a polygon about any centre, `radius` being that of a circle about it which contains the
-/// polygon; traction at the centre.
+/// The same, without curvature, for a polygon about any centre. `radius`: of a circle about the centre that contains the polygon; the
+/// traction is given at the centre.
 [[nodiscard]] PieceDissipation integrate_far(const Polygon& polygon, const Vec2& centre, const Traction& traction, double radius,
                                              const Vec2& v, double omega);
 

@@ -19,7 +19,7 @@ namespace {
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactPoint = Exact::Point_2;
 using ExactRing = std::vector<ExactPoint>;
-using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel; // doubles, exact decisions
+using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel; // double coordinates, exact decisions
 using Point = Predicates::Point_2;
 
 Point point(const Vec2& p) { return {p.x(), p.y()}; }
@@ -41,7 +41,7 @@ bool edges_meet(const Ring& r, std::size_t i, const Ring& q, std::size_t j) {
                                                                      Predicates::Segment_2(point(q[j]), point(q[next(j, q.size())])));
 }
 
-/// Consecutive edges a-b, b-c: they meet beyond b only when the second runs back over the first.
+/// Consecutive edges a-b, b-c intersect beyond b only if the second runs back along the first.
 bool folds_back(const Ring& r, std::size_t i) {
   const std::size_t j = next(i, r.size());
   const Vec2 &a = r[i], &b = r[j], &c = r[next(j, r.size())];
@@ -58,11 +58,11 @@ std::optional<std::array<std::size_t, 4>> clash_within(const Ring& r, std::size_
   return std::nullopt;
 }
 
-/// The rings of a polygon, holes clockwise, as repaired() leaves them: what it holds is on the left of every edge.
+/// Rings of a polygon as repaired() leaves them, holes clockwise: the interior is on the left of every edge.
 using ExactRings = std::vector<ExactRing>;
 
 ExactRing exact_ring(const Ring& ring, const Pose& pose) {
-  // The affine map itself is exact: a simple ring stays simple whatever sine and cosine round to.
+  // The affine map itself is exact, so a simple ring stays simple whatever the rounding of sine and cosine.
   const portable::SinCos turn = portable::sin_cos(pose.theta);
   const Exact::FT c(turn.cos), s(turn.sin), x(pose.x), y(pose.y);
   const bool moved = pose.theta != 0;
@@ -94,7 +94,7 @@ template <class Alternative, class Meeting> const Alternative* as(const Meeting&
 template <class Alternative, class Meeting> const Alternative* as(const Meeting& meeting) { return boost::get<Alternative>(&meeting); }
 #endif
 
-/// The ends of what two edges have in common, if there is anything.
+/// Adds the end points of the intersection of two edges, if there is one.
 void add_meeting(const ExactEdge& a, const ExactEdge& b, std::vector<ExactPoint>& out) {
   const auto meeting = CGAL::intersection(Exact::Segment_2(a.from, a.to), Exact::Segment_2(b.from, b.to));
   if (!meeting) return;
@@ -106,8 +106,8 @@ void add_meeting(const ExactEdge& a, const ExactEdge& b, std::vector<ExactPoint>
   }
 }
 
-/// The edges of some rings, cut wherever edges of other rings meet them: after that no two cross, and those that run along each other
-/// are the same or each other's reverse.
+/// Returns the edges of some rings, divided wherever edges of other rings meet them. Afterwards no two edges cross, and those that overlap
+/// are equal or reversed.
 std::vector<ExactEdge> cut_edges(const ExactRings& rings, const ExactRings& others) {
   std::vector<ExactEdge> out;
   std::vector<ExactPoint> stations;
@@ -131,7 +131,7 @@ std::vector<ExactEdge> cut_edges(const ExactRings& rings, const ExactRings& othe
   return out;
 }
 
-/// A point that lies on none of the rings is inside the outer one, or one of several, and in none of the holes.
+/// Returns true if a point that is on none of the rings is inside an outer ring and in no hole.
 bool is_within(const ExactPoint& p, const ExactRings& rings) {
   bool inside = false;
   for (const ExactRing& ring : rings)
@@ -141,7 +141,7 @@ bool is_within(const ExactPoint& p, const ExactRings& rings) {
 
 ExactPoint middle(const ExactEdge& e) { return CGAL::midpoint(e.from, e.to); }
 
-/// Adds those edges of one polygon that lie in the other (`wanted`) or outside it.
+/// Adds the edges of one polygon that are inside the other (`wanted`) or outside it.
 void keep_apart(const std::vector<ExactEdge>& edges, const std::set<ExactEdge>& of_other, const ExactRings& other, bool wanted,
                 bool reverse, std::vector<ExactEdge>& out) {
   for (const ExactEdge& e : edges) {
@@ -150,8 +150,8 @@ void keep_apart(const std::vector<ExactEdge>& edges, const std::set<ExactEdge>& 
   }
 }
 
-/// The boundary of a ∩ b, or of a without b: what it holds is on the left of each edge. An edge of both bounds a ∩ b if both hold what is on
-/// its left, and a without b if only a does.
+/// Returns the boundary of a ∩ b, or of a without b, with the interior on the left of each edge. A common edge bounds a ∩ b if the
+/// interiors of both are on its left, and a without b if only that of a is.
 std::vector<ExactEdge> boundary(const ExactRings& a, const ExactRings& b, bool without) {
   const std::vector<ExactEdge> edges_a = cut_edges(a, b), edges_b = cut_edges(b, a);
   const std::set<ExactEdge> set_a(edges_a.begin(), edges_a.end()), set_b(edges_b.begin(), edges_b.end());
@@ -163,7 +163,7 @@ std::vector<ExactEdge> boundary(const ExactRings& a, const ExactRings& b, bool w
   return out;
 }
 
-/// Of edges that go on from where one arrives, that which bounds the same piece: the first one clockwise from the way back.
+/// Returns, of the edges that start where one arrives, the one that bounds the same piece: the first clockwise from the reverse direction.
 std::size_t going_on(const ExactEdge& arriving, const std::vector<std::size_t>& candidates, const std::vector<ExactEdge>& edges) {
   const Exact::Direction_2 back(Exact::Vector_2(arriving.to, arriving.from));
   const auto direction = [&](std::size_t i) { return Exact::Direction_2(Exact::Vector_2(edges[i].from, edges[i].to)); };
@@ -173,7 +173,7 @@ std::size_t going_on(const ExactEdge& arriving, const std::vector<std::size_t>& 
   return best;
 }
 
-/// Corners at which the ring goes straight on are left out.
+/// Returns the ring without corners on straight sides.
 ExactRing without_straight_corners(const ExactRing& ring) {
   ExactRing out;
   const std::size_t n = ring.size();
@@ -182,7 +182,7 @@ ExactRing without_straight_corners(const ExactRing& ring) {
   return out;
 }
 
-/// Edges joined to rings; pieces that touch at a corner only become rings of their own.
+/// Joins edges to rings; pieces that touch only at a corner become separate rings.
 ExactRings joined(const std::vector<ExactEdge>& edges) {
   std::map<ExactPoint, std::vector<std::size_t>> from;
   for (std::size_t i = 0; i < edges.size(); ++i) from[edges[i].from].push_back(i);
@@ -211,8 +211,8 @@ Exact::FT twice_area(const ExactRing& ring) {
   return sum;
 }
 
-/// To a double's own rounding. to_double() of the number as it stands settles for the middle of an interval that may
-/// be 1e-5 wide, as it is where nearly parallel edges cross.
+/// Returns the nearest double. to_double() without exact() may return the middle of an interval as wide as 1e-5, as occurs for
+/// intersections of nearly parallel edges.
 double rounded(const Exact::FT& x) { return CGAL::to_double(x.exact()); }
 
 Ring rounded(const ExactRing& ring) {
@@ -221,7 +221,7 @@ Ring rounded(const ExactRing& ring) {
   return out;
 }
 
-/// The least of the outer rings around a hole. It may touch the hole at corners only.
+/// Returns the smallest of the outer rings that contain a hole. The hole may touch it at corners only.
 std::size_t ring_around(const ExactRing& hole, const ExactRings& outer, const std::vector<Exact::FT>& areas) {
   const ExactPoint p = CGAL::midpoint(hole[0], hole[1]);
   std::optional<std::size_t> best;

@@ -1,7 +1,8 @@
-// Polygon questions answered with exact arithmetic, so that no coincidence of edges or vertices
-// can mislead or crash them. With exact_triangulation.h the only door to CGAL, of which only the kernels and the algorithms on
-// single rings are used: these are under the LGPL, while its set operations and triangulations are under the GPL, which would bind
-// whoever links steplap. Slow (tens to hundreds of microseconds) and allocating.
+// Geometric predicates and operations on polygons in exact arithmetic, which coincident edges or vertices cannot mislead. Slow (tens to
+// hundreds of microseconds), and allocating.
+//
+// Together with exact_triangulation.h this is the only use of CGAL. Only its kernels and algorithms on single rings are used, which are
+// under the LGPL; its set operations and triangulations are under the GPL, which would apply to all programs linked with steplap.
 #pragma once
 
 #include "elements/step_lap/patch/polygon.h"
@@ -11,26 +12,26 @@
 
 namespace steplap {
 
-/// Pose of body b's frame in body a's: its origin (x, y) [m] and its angle theta [rad].
+/// Pose of body b's frame in body a's: origin (x, y) [m] and angle theta [rad].
 struct Pose {
   double x = 0;
   double y = 0;
   double theta = 0;
 };
 
-/// First pair of edges that meet although they must not, as {ring, ring, edge, edge}; neighbouring
-/// edges of one ring may share their common vertex only. Empty when all rings are simple and apart.
+/// Returns the first pair of edges that intersect although they must not, as {ring, ring, edge, edge}; neighbouring edges of a ring may
+/// share only their common vertex. Nothing if all rings are simple and separate.
 [[nodiscard]] std::optional<std::array<std::size_t, 4>> find_clash(const std::vector<Ring>& rings);
 
-/// True when the point is strictly inside the ring (either sense). The ring must be simple.
+/// Returns true if the point is strictly inside the ring (in either order of corners). Precondition: the ring is simple.
 [[nodiscard]] bool is_inside(const Vec2& point, const Ring& ring);
 
-/// a ∩ (b placed at `b_in_a`), in a's axes, exact but for the rounding of sine and cosine before
-/// and of the coordinates after. Both must be as repaired() leaves them. Regularised: shared edges
-/// and vertices without area give nothing. Throws PolygonError should the exact kernel refuse.
+/// Returns a ∩ (b placed at `b_in_a`), in a's axes, exact except for the rounding of sine and cosine before and of the coordinates after.
+/// Precondition: both come from repaired(). Regularised: common edges and vertices without area give nothing. Throws PolygonError if the
+/// exact kernel rejects them.
 [[nodiscard]] Region exact_intersection(const Polygon& a, const Polygon& b, const Pose& b_in_a);
 
-/// What of `a` lies outside the hole (either sense), as above.
+/// Returns the part of `a` outside the hole (in either order of corners), as above.
 [[nodiscard]] Region exact_difference(const Polygon& a, const Ring& hole);
 
 } // namespace steplap

@@ -11,19 +11,19 @@ namespace steplap {
 
 namespace {
 
-using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel; // doubles, exact decisions
+using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel; // double coordinates, exact decisions
 using Point = Predicates::Point_2;
 
-/// From one vertex to another; what is still to be cut lies on its left.
+/// A directed edge; the area still to be triangulated is on its left.
 struct Edge {
   std::size_t from = 0, to = 0;
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// Triangles are laid one after another on the left of an edge of what is still uncut. The third corner is the vertex that sees the
-/// edge under the widest angle, of those that nothing uncut hides: so no other lies in the circle through the three, which makes a
-/// triangulation a constrained Delaunay one (Chew 1989). Angles are compared in doubles, whether the triangle lies in what is uncut
-/// and holds no vertex is decided exactly. What has been cut off lies behind edges of its own.
+/// Adds triangles on the left of an edge of the remaining area. The third corner is the visible vertex that sees the edge under the largest
+/// angle. No other visible vertex is then inside the circle through the three corners, which makes it a constrained Delaunay triangulation
+/// (Chew 1989). Angles are compared in doubles; whether the triangle is inside the remaining area and contains no vertex is decided
+/// exactly. Removed parts are bounded by edges of their own.
 class Cutter {
 public:
   explicit Cutter(const Polygon& polygon) {
@@ -65,7 +65,7 @@ private:
     return {std::min(a.x(), b.x()), std::max(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.y(), b.y())};
   }
 
-  /// A side of the last triangle: an edge of what was uncut, or else what is uncut lies on its other hand now.
+  /// Handles a side of the last triangle: it was an edge of the remaining area, or the remaining area is now on its other side.
   void lay(const Edge& side) {
     const Edge other_hand{side.to, side.from};
     if (front_.erase(side) == 0) front_.emplace(other_hand, extent(side));
@@ -92,7 +92,7 @@ private:
     return CGAL::orientation(points_[e.from], points_[e.to], points_[v]) == CGAL::LEFT_TURN;
   }
 
-  /// Of the angle under which a vertex on the left sees the edge.
+  /// Returns the cotangent of the angle under which a vertex on the left sees the edge.
   [[nodiscard]] double cotangent(const Edge& e, std::size_t v) const {
     const Point &a = points_[e.from], &b = points_[e.to], &c = points_[v];
     const double dot = (a.x() - c.x()) * (b.x() - c.x()) + (a.y() - c.y()) * (b.y() - c.y());
@@ -107,7 +107,8 @@ private:
     return true;
   }
 
-  /// Nothing uncut lies between the ends of the side: no edge crosses it, no vertex lies on it. It may be an edge itself.
+  /// Returns true if nothing of the boundary is between the ends of the side: no edge crosses it, no vertex is on it. The side may be an
+  /// edge itself.
   [[nodiscard]] bool is_free(const Edge& side) const {
     if (front_.contains(side)) return true;
     const Extent box = extent(side);
@@ -115,7 +116,7 @@ private:
     for (const auto& [edge, its_box] : front_) {
       if (box.apart(its_box)) continue;
       const bool from_is_shared = edge.from == side.from || edge.from == side.to, to_is_shared = edge.to == side.from || edge.to == side.to;
-      if (from_is_shared && to_is_shared) return false; // the same side, with the uncut on the other hand
+      if (from_is_shared && to_is_shared) return false; // the same side, with the remaining area on the other side
       if (from_is_shared || to_is_shared) {
         if (runs_along(side, from_is_shared ? edge.from : edge.to, from_is_shared ? edge.to : edge.from)) return false;
       } else if (CGAL::do_intersect(segment, Predicates::Segment_2(points_[edge.from], points_[edge.to]))) {
@@ -125,14 +126,14 @@ private:
     return true;
   }
 
-  /// An edge from an end of the side to `other` lies on the side's line, on the same hand.
+  /// Returns true if the edge from an end of the side to `other` is collinear with the side and in the same direction.
   [[nodiscard]] bool runs_along(const Edge& side, std::size_t shared, std::size_t other) const {
     const Point &a = points_[shared], &b = points_[shared == side.from ? side.to : side.from], &c = points_[other];
     return CGAL::orientation(a, b, c) == CGAL::COLLINEAR && !CGAL::collinear_are_strictly_ordered_along_line(b, a, c);
   }
 
   std::vector<Point> points_;
-  std::map<Edge, Extent> front_; ///< of what is uncut
+  std::map<Edge, Extent> front_; ///< edges of the remaining area
 };
 
 } // namespace

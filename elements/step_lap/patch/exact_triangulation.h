@@ -1,4 +1,4 @@
-// Polygons cut into triangles by exact decisions.
+// Triangulation of polygons by exact predicates.
 #pragma once
 
 #include "elements/step_lap/patch/polygon.h"
@@ -9,9 +9,9 @@
 
 namespace steplap {
 
-/// The constrained Delaunay triangulation: triangles (counter-clockwise) that make up the polygon, as numbers of its vertices, counted
-/// through the outer ring and the holes. Of four vertices on one circle either diagonal may be taken, always the same one for the same
-/// polygon. The polygon has to be as repaired() leaves it; throws PolygonError if it is not and so cannot be cut.
+/// Returns the constrained Delaunay triangulation as vertex indices of counter-clockwise triangles; vertices are counted over the outer
+/// ring, then the holes. If four vertices are on one circle, the choice of the diagonal is arbitrary but always the same for the same
+/// polygon. Precondition: the polygon comes from repaired(). Throws PolygonError if it cannot be triangulated.
 [[nodiscard]] std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon);
 
 } // namespace steplap

@@ -11,10 +11,10 @@ namespace steplap {
 
 namespace {
 
-// Exact for polynomials of degree 19: the moments of order 18 times a linear traction.
+// Exact for polynomials of degree 19: moments of order 18 times a linear traction.
 constexpr int k_nodes = 10;
 
-/// 1/n
+/// 1/n.
 constexpr auto k_inverse = [] {
   std::array<double, FarField::k_order + 4> inverse{};
   for (int n = 1; n < FarField::k_order + 4; ++n) inverse[n] = 1.0 / n;
@@ -26,7 +26,7 @@ struct EdgeRule {
   EdgeRule() { gauss_rule(k_nodes, x.data(), w.data()); }
 };
 
-/// binomial(1/2, j)
+/// binomial(1/2, j).
 constexpr auto k_root = [] {
   std::array<double, FarField::k_order + 1> b{};
   b[0] = 1;
@@ -34,11 +34,11 @@ constexpr auto k_root = [] {
   return b;
 }();
 
-/// Two complex numbers side by side: the operations of each double, in their order, whatever registers the processor has for them.
+/// Two complex numbers in one vector. The operations and their order are those of doubles, whatever registers the processor has.
 using Four [[gnu::vector_size(32)]] = double;
 using Two [[gnu::vector_size(16)]] = double;
 
-/// 1, κ, κ² … with first and second derivatives, four times each. Beyond `order` nothing.
+/// 1, κ, κ² … with first and second derivatives, four copies each; zero beyond `order`.
 template <bool WithCurvature> struct Powers {
   std::array<Four, FarField::k_order + 1> p, p1, p2;
   [[gnu::always_inline]] inline Powers(double kappa, int order) {
@@ -57,7 +57,7 @@ struct Polar {
   double g = 0, k = 0, p = 0, kk = 0, kp = 0, pp = 0;
 };
 
-/// Rows l and l + 2 of a_, with their κ-derivatives.
+/// Rows l and l + 2 of a_, with derivatives by κ.
 struct TwoRows {
   Four r0{}, r1{}, r2{};
 };
@@ -75,15 +75,14 @@ template <bool WithCurvature>
   return rows;
 }
 
-/// e^{−ilφ} of one l and of the one two farther on, as their numbers are wanted: x, x, … and −y, y, …
+/// e^{−ilφ} for l and l + 2, arranged for multiplication: x, x, … and −y, y, …
 struct TwoTurns {
   Four x, y;
   [[gnu::always_inline]] inline TwoTurns(const Two& one, const Two& other)
       : x{one[0], one[0], other[0], other[0]}, y{-one[1], one[1], -other[1], other[1]} {}
 };
 
-// By value, and never by way of their addresses: what is kept in memory is cleared there, each time, by an instruction that takes as long as
-// all its sums.
+// Passed by value: data in memory would be cleared each time, which takes as long as all the sums.
 template <bool WithCurvature> [[gnu::always_inline]] inline TwoRows turned(const TwoRows& rows, const TwoTurns& by) {
   TwoRows out{by.x * rows.r0 + by.y * __builtin_shufflevector(rows.r0, rows.r0, 1, 0, 3, 2),
               by.x * rows.r1 + by.y * __builtin_shufflevector(rows.r1, rows.r1, 1, 0, 3, 2), Four{}};
@@ -91,17 +90,17 @@ template <bool WithCurvature> [[gnu::always_inline]] inline TwoRows turned(const
   return out;
 }
 
-/// Of each l: 1, l, l², l²
+/// For each l: 1, l, l², l².
 constexpr auto k_degrees = [] {
   std::array<std::array<double, 4>, FarField::k_order + 4> degrees{};
   for (int l = 0; l < FarField::k_order + 4; ++l) degrees[l] = {1.0, double(l), double(l * l), double(l * l)};
   return degrees;
 }();
 
-/// Sums over l; beside g there is d/dφ, Re(−il e·r) = l Im(e·r).
+/// Sums over l of g and of the derivatives by φ, Re(−il e·r) = l Im(e·r).
 template <bool WithCurvature> class PolarSums {
 public:
-  /// `half`: 0 for l, 1 for l + 2.
+  /// Adds the row for l (Half = 0) or l + 2 (Half = 1).
   template <int Half> [[gnu::always_inline]] inline void add(const TwoRows& rows, int l) {
     Two by_l, by_square;
     std::memcpy(&by_l, k_degrees[l].data(), sizeof by_l);
@@ -122,7 +121,7 @@ private:
   Two value_{}, by_kappa_{}, twice_by_kappa_{}, twice_by_phi_{};
 };
 
-/// `row` numbers of a_ for each two rows.
+/// `row` is the length in a_ for each pair of rows.
 template <bool WithCurvature>
 [[gnu::always_inline]] inline Polar sum_polar(const double* a, int row, double kappa, int order, double cx, double cy) {
   const Powers<WithCurvature> power(kappa, order);
@@ -146,11 +145,11 @@ template <bool WithCurvature>
   return sums.sum();
 }
 
-/// Moments of a node at z, added to a.
+/// Adds the moments of a node at z to a.
 [[gnu::always_inline]] inline void add_moments(double* a, int row, const Vec2& z, double uniform, double linear) {
   constexpr int k_order = FarField::k_order, k_rows = k_order / 2 + 1;
   std::array<double, k_order + 1> weight;
-  std::array<Four, k_rows> square;    // |z|^2k of row l, one power less of l + 2; of the first place no more than a zero
+  std::array<Four, k_rows> square;    // |z|^2k for row l, one power less for l + 2, whose first entry is zero
   std::array<Two, k_order + 4> power; // z^l
   for (int n = 0; n <= k_order; ++n) weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
   const double norm = z.squaredNorm();
@@ -165,7 +164,7 @@ template <bool WithCurvature>
   for (int l = 1; l < k_order + 4; ++l) power[l] = power[l - 1] * by_x + __builtin_shufflevector(power[l - 1], power[l - 1], 1, 0) * by_y;
   for (int first = 0; first <= k_order; first += 4)
     for (int l = first; l < first + 2 && l <= k_order; ++l, a += row) {
-      const bool has_second = l + 2 <= k_order; // else no row is there
+      const bool has_second = l + 2 <= k_order; // otherwise the row does not exist
       const Two second = has_second ? power[l + 2] : Two{};
       const Four both{power[l][0], power[l][1], second[0], second[1]};
       double* at = a;
@@ -182,7 +181,7 @@ template <bool WithCurvature>
 [[gnu::target("avx")]] void add_moments_by_four(double* a, int row, const Vec2& z, double uniform, double linear) {
   add_moments(a, row, z, uniform, linear);
 }
-template <bool WithCurvature> // registers of four numbers: the same operations, and the same bits
+template <bool WithCurvature> // compiled for registers of four doubles: the same operations, bit-identical
 [[gnu::target("avx")]] Polar sum_polar_by_four(const double* a, int row, double kappa, int order, double cx, double cy) {
   return sum_polar<WithCurvature>(a, row, kappa, order, cx, cy);
 }
@@ -198,8 +197,7 @@ template <bool WithCurvature> Polar polar_of(const double* a, int row, double ka
 
 } // namespace
 
-// x^(n−2), the worst of g and its derivatives, is to fall below 2^-57. From the binary exponent of
-// x⁴: x < 2^(-k/4).
+// Order for which x^(n−2), the largest term of g and its derivatives, is below 2^-57, from the binary exponent of x⁴: x < 2^(-k/4).
 int FarField::needed_order(double x) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 3;
@@ -216,7 +214,7 @@ FarField::FarField(double radius) : radius_(radius) { a_.fill(0.0); }
 
 void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift) {
   const double at_centre = traction.at_centroid - traction.gradient.dot(shift);
-  // Moments of degree n over the triangle (centre, edge): 2·area/(n+2) ∫₀¹ on the edge.
+  // Moments of degree n over the triangle (centre, edge): 2·area/(n+2) ∫₀¹ along the edge.
   static const EdgeRule rule;
   for (std::size_t e = 0; e < count; ++e) {
     const PatchEdge& edge = edges[e];
@@ -258,7 +256,7 @@ template <bool WithCurvature> PieceDissipation FarField::evaluate(const Vec2& v,
 
   const Polar sum = polar_of<WithCurvature>(a_.data(), 4 * k_row, kappa, order, cx, cy);
 
-  // h = s g(ωR/s, φ): polar derivatives along v̂ (s), across it (φ/s) and in ω.
+  // h = s g(ωR/s, φ): derivatives along v̂ (by s), across it (by φ, divided by s), and by ω.
   PieceDissipation out;
   const double along = sum.g - kappa * sum.k;
   out.value = speed * sum.g;

@@ -1,13 +1,17 @@
-// Friction over a piece whose centre of rotation is far away, or at infinity (pure translation).
+// Friction integrals over a piece with a far centre of rotation, including pure translation.
 //
 // With complex r = x + iy from the piece's centroid, the velocity is V = v + iωr and
-//   |V| = |v| Σ_jk b_j b_k qʲ q̄ᵏ rʲ r̄ᵏ,  q = iω/v,  b_j = binomial(1/2, j),
-// so that with κ = ω/|v| and φ the direction of v
+//
+//   |V| = |v| Σ_jk b_j b_k qʲ q̄ᵏ rʲ r̄ᵏ,  q = iω/v,  b_j = binomial(1/2, j).
+//
+// With κ = ω/|v| and φ the direction of v
+//
 //   h = |v| g(κ, φ),  g = Re Σ_l e^{−ilφ} Σ_n a_{n,l} κⁿ  (n = l, l+2, …),
 //   a_{n,l} = (2 if l > 0, else 1) · iˡ b_j b_k ∬ w rʲ r̄ᵏ dA,  j = (n+l)/2, k = (n−l)/2.
-// The area moments are taken once per piece; g and its derivatives are then six real sums,
-// smooth through ω = 0. Converges for |κ| R < 1, R the piece's radius about its centroid; cut at
-// order k_order and used for |κ| R ≤ 1/k_far_ratio, where what is left out is below 1e-15 of h.
+//
+// The area moments are computed once per piece; g and its derivatives are then six real sums, smooth through ω = 0. The series converges
+// for |κ| R < 1, with R the piece's radius about its centroid. It is truncated at order k_order and used for |κ| R ≤ 1/k_far_ratio, where
+// the truncation error is below 1e-15 of h.
 #pragma once
 
 #include "elements/step_lap/patch/closed_form.h"
@@ -16,10 +20,10 @@
 
 namespace steplap {
 
-/// Centres of rotation nearer than this many radii are for the closed form.
+/// Distance of the centre of rotation, in radii, below which the closed form is used.
 inline constexpr double k_far_ratio = 6.0;
 
-/// Dissipation of one piece for the twist (v at its centroid, ω), and its derivatives.
+/// Dissipation of one piece for the twist (v at its centroid, ω), with derivatives.
 struct PieceDissipation {
   double value = 0;              ///< h [W]
   double fx = 0, fy = 0, m = 0;  ///< gradient: wrench about the piece's centroid [N, N, N m]
@@ -27,35 +31,35 @@ struct PieceDissipation {
   double xw = 0, yw = 0, ww = 0;
 };
 
-/// Coefficients a_{n,l} of a piece, or of pieces that lie over each other, in units of the radius.
+/// Coefficients a_{n,l} of one piece, or of several overlapping pieces, with the radius as unit of length.
 class FarField {
 public:
   static constexpr int k_order = 18;
 
-  /// Takes about 7 µs for a quadrilateral.
+  /// Computes the coefficients; takes about 7 µs for a quadrilateral.
   FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius);
 
-  /// Of several pieces together, about a centre of theirs: add() each, then finish().
+  /// For several pieces about a common centre: call add() for each, then finish().
   explicit FarField(double radius);
-  /// Edges and traction are about the piece's centroid, which is at `shift` from the centre.
+  /// Adds a piece. Edges and traction are relative to its centroid, which is at `shift` from the centre.
   void add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift);
   void finish();
 
-  /// Highest order n that still matters at |κ| R, up to k_order.
+  /// Returns the highest order n that is significant at |κ| R, at most k_order.
   [[nodiscard]] static int needed_order(double kappa_radius);
 
-  /// Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.
+  /// Returns h with its derivatives. Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.
   template <bool WithCurvature> [[nodiscard]] PieceDissipation evaluate(const Vec2& v, double omega) const;
 
 private:
-  static constexpr int k_row = k_order / 2 + 1;   // room for one l
-  static constexpr int k_pairs = k_order / 2 + 1; // of rows, l and l + 2
+  static constexpr int k_row = k_order / 2 + 1;   // capacity for one l
+  static constexpr int k_pairs = k_order / 2 + 1; // pairs of rows l and l + 2
 
-  /// Moments of a node at z (in radii) of the rule along an edge.
+  /// Adds the moments of a node at z (in radii) of the rule along an edge.
   void add_node(const Vec2& z, double uniform, double linear);
 
-  /// Real and imaginary part of a_{n,l}, n = l + 2k. Rows l and l + 2 lie side by side, so that both are summed up at once: at each n
-  /// four numbers, zeros where l + 2 has none.
+  /// Returns the index of a_{n,l}, n = l + 2k (real and imaginary part). Rows l and l + 2 are interleaved and summed together: four numbers
+  /// for each n, zero where l + 2 has none.
   static constexpr int place(int l, int k) {
     const int second = l % 4 / 2;
     return 4 * ((l / 4 * 2 + l % 2) * k_row + k + second) + 2 * second;

@@ -11,7 +11,7 @@ namespace {
 constexpr int k_max_newton = 60;
 constexpr double k_shortest_step = 1e-6;
 
-/// φ(y), its gradient h∇h − w, and its curvature ∇h∇hᵀ + h∇²h.
+/// A point y with φ(y), its gradient h∇h − w, and its curvature ∇h∇hᵀ + h∇²h.
 struct Trial {
   Vec3 y;
   Dissipation d;
@@ -20,16 +20,16 @@ struct Trial {
   [[nodiscard]] Mat3 curvature() const { return d.gradient * d.gradient.transpose() + d.h * d.hessian; }
 };
 
-/// The multiple of y that minimises φ along it.
+/// Scales y to the minimum of φ along its direction.
 void rescale(Trial& t, const Vec3& w) {
   const double scale = w.dot(t.y) / (t.d.h * t.d.h);
   t.y *= scale;
   t.d.h *= scale;
-  t.d.hessian /= scale; // homogeneous of degree −1; the gradient of degree 0
+  t.d.hessian /= scale; // homogeneous of degree −1; the gradient is of degree 0
 }
 
-/// Starts along `warm` if that points the right way, else along w, which would be exact if the
-/// set were a ball and is exact for translation.
+/// Starts along `warm` if it points in a suitable direction, otherwise along w, which would be exact if the set were a ball, and is exact
+/// for translation.
 Trial start(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, int& evaluations) {
   Trial t;
   const double length = warm.norm();
@@ -37,7 +37,7 @@ Trial start(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, int& eval
     t.y = warm / length;
     t.d = patch.evaluate(t.y);
     ++evaluations;
-    // h ≤ |y|, so the maximum is at least |w| = 1: a start well below it has lost its way.
+    // Since h ≤ |y|, the maximum is at least |w| = 1. A start well below it is unsuitable.
     if (w.dot(t.y) > 0.7 * t.d.h) {
       rescale(t, w);
       return t;
@@ -68,7 +68,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
   Vec3 residual = reduced(t.residual(w));
   out.converged = residual.norm() <= tolerance;
   for (int i = 0; i < k_max_newton && !out.converged; ++i) {
-    // Newton's steps square what is left, about: what is expected to be the last one is not asked for its curvature.
+    // Newton's method squares the error, so the curvature is not computed in the step that is expected to be the last.
     const bool is_likely_last = residual.squaredNorm() <= tolerance;
     Mat3 curvature = t.curvature();
     if (!whole) curvature = subspace * curvature * subspace + across;
@@ -84,7 +84,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
     t = next;
     residual = reduced(t.residual(w));
     out.converged = residual.norm() <= tolerance;
-    if (is_likely_last && !out.converged) { // it was not
+    if (is_likely_last && !out.converged) { // more iterations follow, which need the dissipation at y
       t.d = patch.evaluate(t.y);
       ++out.evaluations;
     }

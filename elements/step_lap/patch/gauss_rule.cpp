@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-// By Newton's method on the Legendre polynomial.
+// Finds the nodes by Newton's method on the Legendre polynomial.
 void gauss_rule(int count, double* x, double* w) {
   for (int i = 0; i < count; ++i) {
     double z = portable::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), slope = 1;

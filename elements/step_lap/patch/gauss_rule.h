@@ -3,7 +3,7 @@
 
 namespace steplap {
 
-/// Nodes on [0, 1] and weights, which add up to 1: exact for polynomials of degree 2 count − 1.
+/// Computes nodes on [0, 1] and weights with sum 1; exact for polynomials of degree 2 count − 1.
 void gauss_rule(int count, double* x, double* w);
 
 } // namespace steplap

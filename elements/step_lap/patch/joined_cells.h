@@ -1,47 +1,45 @@
-// The overlap of two sheets from the overlaps of their convex parts.
+// Overlap of two sheets from the overlaps of their convex parts.
 //
-// Each pair of parts leaves a convex cell at most. A side of a cell that lies on a cut of one of the
-// sheets is shared with the cell beyond the cut; two such sides are taken out together where
-// their ends agree to rounding, and the sides that are left are followed from cell to cell. What
-// comes out are the rings of the sheets themselves, without the cuts.
+// Each pair of parts gives at most one convex cell. A side of a cell on a cut of one of the sheets is shared with the cell on the other
+// side. Two such sides whose ends agree up to rounding are removed, and the remaining sides are followed from cell to cell. The result has
+// the rings of the sheets themselves, without the cuts.
 //
-// Nothing hangs on every cut being taken out: a side whose partner is not found (cuts of both sheets on
-// one line, a cell that is narrower than rounding) stays on both cells, and cancels in every
-// integral over the area as it would have been cancelled here.
+// Not every cut needs to be removed: a side without partner (cuts of both sheets on one line, a cell narrower than rounding) remains on
+// both cells and cancels in every integral over the area.
 #pragma once
 
 #include "elements/step_lap/patch/convex_clip.h"
 
 namespace steplap {
 
-/// Storage that repeated calls reuse.
+/// Scratch memory, reused by repeated calls.
 struct CellWorkspace {
   struct Cell {
-    std::size_t first = 0, count = 0; ///< corners
+    std::size_t first = 0, count = 0; ///< range of corners
     std::size_t parts[2] = {0, 0};
-    std::size_t root = 0; ///< a cell that it hangs together with
+    std::size_t root = 0; ///< representative of its connected component
     int polygon = -1;
   };
   static constexpr std::size_t k_none = static_cast<std::size_t>(-1);
 
   ClipWorkspace clip;
   Ring placed;            ///< corners of the second sheet's parts
-  std::vector<Box> boxes; ///< of those parts
+  std::vector<Box> boxes; ///< bounding boxes of these parts
   std::vector<Cell> cells;
-  std::vector<std::size_t> cell_of; ///< by pair of parts; all k_none between calls
-  std::vector<Corner> corners;      ///< of all cells
-  std::vector<std::size_t> cell_at; ///< by corner
-  std::vector<std::size_t> partner; ///< by corner: the other half of its side, or k_none
-  std::vector<char> is_written;     ///< by corner
-  std::vector<Polygon> polygons;    ///< spare ones
-  std::vector<Ring> rings;          ///< spare ones
+  std::vector<std::size_t> cell_of; ///< per pair of parts; all k_none between calls
+  std::vector<Corner> corners;      ///< corners of all cells
+  std::vector<std::size_t> cell_at; ///< per corner: its cell
+  std::vector<std::size_t> partner; ///< per corner: the other copy of its side, or k_none
+  std::vector<char> is_written;     ///< per corner
+  std::vector<Polygon> polygons;    ///< unused polygons
+  std::vector<Ring> rings;          ///< unused rings
 };
 
-/// Appends a ∩ b, b's corners being those in w.placed, to `out`: polygons with more than
-/// `least_area`, their storage taken from w's spare ones. Coordinates are good to `rounding`, and what is narrower is nothing.
+/// Appends a ∩ b to `out`, with b's corners in w.placed: polygons with an area above `least_area`, using storage from w. Coordinates are
+/// accurate to `rounding`; narrower parts are dropped.
 void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w, Region& out);
 
-/// Takes the polygons out of `out`, keeping their storage.
+/// Removes the polygons from `out` and keeps their storage.
 void empty_keeping_storage(Region& out, CellWorkspace& w);
 
 } // namespace steplap

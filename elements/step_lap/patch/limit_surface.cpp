@@ -17,7 +17,7 @@ struct PatchAccess {
 
 namespace {
 
-/// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬w|r−c|, and u = ±ẑ×(r−c)/|r−c|.
+/// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬w|r−c|, with u = ±ẑ×(r−c)/|r−c|.
 template <bool WithCurvature>
 PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece, const Vec2& v, double omega) {
   const Vec2 c(-v.y() / omega, v.x() / omega);
@@ -29,11 +29,11 @@ PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece
   out.fy = sign * k.direction.x();
   out.m = sign * (k.distance + c.dot(k.direction));
   if constexpr (WithCurvature) {
-    out.xx = k.yy / size; // ẑ× turns x to y on both sides
+    out.xx = k.yy / size; // ẑ× maps x to y on both sides
     out.yy = k.xx / size;
     out.xy = -k.xy / size;
     const double vx = v.x() / omega, vy = v.y() / omega;
-    out.xw = -(out.xx * vx + out.xy * vy); // Hessian · ν = 0
+    out.xw = -(out.xx * vx + out.xy * vy); // because Hessian · ν = 0
     out.yw = -(out.xy * vx + out.yy * vy);
     out.ww = -(out.xw * vx + out.yw * vy);
   }
@@ -72,7 +72,7 @@ template <bool WithCurvature> void add_piece(Dissipation& out, const Patch& patc
   add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, nu[2]), arm);
 }
 
-/// Pieces that lie over each other at once, if the centre of rotation is far from all of them.
+/// Adds overlapping pieces together, if the centre of rotation is far from all of them.
 template <bool WithCurvature> void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const Vec3& nu) {
   for (const auto& group : PatchAccess::groups(patch)) {
     const Vec2 arm = group.centre - point;
@@ -102,14 +102,14 @@ template <bool WithCurvature> Dissipation evaluate_all(const Patch& patch, const
   return out;
 }
 
-/// ∬ w (1, r, |r|²) dA of one piece, r from its centroid.
+/// Moments ∬ w (1, r, |r|²) dA of one piece, r from its centroid.
 struct TractionMoments {
   double force = 0;
   Vec2 first{0, 0};
   double polar = 0;
 };
 
-/// Triangle by triangle (centroid, a, b), with ∬ λ₁ᵖλ₂^q dA = 2·area p! q!/(p+q+2)!.
+/// Sums over triangles (centroid, a, b), with ∬ λ₁ᵖλ₂^q dA = 2·area p! q!/(p+q+2)!.
 TractionMoments moments_of(const PatchEdge* edges, const Patch::Piece& piece) {
   TractionMoments out;
   const Vec2& g = piece.traction.gradient;
@@ -202,9 +202,9 @@ void Patch::prepare() {
   are_groups_known_ = true;
 }
 
-// About the largest piece that has no group yet, as long as there is one.
+// Forms groups around the largest piece that has none, until all pieces are in a group.
 void Patch::group_pieces() {
-  // Than the largest piece: its circle is to serve the others, too, and the smaller ones are not to wait for it.
+  // Relative to the largest piece: its circle should serve the others as well, and smaller pieces should not lose accuracy.
   constexpr double k_wider = 1.05, k_smaller = 0.8;
   members_.clear();
   is_grouped_.assign(pieces_.size(), 0);
@@ -234,7 +234,7 @@ void Patch::group_pieces() {
     }
     groups_.push_back(group);
   }
-  if (groups_.size() == pieces_.size()) groups_.clear(); // no two lie over each other
+  if (groups_.size() == pieces_.size()) groups_.clear(); // no two pieces overlap
 }
 
 double Patch::gyration() const { return std::sqrt(polar_ / force_); }

@@ -1,18 +1,17 @@
-// Dry friction distributed over an area: the dissipation of a sliding twist, the wrench that goes
-// with it (Eqs. 11-15) and their derivatives.
+// Dry friction distributed over an area: dissipation of a sliding twist, the corresponding wrench (Eqs. 11-15), and their derivatives.
 //
-// A twist ν = (v_x, v_y, ω) is the relative velocity of body b against body a at the patch's
-// reference point and its relative angular velocity, in a's axes. With the traction w = n·μ·p
-// (n interfaces, friction coefficient μ, pressure p) [N/m²]
+// A twist ν = (v_x, v_y, ω) is the velocity of body b relative to body a at the patch's reference point and the relative angular velocity,
+// in a's axes. With the traction w = n·μ·p (n interfaces, friction coefficient μ, pressure p) [N/m²]
+//
 //   h(ν) = ∬ w |v + ω ẑ×(r − reference)| dA   [W],
-// convex, even, homogeneous of degree 1. The friction wrench on b about the reference is −∇h(ν);
-// the wrenches that friction can bear are {W : W·ν ≤ h(ν) for all ν}.
 //
-// One smooth function of ν: closed form for centres of rotation within k_far_ratio radii of a
-// piece (closed_form.h), expansion (far_field.h) or cubature (cubature.h) beyond and for translation, each good to about
-// 1e-13 of traction × area × size for pieces up to 100 times longer than wide; the loss grows in
-// proportion beyond that. Assumes a pressure that does not change while sliding; see
-// docs/explanation/limit_surface.md for derivation and limits.
+// convex, even, homogeneous of degree 1. The friction wrench on b about the reference is −∇h(ν); the admissible wrenches are {W : W·ν ≤
+// h(ν) for all ν}.
+//
+// h is one smooth function of ν: the closed form for centres of rotation within k_far_ratio radii of a piece (closed_form.h), and the
+// expansion (far_field.h) or cubature (cubature.h) beyond and for translation. Each is accurate to about 1e-13 of traction × area × size
+// for pieces with an aspect ratio up to 100; the error grows in proportion beyond that. The pressure must not change during sliding.
+// Derivation and limits: docs/explanation/limit_surface.md.
 #pragma once
 
 #include "elements/step_lap/patch/far_field.h"
@@ -22,8 +21,7 @@ namespace steplap {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// A weighted area: pieces with a traction each, seen from one reference point. Reuse one by
-/// clear(): it keeps its storage.
+/// A weighted area: pieces with a traction each, and a reference point. clear() keeps the storage for reuse.
 class Patch {
 public:
   struct Piece {
@@ -36,21 +34,20 @@ public:
 
   explicit Patch(const Vec2& reference = Vec2::Zero()) : reference_(reference) {}
 
-  /// No pieces any more; twists and wrenches will be about `reference` [m].
+  /// Removes all pieces. Twists and wrenches then refer to `reference` [m].
   void clear(const Vec2& reference);
 
-  /// Adds a polygon with uniform traction n·μ·p [N/m²] ≥ 0. Pieces without area or traction are
-  /// left out. Throws std::invalid_argument for a negative or non-finite traction.
+  /// Adds a polygon with uniform traction n·μ·p [N/m²] ≥ 0. Pieces with zero area or traction are ignored. Throws std::invalid_argument for
+  /// a negative or non-finite traction.
   void add(const Polygon& polygon, double traction);
+  /// The same for all polygons of a region.
   void add(const Region& region, double traction);
 
-  /// The same with a traction that varies linearly over the polygon (exactly, in closed form);
-  /// it must not be negative at any vertex.
+  /// Adds a polygon with linearly varying traction, integrated exactly; it must not be negative at any vertex.
   void add(const Polygon& polygon, const Traction& traction);
 
-  /// Tabulates the expansions of all pieces (about 7 µs each), and those of pieces that lie over each other together
-  /// (the overlaps of a stack at one corner), for patches evaluated many times.
-  /// Without it far evaluations are integrated node by node (cubature.h), a tenth of a microsecond each.
+  /// Computes the expansions of all pieces (about 7 µs each), and common ones for overlapping pieces (the overlaps of a stack at one
+  /// corner). Worthwhile for patches evaluated many times. Without it far evaluations use cubature, a tenth of a microsecond per node.
   void prepare();
 
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
@@ -60,8 +57,8 @@ public:
 
   [[nodiscard]] double area() const { return area_; }              ///< [m²]
   [[nodiscard]] double force() const { return force_; }            ///< ∬ w dA [N]: capacity in translation
-  [[nodiscard]] Vec2 centroid() const { return moment_ / force_; } ///< of the traction [m]
-  /// Radius of gyration of the traction about centroid() [m].
+  [[nodiscard]] Vec2 centroid() const { return moment_ / force_; } ///< centroid of the traction [m]
+  /// Returns the radius of gyration of the traction about centroid() [m].
   [[nodiscard]] double gyration() const;
 
 private:
@@ -73,16 +70,16 @@ private:
   std::vector<PatchEdge> edges_;
   void group_pieces();
 
-  /// Pieces within a circle hardly larger than that of the largest: one expansion serves them all.
+  /// Pieces within a circle hardly larger than that of the largest one; they have a common expansion.
   struct Group {
     Vec2 centre{0, 0};
     double radius = 0;
-    std::size_t first = 0, count = 0; ///< in members_
+    std::size_t first = 0, count = 0; ///< range in members_
     FarField far{1.0};
   };
 
   std::vector<FarField> far_; // empty, or one per piece
-  std::vector<Group> groups_; // of prepared patches, all pieces in one each; none if no two lie over each other
+  std::vector<Group> groups_; // for prepared patches; each piece is in one group; empty if no two pieces overlap
   bool are_groups_known_ = false;
   std::vector<std::size_t> members_;
   std::vector<char> is_grouped_;
@@ -91,26 +88,27 @@ private:
   Vec2 moment_{0, 0};
 };
 
-/// h, wrench ∇h [N, N, N m] and Hessian at a twist. All zero at ν = 0, where h has a kink.
+/// h, wrench ∇h [N, N, N m] and Hessian at a twist. All zero at ν = 0, where h is not differentiable.
 struct Dissipation {
   double h = 0;
   Vec3 gradient = Vec3::Zero();
   Mat3 hessian = Mat3::Zero();
 };
 
-/// h with its derivatives at ν (about the patch's reference point). The Hessian is positive
-/// semidefinite with ν in its null space, and of the order of 1/|ν|.
+/// Returns h with its derivatives at ν (about the patch's reference point). The Hessian is positive semidefinite with ν in its null space,
+/// of the order 1/|ν|.
 [[nodiscard]] Dissipation evaluate(const Patch& patch, const Vec3& nu);
 
-/// h and gradient only; the Hessian stays zero.
+/// Returns h and its gradient; the Hessian is zero.
 [[nodiscard]] Dissipation evaluate_gradient(const Patch& patch, const Vec3& nu);
 
-/// The same with twist and wrench about another point [m] than the patch's reference.
+/// The same with twist and wrench about another point [m].
 [[nodiscard]] Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu);
+/// evaluate_gradient() with twist and wrench about another point [m].
 [[nodiscard]] Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu);
 
-/// ∇h of one polygon with the traction w(r) = at_centroid + gradient·(r − origin), about `point`, for who asks once: where the
-/// centre of rotation is far, nothing is made of the polygon but what is asked for; where it is near, `spare` is made of it.
+/// Returns ∇h of one polygon with the traction w(r) = at_centroid + gradient·(r − origin), about `point`, for a single evaluation. For a
+/// far centre of rotation nothing else is computed; for a near one `spare` is used as the patch.
 [[nodiscard]] Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point, const Vec3& nu,
                                   Patch& spare);
 

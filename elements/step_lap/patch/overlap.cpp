@@ -14,13 +14,13 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 1e-16; // of coordinates, turned and shifted, relative to the sheets' reach together
+constexpr double k_rounding = 1e-16; // relative rounding error of rotated and translated coordinates, in units of the size of both sheets
 
-// Kept from the call before: all sheets of a joint are overlapped at one pose.
+// Cached from the previous call, since all sheets of a joint have the same pose.
 const portable::SinCos& turn_of(double angle) {
   static thread_local double turned = 0.0;
   static thread_local portable::SinCos turn{0.0, 1.0};
-  if (std::bit_cast<std::uint64_t>(angle) != std::bit_cast<std::uint64_t>(turned)) { // a zero has its sign, too
+  if (std::bit_cast<std::uint64_t>(angle) != std::bit_cast<std::uint64_t>(turned)) { // also distinguishes the sign of zero
     turn = portable::sin_cos(angle);
     turned = angle;
   }
@@ -39,7 +39,8 @@ void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Rin
     out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x, s * ring[i].x() + c * ring[i].y() + pose.y};
 }
 
-/// out := the part of the convex ring on the left of the line through p and q. False, with `out` untouched: that is all of it.
+/// Sets `out` to the part of the convex ring on the left of the line through p and q. Returns false, with `out` unchanged, if that is the
+/// whole ring.
 [[gnu::always_inline]] inline bool clip(const Ring& ring, const Vec2& p, const Vec2& q, Ring& out) {
   const Vec2 along = q - p;
   if (std::all_of(ring.begin(), ring.end(), [&](const Vec2& corner) { return cross(along, corner - p) >= 0; })) return false;
@@ -56,7 +57,7 @@ void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Rin
   return true;
 }
 
-/// workspace.front := convex ring a ∩ workspace.placed.
+/// Sets workspace.front to a ∩ workspace.placed for a convex ring a.
 [[gnu::always_inline]] inline void clip_convex_as_is(const Ring& a, OverlapWorkspace& w) {
   w.front.assign(a.begin(), a.end());
   for (std::size_t i = 0; i < w.placed.size() && !w.front.empty(); ++i)
@@ -64,7 +65,7 @@ void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Rin
 }
 
 #if defined(__x86_64__)
-// The same operations, without the copies that instructions of two operands need.
+// The same operations compiled for AVX, whose three-operand instructions save copies.
 [[gnu::target("avx")]] void clip_by_three_operands(const Ring& a, OverlapWorkspace& w) { clip_convex_as_is(a, w); }
 const bool may_clip_by_three_operands = __builtin_cpu_supports("avx") != 0;
 #endif
@@ -85,13 +86,13 @@ RingView part(const ConvexCut& cut, std::size_t i, const Ring& corners) {
   return {&corners[p.first], &cut.sides[p.first], p.count};
 }
 
-/// Of convex rings: the least overlap over all edge normals of both.
+/// Returns, for convex rings, the smallest overlap over all edge normals of both.
 double depth(const RingView& a, const RingView& b) { return -std::max(widest_gap(a, b), widest_gap(b, a)); }
 
 double depth(const Box& a, const Box& b) { return (a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low)).minCoeff(); }
 
-/// The deepest pair of convex parts. No pair is deeper than its boxes, nor than boxes around these: most need not be
-/// looked at, whatever the order.
+/// Search for the deepest pair of convex parts. The depth of a pair is at most that of its bounding boxes, so most pairs need not be
+/// examined.
 class DeepestPair {
 public:
   DeepestPair(const Outline& a, const Outline& b, const Ring& placed, const BoxTree& parts) : a_(a), b_(b), placed_(placed), parts_(parts) {
@@ -103,13 +104,13 @@ public:
 private:
   [[nodiscard]] double bound(std::size_t p, std::size_t q) const { return steplap::depth(a_.parts.box(p), parts_.box(q)); }
 
-  /// The two nodes below the pair, in the tree that goes on farther up.
+  /// Returns the two pairs of nodes below a pair, in the tree whose node is higher.
   [[nodiscard]] std::array<std::array<std::size_t, 2>, 2> below(std::size_t p, std::size_t q) const {
     if (parts_.is_leaf(q) || (!a_.parts.is_leaf(p) && p <= q)) return {{{2 * p, q}, {2 * p + 1, q}}};
     return {{{p, 2 * q}, {p, 2 * q + 1}}};
   }
 
-  /// A pair to start from, so that others can be left out.
+  /// Finds a deep pair to start from, so that others can be excluded.
   void guess() {
     std::size_t p = BoxTree::k_root, q = BoxTree::k_root;
     while (!(a_.parts.is_leaf(p) && parts_.is_leaf(q))) {

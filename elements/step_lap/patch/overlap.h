@@ -1,16 +1,14 @@
-// The friction area of one interface: the intersection of a sheet fixed in body a and a sheet
-// fixed in body b at their present relative pose (Fig. 2 of the paper).
+// Friction area of one interface: the intersection of a sheet fixed in body a and a sheet fixed in body b at their present relative pose
+// (Fig. 2 of the paper).
 //
-// Convex pairs are clipped edge by edge in double precision, without allocating. Other sheets are
-// traced along their boundaries (traced_overlap.h) and, at the few poses where what is where cannot be told,
-// overlapped by their convex parts, cut once, pair by pair, the cuts taken out again (joined_cells.h); an overlap's
-// polygons are those of the sheets either way. intersect_exactly() gives the same from exact arithmetic, some hundred
-// times slower. Vertices are good to a few roundings of the sheets' size either way. An area below k_no_area of the
-// smaller sheet's size squared is taken as none: coordinates do not resolve it.
+// Convex pairs are clipped edge by edge in double precision, without allocation. Other sheets are traced along their boundaries
+// (traced_overlap.h); at the few poses where this is ambiguous, the overlaps of their convex parts are joined (joined_cells.h). The
+// polygons of an overlap are those of the sheets in both cases. intersect_exactly() gives the same result by exact arithmetic, some hundred
+// times slower. Vertices are accurate to a few roundings of the size of the sheets. An area below k_no_area of the squared size of the
+// smaller sheet counts as none, because coordinates do not resolve it.
 //
-// As two sheets part the area can vanish quadratically, so its zero is a poor thing to locate.
-// penetration() is positive while they overlap, negative when apart, and crosses zero
-// transversally: that is what "came apart" is located by.
+// When two sheets separate the area may vanish quadratically, so its zero is hard to locate. penetration() is positive while they overlap,
+// negative when separate, and crosses zero transversally; it locates the separation.
 #pragma once
 
 #include "elements/step_lap/patch/exact_polygon.h"
@@ -20,22 +18,22 @@ namespace steplap {
 
 inline constexpr double k_no_area = 1e-15;
 
-/// A sheet's polygon, validated, with what every overlap needs to know about it.
+/// A validated polygon of a sheet with data for computing overlaps.
 struct Outline {
   Polygon polygon;
   bool convex = false; ///< a convex ring without holes
-  Vec2 centre{0, 0};   ///< of a circle that contains it
-  double radius = 0;   ///< of that circle [m]
-  ConvexCut cut;       ///< convex parts, together the polygon; one if it is convex
+  Vec2 centre{0, 0};   ///< centre of a circle that contains it
+  double radius = 0;   ///< radius of that circle [m]
+  ConvexCut cut;       ///< convex parts; a single one if it is convex
   Boundary boundary;   ///< all its edges
-  BoxTree tree;        ///< over them
-  BoxTree parts;       ///< over the convex parts
+  BoxTree tree;        ///< tree over the edges
+  BoxTree parts;       ///< tree over the convex parts
 };
 
 /// Repairs and prepares a polygon. Throws PolygonError as repaired() does.
 [[nodiscard]] Outline make_outline(Polygon polygon);
 
-/// Storage that repeated calls reuse; one per thread.
+/// Scratch memory, reused by repeated calls; one per thread.
 struct OverlapWorkspace {
   Ring placed, front, back;
   CellWorkspace cells;
@@ -43,32 +41,32 @@ struct OverlapWorkspace {
   BoxTree parts;
 };
 
-/// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate once
-/// workspace and `out` have grown.
+/// Sets `out` to a ∩ (b at b_in_a), in a's axes; empty if there is no area. Does not allocate once the workspace and `out` are large
+/// enough.
 void intersect(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace, Region& out);
 
-/// The same for convex pairs; others in exact arithmetic, for what is done once. Throws PolygonError
-/// only if the exact kernel refuses outlines that make_outline accepted.
+/// The same; pairs that are not convex by exact arithmetic, for single evaluations. Throws PolygonError only if the exact kernel rejects
+/// outlines that make_outline accepted.
 void intersect_exactly(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace, Region& out);
 
-/// How far the two must move to part [m]: for convex pairs the least overlap over all edge normals
-/// of both (negative: a gap that one of the normals sees, at most the distance); otherwise the
-/// largest over all pairs of convex parts, along a's axes, too. Continuous in the pose; its sign is
-/// that of "overlaps".
+/// Returns the distance by which the two must move to separate [m]. For convex pairs it is the smallest overlap over all edge normals of
+/// both (negative: a gap along one of the normals, at most the distance); otherwise the largest over all pairs of convex parts, with a's
+/// axes as additional normals. It is continuous in the pose, and positive exactly if the sheets overlap.
 [[nodiscard]] double penetration(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace);
 
-/// penetration() at one pose, and what it leaves of it at others, for next to nothing.
+/// penetration() at one pose, from which a cheap lower bound at other poses follows.
 struct DepthBound {
   Pose pose;
   double depth = 0; ///< [m]
-  double reach = 0; ///< of both sheets' points from the origin of b's frame [m]
+  double reach = 0; ///< largest distance of points of both sheets from the origin of b's frame [m]
 
-  /// Not more than penetration() there: it changes by no more than a point of b moves seen from a, or of a seen from b.
+  /// Returns a lower bound of penetration() at pose `there`: it changes by at most the displacement of the points of b relative to a.
   [[nodiscard]] double at_least(const Pose& there) const;
 };
+/// Returns the bound for poses near `b_in_a`.
 [[nodiscard]] DepthBound depth_bound(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace);
 
-/// The point p of b's frame in a's frame.
+/// Returns the point p of b's frame in a's frame.
 [[nodiscard]] Vec2 placed(const Vec2& p, const Pose& b_in_a);
 
 } // namespace steplap

@@ -11,8 +11,8 @@ namespace steplap {
 
 namespace {
 
-// A vertex nearer than this to the line through its neighbours, relative to the ring's extent,
-// carries no area that double precision could resolve (2^-52 = 2.2e-16, a few roundings).
+// Relative to the ring's extent: a vertex nearer than this to the line through its neighbours encloses no area that double precision
+// resolves (2^-52 = 2.2e-16, a few roundings).
 constexpr double k_collinear = 1e-15;
 
 /// Twice the area and six times the first moment of a ring, about `origin`.
@@ -43,7 +43,7 @@ void add_sums(RingSums& sums, const Polygon& polygon, const Vec2& origin) {
   for (const Ring& hole : polygon.holes) add(hole);
 }
 
-/// A ring whose vertices remember their place in the input, for messages.
+/// A ring whose vertices keep their index in the input, for messages.
 struct TracedRing {
   std::string name;
   Ring ring;
@@ -59,7 +59,7 @@ double extent(const Ring& ring) {
   return (high - low).norm();
 }
 
-/// Vertex b between a and c carries nothing: repeated, on the line, or the tip of a spike.
+/// Returns true if vertex b between a and c is redundant: repeated, on the line, or the tip of a spike.
 bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
   const double longest = std::max((b - a).norm(), (c - b).norm());
   return (b - a).norm() <= k_collinear * size || (c - b).norm() <= k_collinear * size ||
@@ -67,7 +67,7 @@ bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
 }
 
 std::string vertex_name(const TracedRing& r, std::size_t i) {
-  std::ostringstream name; // six digits, of places that may be micrometres
+  std::ostringstream name; // six digits, for positions that may be micrometres
   name << "vertex " << r.from[i] << " (" << r.ring[i].x() << ", " << r.ring[i].y() << ")";
   return name.str();
 }
@@ -100,7 +100,7 @@ TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
   return out;
 }
 
-/// Counter-clockwise if `ccw`, else clockwise.
+/// Makes the ring counter-clockwise if `ccw`, otherwise clockwise.
 void orient(TracedRing& traced, bool ccw) {
   if ((signed_area(traced.ring) > 0) == ccw) return;
   std::reverse(traced.ring.begin(), traced.ring.end());
@@ -147,7 +147,7 @@ double area(const Region& region) {
 
 Vec2 centroid(const Polygon& polygon) {
   RingSums sums;
-  const Vec2 origin = polygon.outer.front(); // near the area: no loss to a far origin
+  const Vec2 origin = polygon.outer.front(); // near the area, so that accuracy is not lost far from the origin
   add_sums(sums, polygon, origin);
   return origin + sums.moment6 / (3.0 * sums.area2);
 }
@@ -160,7 +160,7 @@ Vec2 centroid(const Region& region) {
 }
 
 bool is_convex(const Ring& ring) {
-  // All turns to the left is not enough (a pentagram): x may change direction only twice.
+  // Left turns at all corners are not sufficient (a pentagram): the direction of x may change only twice.
   const std::size_t n = ring.size();
   int flips = 0;
   double last = 0;

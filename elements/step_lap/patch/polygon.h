@@ -1,9 +1,8 @@
-// Plane polygons with holes: the outlines of sheets and of the areas where they overlap.
+// Plane polygons with holes: outlines of sheets and of their overlaps.
 //
-// Convention: outer rings run counter-clockwise, holes clockwise, the last vertex joins the
-// first. With this orientation every area integral is a plain sum over all edges. A polygon is
-// simple: no ring crosses or touches itself or another ring, holes lie inside the outer ring.
-// Coordinates are metres in the axes of whichever body the polygon is fixed to.
+// Outer rings run counter-clockwise, holes clockwise; the last vertex is connected to the first. Every area integral is then a plain sum
+// over all edges. A polygon is simple: no ring crosses or touches itself or another ring, holes are inside the outer ring. Coordinates are
+// in metres, in the axes of the body to which the polygon is fixed.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -22,35 +21,34 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
-/// Disjoint polygons; empty when there is no area.
+/// Disjoint polygons; empty if there is no area.
 using Region = std::vector<Polygon>;
 
-/// What is wrong with a polygon that cannot be repaired without guessing; names the ring and the
-/// vertices or edges by their position in the input, counted from 0.
+/// Error in a polygon that cannot be repaired unambiguously. The message names the ring and the vertices or edges by their index in the
+/// input, from 0.
 class PolygonError : public std::invalid_argument {
 public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// Area of a ring [m²], positive when counter-clockwise.
+/// Returns the area of a ring [m²], positive if counter-clockwise.
 [[nodiscard]] double signed_area(const Ring& ring);
 
-/// Area [m²] with the holes taken off.
+/// Returns the area without the holes [m²].
 [[nodiscard]] double area(const Polygon& polygon);
 [[nodiscard]] double area(const Region& region);
 
-/// Centre of area [m]. Precondition: the area is not zero.
+/// Returns the centroid [m]. Precondition: the area is not zero.
 [[nodiscard]] Vec2 centroid(const Polygon& polygon);
 [[nodiscard]] Vec2 centroid(const Region& region);
 
-/// True when the ring turns left (or not at all) at every vertex and goes round once.
+/// Returns true if the ring turns left (or not at all) at every vertex and winds around once.
 [[nodiscard]] bool is_convex(const Ring& ring);
 
-/// The polygon in the convention above: rings of the wrong sense reversed; repeated vertices,
-/// vertices within rounding of the line through their neighbours and zero-width spikes dropped.
-/// Throws PolygonError for what has no unambiguous repair: a coordinate that is not finite, a ring
-/// without area, a ring that crosses or touches itself or another ring, a hole outside. Messages
-/// call the holes by `hole_names`, or "hole 0" and so on without.
+/// Returns the polygon in the convention above: rings are reversed if necessary; repeated vertices, vertices collinear with their
+/// neighbours up to rounding, and zero-width spikes are removed. Throws PolygonError for what cannot be repaired unambiguously: a
+/// coordinate that is not finite, a ring without area, a ring that crosses or touches itself or another ring, a hole outside. Messages use
+/// the names `hole_names`, by default "hole 0" and so on.
 [[nodiscard]] Polygon repaired(Polygon polygon, const std::vector<std::string>& hole_names = {});
 
 } // namespace steplap

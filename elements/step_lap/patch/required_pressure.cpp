@@ -10,13 +10,13 @@ namespace steplap {
 
 namespace {
 
-// Of the capacity: squares of less vanish in double precision, and its direction with them.
+// Relative to the capacity: the square of a smaller wrench underflows, so it has no direction.
 constexpr double k_nothing = 1e-150;
 
 } // namespace
 
 std::optional<Vec2> centre_of_rotation(const Vec2& reference, const Vec3& nu) {
-  constexpr double infinite = 1e12; // [m]
+  constexpr double infinite = 1e12; // [m]: a centre farther away counts as translation
   if (portable::hypot(nu[0], nu[1]) >= infinite * std::abs(nu[2])) return std::nullopt;
   return reference + Vec2(-nu[1], nu[0]) / nu[2];
 }
@@ -30,7 +30,7 @@ RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const
   }
   const ScaledPatch scaled(patch);
   const Vec3 all = scaled.scaled_wrench(wrench);
-  if (all.cwiseAbs().maxCoeff() < k_nothing) return out; // as no wrench: what a motion that dies out leaves of its forces
+  if (all.cwiseAbs().maxCoeff() < k_nothing) return out; // treated as zero: the remainder of a decaying motion
   const double size = all.norm();
   const Vec3 w = all / size;
 
@@ -50,8 +50,8 @@ Capacity capacity(const Patch& patch) {
   out.arm = patch.centroid() - patch.reference();
   out.force = patch.force();
   out.polar = patch.force() * patch.gyration();
-  // A couple is a couple about every point. The gradient at the solution is in the set, so that
-  // 1/u is good to the square of the tolerance; 1e-9 covers it and all rounding.
+  // A moment is the same about every point. The gradient at the solution is in the admissible set, so 1/u has an error of the order of the
+  // squared tolerance; the factor 1 − 1e-9 covers this and all rounding, so that the result is a lower bound.
   out.couple = (1 - 1e-9) / required_pressure(patch, {0, 0, 1}).u;
   return out;
 }

@@ -1,18 +1,19 @@
-// A patch seen without units, for the convex problems: twists about the centroid of the traction
-// with ω in units of 1/gyration, h and wrenches in units of the force capacity. There h(y) ≤ |y|,
-// with equality for translation, whatever the patch's size, place and pressure.
+// A patch in its own units, for the convex problems: twists about the centroid of the traction with ω in units of 1/gyration, h and
+// wrenches in units of the force capacity. Then h(y) ≤ |y|, with equality for translation, whatever the size, position and pressure of the
+// patch.
 #pragma once
 
 #include "elements/step_lap/patch/limit_surface.h"
 
 namespace steplap {
 
+/// A patch with conversions of twists and wrenches between SI and scaled units. The patch must outlive it.
 class ScaledPatch {
 public:
   /// Precondition: the patch is not empty.
   explicit ScaledPatch(const Patch& patch) : patch_(patch), centre_(patch.centroid()), force_(patch.force()), size_(patch.gyration()) {
     const Vec2 arm = centre_ - patch.reference();
-    // y = S ν: v_centre = v + ω ẑ×arm, third component size·ω
+    // y = S ν: the first two components are the velocity v + ω ẑ×arm of the centroid, the third is size·ω
     to_scaled_ << 1, 0, -arm.y(), 0, 1, arm.x(), 0, 0, size_;
     from_scaled_ << 1, 0, arm.y() / size_, 0, 1, -arm.x() / size_, 0, 0, 1 / size_;
   }
@@ -22,7 +23,7 @@ public:
   [[nodiscard]] Vec3 twist(const Vec3& y) const { return from_scaled_ * y; }
   [[nodiscard]] Vec3 scaled_wrench(const Vec3& w) const { return from_scaled_.transpose() * w / force_; }
   [[nodiscard]] Vec3 wrench(const Vec3& w) const { return to_scaled_.transpose() * w * force_; }
-  /// Of a matrix that takes wrenches to twists.
+  /// Converts a matrix that maps wrenches to twists.
   [[nodiscard]] Mat3 scaled_mobility(const Mat3& a) const { return to_scaled_ * a * to_scaled_.transpose() * force_; }
 
   [[nodiscard]] Dissipation evaluate(const Vec3& y) const {
@@ -34,7 +35,7 @@ public:
     d.hessian.col(2) *= s;
     return d;
   }
-  /// The same without the Hessian, which stays zero.
+  /// Returns h and its gradient; the Hessian is zero.
   [[nodiscard]] Dissipation evaluate_gradient(const Vec3& y) const {
     Dissipation d = evaluate_gradient_about(patch_, centre_, {y[0], y[1], y[2] / size_});
     scale_gradient(d);

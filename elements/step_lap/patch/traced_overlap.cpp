@@ -7,15 +7,16 @@ namespace steplap {
 
 namespace {
 
-// Where edges or corners lie on each other, sides are asked for as if the second sheet were pushed by k_push roundings in
-// a direction that edges seldom have, or in another. A distance of up to k_nought roundings is nought, and has the sign of the push; one of
-// more than twice the push has its own; in between nobody knows. So the rings are those of a pose that exists, and
-// their corners those of the true one: what the push seems to add has a width of nought.
+// Symbolic perturbation: where edges or corners coincide, decisions are made as if the second sheet were shifted by k_push roundings in a
+// direction that edges rarely have. A distance of up to k_nought roundings counts as zero and gets the sign of the shift; a distance larger
+// than twice the shift has its own sign; in between the sign is ambiguous. The rings are thus those of a nearby pose, with the corners of
+// the true one; areas added by the shift have zero width.
 constexpr double k_nought = 1, k_push = 100, k_margin = 2 * k_push;
-constexpr double k_least_push = 0.1; // across an edge, of the push
-constexpr double k_film = 4;         // roundings: what is narrower the push has made
-constexpr double k_blur = 10;        // roundings in the place of a crossing
-const Vec2 k_push_directions[] = {{0.540302305868140, 0.841470984807897}, {-0.588501117255346, 0.808496403819590}}; // 1, 2.2 rad
+constexpr double k_least_push = 0.1; // smallest component of the shift across an edge, relative to the shift
+constexpr double k_film = 4;         // in roundings: narrower parts are caused by the shift
+constexpr double k_blur = 10;        // uncertainty of the position of a crossing, in roundings
+const Vec2 k_push_directions[] = {{0.540302305868140, 0.841470984807897},
+                                  {-0.588501117255346, 0.808496403819590}}; // unit vectors at 1 and 2.2 rad
 
 using Crossing = TraceWorkspace::Crossing;
 using Order = TraceWorkspace::Order;
@@ -38,7 +39,7 @@ public:
     for (const std::size_t sheet : {0u, 1u})
       for (const Boundary::Span& ring : sheets_[sheet].boundary->rings)
         if (!is_crossed(sheet, ring)) add_whole(sheet, ring, least_area, out);
-    if (is_pushed_ && out.size() > 1 && !w_.holes.empty()) return false; // a hole may touch several
+    if (is_pushed_ && out.size() > 1 && !w_.holes.empty()) return false; // a hole may touch several outer rings
     while (!w_.holes.empty()) {
       Polygon* around = polygon_around(w_.holes.back().front(), out);
       if (!around) return false;
@@ -92,10 +93,10 @@ private:
     return {from.cwiseMin(to), from.cwiseMax(to)};
   }
 
-  /// Twice the area of the triangle that a point of one sheet makes with an edge of the other, as it is and pushed.
+  /// Twice the area of the triangle of a point of one sheet and an edge of the other, without and with the shift.
   struct Side {
     double true_one, pushed;
-    int sign; ///< 0: not known
+    int sign; ///< 0: ambiguous
   };
   Side side_of(const Vec2& along, const Vec2& from_edge, const Vec2& push) {
     const double size = along.lpNorm<1>(), d = steplap::cross(along, from_edge), by = steplap::cross(along, push);
@@ -129,7 +130,7 @@ private:
                             a1.sign > 0});
   }
 
-  /// By edge and along each; false where two are too near each other.
+  /// Sorts the crossings by edge and along each edge. Returns false if two are too close to each other.
   bool sort(std::size_t sheet) {
     Order& order = w_.orders[sheet];
     order.start.assign(sheets_[sheet].corners->size() + 1, 0);
@@ -137,7 +138,7 @@ private:
     order.place.resize(w_.crossings.size());
     for (const Crossing& c : w_.crossings) ++order.start[c.edge[sheet] + 1];
     for (std::size_t i = 1; i < order.start.size(); ++i) order.start[i] += order.start[i - 1];
-    // each start goes to its end as the crossings are put down, and back
+    // each start advances to the end of its range while the crossings are stored, and is then moved back
     for (std::size_t c = 0; c < w_.crossings.size(); ++c) order.crossings[order.start[w_.crossings[c].edge[sheet]]++] = c;
     for (std::size_t i = order.start.size() - 1; i > 0; --i) order.start[i] = order.start[i - 1];
     order.start[0] = 0;
@@ -162,8 +163,8 @@ private:
 
   // --- rings ---------------------------------------------------------------------------------------------
 
-  /// Along the first boundary from where it goes in to where it comes out, along the second, and so on round. False
-  /// should going in and coming out not take turns.
+  /// Follows the first boundary from where it enters to where it leaves the other sheet, then the second boundary, and so on. Returns false
+  /// if entries and exits do not alternate.
   bool trace_from(std::size_t start, double least_area, Region& out) {
     Ring ring = spare_ring();
     std::size_t c = start, sheet = 0;
@@ -180,7 +181,7 @@ private:
     return is_sound;
   }
 
-  /// To the next crossing along the sheet's boundary, by its corners.
+  /// Adds the corners along the sheet's boundary up to the next crossing.
   std::size_t walk(std::size_t sheet, std::size_t from, Ring& ring) const {
     const Order& order = w_.orders[sheet];
     std::size_t edge = w_.crossings[from].edge[sheet], place = order.place[from] + 1;
@@ -197,8 +198,8 @@ private:
     return start[ring.first] != start[ring.first + ring.count];
   }
 
-  /// A ring that nothing crosses is wholly inside the other sheet or wholly outside, and farther from its boundary than
-  /// the margin.
+  /// Adds a ring without crossings if it is inside the other sheet. It is then completely inside or outside, and farther from the other
+  /// boundary than the margin.
   void add_whole(std::size_t sheet, const Boundary::Span& span, double least_area, Region& out) {
     const Vec2 p = corner(sheet, span.first) + (sheet == 1 ? push_ : -push_);
     if (crossings_to_the_right(1 - sheet, BoxTree::k_root, p) % 2 == 0) return;
@@ -234,7 +235,7 @@ private:
     }
   }
 
-  /// What only the push has made.
+  /// Returns true for an area that exists only because of the shift.
   [[nodiscard]] bool is_film(const Ring& ring, double area) const {
     if (!is_pushed_) return false;
     double length = 0;
@@ -242,7 +243,7 @@ private:
     return std::abs(area) <= k_film * rounding_ * length;
   }
 
-  /// Among several outer rings about the point (an island in a hole) the smallest.
+  /// Returns the smallest of several outer rings around the point (an island in a hole).
   static Polygon* polygon_around(const Vec2& p, Region& out) {
     if (out.size() == 1) return &out.front();
     Polygon* found = nullptr;
