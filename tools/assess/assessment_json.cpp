@@ -101,6 +101,7 @@ Json models(const Assessment& a) {
                      {"body", model.body},
                      {"x", r.x},
                      {"y", r.y},
+                     {"across", r.across},
                      {"angle", model.marker_angle},
                      {"rotation", r.rotation},
                      {"drift", r.drift},
