@@ -87,7 +87,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   }
 }
 
-// What models of several planes share, of an event that all of them have passed. Traces are let go: those of a voyage would be large.
+// Judges shared frictions in an event that all models have passed. Frees the traces: those of a whole voyage would be large.
 void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
   std::vector<const std::vector<FrictionTrace>*> traces;
   std::vector<const DriveHistory*> histories;

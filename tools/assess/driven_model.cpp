@@ -31,7 +31,7 @@ struct Recorded : SignalDefinition {
   }
 };
 
-// What presses sheets must not jump: a record ends at zero, and one that goes on holds its last value until the next one begins.
+// The acceleration across sheets must not jump: a history ends at zero, and one that goes on holds its last value until the next begins.
 Signal build_pressing(const Recorded& recorded) {
   std::vector<Signal::Piece> pieces(1);
   double held = 0.0;
@@ -99,7 +99,7 @@ void add_drive(Model& model, const std::string& name, const Recorder& recorder, 
   motion.as = "acceleration";
 }
 
-// The record's third axis takes the place of what presses sheets by acceleration across them.
+// The record's third axis replaces the signals by which cores and joints are pressed across their sheets.
 void add_across(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   if (recorder.across == "none") return;
   const auto is_taken = [&](std::string& signal, const std::string& name) {

@@ -1,4 +1,4 @@
-// What single frictions did over an event, at equal times: for frictions that models of several planes share (shared_friction.h).
+// Time histories of single frictions over an event, for those that models of several planes share (shared_friction.h).
 #pragma once
 
 #include "mbd/simulation/run_record.h"

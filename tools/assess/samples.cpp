@@ -31,7 +31,7 @@ Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std
   return runners;
 }
 
-// What planes share, event by event as far as all models came.
+// Judges shared frictions event by event, as far as all models came.
 void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
   std::size_t events = outcomes.front().events_made;
   for (const VoyageOutcome& outcome : outcomes) events = std::min(events, outcome.events_made);

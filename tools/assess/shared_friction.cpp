@@ -2,6 +2,9 @@
 
 #include "elements/coulomb_friction.h"
 #include "elements/coulomb_stick.h"
+#include "elements/formula_force.h"
+#include "elements/load.h"
+#include "elements/prescribed_motion.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/presentation.h"
@@ -70,6 +73,12 @@ std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::s
   return bodies;
 }
 
+// Loads and drives hold nothing.
+bool is_action_from_outside(const Element& element) {
+  return dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element) ||
+         dynamic_cast<const PrescribedMotion*>(&element);
+}
+
 // Elements besides `own` by which the load on these frictions is held. The load is all that hangs together with the body that rests on
 // the other one, as far as neither that nor the driven body nor the ground.
 std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& compiled, const std::vector<std::string>& own) {
@@ -86,8 +95,7 @@ std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& co
   for (const ElementEntry& entry : whole.elements) {
     const std::set<std::string> bodies = bodies_of(entry, body_of_marker);
     if (left_out.contains(entry.element->name)) pair.insert(bodies.begin(), bodies.end());
-    else if (entry.kind->name != "force" && entry.kind->name != "prescribed_motion" && !bodies.empty())
-      edges.emplace_back(entry.element->name, bodies);
+    else if (!is_action_from_outside(*entry.element) && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
   }
   std::set<std::string> load;
   for (const std::string& body : pair)

@@ -28,7 +28,7 @@
 
 namespace steplap::assess {
 
-/// What one model knows of a shared friction.
+/// A shared friction in one model.
 struct PlaneOfFriction {
   std::size_t model = 0;            ///< index
   std::string model_name;           ///< for people
@@ -55,7 +55,7 @@ struct SharedFriction {
 /// Finds them, and sets `traced` of the models. Throws ModelError if frictions that are to be summed do not lie along one line.
 [[nodiscard]] std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& models);
 
-/// What an event did to a shared friction.
+/// The outcome of an event for a shared friction.
 struct SharedPassage {
   std::size_t friction = 0; ///< index
   double use = 0.0;         ///< largest, of mu N
@@ -101,7 +101,7 @@ private:
   std::vector<SharedFrictionCourse> courses_;
 };
 
-/// What a passage comes to, for criteria. `number`: of the event, from 1.
+/// Adds a passage to the summary that criteria look at. `number`: of the event, from 1.
 void add_to(VoyageSummary& summary, const SharedFriction& friction, const SharedPassage& passage, std::size_t number);
 /// Sentences on what is taken for granted.
 [[nodiscard]] std::vector<std::string> assumptions_of(const std::vector<SharedFriction>& frictions);
