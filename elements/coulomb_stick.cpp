@@ -234,6 +234,9 @@ const ElementKind& coulomb_stick_kind() {
         .doc("the contacts that press: unilateral_contact elements, or one of a circle");
     f.add("static_friction", &T::static_friction).not_negative().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
+    f.add("shared_friction", &T::shared_friction)
+        .doc("name by which models of other planes of the same machine share this friction; default: the element's own. Only "
+             "`steplap assess` with several models looks at it");
     k.holds<T>();
     k.compile = compile_coulomb;
     k.example = R"([[element]]

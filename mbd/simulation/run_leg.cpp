@@ -48,7 +48,10 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   handler_.start(state_);
   handler_.note_start(state_, record_->events);
   make_parts(nullptr, system_.initial_memory);
-  if (options_.output_step > 0.0) record_sample(state_.t);
+  if (options_.output_step > 0.0) {
+    record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // none are due before the start
+    record_sample(state_.t);
+  }
 }
 
 // Precondition: the constraints are satisfied to rounding, or to the digits of the file.

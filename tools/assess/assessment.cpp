@@ -63,6 +63,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   }
   if (!problems.empty()) throw ModelError(std::move(problems));
   a.uncertain = std::make_unique<UncertainValues>(a.models);
+  a.shared = find_shared_frictions(a.models);
   for (const std::string& record : records) {
     stop_if_asked(options, "before '" + record + "' was read");
     a.records.push_back(read_events(record, options.reading));
@@ -74,7 +75,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   order_records(a.records, order);
   if (!order.empty()) a.assumptions.push_back(order);
   for (std::size_t r = 0; r < a.records.size(); ++r)
-    for (std::size_t e = 0; e < a.records[r].events.size(); ++e) a.events.push_back({r, e, {}, {}});
+    for (std::size_t e = 0; e < a.records[r].events.size(); ++e) a.events.push_back({r, e, {}, {}, {}});
   for (const RecordEvents& record : a.records)
     for (const DrivenModel& model : a.models)
       if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
@@ -86,11 +87,25 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   }
 }
 
+// Judges shared frictions in an event that all models have passed. Frees the traces: those of a whole voyage would be large.
+void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
+  std::vector<const std::vector<FrictionTrace>*> traces;
+  std::vector<const DriveHistory*> histories;
+  for (std::size_t m = 0; m < a.models.size(); ++m) {
+    traces.push_back(&a.events[e].passages[m].traces);
+    histories.push_back(&a.histories[m][e]);
+  }
+  a.events[e].shared = shared.pass(traces, histories);
+  for (const SharedPassage& passage : a.events[e].shared) add_to(a.summary, a.shared[passage.friction], passage, e + 1);
+  for (Passage& passage : a.events[e].passages) passage.traces.clear();
+}
+
 void pass_events(const AssessmentOptions& options, Assessment& a) {
   std::vector<Traveller> travellers;
   for (const DrivenModel& model : a.models) travellers.emplace_back(model);
+  SharedFrictions shared(a.shared);
   long done = 0;
-  for (std::size_t e = 0; e < a.events.size(); ++e)
+  for (std::size_t e = 0; e < a.events.size(); ++e) {
     for (std::size_t m = 0; m < a.models.size(); ++m) {
       stop_if_asked(options, "in event " + std::to_string(e + 1));
       if (options.progress) options.progress("events", done++, static_cast<long>(a.events.size() * a.models.size()));
@@ -102,16 +117,20 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
       worsen(a.summary, summary_of(passage, e + 1, a.models[m].name));
       a.events[e].passages.push_back(std::move(passage));
     }
+    if (!a.shared.empty()) pass_planes(shared, e, a);
+  }
 }
 
 // The same voyage by the way of the samples: two ways to one result.
 void check_against_samples(Assessment& a) {
-  const VoyageSummary twin = voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal()).summary;
+  const VoyageSummary twin = voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
   if (!a.summary.unknown.empty()) return;
   const VoyageSummary& own = a.summary;
   const bool is_margin_same = (std::isinf(own.least_margin) && std::isinf(twin.least_margin)) ||
                               std::abs(twin.least_margin - own.least_margin) <= k_same_margin * std::abs(own.least_margin);
-  const bool is_same = twin.unknown.empty() && own.slips == twin.slips && own.comes_apart == twin.comes_apart && is_margin_same;
+  const bool is_use_same = std::abs(twin.planes_use - own.planes_use) <= k_same_margin * own.planes_use;
+  const bool is_same =
+      twin.unknown.empty() && own.slips == twin.slips && own.comes_apart == twin.comes_apart && is_margin_same && is_use_same;
   if (!is_same)
     a.summary.unknown = "two ways of computing the voyage differ: a least margin of " + rounded_text(own.least_margin, 4) + " and " +
                         rounded_text(twin.least_margin, 4) + (twin.unknown.empty() ? "" : " (" + twin.unknown + ")") +
@@ -125,7 +144,7 @@ void sample(const AssessmentOptions& options, Assessment& a) {
   SamplingOptions sampling = options.sampling;
   sampling.stop = options.stop;
   if (options.progress) sampling.progress = [&](long done, long all) { options.progress("samples", done, all); };
-  a.samples = sample_voyages(a.models, a.histories, *a.uncertain, sampling);
+  a.samples = sample_voyages(a.models, a.histories, *a.uncertain, sampling, a.shared);
   a.damage = damage_probability(a.samples);
   a.shares = shares_of(a.samples);
   for (std::size_t e = 0; e < a.events.size(); ++e)
@@ -146,6 +165,7 @@ void assume(Assessment& a) {
       "The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
       rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) +
       " g is not run, but for what is greatest of each axis.");
+  for (std::string& sentence : assumptions_of(a.shared)) a.assumptions.push_back(std::move(sentence));
   for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");

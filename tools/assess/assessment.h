@@ -30,6 +30,7 @@ struct VoyageEvent {
   std::size_t record = 0, event = 0; ///< indices
   std::vector<Passage> passages;     ///< one for each model
   std::vector<Probability> slip;     ///< the same; no runs without samples
+  std::vector<SharedPassage> shared; ///< one for each shared friction
 };
 
 /// Why the decision is what it is.
@@ -43,6 +44,7 @@ struct Reason {
 struct Assessment {
   std::vector<RecordEvents> records;
   std::vector<DrivenModel> models;
+  std::vector<SharedFriction> shared; ///< frictions that models of several planes have in common
   std::vector<VoyageEvent> events;
   std::vector<std::vector<DriveHistory>> histories; ///< per model, of the events
   std::unique_ptr<UncertainValues> uncertain;

@@ -101,6 +101,7 @@ Json models(const Assessment& a) {
                      {"body", model.body},
                      {"x", r.x},
                      {"y", r.y},
+                     {"across", r.across},
                      {"angle", model.marker_angle},
                      {"rotation", r.rotation},
                      {"drift", r.drift},
@@ -221,6 +222,29 @@ Json event(const Assessment& a, std::size_t number_) {
           {"models", passages}};
 }
 
+Json shared_frictions(const Assessment& a) {
+  Json all = Json::array();
+  for (std::size_t f = 0; f < a.shared.size(); ++f) {
+    const SharedFriction& friction = a.shared[f];
+    Json events = Json::array();
+    for (std::size_t e = 0; e < a.events.size(); ++e)
+      if (f < a.events[e].shared.size()) {
+        const SharedPassage& p = a.events[e].shared[f];
+        events.push_back({{"number", e + 1},
+                          {"use", number(p.use)},
+                          {"at", p.at},
+                          {"slips", p.slips},
+                          {"slid", number(p.slid)},
+                          {"slid_total", number(p.slid_total)},
+                          {"upper_bound", p.bound},
+                          {"disagreement", p.disagreement}});
+      }
+    all.push_back(
+        {{"name", friction.name}, {"models", {friction.planes[0].model_name, friction.planes[1].model_name}}, {"events", events}});
+  }
+  return all;
+}
+
 // Each joint's sums after the last event that was run.
 Json voyage(const Assessment& a) {
   Json joints = Json::array();
@@ -246,7 +270,9 @@ Json voyage(const Assessment& a) {
                         {"overlap_left", number(last[i].overlap_left)},
                         {"least_margin", number(last[i].margin)}});
   }
-  return {{"joints", joints}, {"damage_probability", probability(a.damage)}};
+  Json json = {{"joints", joints}, {"damage_probability", probability(a.damage)}};
+  if (!a.shared.empty()) json["shared_frictions"] = shared_frictions(a);
+  return json;
 }
 
 Json reasons(const Assessment& a) {

@@ -209,6 +209,20 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
   return judge_probability(c, a.damage, "damage in the voyage", waves_unknown(a));
 }
 
+// Friction is one vector, and each model judged the part along its plane.
+Reason judge_planes(const VoyageSummary& s) {
+  const char* const name = "friction of several planes";
+  const char* const source = "rules of this program";
+  if (s.planes_slip.empty())
+    return {name,
+            "The planes together ask for at most " + percent(s.planes_use) + " of a friction that they share.",
+            source,
+            Decision::energise,
+            {}};
+  const Decision outcome = s.planes == Verdict::hold ? Decision::energise : s.planes == Verdict::open ? Decision::open : Decision::inspect;
+  return {name, s.planes_slip, source, outcome, {}};
+}
+
 // Of whatever the criteria say: what is not known forbids "energise".
 void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
   const auto open = [&](const char* name, const std::string& text) {
@@ -231,6 +245,7 @@ void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& r
                           " g: others that were not run may slip it as well. Lower the threshold.");
     break;
   }
+  if (!a.shared.empty()) reasons.push_back(judge_planes(s));
   if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
 }
 

@@ -1,6 +1,7 @@
 #include "tools/assess/driven_model.h"
 
 #include "elements/prescribed_motion.h"
+#include "elements/step_lap/step_lap_joint.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/input_files.h"
@@ -9,6 +10,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
 #include "run/catalogue.h"
+#include "transformer/core/core.h"
 #include "transformer/recorder/fields.h"
 
 #include <algorithm>
@@ -23,14 +25,41 @@ namespace {
 // A history that stands in no file.
 struct Recorded : SignalDefinition {
   std::vector<DriveHistory> histories;
-  bool is_y = false;
+  enum class Axis { x, y, across } axis = Axis::x;
+  [[nodiscard]] const std::vector<double>& of(const DriveHistory& history) const {
+    return axis == Axis::x ? history.x : axis == Axis::y ? history.y : history.across;
+  }
 };
+
+// The acceleration across sheets must not jump: a history ends at zero, and one that goes on holds its last value until the next begins.
+Signal build_pressing(const Recorded& recorded) {
+  std::vector<Signal::Piece> pieces(1);
+  double held = 0.0;
+  bool is_held = true; // whatever it is at t = 0
+  for (const DriveHistory& history : recorded.histories) {
+    std::vector<double> a = history.across;
+    if (a.size() < 2) continue;
+    if (history.begin > 0.0) a.front() = is_held ? held : 0.0;
+    if (!history.goes_on) a.back() = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      Signal::Piece piece;
+      piece.start = history.begin + static_cast<double>(i) * history.step;
+      piece.c[0] = a[i];
+      if (i + 1 < a.size()) piece.c[1] = (a[i + 1] - a[i]) / history.step;
+      if (piece.start > pieces.back().start) pieces.push_back(std::move(piece));
+      else pieces.back() = std::move(piece);
+    }
+    held = a.back(), is_held = history.goes_on;
+  }
+  return Signal(std::move(pieces));
+}
 
 Signal build_recorded(const SignalDefinition& definition) {
   const auto& recorded = static_cast<const Recorded&>(definition);
   std::vector<Signal::Piece> pieces(1); // at rest from t = 0 on
+  if (recorded.axis == Recorded::Axis::across) return build_pressing(recorded);
   for (const DriveHistory& history : recorded.histories) {
-    const std::vector<double>& a = recorded.is_y ? history.y : history.x;
+    const std::vector<double>& a = recorded.of(history);
     for (std::size_t i = 0; i < a.size(); ++i) {
       Signal::Piece piece;
       piece.start = history.begin + static_cast<double>(i) * history.step;
@@ -55,11 +84,12 @@ const SignalKind& recorded_kind() {
 }
 
 constexpr const char *k_along_x = "recorder drive x", *k_along_y = "recorder drive y", *k_angle = "recorder drive angle";
+constexpr const char* k_across = "recorder drive across";
 
 void add_drive(Model& model, const std::string& name, const Recorder& recorder, const std::string& coordinate) {
   auto definition = std::make_shared<Recorded>();
   definition->name = name;
-  definition->is_y = coordinate == "y";
+  if (coordinate == "y") definition->axis = Recorded::Axis::y;
   model.signals.emplace_back(&recorded_kind(), std::move(definition));
   auto& motion = add_element<PrescribedMotion>(model, prescribed_motion_kind(), name);
   motion.a = recorder.marker;
@@ -67,6 +97,32 @@ void add_drive(Model& model, const std::string& name, const Recorder& recorder, 
   motion.coordinate = coordinate;
   motion.signal = name;
   motion.as = "acceleration";
+}
+
+// The record's third axis replaces the signals by which cores and joints are pressed across their sheets.
+void add_across(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
+  if (recorder.across == "none") return;
+  const auto is_taken = [&](std::string& signal, const std::string& name) {
+    if (signal.empty()) return false;
+    notes.push_back("The record's axis " + recorder.across + " takes the place of '" + signal + "' across '" + name + "'.");
+    signal = k_across;
+    return true;
+  };
+  bool is_any = false;
+  for (TableEntry& entry : model.tables)
+    if (auto* const core = dynamic_cast<Core*>(entry.table.get())) is_any |= is_taken(core->transverse_acceleration, core->name);
+  for (ElementEntry& entry : model.elements)
+    if (auto* const joint = dynamic_cast<StepLapJoint*>(entry.element.get()))
+      is_any |= is_taken(joint->transverse_acceleration, joint->name);
+  if (!is_any)
+    throw ModelError(recorder.place("across"), "the recorder '" + recorder.name +
+                                                   "' has an axis across, and nothing in the model asks for it: give the core a "
+                                                   "'transverse_acceleration' (any signal, which the record replaces) and a "
+                                                   "'transverse_support', or leave 'across' out");
+  auto definition = std::make_shared<Recorded>();
+  definition->name = k_across;
+  definition->axis = Recorded::Axis::across;
+  model.signals.emplace_back(&recorded_kind(), std::move(definition));
 }
 
 // What else drives the body would contradict the record.
@@ -136,8 +192,9 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   history.step = 1.0 / window.rate;
   history.goes_on = event.event.goes_on;
   std::vector<double> a = along(recorder.x), b = along(recorder.y);
-  for (std::vector<double>* const values : {&a, &b}) {
-    if (recorder.drift != "line" || count < 2) continue;
+  if (recorder.across != "none") history.across = along(recorder.across);
+  for (std::vector<double>* const values : {&a, &b, &history.across}) {
+    if (values->empty() || recorder.drift != "line" || count < 2) continue;
     double sum = 0.0; // of the trapezoids between samples
     for (std::size_t i = 1; i < count; ++i) sum += 0.5 * ((*values)[i - 1] + (*values)[i]);
     const double mean = sum / static_cast<double>(count - 1);
@@ -195,6 +252,7 @@ DrivenModel driven_model(Model given, const std::string& name) {
   add_drive(given, k_along_x, driven.recorder, "x");
   add_drive(given, k_along_y, driven.recorder, "y");
   if (driven.recorder.rotation == "held") add_drive(given, k_angle, driven.recorder, "angle");
+  add_across(given, driven.recorder, driven.notes);
   for (TableEntry& entry : given.tables) // what it names is gone, and no usual run looks at it
     if (entry.kind == &recorder_kind()) static_cast<Recorder&>(*entry.table).replaces.clear();
   driven.given = std::move(given);

@@ -22,6 +22,7 @@ struct DriveHistory {
   double begin = 0.0, step = 0.0; ///< s
   bool goes_on = false;           ///< the next event is its continuation: nothing comes to rest between
   std::vector<double> x, y;       ///< m/s²
+  std::vector<double> across;     ///< m/s², out of the plane, from the front of the sheets to their back; empty: nothing asks for it
   [[nodiscard]] double end() const { return begin + step * static_cast<double>(x.empty() ? 0 : x.size() - 1); }
 };
 
@@ -39,10 +40,11 @@ struct DrivenModel {
   std::string file, name, sha256;
   std::string text; ///< the effective model; "" of one made in code
   Recorder recorder;
-  std::string body;               ///< that the recorder sits on, and that is driven
-  double marker_angle = 0.0;      ///< rad, of the marker's axes against the ground's in the reference pose
-  Model given;                    ///< as given, without what gives way, with drives at rest
-  std::vector<std::string> notes; ///< what was changed, for people
+  std::string body;                ///< that the recorder sits on, and that is driven
+  double marker_angle = 0.0;       ///< rad, of the marker's axes against the ground's in the reference pose
+  Model given;                     ///< as given, without what gives way, with drives at rest
+  std::vector<std::string> notes;  ///< what was changed, for people
+  std::vector<std::string> traced; ///< frictions that models of other planes share (shared_friction.h)
 };
 
 /// Reads a model file for an assessment. Throws ModelError: it has no [[recorder]], or something else drives its body.

@@ -23,7 +23,7 @@ struct Turn {
 VoyageSummary with(const Assessment& a, std::size_t which, double value) {
   std::vector<double> values = a.uncertain->nominal();
   values[which] = value;
-  return voyage_with(a.models, a.histories, *a.uncertain, values).summary;
+  return voyage_with(a.models, a.histories, *a.uncertain, values, a.shared).summary;
 }
 
 std::optional<Turn> turn_towards(const Assessment& a, std::size_t which, double end) {

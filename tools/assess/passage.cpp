@@ -106,6 +106,10 @@ Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
   if (!ended_.empty()) return broken(std::string(ended_));
   Model model = model_.given;
   drive_by(model, {history}, history.end() + (history.goes_on ? 0.0 : model_.recorder.settle));
+  if (!model_.traced.empty()) {
+    model.output.step = std::min(trace_step(history), model.simulation.end);
+    model.output.channels = traced_channels(model_.traced);
+  }
   const std::shared_ptr<const LoadedModel> loaded = load_given(model, model_.name);
   RunOptions options;
   options.estimating = estimating;
@@ -116,6 +120,8 @@ Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
     Passage passage;
     passage.is_made = true;
     look(report, passage);
+    if (!model_.traced.empty())
+      passage.traces = friction_traces(loaded->model, *loaded->system, report.run.result, model_.traced, 0.0, model.output.step);
     if (!report.run.result.stop_reason.empty()) ended_ = report.run.result.stop_reason;
     state_ = report.run.result.final_state;
     state_->t = state_->dissipated = state_->work = 0.0;

@@ -4,6 +4,7 @@
 #include "elements/step_lap/step_lap_assessment.h"
 #include "run/overview.h"
 #include "tools/assess/driven_model.h"
+#include "tools/assess/friction_trace.h"
 
 #include <memory>
 #include <optional>
@@ -56,7 +57,8 @@ struct Passage {
   std::vector<FootPassage> feet;
   std::vector<LimitPassage> reactions, clearances, others;
   std::vector<std::string> findings;
-  double still_moving = 0.0; ///< m/s: fastest body against the tank at the end
+  double still_moving = 0.0;         ///< m/s: fastest body against the tank at the end
+  std::vector<FrictionTrace> traces; ///< of DrivenModel::traced
 };
 
 /// A model on its way through the voyage.

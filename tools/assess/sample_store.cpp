@@ -4,11 +4,15 @@
 #include "mbd/io/digest.h"
 #include "run/version.h"
 
+#include <array>
 #include <filesystem>
 
 namespace steplap::assess {
 
 namespace {
+
+constexpr std::array<const char*, 9> k_numbers{"least_margin", "slid",       "overlap_left", "slips", "lifts",
+                                               "comes_apart",  "acceptance", "planes_use",   "planes"};
 
 // All that a sample's outcome hangs on.
 std::string scene_of(const SamplingOptions& options, const std::vector<DrivenModel>& models,
@@ -17,7 +21,7 @@ std::string scene_of(const SamplingOptions& options, const std::vector<DrivenMod
   for (std::size_t m = 0; m < models.size(); ++m) {
     Sha256 sum;
     for (const DriveHistory& h : histories[m])
-      for (const std::vector<double>* values : {&h.x, &h.y})
+      for (const std::vector<double>* values : {&h.x, &h.y, &h.across})
         sum.add({reinterpret_cast<const char*>(values->data()), values->size() * sizeof(double)});
     scene += "model " + sha256(models[m].text) + " driven by " + sum.hex();
     for (const DriveHistory& h : histories[m]) scene += " " + number_text(h.step) + "*" + std::to_string(h.x.size());
@@ -40,7 +44,9 @@ study::StoredSample stored(const VoyageSample& sample, long number) {
                          s.slips ? 1.0 : 0.0,
                          s.lifts ? 1.0 : 0.0,
                          s.comes_apart ? 1.0 : 0.0,
-                         static_cast<double>(s.acceptance)};
+                         static_cast<double>(s.acceptance),
+                         s.planes_use,
+                         static_cast<double>(s.planes)};
   row.outcome.curve.assign(sample.slips.begin(), sample.slips.end());
   return row;
 }
@@ -52,6 +58,8 @@ void restore(const study::StoredSample& row, VoyageSample& sample) {
   s.least_margin = n[0], s.slid = n[1], s.overlap_left = n[2];
   s.slips = n[3] != 0.0, s.lifts = n[4] != 0.0, s.comes_apart = n[5] != 0.0;
   s.acceptance = static_cast<Verdict>(static_cast<int>(n[6]));
+  s.planes_use = n[7];
+  s.planes = static_cast<Verdict>(static_cast<int>(n[8]));
   sample.slips.clear();
   for (const double slip : row.outcome.curve) sample.slips.push_back(slip != 0.0 ? 1 : 0);
 }
@@ -66,7 +74,7 @@ SampleStore::SampleStore(const SamplingOptions& options, const std::vector<Drive
   identity.kind = "assessment";
   identity.scene = identity.study = scene_of(options, models, histories, uncertain);
   for (std::size_t i = 0; i < uncertain.values().size(); ++i) identity.variables.push_back("u" + std::to_string(i + 1));
-  identity.numbers = {"least_margin", "slid", "overlap_left", "slips", "lifts", "comes_apart", "acceptance"};
+  identity.numbers.assign(k_numbers.begin(), k_numbers.end());
   identity.has_curves = true;
   const std::filesystem::path folder = std::filesystem::path(options.store).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
@@ -86,7 +94,8 @@ long SampleStore::load(std::vector<VoyageSample>& samples) {
   long known = 0;
   for (const study::StoredSample& row : rows) {
     VoyageSample& sample = samples[static_cast<std::size_t>(known)];
-    if (row.values != sample.values || row.outcome.numbers.size() != 7) break; // a store that was changed: made again from here
+    if (row.values != sample.values || row.outcome.numbers.size() != k_numbers.size())
+      break; // a store that was changed: made again from here
     restore(row, sample);
     ++known;
   }

@@ -17,22 +17,47 @@ namespace steplap::assess {
 
 namespace {
 
-using Runners = std::vector<std::unique_ptr<VoyageRunner>>; ///< one for each model
+struct Runners {
+  std::vector<std::unique_ptr<VoyageRunner>> of_models;
+  const std::vector<std::vector<DriveHistory>>& histories; ///< per model, of the events
+  const std::vector<SharedFriction>& shared;
+};
 
 Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                   const UncertainValues& uncertain) {
-  Runners runners;
+                   const std::vector<SharedFriction>& shared, const UncertainValues& uncertain) {
+  Runners runners{{}, histories, shared};
   for (std::size_t m = 0; m < models.size(); ++m)
-    runners.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
+    runners.of_models.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
   return runners;
 }
 
+// Judges shared frictions event by event, as far as all models came.
+void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
+  std::size_t events = outcomes.front().events_made;
+  for (const VoyageOutcome& outcome : outcomes) events = std::min(events, outcome.events_made);
+  SharedFrictions frictions(runners.shared);
+  const std::vector<FrictionTrace> none;
+  for (std::size_t e = 0; e < events; ++e) {
+    std::vector<const std::vector<FrictionTrace>*> traces;
+    std::vector<const DriveHistory*> histories;
+    for (std::size_t m = 0; m < outcomes.size(); ++m) {
+      traces.push_back(e < outcomes[m].traces.size() ? &outcomes[m].traces[e] : &none);
+      histories.push_back(&runners.histories[m][e]);
+    }
+    for (const SharedPassage& passage : frictions.pass(traces, histories))
+      add_to(summary, runners.shared[passage.friction], passage, e + 1);
+  }
+}
+
 void run(Runners& runners, const UncertainValues& uncertain, VoyageSample& sample, const std::function<bool()>& stop) {
-  for (std::size_t m = 0; m < runners.size(); ++m) {
-    const VoyageOutcome outcome = runners[m]->run(uncertain.numbers(m, sample.values), stop);
+  std::vector<VoyageOutcome> outcomes;
+  for (std::size_t m = 0; m < runners.of_models.size(); ++m) {
+    VoyageOutcome outcome = runners.of_models[m]->run(uncertain.numbers(m, sample.values), stop);
     worsen(sample.summary, outcome.summary);
     sample.slips.insert(sample.slips.end(), outcome.slips.begin(), outcome.slips.end());
+    if (!runners.shared.empty()) outcomes.push_back(std::move(outcome));
   }
+  if (!outcomes.empty()) judge_planes(runners, outcomes, sample.summary);
 }
 
 Probability probability(long harmful, long unknown, long runs) {
@@ -144,8 +169,8 @@ private:
 } // namespace
 
 VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                         const UncertainValues& uncertain, const std::vector<double>& values) {
-  Runners runners = runners_of(models, histories, uncertain);
+                         const UncertainValues& uncertain, const std::vector<double>& values, const std::vector<SharedFriction>& shared) {
+  Runners runners = runners_of(models, histories, shared, uncertain);
   VoyageSample sample;
   sample.values = values;
   run(runners, uncertain, sample, {});
@@ -153,14 +178,15 @@ VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vect
 }
 
 std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                                         const UncertainValues& uncertain, const SamplingOptions& options) {
+                                         const UncertainValues& uncertain, const SamplingOptions& options,
+                                         const std::vector<SharedFriction>& shared) {
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   std::vector<VoyageSample> samples(static_cast<std::size_t>(std::max(0L, options.samples)));
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);
   VoyageCourse course(options, store, samples);
   std::vector<Runners> teams; // compiled by one thread: models are read and completed here
-  for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, uncertain));
+  for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, shared, uncertain));
     // Without batches, at whose ends threads would wait for the longest voyage.
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
   for (long n = course.done(); n < options.samples; ++n)
@@ -186,7 +212,8 @@ Probability damage_probability(const std::vector<VoyageSample>& samples) {
   long damaged = 0, unknown = 0;
   for (const VoyageSample& sample : samples) {
     if (is_damaged(sample.summary)) ++damaged; // whatever came after
-    else if (!sample.summary.unknown.empty() || sample.summary.acceptance == Verdict::open) ++unknown;
+    else if (!sample.summary.unknown.empty() || sample.summary.acceptance == Verdict::open || sample.summary.planes != Verdict::hold)
+      ++unknown;
   }
   return probability(damaged, unknown, static_cast<long>(samples.size()));
 }

@@ -4,6 +4,7 @@
 // (tools/study/store.h), so that an assessment that was interrupted goes on where it was.
 #pragma once
 
+#include "tools/assess/shared_friction.h"
 #include "tools/assess/uncertain_values.h"
 #include "tools/assess/voyage_runner.h"
 
@@ -37,13 +38,15 @@ struct Probability {
   long runs = 0, unknown = 0;
 };
 
-/// Throws NumericalFailure if it was stopped.
+/// `shared`: frictions that the models share. Throws NumericalFailure if it was stopped.
 [[nodiscard]] std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
                                                        const std::vector<std::vector<DriveHistory>>& histories,
-                                                       const UncertainValues& uncertain, const SamplingOptions& options);
+                                                       const UncertainValues& uncertain, const SamplingOptions& options,
+                                                       const std::vector<SharedFriction>& shared = {});
 /// One voyage with these values; of all models.
 [[nodiscard]] VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                                       const UncertainValues& uncertain, const std::vector<double>& values);
+                                       const UncertainValues& uncertain, const std::vector<double>& values,
+                                       const std::vector<SharedFriction>& shared = {});
 
 /// Of a joint to slip in an event of a model.
 [[nodiscard]] Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event,

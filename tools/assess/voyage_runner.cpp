@@ -26,8 +26,9 @@ std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double
 }
 
 // Channels that joints, criteria and trust look at: the search for extremes of all others would take most of a sample's time.
-std::vector<std::string> channels_wanted(const Model& whole, const System& system) {
+std::vector<std::string> channels_wanted(const Model& whole, const System& system, const std::vector<std::string>& traced) {
   std::vector<std::string> wanted = channels_of_trust(whole);
+  for (const std::string& channel : traced_channels(traced)) wanted.push_back(channel);
   const auto is_wanted = [&](const std::string& name) {
     for (const ElementEntry& entry : whole.elements)
       if (entry.kind == &step_lap_joint_kind() && name.starts_with(entry.element->name + ".")) return true;
@@ -46,6 +47,7 @@ std::vector<std::string> channels_wanted(const Model& whole, const System& syste
 
 VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHistory>& histories, std::vector<std::string> paths)
     : model_(model), begins_(begins_of(histories, model.recorder.settle)), given_(model.given) {
+  for (const DriveHistory& history : histories) steps_.push_back(trace_step(history));
   std::vector<DriveHistory> placed = histories;
   for (std::size_t i = 0; i < placed.size(); ++i) placed[i].begin = begins_[i];
   drive_by(given_, std::move(placed), std::max(begins_.back(), 1e-9));
@@ -57,7 +59,7 @@ VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHist
       for (const Criterion& known : whole.criteria)
         if (known.name == criterion->name)
           criterion->at_least = known.at_least, criterion->at_most = known.at_most, criterion->within = known.within;
-  const std::vector<std::string> wanted = channels_wanted(whole, *system);
+  const std::vector<std::string> wanted = channels_wanted(whole, *system, model_.traced);
   variants_ = std::make_unique<Variants>(given_, std::move(paths), &wanted);
 }
 
@@ -113,12 +115,15 @@ void VoyageRunner::pass_events(Course& course) {
     }
     SimulationOptions options = options_of(course.whole);
     options.end = begins_[i + 1];
-    options.output_step = 0.0;
+    options.output_step = model_.traced.empty() ? 0.0 : steps_[i];
+    options.channels = traced_channels(model_.traced);
     Simulation simulation(course.system, state, std::move(options));
     simulation.run();
     const RunResult result = std::move(simulation).result();
     look(course.whole, course.system, result, i, course.outcome, course.x, course.y, course.slid);
     ++course.outcome.events_made;
+    if (!model_.traced.empty())
+      course.outcome.traces.push_back(friction_traces(course.whole, course.system, result, model_.traced, begins_[i], steps_[i]));
     state = result.final_state;
     state.t = begins_[i + 1]; // to the last bit
     state.dissipated = state.work = 0.0;

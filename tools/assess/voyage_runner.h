@@ -4,6 +4,7 @@
 
 #include "mbd/system/instance.h"
 #include "tools/assess/driven_model.h"
+#include "tools/assess/friction_trace.h"
 #include "tools/assess/voyage_summary.h"
 
 #include <functional>
@@ -18,6 +19,7 @@ struct VoyageOutcome {
   VoyageSummary summary;
   std::vector<char> slips; ///< per event: a joint slipped
   std::size_t events_made = 0;
+  std::vector<std::vector<FrictionTrace>> traces; ///< per event made, of DrivenModel::traced
 };
 
 /// One object for each thread.
@@ -38,6 +40,7 @@ private:
   void pass_events(Course& course);
   const DrivenModel& model_;
   std::vector<double> begins_; ///< s, of each event; then the end of the last
+  std::vector<double> steps_;  ///< s, of traces in each event
   Model given_;
   std::unique_ptr<Variants> variants_;
 };

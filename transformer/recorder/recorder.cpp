@@ -20,6 +20,10 @@ void check(const Recorder& recorder, const Model& model) {
   if (recorder.x != "none" && letter_of(recorder.x) == letter_of(recorder.y))
     wrong("y",
           "the recorder '" + recorder.name + "' has its axis " + letter_of(recorder.x) + " along x and along y: they are different axes");
+  for (const std::string* const axis : {&recorder.x, &recorder.y})
+    if (recorder.across != "none" && letter_of(recorder.across) == letter_of(*axis))
+      wrong("across", "the recorder '" + recorder.name + "' has its axis " + letter_of(*axis) +
+                          " in the plane and across it: they are different axes");
   if (recorder.x == "none" && recorder.y == "none")
     wrong("x", "the recorder '" + recorder.name + "' has no axis in the plane of the model: give x, y or both");
   const auto is_recorder = [](const TableEntry& entry) { return entry.kind == &recorder_kind(); };
@@ -44,6 +48,10 @@ const TableKind& recorder_kind() {
     f.add("marker", &T::marker).as(FieldType::marker).required().doc("where the recorder sat; its axes count");
     f.add("x", &T::x).one_of(axes).required().doc("axis of the record that points along the marker's x; none: no motion that way");
     f.add("y", &T::y).one_of(axes).required().doc("axis of the record that points along the marker's y");
+    f.add("across", &T::across)
+        .one_of(axes)
+        .doc("axis of the record that points out of the plane, from the front face of the core to the back: it takes the place of "
+             "every transverse_acceleration of the model");
     f.add("plane", &T::plane).doc("what people call the plane of the model: lengthwise, crosswise");
     f.add("replaces", &T::replaces)
         .as(FieldType::elements)

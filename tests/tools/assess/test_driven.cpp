@@ -2,6 +2,7 @@
 #include "driven_scene.h"
 
 #include "run/run.h"
+#include "tools/assess/voyage_runner.h"
 
 #include <doctest/doctest.h>
 
@@ -103,4 +104,83 @@ TEST_CASE("the model's own speed is left out: a machine on arrival does not move
   text.replace(text.find("end = 1.0"), 9, "end = 1.0\nvelocity = [2.0, 0.0]");
   const DriveHistory pulse = triangles({0.6 * 9.81}, 0.1, 0.4);
   CHECK(final_value(driven(text), pulse, "floor.slide") == final_value(driven(block_text(0.3)), pulse, "floor.slide"));
+}
+
+namespace {
+
+// A core on a driven tank, with how the record or a signal of the model presses its stack.
+DrivenModel pressed_core(const Folder& folder, const std::string& recorder, const std::string& signal) {
+  const std::string file = folder.file("pressed.toml");
+  write(file, "format = 1\nextends = \"" STEPLAP_MODELS "/layouts/three_limb_humping.toml\"\n[[core]]\nname = "
+              "\"core\"\ntransverse_acceleration = \"side\"\ntransverse_support = \"front\"\n" +
+                  signal +
+                  "[[marker]]\nname = \"lid\"\nbody = \"tank\"\nat = [0.0, 3.0]\n[[recorder]]\nname = \"recorder\"\nmarker = \"lid\"\n" +
+                  "x = \"x\"\ny = \"z\"\nreplaces = [\"drive\", \"front axles\", \"rear axles\"]\nsettle = 0.2\n" + recorder);
+  return read_driven_model(file);
+}
+
+double least_margin(const DrivenModel& model, const std::vector<double>& along, const std::vector<double>& across) {
+  DriveHistory history;
+  history.step = 1e-3;
+  history.x = along, history.y.assign(along.size(), 0.0);
+  history.across = across;
+  const Passage passage = Traveller(model).pass(history, Estimating::never);
+  REQUIRE_MESSAGE(passage.is_made, passage.reason);
+  double least = 1e300;
+  for (const JointPassage& joint : passage.joints) least = std::min(least, joint.margin);
+  // The way of the samples sees the same axis.
+  const VoyageOutcome outcome = VoyageRunner(model, {history, history}, {}).run({});
+  REQUIRE_MESSAGE(outcome.summary.unknown.empty(), outcome.summary.unknown);
+  CHECK(outcome.summary.least_margin <= least * (1.0 + 1e-3)); // the same event again, from where the first one left it
+  return least;
+}
+
+} // namespace
+
+TEST_CASE("the record's third axis presses the sheets of a core as a signal of the model does") {
+  const Folder folder;
+  const std::vector<double> along = triangles({2.0}, 0.1, 0.1).x, across = triangles({8.0}, 0.1, 0.1).x;
+  std::vector<double> against = across;
+  for (double& value : against) value = -value;
+  const std::string none = "[[signal]]\nname = \"side\"\nkind = \"constant\"\nvalue = 0.0\n";
+  const std::string pulse = "[[signal]]\nname = \"side\"\nkind = \"triangle\"\npeak = 8.0\nduration = 0.1\n";
+  const DrivenModel recorded = pressed_core(folder, "across = \"y\"\n", none);
+  CHECK(recorded.notes.back().find("'side' across 'core'") != std::string::npos);
+  const double with_record = least_margin(recorded, along, across), mirrored = least_margin(recorded, along, against);
+  const double with_signal = least_margin(pressed_core(folder, "", pulse), along, {});
+  CHECK(with_record == doctest::Approx(with_signal).epsilon(1e-6)); // two runs of one tolerance
+  CHECK(with_record > 1.001 * mirrored);                            // held in front it is pressed by one direction, and eased by the other
+  // An event that is cut in two while it presses: no jump, which the pressure of sheets cannot have.
+  const auto part = [&](std::size_t from, std::size_t end) {
+    DriveHistory history;
+    history.step = 1e-3;
+    history.x.assign(along.begin() + static_cast<std::ptrdiff_t>(from), along.begin() + static_cast<std::ptrdiff_t>(end));
+    history.across.assign(across.begin() + static_cast<std::ptrdiff_t>(from), across.begin() + static_cast<std::ptrdiff_t>(end));
+    history.y.assign(history.x.size(), 0.0);
+    return history;
+  };
+  std::vector<DriveHistory> halves{part(0, 50), part(50, along.size())};
+  halves[0].goes_on = true;
+  CHECK(Traveller(recorded).pass(halves[0], Estimating::never).is_made);
+  const VoyageOutcome halved = VoyageRunner(recorded, halves, {}).run({});
+  CHECK(halved.summary.unknown == "");
+  CHECK(halved.summary.least_margin == doctest::Approx(with_record).epsilon(0.02)); // one sample of 1 ms later
+  // Of the record: the sign counts, and an axis that is in the plane already is refused.
+  RecordEvents record;
+  for (const char axis : {'x', 'y', 'z'}) record.recording.layout.axes.push_back({axis, 0, "", 1.0, "", ""});
+  RecordedEvent event;
+  event.window.rate = 100.0;
+  event.window.times = {0.0, 0.01};
+  event.window.filtered = {std::vector<double>{1.0, 1.0}, std::vector<double>{2.0, 2.0}, std::vector<double>{3.0, 3.0}};
+  Recorder recorder;
+  recorder.x = "x", recorder.y = "z", recorder.across = "-y";
+  CHECK(drive_history(record, event, recorder, 0.3).across == std::vector<double>{-2.0, -2.0});
+  recorder.across = "none";
+  CHECK(drive_history(record, event, recorder, 0.3).across.empty());
+  CHECK_THROWS_AS(static_cast<void>(pressed_core(folder, "across = \"-z\"\n", none)), ModelError);
+  CHECK_THROWS_AS(static_cast<void>(driven([] {
+                    std::string text = block_text(0.3);
+                    return text.replace(text.find("settle = 0.3"), 12, "settle = 0.3\nacross = \"y\"");
+                  }())),
+                  ModelError);
 }

@@ -1,0 +1,417 @@
+#include "tools/assess/shared_friction.h"
+
+#include "elements/coulomb_friction.h"
+#include "elements/coulomb_stick.h"
+#include "elements/formula_force.h"
+#include "elements/load.h"
+#include "elements/prescribed_motion.h"
+#include "mbd/base/name_pattern.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/io/presentation.h"
+#include "mbd/model/completion.h"
+#include "run/quantity_text.h"
+#include "tools/assess/sliding_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+
+namespace steplap::assess {
+
+namespace {
+
+constexpr double k_one_line = 1e-6;      // of directions of contacts whose friction is summed
+constexpr double k_same_load = 0.02;     // of normal forces of one contact in two models, which are made independently
+constexpr double k_same_gravity = 1e-6;  // of its sizes
+constexpr double k_part_of_other = 0.05; // of mu N: with less across, the capacity along falls by 0.1 %, and one plane decides alone
+
+const std::string& key_of(const CoulombStick& stick) { return stick.shared_friction.empty() ? stick.name : stick.shared_friction; }
+
+// A model, completed and compiled.
+struct Compiled {
+  Model whole;
+  std::unique_ptr<System> system;
+  explicit Compiled(const DrivenModel& model) : whole(completed(model.given)), system(compile(whole)) {
+    static_cast<void>(check_presentation(whole, *system)); // limits in the units of their channels
+  }
+};
+
+Vec2 normal_of(const System& system, const std::string& element) {
+  for (const FrictionUnit& unit : system.frictions) {
+    const auto* const friction = dynamic_cast<const CoulombFriction*>(unit.friction.get());
+    if (!friction || system.element_names[unit.element] != element) continue;
+    const RowSpec& foot = friction->feet.front();
+    if (foot.kind == MeasureKind::slide) return rotated(foot.direction, system.bodies[foot.b].pose.z());
+  }
+  return Vec2::Zero(); // a wheel's, or one that is gone
+}
+
+// Letter of the record's axis along a direction of the model; ' ' where there is none.
+char letter_along(const DrivenModel& model, const Vec2& direction) {
+  const Vec2 x = rotated(Vec2(1.0, 0.0), model.marker_angle);
+  const std::string& axis = std::abs(x.dot(direction)) >= std::abs(cross(x, direction)) ? model.recorder.x : model.recorder.y;
+  return axis == "none" ? ' ' : axis.back();
+}
+
+// Bodies that an element names, itself or by markers; the ground with a single one.
+std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::string, std::string>& body_of_marker) {
+  std::set<std::string> bodies;
+  const auto add = [&](const std::string& name) {
+    const auto marker = body_of_marker.find(name);
+    if (!name.empty()) bodies.insert(marker == body_of_marker.end() ? name : marker->second);
+  };
+  for (const Field& field : entry.kind->fields.fields()) {
+    const FieldValue value = field.get(entry.element.get());
+    if (field.name == "over" && field.type == FieldType::texts) // guides of a rope
+      for (const std::string& name : std::get<std::vector<std::string>>(value)) add(name);
+    if (field.type == FieldType::marker || field.type == FieldType::body) add(std::get<std::string>(value));
+  }
+  if (bodies.size() == 1) bodies.insert("ground");
+  return bodies;
+}
+
+// Loads and drives hold nothing.
+bool is_action_from_outside(const Element& element) {
+  return dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element) ||
+         dynamic_cast<const PrescribedMotion*>(&element);
+}
+
+// Elements besides `own` by which the load on these frictions is held. The load is all that hangs together with the body that rests on
+// the other one, as far as neither that nor the driven body nor the ground.
+std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& compiled, const std::vector<std::string>& own) {
+  const Model& whole = compiled.whole;
+  std::map<std::string, std::string> body_of_marker;
+  for (const Marker& marker : whole.markers) body_of_marker[marker.name] = marker.body;
+  std::set<std::string> ends{"ground", model.body}, left_out(own.begin(), own.end()), pair;
+  for (const Body& body : whole.bodies)
+    if (body.fixed) ends.insert(body.name);
+  for (const ElementEntry& entry : whole.elements)
+    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get()); stick && left_out.contains(stick->name))
+      left_out.insert(stick->contacts.begin(), stick->contacts.end());
+  std::vector<std::pair<std::string, std::set<std::string>>> edges;
+  for (const ElementEntry& entry : whole.elements) {
+    const std::set<std::string> bodies = bodies_of(entry, body_of_marker);
+    if (left_out.contains(entry.element->name)) pair.insert(bodies.begin(), bodies.end());
+    else if (!is_action_from_outside(*entry.element) && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
+  }
+  std::set<std::string> load;
+  for (const std::string& body : pair)
+    if (load.empty() && !ends.contains(body)) load.insert(body);
+  for (const std::string& body : pair)
+    if (!load.contains(body)) ends.insert(body);
+  for (std::size_t before = 0; before != load.size();) {
+    before = load.size();
+    for (const auto& [name, bodies] : edges)
+      if (std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return load.contains(body); }))
+        for (const std::string& body : bodies)
+          if (!ends.contains(body)) load.insert(body);
+  }
+  std::vector<std::string> holders;
+  for (const auto& [name, bodies] : edges)
+    if (std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return load.contains(body); }) &&
+        std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return ends.contains(body); }))
+      holders.push_back(name);
+  return holders;
+}
+
+std::vector<PlaneOfFriction::Limit> limits_of(const Compiled& compiled, const std::vector<std::string>& elements) {
+  std::vector<PlaneOfFriction::Limit> limits;
+  for (const Criterion& criterion : compiled.whole.criteria) {
+    const bool is_of_slide = std::any_of(elements.begin(), elements.end(), [&](const std::string& element) {
+      return !criterion.channel.empty() &&
+             (matches_pattern(element + ".slide", criterion.channel) || matches_pattern(element + ".slide_rear", criterion.channel));
+    });
+    if (!is_of_slide) continue;
+    double most = std::numeric_limits<double>::infinity();
+    for (const std::optional<double>& limit : {criterion.within, criterion.at_most, criterion.at_least})
+      if (limit) most = std::min(most, std::abs(*limit));
+    limits.push_back({criterion.name, most, criterion.consequence == "reject" ? Verdict::reject : Verdict::inspect});
+  }
+  return limits;
+}
+
+using Sticks = std::map<std::string, std::vector<std::string>>; ///< names of elements by the name of the friction
+
+Sticks sticks_of(const DrivenModel& model) {
+  Sticks sticks;
+  for (const ElementEntry& entry : model.given.elements)
+    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get())) sticks[key_of(*stick)].push_back(stick->name);
+  return sticks;
+}
+
+std::optional<PlaneOfFriction> plane_of(std::size_t index, const DrivenModel& model, const Compiled& compiled, const std::string& name,
+                                        const std::vector<std::string>& elements) {
+  PlaneOfFriction plane;
+  plane.model = index;
+  plane.model_name = model.name;
+  const Vec2 normal = normal_of(*compiled.system, elements.front());
+  if (normal == Vec2::Zero()) return {};
+  for (const std::string& element : elements)
+    if ((normal_of(*compiled.system, element) - normal).norm() > k_one_line)
+      throw ModelError({model.file, 0, 0}, "'" + elements.front() + "' and '" + element + "' are one friction, '" + name +
+                                               "', for models of other planes, and act along different lines: give one of them a "
+                                               "'shared_friction' of its own");
+  plane.tangent = Vec2(normal.y(), -normal.x());
+  const Vec2& gravity = compiled.system->gravity;
+  plane.gravity = gravity.norm();
+  plane.downhill = gravity.dot(plane.tangent);
+  plane.tilt = plane.gravity > 0.0 ? -gravity.dot(normal) / plane.gravity : 1.0;
+  plane.holders = holders_of(model, compiled, elements);
+  plane.limits = limits_of(compiled, elements);
+  return plane;
+}
+
+// Adds the elements to those that are traced; returns their places there.
+std::vector<std::size_t> trace(DrivenModel& model, const std::vector<std::string>& elements) {
+  std::vector<std::size_t> places;
+  for (const std::string& element : elements) {
+    const auto known = std::find(model.traced.begin(), model.traced.end(), element);
+    places.push_back(static_cast<std::size_t>(known - model.traced.begin()));
+    if (known == model.traced.end()) model.traced.push_back(element);
+  }
+  return places;
+}
+
+} // namespace
+
+std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& models) {
+  std::vector<SharedFriction> found;
+  std::vector<Sticks> sticks;
+  std::vector<std::unique_ptr<Compiled>> compiled(models.size());
+  for (DrivenModel& model : models) {
+    model.traced.clear();
+    sticks.push_back(sticks_of(model));
+  }
+  const auto plane = [&](std::size_t m, const std::string& name) {
+    if (!compiled[m]) compiled[m] = std::make_unique<Compiled>(models[m]);
+    return plane_of(m, models[m], *compiled[m], name, sticks[m].at(name));
+  };
+  for (std::size_t i = 0; i < models.size(); ++i)
+    for (std::size_t k = i + 1; k < models.size(); ++k)
+      for (const auto& [name, elements] : sticks[i]) {
+        if (!sticks[k].contains(name)) continue;
+        std::optional<PlaneOfFriction> first = plane(i, name), second = plane(k, name);
+        if (!first || !second || letter_along(models[i], first->tangent) == letter_along(models[k], second->tangent)) continue;
+        first->traces = trace(models[i], elements);
+        second->traces = trace(models[k], sticks[k].at(name));
+        found.push_back({name, {std::move(*first), std::move(*second)}});
+      }
+  return found;
+}
+
+// --- an event ---------------------------------------------------------------------------------------
+
+struct SharedFrictionCourse::Instant {
+  std::array<double, 2> force{}; ///< N, of the models
+  std::array<double, 2> pull{};  ///< m/s², acceleration that friction has to give to what lies on it
+  std::array<bool, 2> sticks{};
+  double normal = 0.0; ///< N, of both planes
+};
+
+namespace {
+
+double at(const std::vector<double>& values, double place) {
+  if (values.empty() || place >= static_cast<double>(values.size() - 1)) return 0.0; // the record is over
+  const auto i = static_cast<std::size_t>(place);
+  return values[i] + (place - static_cast<double>(i)) * (values[i + 1] - values[i]);
+}
+
+template <class T> T last_or(const std::vector<T>& values, std::size_t i) { return values[std::min(i, values.size() - 1)]; }
+
+// The sum of the frictions of a plane.
+FrictionTrace sum_of(const PlaneOfFriction& plane, const std::vector<FrictionTrace>& traces) {
+  FrictionTrace sum = traces[plane.traces.front()];
+  for (std::size_t k = 1; k < plane.traces.size(); ++k) {
+    const FrictionTrace& more = traces[plane.traces[k]];
+    sum.lifts |= more.lifts;
+    sum.mu_static = std::min(sum.mu_static, more.mu_static);
+    sum.mu_kinetic = std::min(sum.mu_kinetic, more.mu_kinetic);
+    for (std::size_t i = 0; i < sum.force.size(); ++i) {
+      sum.force[i] += last_or(more.force, i);
+      sum.normal[i] += last_or(more.normal, i);
+      sum.sticks[i] = sum.sticks[i] != 0 && last_or(more.sticks, i) != 0 ? 1 : 0;
+    }
+  }
+  return sum;
+}
+
+double both_tilts(const std::array<PlaneOfFriction, 2>& planes) {
+  const double a = planes[0].tilt, b = planes[1].tilt;
+  return std::sqrt(std::max(0.0, a * a + b * b - 1.0));
+}
+
+} // namespace
+
+std::vector<SharedFrictionCourse::Instant> SharedFrictionCourse::instants(const std::array<FrictionTrace, 2>& traces,
+                                                                          const std::array<const DriveHistory*, 2>& histories) const {
+  std::vector<Instant> all(std::max(traces[0].force.size(), traces[1].force.size()));
+  const double tilt = both_tilts(friction_.planes);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].normal = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < 2; ++p) {
+      const PlaneOfFriction& plane = friction_.planes[p];
+      const DriveHistory& history = *histories[p];
+      const double place = static_cast<double>(k) * traces[p].step / history.step;
+      all[k].force[p] = last_or(traces[p].force, k);
+      all[k].sticks[p] = last_or(traces[p].sticks, k) != 0;
+      all[k].pull[p] = plane.tangent.x() * at(history.x, place) + plane.tangent.y() * at(history.y, place) - plane.downhill;
+      const double lost = plane.tilt > 0.0 ? (*at_rest_)[p] * (1.0 - tilt / plane.tilt) : 0.0;
+      all[k].normal = std::min(all[k].normal, std::max(0.0, last_or(traces[p].normal, k) - lost));
+    }
+  }
+  return all;
+}
+
+std::string SharedFrictionCourse::disagreement_at_rest() const {
+  const PlaneOfFriction &a = friction_.planes[0], &b = friction_.planes[1];
+  if (std::abs(a.gravity - b.gravity) > k_same_gravity * std::max(a.gravity, b.gravity))
+    return "gravity is " + quantity_text(a.gravity, "m/s^2") + " in '" + a.model_name + "' and " + quantity_text(b.gravity, "m/s^2") +
+           " in '" + b.model_name + "', which share the friction '" + friction_.name +
+           "': tilt gravity in each plane by the slope of that plane, and leave its size";
+  const double first = (*at_rest_)[0] / a.tilt, second = (*at_rest_)[1] / b.tilt;
+  if (std::abs(first - second) > k_same_load * std::max(first, second))
+    return "the friction '" + friction_.name + "' carries " + quantity_text(first, "N") + " at rest in '" + a.model_name + "' and " +
+           quantity_text(second, "N") + " in '" + b.model_name +
+           "': make the models agree, or tell two different frictions apart by 'shared_friction'";
+  return "";
+}
+
+void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std::array<FrictionTrace, 2>& traces, bool goes_on,
+                                 SharedPassage& passage) {
+  // T = m a of what holds, by least squares; and which way T acts for a positive a.
+  double mass_sum = 0.0, squares = 0.0;
+  std::array<double, 2> sign{};
+  for (std::size_t p = 0; p < 2; ++p) {
+    double held = 0.0, all = 0.0;
+    for (const Instant& now : instants) {
+      all += now.force[p] * now.pull[p];
+      if (!now.sticks[p]) continue;
+      held += now.force[p] * now.pull[p];
+      squares += now.pull[p] * now.pull[p];
+    }
+    sign[p] = all < 0.0 ? -1.0 : 1.0;
+    mass_sum += sign[p] * held;
+  }
+  const PlaneOfFriction& plane = friction_.planes[0];
+  double mass = plane.gravity > 0.0 ? (*at_rest_)[0] / (plane.tilt * plane.gravity) : std::numeric_limits<double>::infinity();
+  if (squares > 0.0 && mass_sum > 0.0) mass = std::min(mass, mass_sum / squares);
+  if (!std::isfinite(mass) || !(mass > 0.0)) {
+    passage.disagreement = "nothing tells how heavy the load on '" + friction_.name + "' is: it neither has weight nor is it pulled";
+    return;
+  }
+  const double mu_static = std::min(traces[0].mu_static, traces[1].mu_static);
+  SlidingPoint point(mass, mu_static, std::min(traces[0].mu_kinetic, traces[1].mu_kinetic), 1e-4, velocity_);
+  const auto load = [&](const Instant& now) {
+    PointLoad result;
+    for (int p = 0; p < 2; ++p) {
+      const auto i = static_cast<std::size_t>(p);
+      result.drive[p] = now.sticks[i] ? -now.force[i] : -sign[i] * mass * now.pull[i];
+    }
+    result.normal = now.normal;
+    return result;
+  };
+  for (std::size_t k = 1; k < instants.size(); ++k) point.advance(load(instants[k - 1]), load(instants[k]), traces[0].step);
+  passage.slid = goes_on || point.come_to_rest(load(instants.back())) ? point.path() : std::numeric_limits<double>::infinity();
+  velocity_ = goes_on ? point.velocity() : Vec2::Zero();
+}
+
+SharedPassage SharedFrictionCourse::pass(const std::array<FrictionTrace, 2>& traces, const std::array<const DriveHistory*, 2>& histories) {
+  SharedPassage passage;
+  passage.slid_total = slid_total_;
+  if (traces[0].force.empty() || traces[1].force.empty()) return passage; // a run that was not made tells why itself
+  if (!at_rest_) at_rest_ = {traces[0].normal.front(), traces[1].normal.front()};
+  passage.disagreement = disagreement_at_rest();
+  if (!passage.disagreement.empty()) return passage;
+  const std::vector<Instant> all = instants(traces, histories);
+  const double mu = std::min(traces[0].mu_static, traces[1].mu_static);
+  constexpr double k_unloaded = 1e-6, k_full = 1.0 - 1e-9; // of the load at rest; of mu N
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Instant& now = all[k];
+    const double capacity = mu * now.normal;
+    if (!(now.normal > k_unloaded * (*at_rest_)[0]) || !(capacity > 0.0)) continue;
+    const double use = portable::hypot(now.force[0], now.force[1]) / capacity;
+    if (use > passage.use) passage.use = use, passage.at = static_cast<double>(k) * traces[0].step;
+    const bool is_alone = (!now.sticks[0] && now.force[0] != 0.0) || (!now.sticks[1] && now.force[1] != 0.0);
+    passage.slips |= (use >= k_full || is_alone) && std::min(std::abs(now.force[0]), std::abs(now.force[1])) >= k_part_of_other * capacity;
+  }
+  const bool goes_on = histories[0]->goes_on && histories[1]->goes_on;
+  if (passage.slips || velocity_ != Vec2::Zero()) {
+    passage.slips = true;
+    slide(all, traces, goes_on, passage);
+    for (std::size_t p = 0; p < 2 && passage.bound.empty(); ++p)
+      if (traces[p].lifts) passage.bound = "a contact under it lifts in '" + friction_.planes[p].model_name + "'";
+      else if (!friction_.planes[p].holders.empty())
+        passage.bound = "'" + friction_.planes[p].holders.front() + "' holds the load as well in '" + friction_.planes[p].model_name + "'";
+  }
+  passage.slid_total = slid_total_ += passage.slid;
+  return passage;
+}
+
+SharedFrictions::SharedFrictions(const std::vector<SharedFriction>& frictions) : frictions_(frictions) {
+  for (const SharedFriction& friction : frictions) courses_.emplace_back(friction);
+}
+
+std::vector<SharedPassage> SharedFrictions::pass(const std::vector<const std::vector<FrictionTrace>*>& traces,
+                                                 const std::vector<const DriveHistory*>& histories) {
+  std::vector<SharedPassage> passages;
+  for (std::size_t f = 0; f < frictions_.size(); ++f) {
+    std::array<FrictionTrace, 2> both;
+    std::array<const DriveHistory*, 2> driven{};
+    for (std::size_t p = 0; p < 2; ++p) {
+      const PlaneOfFriction& plane = frictions_[f].planes[p];
+      if (!traces[plane.model]->empty()) both[p] = sum_of(plane, *traces[plane.model]);
+      driven[p] = histories[plane.model];
+    }
+    passages.push_back(courses_[f].pass(both, driven));
+    passages.back().friction = f;
+  }
+  return passages;
+}
+
+void add_to(VoyageSummary& summary, const SharedFriction& friction, const SharedPassage& passage, std::size_t number) {
+  const std::string where = "event " + std::to_string(number);
+  VoyageSummary now;
+  now.planes_use = passage.use;
+  if (!passage.disagreement.empty()) now.unknown = passage.disagreement;
+  if (passage.slips && passage.disagreement.empty()) {
+    const std::string slid = std::isfinite(passage.slid_total) ? "slides " + quantity_text(passage.slid_total, "m") : "slides without end";
+    now.planes_slip = "In " + where + " '" + friction.planes[0].model_name + "' and '" + friction.planes[1].model_name +
+                      "' together ask for " + rounded_text(100.0 * passage.use, 4) + " % of the friction '" + friction.name +
+                      "': a point that moves in both planes " + slid + (number > 1 ? " in all" : "");
+    double least = std::numeric_limits<double>::infinity();
+    for (const PlaneOfFriction& plane : friction.planes)
+      for (const PlaneOfFriction::Limit& limit : plane.limits) {
+        least = std::min(least, limit.most);
+        if (passage.slid_total <= limit.most || !passage.bound.empty() || limit.consequence <= now.acceptance) continue;
+        now.acceptance = limit.consequence;
+        now.first_unmet = "'" + limit.name + "' in " + where + " by both planes together, '" + friction.name + "' " + slid + " and may " +
+                          quantity_text(limit.most, "m");
+      }
+    if (!passage.bound.empty()) {
+      now.planes = Verdict::inspect;
+      now.planes_slip += ". That is an upper bound, as " + passage.bound;
+    } else if (!std::isfinite(least)) {
+      now.planes = Verdict::open;
+      now.planes_slip += ". No [[acceptance]] says how far it may: bound the channel 'slide'";
+    } else {
+      now.planes = passage.slid_total > least ? Verdict::inspect : Verdict::hold;
+      now.planes_slip += "; " + quantity_text(least, "m") + " are allowed";
+    }
+    now.planes_slip += ".";
+  }
+  worsen(summary, now);
+}
+
+std::vector<std::string> assumptions_of(const std::vector<SharedFriction>& frictions) {
+  std::vector<std::string> sentences;
+  for (const SharedFriction& friction : frictions)
+    sentences.push_back("'" + friction.name + "' is one friction in '" + friction.planes[0].model_name + "' and '" +
+                        friction.planes[1].model_name +
+                        "': both planes together are held against it. Turning about the vertical axis (yaw) is not modelled.");
+  return sentences;
+}
+
+} // namespace steplap::assess
