@@ -234,6 +234,8 @@ const ElementKind& coulomb_stick_kind() {
         .doc("the contacts that press: unilateral_contact elements, or one of a circle");
     f.add("static_friction", &T::static_friction).not_negative().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
+    f.add("source", &T::source)
+        .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_coulomb;
     k.example = R"([[element]]

@@ -3,6 +3,7 @@
 #include "mbd/trust/judge.h"
 #include "mbd/trust/weighed_errors.h"
 #include "run/findings.h"
+#include "run/plausible_run.h"
 #include "run/result_files.h"
 #include "run/with_settings.h"
 
@@ -81,6 +82,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   const RunResult& result = report.run.result;
   report.findings = std::move(before);
   for (const Finding& finding : findings_after(loaded, result)) add_finding(report, finding, options);
+  if (!options.start)
+    for (const Finding& finding : far_rest(loaded, result)) add_finding(report, finding, options);
   for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
   const RunStatistics& s = result.statistics;
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
