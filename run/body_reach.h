@@ -1,4 +1,4 @@
-// How large bodies are by what a model says of them: outlines, markers, radii of elements that touch them.
+// Sizes of bodies by what a model says of them: outlines, markers, radii of elements that touch them.
 #pragma once
 
 #include "mbd/model/model.h"

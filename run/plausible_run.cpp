@@ -10,6 +10,7 @@
 #include "run/range_index.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -23,6 +24,13 @@ constexpr double k_moved_share = 0.01; // of a body's size: what settles on spri
 constexpr double k_turned = 0.05;      // rad: three degrees, which a drawing shows
 constexpr double k_far_limit = 1e3;    // a limit in metres where millimetres were meant
 constexpr double k_outside = 0.01;     // of the outer part's width: what stands on an edge is not through it
+
+bool is_number(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && last == end;
+}
 
 double signed_distance(const Vec2& p, const Vec2& from, const Vec2& to) { // positive: on the left
   const Vec2 along = to - from;
@@ -50,7 +58,7 @@ std::vector<Vec2> hull_of(std::vector<Vec2> points) {
   return hull;
 }
 
-// How far p lies inside the hull's nearest edge line; negative: beyond it.
+// Distance by which p lies inside the hull's nearest edge line; negative: beyond it.
 double depth_in(const std::vector<Vec2>& hull, const Vec2& p) {
   double depth = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.size(); ++i) depth = std::min(depth, signed_distance(p, hull[i], hull[(i + 1) % hull.size()]));
@@ -94,7 +102,7 @@ std::vector<Part> parts_of_run(const LoadedModel& loaded) {
   return parts;
 }
 
-// How far a corner of `inner` that began inside `outer` is beyond its edge at the end, m.
+// Distance by which a corner of `inner` that began inside `outer` is beyond its edge at the end, m.
 double way_out(const Part& inner, const Part& outer, const LoadedModel& loaded, const State& end) {
   const System& system = *loaded.system;
   const Vec3 on = pose_of(system, loaded.assembled, outer.body), at = pose_of(system, loaded.assembled, inner.body);
@@ -162,15 +170,17 @@ std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& resu
       if (matches_pattern(range.channel->name, criterion.channel)) own = std::max(own, size_of(range));
       if (range.channel->unit == judged.unit) any = std::max(any, size_of(range));
     }
-    double limit = 0.0; // beyond which a value would have to go
-    if (criterion.within) limit = *criterion.within;
-    if (criterion.at_most) limit = std::max(limit, *criterion.at_most);
-    if (criterion.at_least) limit = std::max(limit, -*criterion.at_least);
-    if (!(limit > k_far_limit * own) || !(limit > any)) continue;
+    // The largest limit whose unit the file leaves out; a limit of "20 mm" is meant as it stands.
+    double limit = 0.0;
+    if (criterion.within && is_number(criterion.within_text)) limit = *criterion.within;
+    if (criterion.at_most && is_number(criterion.at_most_text)) limit = std::max(limit, *criterion.at_most);
+    if (criterion.at_least && is_number(criterion.at_least_text)) limit = std::max(limit, -*criterion.at_least);
+    if (!(limit > k_far_limit * own) || !(limit > any) || !(any > 0.0)) continue; // where nothing acts no size is known
     findings.push_back({"limit_far_beyond", FindingLevel::note,
                         "the limit of '" + criterion.name + "', " + quantity_text(limit, judged.unit) +
                             ", is more than a thousand times what '" + judged.channel + "' reached, " + quantity_text(own, judged.unit) +
-                            ", and beyond every value of this unit in the run: is its unit the one that was meant?",
+                            ", and beyond every value of this unit in the run. The file gives it no unit: is " + judged.unit +
+                            " the one that was meant?",
                         criterion.where});
   }
   return findings;

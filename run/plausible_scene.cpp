@@ -142,13 +142,18 @@ void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings)
                                where));
 }
 
-// Degrees that were typed without their unit.
+// Degrees that were typed without their unit are round numbers; radians that came of degrees or of a formula are not.
+bool is_round(double number) {
+  constexpr double k_places = 1e3;
+  return std::round(number * k_places) == number * k_places;
+}
+
 void note_turns(const ModelEntry& entry, std::vector<Finding>& findings) {
   for (const Field& field : entry.fields->fields()) {
     if (field.type != FieldType::number || field.unit != "rad") continue;
     const FieldValue value = field.get(entry.object);
     const double* const angle = std::get_if<double>(&value);
-    if (!angle || !(std::abs(*angle) > k_whole_turn) || !std::isfinite(*angle)) continue;
+    if (!angle || !(std::abs(*angle) > k_whole_turn) || !std::isfinite(*angle) || !is_round(*angle)) continue;
     findings.push_back({"more_than_a_turn",
                         FindingLevel::note,
                         entry.path + "." + field.name + " = " + number_text(*angle) + " rad is " + rounded_text(*angle / k_whole_turn, 3) +

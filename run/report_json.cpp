@@ -297,6 +297,7 @@ Json judgement_json(const Judgement& judgement) {
 
 Json second_opinion_json(const SecondOpinion& opinion) {
   return {{"method", opinion.method},
+          {"drawn_step", opinion.drawn_step > 0.0 ? Json(opinion.drawn_step) : Json()},
           {"agrees", opinion.none_because.empty() ? Json(opinion.disagreement.empty()) : Json()},
           {"disagreement", opinion.disagreement},
           {"none_because", opinion.none_because},
@@ -335,8 +336,9 @@ Json overview_json(const Overview& overview, ShownDigits digits) {
                             {"beyond", u.beyond},
                             {"error", optional(u.error)}});
   return {{"verdict", name_of(overview.verdict)},
+          {"is_judged", overview.is_judged},
           {"reason", overview.reason},
-          {"trust", {{"level", name_of(overview.trust.level)}, {"text", overview.trust.text}}},
+          {"trust", {{"level", name_of(overview.trust.level)}, {"text", overview.trust.text}, {"guards", overview.trust.guards}}},
           {"worst_instant", optional(overview.worst_instant)},
           {"story", story_json(overview.story)},
           {"utilisations", std::move(utilisations)},

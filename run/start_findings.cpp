@@ -35,8 +35,8 @@ constexpr double k_light = 0.01;      // of a homogeneous plate's moment of iner
 constexpr double k_changes = 1e-3;    // of a state's scale, within the run
 // Of the largest moment that the mass could have within its outline, all of it at the farthest corner; outlines are drawn roughly.
 constexpr double k_heavy = 2.0;
-// Of what the model says of a body's size, if it draws no outline: a flywheel may be known by its crank pin alone. Twice the whole scene
-// is beyond that, too.
+// A radius of gyration is implausible beyond so many times the body's farthest place, and so many times the whole scene: a flywheel may be
+// known by its crank pin alone.
 constexpr double k_beyond_places = 10.0, k_beyond_scene = 2.0;
 
 std::string rounded(double value) {
