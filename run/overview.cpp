@@ -1,6 +1,7 @@
 #include "run/overview.h"
 
 #include "mbd/base/shown_text.h"
+#include "run/at_rest.h"
 #include "run/blows.h"
 
 #include <algorithm>
@@ -201,7 +202,8 @@ Trust trust_by_errors(const Report& report) {
   trust.text += parts.empty() ? "." : ": " + parts + ".";
   const double worst = estimate.error.of(ErrorKind::position).value;
   const WorstError& reaction = estimate.error.of(ErrorKind::reaction);
-  if (worst > k_large_error || reaction.value > k_large_error) trust.level = TrustLevel::limited;
+  const bool has_large = worst > k_large_error || reaction.value > k_large_error;
+  if (has_large && !is_at_rest(report.run)) trust.level = TrustLevel::limited; // at rest there is no range to measure errors by
   if (const std::vector<std::string> names = channels_without_error(report); !names.empty()) {
     trust.level = TrustLevel::limited;
     trust.text += names.size() == 1 ? " That of " + quoted(names.front()) + " is not known."
