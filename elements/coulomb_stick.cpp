@@ -237,6 +237,8 @@ const ElementKind& coulomb_stick_kind() {
     f.add("shared_friction", &T::shared_friction)
         .doc("name by which models of other planes of the same machine share this friction; default: the element's own. Only "
              "`steplap assess` with several models looks at it");
+    f.add("source", &T::source)
+        .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_coulomb;
     k.example = R"([[element]]

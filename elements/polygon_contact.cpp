@@ -458,6 +458,8 @@ const ElementKind& polygon_contact_kind() {
     f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
     f.add("static_friction", &T::static_friction).not_negative().doc("mu_s; default: no friction");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
+    f.add("source", &T::source)
+        .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_polygon;
     k.example = R"([[element]]

@@ -27,6 +27,7 @@ struct PolygonContact : Element {
   double stiffness = 0.0;                 ///< N/m²
   double dissipation = 0.0;               ///< Hunt–Crossley α
   std::optional<double> static_friction, kinetic_friction;
+  std::string source; ///< origin of these values; results name it where the values are unusual
 };
 
 [[nodiscard]] const ElementKind& polygon_contact_kind();

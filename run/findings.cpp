@@ -19,6 +19,7 @@
 #include "run/edges.h"
 #include "run/far_joints.h"
 #include "run/open_end.h"
+#include "run/plausible_run.h"
 #include "run/plausible_scene.h"
 #include "run/quantity_text.h"
 #include "run/seams.h"
@@ -314,6 +315,7 @@ std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
                         remark.is_note ? FindingLevel::note : FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
   for (ShapeRemark& remark : contradicted_shapes(loaded.model))
     findings.push_back({"unlike_shape", FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
+  append(findings, implausible_friction(loaded));
   append(findings, implausible_loads(loaded));
   append(findings, implausible_sizes(loaded));
   return findings;
@@ -376,6 +378,7 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
            "channel '" + range.channel->name +
                "' had no value at some time (a division by zero, a root of what is negative): its extremes are of the other times");
   append(findings, contacts_too_deep(loaded, result.ranges));
+  append(findings, parts_outside(loaded, result));
   if (const std::optional<Finding> divided = divided_steps(loaded, result.statistics.divided_steps)) findings.push_back(*divided);
   append(findings, actions_that_wait(loaded, result));
   return findings;
@@ -396,6 +399,7 @@ std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult&
   append(findings, growing_criteria(loaded, result, judgement));
   append(findings, bodies_that_fall(loaded, result));
   append(findings, open_at_end(loaded, result));
+  append(findings, far_limits(loaded, result, judgement));
   return findings;
 }
 

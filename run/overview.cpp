@@ -1,6 +1,8 @@
 #include "run/overview.h"
 
 #include "mbd/base/shown_text.h"
+#include "run/at_rest.h"
+#include "run/blows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,12 +131,12 @@ private:
 
   std::string open() const {
     const Judgement& j = report_.judgement;
+    if (!j.has_criteria) return "The model asks for nothing: it has no [[acceptance]] by which to judge the run.";
     for (const CriterionResult& c : j.criteria)
       if (c.outcome == Verdict::open)
         return quoted(c.name) +
                (c.doubt.empty() ? " could not be judged: " + first_sentence(c.text) + "." : " is " + first_sentence(c.doubt) + ".");
-    if (!j.caps.empty()) return "Every criterion is met, but the run cannot mean \"hold\": " + first_sentence(j.caps.front()) + ".";
-    return "The model asks for nothing: it has no [[acceptance]] by which to judge the run.";
+    return "Every criterion is met, but the run cannot mean \"hold\": " + first_sentence(j.caps.empty() ? "" : j.caps.front()) + ".";
   }
 
   const Report& report_;
@@ -200,7 +202,8 @@ Trust trust_by_errors(const Report& report) {
   trust.text += parts.empty() ? "." : ": " + parts + ".";
   const double worst = estimate.error.of(ErrorKind::position).value;
   const WorstError& reaction = estimate.error.of(ErrorKind::reaction);
-  if (worst > k_large_error || reaction.value > k_large_error) trust.level = TrustLevel::limited;
+  const bool has_large = worst > k_large_error || reaction.value > k_large_error;
+  if (has_large && !is_at_rest(report.run)) trust.level = TrustLevel::limited; // at rest there is no range to measure errors by
   if (const std::vector<std::string> names = channels_without_error(report); !names.empty()) {
     trust.level = TrustLevel::limited;
     trust.text += names.size() == 1 ? " That of " + quoted(names.front()) + " is not known."
@@ -214,18 +217,38 @@ Trust trust_by_errors(const Report& report) {
   return trust;
 }
 
+std::string second_method(const SecondOpinion& second) {
+  return second.method.substr(0, second.method.find_first_of(" @")) + (second.drawn_step > 0.0 ? " in steps drawn at random" : "");
+}
+
+// Checks that were made, whatever they found. Those that a method makes at each step of its own are counted as one.
+std::vector<std::string> guards_of(const Report& report) {
+  std::vector<std::string> guards = {"energy balance"};
+  if (!report.run.loaded->system->rows.empty()) guards.emplace_back("joints");
+  if (!report.run.failure && report.judgement.has_criteria && !report.ranges().empty()) guards.emplace_back("loads");
+  const Estimate& estimate = report.estimate;
+  if (estimate.errors)
+    guards.emplace_back(!estimate.errors->references.empty() ? "adaptive runs"
+                        : estimate.errors->finer.size() > 1  ? "finer runs"
+                                                             : "finer run");
+  if (estimate.errors && estimate.balance_unknown.empty()) guards.emplace_back("nudges");
+  if (report.second_opinion && report.second_opinion->none_because.empty()) guards.push_back(second_method(*report.second_opinion));
+  return guards;
+}
+
 Trust trust_of(const Report& report) {
   if (report.run.failure) return {TrustLevel::none, "The run did not reach its end: what there is holds up to there only."};
   if (!report.judgement.distrust.empty())
     return {TrustLevel::none, "Do not use these numbers: " + first_sentence(report.judgement.distrust) + "."};
   if (report.estimate.errors) {
     Trust trust = trust_by_errors(report);
-    const auto doubtful = std::count_if(report.judgement.criteria.begin(), report.judgement.criteria.end(),
-                                        [](const CriterionResult& c) { return !c.doubt.empty(); });
+    const auto doubtful = std::count_if(report.judgement.criteria.begin(), report.judgement.criteria.end(), [](const CriterionResult& c) {
+      return !c.doubt.empty() && !c.doubt.starts_with(k_but_for_a_blow);
+    });
     if (doubtful > 0) trust.level = TrustLevel::limited;
     const std::optional<SecondOpinion>& second = report.second_opinion;
     if (second && second->disagreement.empty() && second->none_because.empty())
-      trust.text += " A second method, " + second->method.substr(0, second->method.find_first_of(" @")) + ", agrees.";
+      trust.text += " A second method, " + second_method(*second) + ", agrees.";
     return trust;
   }
   if (report.estimate.status == EstimateStatus::too_dear)
@@ -241,6 +264,7 @@ Overview overview_of(const Report& report, ShownDigits digits) {
   const RangeIndex ranges(report.ranges());
   Overview overview;
   overview.verdict = report.judgement.verdict;
+  overview.is_judged = report.judgement.has_criteria || !report.judgement.distrust.empty() || report.run.failure;
   overview.story = story_of(report, ranges, digits);
   overview.utilisations = utilisations_of(report, ranges, digits);
   const auto judged =
@@ -248,6 +272,7 @@ Overview overview_of(const Report& report, ShownDigits digits) {
   if (judged != overview.utilisations.end()) overview.worst_instant = judged->at;
   else if (!overview.utilisations.empty()) overview.worst_instant = overview.utilisations.front().at;
   overview.trust = trust_of(report);
+  overview.trust.guards = guards_of(report);
   std::unordered_set<std::string> known;
   for (const StoryEntry& entry : overview.story)
     if (tells_of_motion(entry))

@@ -22,15 +22,17 @@ enum class TrustLevel {
 /// "good", "limited" or "none".
 [[nodiscard]] const char* name_of(TrustLevel level);
 
-/// How far, and a sentence that says why.
+/// How far, a sentence that says why, and what has looked at the run.
 struct Trust {
   TrustLevel level = TrustLevel::limited; ///< how far
   std::string text;                       ///< one sentence, or two short ones
+  std::vector<std::string> guards = {};   ///< checks that were made: "energy balance", "finer run", the name of a second method
 };
 
 /// The run on one screen.
 struct Overview {
   Verdict verdict = Verdict::open;       ///< that of the judgement; open where nothing was asked
+  bool is_judged = false;                ///< something was asked of the run, or it is not to be trusted: there is a verdict
   std::string reason;                    ///< why, in one sentence
   Trust trust;                           ///< how far the numbers can be trusted
   std::optional<double> worst_instant;   ///< s: when the worst of what is judged was reached, or of all, if nothing is

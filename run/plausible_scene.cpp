@@ -5,11 +5,13 @@
 #include "mbd/io/record_signal.h"
 #include "mbd/model/signal_network.h"
 #include "run/loaded_model.h"
+#include "run/model_entries.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -22,6 +24,10 @@ constexpr double k_far = 1e6;  // m
 constexpr double k_fast = 1e4; // m/s
 // Numbers of sixteen digits that differ by more leave the smaller one less than four.
 constexpr double k_apart = 1e12;
+
+// Coefficients of dry friction. Machines' contacts have 0.1 to 0.8; beyond that rubber has 0.9 and more, clean metals in air up to 1.1.
+constexpr double k_high_friction = 0.8, k_implausible_friction = 1.2;
+constexpr double k_whole_turn = 2.0 * std::numbers::pi; // rad
 
 Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
 
@@ -104,7 +110,65 @@ template <class Value> std::pair<const Body*, const Body*> extremes_of(const Mod
   return {least, most};
 }
 
+// An element that can say where its friction comes from is asked for it. Tyres cannot, whose treads grip with more than 1, nor can the
+// sheets of cores, for which there are ranges of their own (transformer/core/plausible.h).
+void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
+  const Field* const source = entry.kind->fields.find("source");
+  const Field* worst = nullptr;
+  double most = k_high_friction;
+  for (const Field& field : entry.kind->fields.fields()) {
+    if (!source || field.type != FieldType::number || !field.unit.empty() || field.name.find("friction") == std::string::npos) continue;
+    const FieldValue value = field.get(entry.element.get());
+    const double* const number = std::get_if<double>(&value);
+    if (!number || !(*number > most)) continue;
+    most = *number;
+    worst = &field;
+  }
+  if (!worst) return;
+  const std::string what = entry.kind->name + " '" + entry.element->name + "': '" + worst->name + "' = " + number_text(most);
+  const std::string from = std::get<std::string>(source->get(entry.element.get()));
+  const Location& where = entry.element->where;
+  if (!from.empty())
+    findings.push_back(
+        {"friction_by_source", FindingLevel::note, what + " is beyond what dry contacts usually have. Its source: " + from, where});
+  else if (most < k_implausible_friction)
+    findings.push_back(
+        warning("high_friction",
+                what + " is high: dry contacts of machines have 0.1 to 0.8. If it is meant, say with 'source' where it comes from", where));
+  else
+    findings.push_back(warning("implausible_friction",
+                               what + " is unlike any dry contact: 0.1 to 0.8 are usual, and rubber has 0.9. If it is meant, say with " +
+                                   "'source' where it comes from",
+                               where));
+}
+
+// Degrees that were typed without their unit are round numbers; radians that came of degrees or of a formula are not.
+bool is_round(double number) {
+  constexpr double k_places = 1e3;
+  return std::round(number * k_places) == number * k_places;
+}
+
+void note_turns(const ModelEntry& entry, std::vector<Finding>& findings) {
+  for (const Field& field : entry.fields->fields()) {
+    if (field.type != FieldType::number || field.unit != "rad") continue;
+    const FieldValue value = field.get(entry.object);
+    const double* const angle = std::get_if<double>(&value);
+    if (!angle || !(std::abs(*angle) > k_whole_turn) || !std::isfinite(*angle) || !is_round(*angle)) continue;
+    findings.push_back({"more_than_a_turn",
+                        FindingLevel::note,
+                        entry.path + "." + field.name + " = " + number_text(*angle) + " rad is " + rounded_text(*angle / k_whole_turn, 3) +
+                            " turns. If degrees are meant, write \"" + number_text(*angle) + " deg\"",
+                        {}});
+  }
+}
+
 } // namespace
+
+std::vector<Finding> implausible_friction(const LoadedModel& loaded) {
+  std::vector<Finding> findings;
+  for (const ElementEntry& entry : loaded.model.elements) look_at_friction(entry, findings);
+  return findings;
+}
 
 std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   const Model& model = loaded.model;
@@ -161,6 +225,7 @@ std::vector<Finding> implausible_sizes(const LoadedModel& loaded) {
                                    ": their motions are not known beside each other",
                                least->where));
   };
+  for (const ModelEntry& entry : entries_of(model)) note_turns(entry, findings);
   compare("masses_apart", "the mass", "kg", [](const Body& body) { return body.mass; });
   compare("inertias_apart", "the inertia", "kg m²", [](const Body& body) { return body.inertia; });
   return findings;

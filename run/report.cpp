@@ -2,7 +2,9 @@
 
 #include "mbd/trust/judge.h"
 #include "mbd/trust/weighed_errors.h"
+#include "run/blows.h"
 #include "run/findings.h"
+#include "run/plausible_run.h"
 #include "run/result_files.h"
 #include "run/with_settings.h"
 
@@ -70,6 +72,12 @@ void ask_second_opinion(Report& report, const RunOptions& options) {
   report.second_opinion = second_opinion(report.run, options);
   if (const std::string& what = report.second_opinion->disagreement; !what.empty())
     distrust(report.judgement, "a second method disagrees beyond both errors: " + what);
+  // Either the estimate or the second method has to have checked the numbers.
+  const std::string& none_because = report.second_opinion->none_because;
+  if (none_because.empty() || report.estimate.errors) return;
+  const std::string why = report.estimate.status == EstimateStatus::too_dear ? "would take long" : report.estimate.reason;
+  add_cap(report.judgement, "nothing has checked its numbers: the errors are not estimated (" + why +
+                                "), and no second method can run the scene (" + none_because + ")");
 }
 
 } // namespace
@@ -81,16 +89,19 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   const RunResult& result = report.run.result;
   report.findings = std::move(before);
   for (const Finding& finding : findings_after(loaded, result)) add_finding(report, finding, options);
+  if (!options.start)
+    for (const Finding& finding : far_rest(loaded, result)) add_finding(report, finding, options);
   for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
   const RunStatistics& s = result.statistics;
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
   report.judgement = judge(loaded.model, *loaded.system, result, report.run.failure ? report.run.failure->text : "");
+  leave_struck_open(report.judgement, loaded, result);
   if (!report.run.failure)
     for (const Finding& finding : findings_at_end(loaded, result, report.judgement)) add_finding(report, finding, options);
   report.joints = assess_joints(loaded.model, result);
   for (const Finding& finding : report.findings) {
     if (finding.code == "contact_too_deep") distrust(report.judgement, text_with_place(finding));
-    else if (caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
+    else if (report.judgement.has_criteria && caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
   }
   if (!options.has_extremes) // events alone do not tell whether a joint held that cannot
     add_cap(report.judgement, "extremes were not looked for, by which a run is judged and trusted");

@@ -1,6 +1,7 @@
 #include "elements/step_lap/step_lap_assessment.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/io/digest.h"
+#include "run/at_rest.h"
 #include "run/left_out.h"
 #include "run/ordered_json.h"
 #include "run/overview.h"
@@ -104,12 +105,6 @@ void add_error(Json& json, const char* key, std::optional<double> error) {
   if (error) json[key] = number_json(*error);
 }
 
-// What moves and what is exchanged is rounding: it has no range by which an error could be measured.
-bool rests(const Run& run) {
-  const RunStatistics& s = run.result.statistics;
-  return s.energy_exchanged <= s.energy_rounding && run.loaded->system->kinetic_energy(run.result.final_state) <= s.energy_rounding;
-}
-
 Json accuracy_json(const RunStatistics& s, const Report& report) {
   Json json{{"energy_residual", s.energy_residual},
             {"energy_exchanged", s.energy_exchanged},
@@ -118,7 +113,7 @@ Json accuracy_json(const RunStatistics& s, const Report& report) {
             {"work", s.work},
             {"max_position_residual", s.max_position_residual},
             {"max_velocity_residual", s.max_velocity_residual},
-            {"rests", rests(report.run)}};
+            {"rests", is_at_rest(report.run)}};
   add_error(json, "error_dissipated", report.dissipated_error());
   add_error(json, "error_work", report.work_error());
   return json;
@@ -297,6 +292,7 @@ Json judgement_json(const Judgement& judgement) {
 
 Json second_opinion_json(const SecondOpinion& opinion) {
   return {{"method", opinion.method},
+          {"drawn_step", opinion.drawn_step > 0.0 ? Json(opinion.drawn_step) : Json()},
           {"agrees", opinion.none_because.empty() ? Json(opinion.disagreement.empty()) : Json()},
           {"disagreement", opinion.disagreement},
           {"none_because", opinion.none_because},
@@ -335,8 +331,9 @@ Json overview_json(const Overview& overview, ShownDigits digits) {
                             {"beyond", u.beyond},
                             {"error", optional(u.error)}});
   return {{"verdict", name_of(overview.verdict)},
+          {"is_judged", overview.is_judged},
           {"reason", overview.reason},
-          {"trust", {{"level", name_of(overview.trust.level)}, {"text", overview.trust.text}}},
+          {"trust", {{"level", name_of(overview.trust.level)}, {"text", overview.trust.text}, {"guards", overview.trust.guards}}},
           {"worst_instant", optional(overview.worst_instant)},
           {"story", story_json(overview.story)},
           {"utilisations", std::move(utilisations)},

@@ -1,5 +1,6 @@
 #include "run/second_opinion.h"
 
+#include "mbd/base/counter_random.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
 #include "mbd/trust/audit.h"
@@ -9,8 +10,11 @@
 #include "run/prominence.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -84,40 +88,106 @@ private:
   int runs_ = 0;
 };
 
+constexpr double k_drawn_share = 1.0 / 3.0; // of the mean step of the run
+constexpr std::uint64_t k_drawn_seed = 42;  // the same steps whenever the same run is asked
+
+// Times at which steps of the drawn lengths end.
+std::vector<double> drawn_times(double end, double mean) {
+  std::vector<double> times;
+  double t = 0.0;
+  for (std::uint64_t i = 0;; ++i) {
+    t += mean * (0.5 + counter_uniform(k_drawn_seed, 0, i, 0));
+    if (!(t < end)) return times;
+    times.push_back(t);
+  }
+}
+
+std::unique_ptr<System> compiled_for_audit(const Model& model) {
+  std::unique_ptr<System> system = compile(model); // with channels of its own
+  add_audit_channels(*system, model);
+  return system;
+}
+
+// Asks others than the method used about one run.
+class Asker {
+public:
+  Asker(const Run& asked, const RunOptions& options)
+      : loaded_(*asked.loaded), run_(asked.result), run_options_(options), as_run_(options_of(loaded_.model)),
+        system_(compiled_for_audit(loaded_.model)), used_(method_used(*system_, as_run_)) {}
+
+  SecondOpinion time_stepping() { return ask(other_method(as_run_)); }
+
+  // Takes the first of two methods that reaches the end: rodas5p where tsit5 needs too many evaluations.
+  SecondOpinion drawn_steps() {
+    const double mean = k_drawn_share * as_run_.end / static_cast<double>(std::max(run_.statistics.steps, 1L));
+    const std::unique_ptr<System> stopping = compiled_for_audit(loaded_.model);
+    for (const double t : drawn_times(as_run_.end, mean)) stopping->breakpoints.push_back(t);
+    std::sort(stopping->breakpoints.begin(), stopping->breakpoints.end());
+    SecondOpinion opinion;
+    for (const char* const name : {"tsit5", "rodas5p"}) {
+      if (as_run_.integrator == name) continue;
+      const double tolerance = std::max(as_run_.settings.tolerance, k_finest_drawn);
+      opinion = ask({name,
+                     {{name, tolerance, false}, {name, 0.1 * tolerance, false}},
+                     stopping.get(),
+                     1.5 * mean}); // behind an action the system is another one
+      opinion.drawn_step = mean;
+      if (opinion.none_because.empty()) break;
+    }
+    return opinion;
+  }
+
+private:
+  static constexpr double k_finest_drawn = 1e-9; // a tenth of it is still above rounding
+
+  SecondOpinion ask(CrossMethod other) {
+    CrossCheckOptions options;
+    options.methods = {used_, std::move(other)};
+    options.cpu_limit = std::numeric_limits<double>::infinity();
+    const double parts = parts_evaluated(*system_, run_.statistics) / static_cast<double>(std::max(run_.statistics.evaluations, 1L));
+    options.evaluation_limit =
+        std::max(k_most_times * run_.statistics.evaluations, static_cast<long>(k_always_granted / std::max(parts, 1.0)));
+    options.is_event_counted = is_main_event;
+    options.free_groups = free_groups(loaded_.model, *system_);
+    SimulationOptions base = sampled_for_comparison(loaded_.model);
+    base.progress = simulation_options(loaded_, run_options_).progress;
+    const std::string name = options.methods.back().integrator;
+    EventCriteria criteria(loaded_.model, *system_, run_);
+    options.note_level = [&](const MethodSetting& level, const RunResult& result) {
+      if (level.integrator == name) criteria.note(result);
+    };
+    const State initial = run_options_.start ? *run_options_.start : initial_state_of(loaded_);
+    const CrossCheck check = cross_check(*system_, initial, base, options);
+    SecondOpinion opinion;
+    opinion.method = check.runs.back().setting.text();
+    opinion.worst_ratio = check.worst_ratio;
+    opinion.known_until = check.known_until;
+    for (const CrossRun& r : check.runs)
+      if (!r.failure.empty() && opinion.none_because.empty()) opinion.none_because = r.setting.text() + " " + r.failure;
+    if (!opinion.none_because.empty()) return opinion;
+    if (check.outcome == CrossOutcome::disagree) opinion.disagreement = text_of(check.disagreements.front());
+    else if (const std::string what = criteria.contradiction(); !what.empty()) opinion.disagreement = name + ": " + what;
+    else if (check.known_until == 0.0) opinion.none_because = "its steps are too coarse for what happens here";
+    return opinion;
+  }
+
+  const LoadedModel& loaded_;
+  const RunResult& run_;
+  const RunOptions& run_options_;
+  SimulationOptions as_run_;
+  std::unique_ptr<System> system_;
+  CrossMethod used_;
+};
+
 } // namespace
 
-SecondOpinion second_opinion(const Run& asked, const RunOptions& run_options) {
-  const LoadedModel& loaded = *asked.loaded;
-  const RunResult& run = asked.result;
-  const SimulationOptions as_run = options_of(loaded.model);
-  const std::unique_ptr<System> system = compile(loaded.model); // with channels of its own
-  add_audit_channels(*system, loaded.model);
-  CrossCheckOptions options;
-  options.methods = {method_used(*system, as_run), other_method(as_run)};
-  options.cpu_limit = std::numeric_limits<double>::infinity();
-  const double parts = parts_evaluated(*system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));
-  options.evaluation_limit =
-      std::max(k_most_times * run.statistics.evaluations, static_cast<long>(k_always_granted / std::max(parts, 1.0)));
-  options.is_event_counted = is_main_event;
-  options.free_groups = free_groups(loaded.model, *system);
-  SimulationOptions base = sampled_for_comparison(loaded.model);
-  base.progress = simulation_options(loaded, run_options).progress;
-  const std::string other = options.methods.back().integrator;
-  EventCriteria criteria(loaded.model, *system, run);
-  options.note_level = [&](const MethodSetting& level, const RunResult& result) {
-    if (level.integrator == other) criteria.note(result);
-  };
-  const CrossCheck check = cross_check(*system, run_options.start ? *run_options.start : initial_state_of(loaded), base, options);
-  SecondOpinion opinion;
-  opinion.method = check.runs.back().setting.text();
-  opinion.worst_ratio = check.worst_ratio;
-  opinion.known_until = check.known_until;
-  for (const CrossRun& r : check.runs)
-    if (!r.failure.empty() && opinion.none_because.empty()) opinion.none_because = r.setting.text() + " " + r.failure;
-  if (!opinion.none_because.empty()) return opinion;
-  if (check.outcome == CrossOutcome::disagree) opinion.disagreement = text_of(check.disagreements.front());
-  else if (const std::string what = criteria.contradiction(); !what.empty()) opinion.disagreement = other + ": " + what;
-  else if (check.known_until == 0.0) opinion.none_because = "its steps are too coarse for what happens here";
+SecondOpinion second_opinion(const Run& asked, const RunOptions& options) {
+  Asker asker(asked, options);
+  SecondOpinion opinion = asker.time_stepping();
+  if (opinion.none_because.empty() || method(options_of(asked.loaded->model).integrator).is_time_stepping) return opinion;
+  SecondOpinion drawn = asker.drawn_steps();
+  if (drawn.none_because.empty()) return drawn;
+  opinion.none_because += "; with steps drawn at random " + drawn.none_because;
   return opinion;
 }
 

@@ -8,6 +8,7 @@
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/system/actions.h"
 #include "mbd/system/own_states.h"
+#include "run/body_reach.h"
 #include "run/findings.h"
 #include "run/places.h"
 #include "run/quantity_text.h"
@@ -34,6 +35,9 @@ constexpr double k_light = 0.01;      // of a homogeneous plate's moment of iner
 constexpr double k_changes = 1e-3;    // of a state's scale, within the run
 // Of the largest moment that the mass could have within its outline, all of it at the farthest corner; outlines are drawn roughly.
 constexpr double k_heavy = 2.0;
+// A radius of gyration is implausible beyond so many times the body's farthest place, and so many times the whole scene: a flywheel may be
+// known by its crank pin alone.
+constexpr double k_beyond_places = 10.0, k_beyond_scene = 2.0;
 
 std::string rounded(double value) {
   char text[40];
@@ -61,7 +65,14 @@ public:
       for (const ElementEntry& entry : loaded_.model.elements)
         if (const auto* const limit = dynamic_cast<const Limit*>(entry.element.get())) look_at_stops(*limit);
     }
-    for (const Body& body : loaded_.model.bodies) look_at_inertia(body);
+    const std::vector<double> reaches = body_reaches(loaded_.model);
+    const double extent = scene_extent(loaded_.model, reaches);
+    for (std::size_t i = 0; i < loaded_.model.bodies.size(); ++i) {
+      const Body& body = loaded_.model.bodies[i];
+      if (body.fixed || !(body.mass > 0.0)) continue;
+      if (body.outline.size() >= 3) look_at_inertia(body);
+      else look_at_gyration(body, reaches[i], extent);
+    }
     if (loaded_.model.simulation.initial == "equilibrium") look_at_states();
     return std::move(found_);
   }
@@ -204,7 +215,7 @@ private:
                       : length_text(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
   }
 
-  // Drives and joints of the ground say how it moves, whatever acts on it: its inertia acts on nothing but what they bear, which no
+  // Drives and joints of the ground say how it turns, whatever acts on it: its inertia acts on nothing but what they bear, which no
   // criterion limits. An action may let go of it later.
   [[nodiscard]] bool is_driven(const Body& body) const {
     const auto named = std::find_if(system_.bodies.begin(), system_.bodies.end(), [&](const BodyData& b) { return b.name == body.name; });
@@ -218,7 +229,10 @@ private:
       held.conservativeResize(held.rows() + 1, Eigen::NoChange);
       held.row(held.rows() - 1) = balance_.gradient(row).segment<3>(3 * index - 3).transpose();
     }
-    return PivotedQr(held, k_typed).rank() == 3;
+    const auto rank = PivotedQr(held, k_typed).rank();
+    held.conservativeResize(held.rows() + 1, Eigen::NoChange);
+    held.row(held.rows() - 1) = Vec3(0.0, 0.0, 1.0).transpose();
+    return PivotedQr(held, k_typed).rank() == rank;
   }
   [[nodiscard]] bool is_limited(const std::string& element) const {
     return std::any_of(loaded_.model.criteria.begin(), loaded_.model.criteria.end(), [&](const Criterion& criterion) {
@@ -230,7 +244,6 @@ private:
 
   // A plate of the outline's shape, about the body's centre of gravity.
   void look_at_inertia(const Body& body) {
-    if (body.fixed || body.outline.size() < 3 || !(body.mass > 0.0)) return;
     double area = 0.0, moment = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < body.outline.size(); ++i) {
       const Vec2 p = body.outline[i] - body.cg, q = body.outline[(i + 1) % body.outline.size()] - body.cg;
@@ -251,6 +264,16 @@ private:
     const double per_mass = body.inertia * body.mass / plate;
     if (per_mass > 0.2 && per_mass < 5.0) text += ". It is about that of 1 kg: was it meant for each kilogram?";
     add("inertia_unlike_outline", body.where, text);
+  }
+
+  // `reach`: as far as the body's places are from its centre; `extent`: of the whole scene.
+  void look_at_gyration(const Body& body, double reach, double extent) {
+    const double gyration = std::sqrt(body.inertia / body.mass);
+    if (!(reach > 0.0) || !(gyration > k_beyond_places * reach) || !(gyration > k_beyond_scene * extent) || is_driven(body)) return;
+    add("inertia_beyond_places", body.where,
+        "body '" + body.name + "': inertia = " + rounded(body.inertia) + " kg m² and mass = " + rounded(body.mass) +
+            " kg make a radius of gyration of " + length_text(gyration) + ", but nothing of it is farther than " + length_text(reach) +
+            " from its centre of gravity, and the whole scene is " + length_text(extent) + " wide. Check both");
   }
 
   const LoadedModel& loaded_;

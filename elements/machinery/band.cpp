@@ -194,6 +194,7 @@ const ElementKind& band_kind() {
         .doc("of the free part at a, at b in proportion to the stiffness; damping/stiffness is the time that a slide takes to settle");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");
+    f.add("source", &T::source).doc("where the friction comes from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.example = R"([[element]]
 name = 'band'
 kind = 'band'
@@ -235,6 +236,7 @@ const ElementKind& belt_kind() {
         .doc("of each free part; damping/stiffness is the time that a slide takes to settle");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("of each free part in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");
+    f.add("source", &T::source).doc("where the friction comes from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.example = R"([[element]]
 name = 'belt'
 kind = 'belt'

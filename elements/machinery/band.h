@@ -19,6 +19,7 @@ struct Band : Element {
   std::optional<double> stiffness_b;            ///< stiffness of the part at b, N/m; default: as at a
   double damping = 0.0;                         ///< N s/m, of the part at a; at b in proportion to the stiffness
   std::optional<double> pretension, slack;      ///< N, m, in the reference pose
+  std::string source;                           ///< origin of the friction; results name it where that is unusual
 };
 
 struct Belt : Element {
@@ -28,6 +29,7 @@ struct Belt : Element {
   double friction_a = 0.0, friction_b = 0.0; ///< μ
   double stiffness = 0.0, damping = 0.0;     ///< of each free part, N/m and N s/m
   std::optional<double> pretension, slack;   ///< N, m, in the reference pose
+  std::string source;                        ///< origin of the friction; results name it where that is unusual
 };
 
 [[nodiscard]] const ElementKind& band_kind();

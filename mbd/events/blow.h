@@ -14,8 +14,12 @@
 #include "mbd/system/one_sided_row.h"
 
 #include <string>
+#include <string_view>
 
 namespace steplap {
+
+/// The detail of an action's event ends with these words, behind the energy, if joints that it closed took a blow.
+inline constexpr std::string_view k_with_a_blow = " J lost in a blow";
 
 /// Ropes at the pose of `state`, as a run begins: taut at their length unless they shorten, else slack. True if some would
 /// lengthen beyond it, which takes a blow. Throws where one is too short for its pose.

@@ -2,12 +2,39 @@
 #include "mbd/simulation/run_leg.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/events/blow.h"
 #include "mbd/system/sliding_units.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace steplap {
+
+namespace {
+
+// Tells whether velocities changed by more than joints that close at rest leave of them.
+bool jumps(const std::vector<double>& before, const std::vector<double>& after) {
+  constexpr double k_share = 1e-6, k_least = 1e-9; // of the fastest velocity; m/s or rad/s
+  double fastest = 0.0, most = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    fastest = std::max(fastest, std::abs(before[i]));
+    most = std::max(most, std::abs(after[i] - before[i]));
+  }
+  return most > k_share * fastest + k_least;
+}
+
+// The action whose joints close is the last one that has happened.
+void note_blow(std::vector<Event>& events, std::size_t known, double lost) {
+  for (std::size_t i = known; i-- > 0;)
+    if (events[i].kind == EventKind::happens) {
+      events[i].detail += ", " + rounded_text(lost, 4) + std::string(k_with_a_blow);
+      return;
+    }
+}
+
+} // namespace
 
 RunLeg::RunLeg(RunLeg& before, const Changeover& change)
     : system_(change.to), options_(before.options_), state_(carried(change, before.state_)), dynamics_(change.to),
@@ -37,8 +64,11 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
       record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});
   }
   book_stored_energy(change, before.state_, state_);
-  const std::vector<double> unhurt = state_.memory;
+  const std::vector<double> unhurt = state_.memory, rates = state_.v;
+  const std::size_t known = record_->events.size();
+  const double dissipated = state_.dissipated;
   handler_.take_over(state_, change.closes_rows(), record_->events);
+  if (change.closes_rows() && jumps(rates, state_.v)) note_blow(record_->events, known, state_.dissipated - dissipated);
   make_parts(before.ledger_.get(), unhurt);
 }
 

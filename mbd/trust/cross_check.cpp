@@ -105,7 +105,10 @@ private:
     try {
       for (const MethodSetting& level : method.levels) {
         if (options_.progress) options_.progress(level.text());
-        RunResult result = run_within(system_, initial_, level.applied_to(base_), options_, granted - (thread_cpu_seconds() - start));
+        SimulationOptions as_asked = level.applied_to(base_);
+        if (method.longest_step > 0.0) as_asked.settings.max_step = method.longest_step;
+        RunResult result =
+            run_within(method.system ? *method.system : system_, initial_, as_asked, options_, granted - (thread_cpu_seconds() - start));
         if (options_.note_level) options_.note_level(level, result);
         if (&level == &method.levels.back()) made.result = std::move(result);
         else levels.coarser.push_back(std::move(result));
@@ -355,13 +358,16 @@ private:
   void conclude() {
     std::stable_sort(check_.disagreements.begin(), check_.disagreements.end(),
                      [](const Disagreement& a, const Disagreement& b) { return a.ratio > b.ratio; });
-    double stepping = 0.0, other = 0.0;
+    double stepping = 0.0, other = 0.0, least = base_.end;
+    bool is_any_stepping = false;
+    for (const CrossRun& r : check_.runs) is_any_stepping = is_any_stepping || steplap::method(r.setting.integrator).is_time_stepping;
     for (const Method& method : methods_) {
       const CrossRun& r = check_.runs[method.run];
       double& known = steplap::method(r.setting.integrator).is_time_stepping ? stepping : other;
       known = std::max(known, r.known_until);
+      least = std::min(least, r.known_until);
     }
-    check_.known_until = std::min(stepping, other);
+    check_.known_until = is_any_stepping ? std::min(stepping, other) : methods_.empty() ? 0.0 : least;
     if (!check_.disagreements.empty()) check_.outcome = CrossOutcome::disagree;
     else if (check_.known_until < base_.end * (1.0 - 1e-6)) check_.outcome = CrossOutcome::vague;
   }

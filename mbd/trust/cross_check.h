@@ -50,6 +50,9 @@ namespace steplap {
 struct CrossMethod {
   std::string integrator;
   std::vector<MethodSetting> levels;
+  /// The system that it runs, if not the one compared: with the same channels, and steps that end at other times.
+  const System* system = nullptr;
+  double longest_step = 0.0; ///< s; 0: as long as the method likes
 };
 
 struct CrossCheckOptions {
@@ -98,7 +101,9 @@ struct CrossCheck {
   std::vector<CrossRun> runs;
   std::vector<Disagreement> disagreements; ///< ratio above 1, the largest first; one for each pair and doubt
   CrossOutcome outcome = CrossOutcome::agree;
-  double known_until = 0.0; ///< s, of time stepping beside the best other; 0 where its energy does not balance
+  /// s, of time stepping beside the best other; 0 where its energy does not balance. Without time stepping that of the method which knows
+  /// least.
+  double known_until = 0.0;
   double worst_ratio = 0.0;
   int closer_looks = 0; ///< that were taken
 };

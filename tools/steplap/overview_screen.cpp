@@ -72,7 +72,8 @@ std::string text_at(const OrderedJson& json, const char* key) { return json.at(k
 void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured) {
   const OrderedJson& overview = summary.at("overview");
   const std::string name = text_at(overview, "verdict");
-  std::string verdict = name;
+  const auto is_judged = overview.find("is_judged"); // results of older programs do not say
+  std::string verdict = is_judged != overview.end() && !is_judged->get<bool>() ? "no criteria" : name;
   std::transform(verdict.begin(), verdict.end(), verdict.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   const std::string text = wrapped(verdict + "  " + shown(text_at(overview, "reason")), verdict.size() + 2, 3);
@@ -129,14 +130,28 @@ void print_bars(std::ostream& out, const OrderedJson& utilisations, bool has_all
 
 void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_coloured) {
   std::vector<std::string> warnings;
+  const auto text_of = [](const OrderedJson& f) {
+    return text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}});
+  };
   for (const OrderedJson& f : findings)
-    if (f.at("level") == "warning")
-      warnings.push_back(
-          text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}}));
+    if (f.at("level") == "warning") warnings.push_back(text_of(f));
   const std::size_t count = warnings.size() > k_most_warnings ? k_most_warnings - 1 : warnings.size();
   for (std::size_t i = 0; i < count; ++i)
     out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
+  for (const OrderedJson& f : findings) // what is unusual and has its reason is part of the result
+    if (f.at("code") == "friction_by_source") out << wrapped("Note: " + shown(text_of(f)), 6, 3) << "\n";
+}
+
+// Levels of trust tell how large numerical errors are; nothing else, such as what a model leaves out, is known by them.
+std::string words_of_level(const std::string& level) {
+  return level == "good" ? "small" : level == "limited" ? "not known to be small" : "not known";
+}
+
+std::string list_of(const OrderedJson& texts) {
+  std::string list;
+  for (const OrderedJson& text : texts) list += (list.empty() ? "" : ", ") + text.get<std::string>();
+  return list;
 }
 
 } // namespace
@@ -147,7 +162,10 @@ void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bo
   print_story(out, run.summary);
   print_bars(out, overview.at("utilisations"), has_all_digits);
   const char* const remedy = run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "";
-  out << "\n" << wrapped("Trust: " + text_at(trust, "level") + ". " + shown(text_at(trust, "text")) + remedy, 7, 2) << "\n";
+  out << "\n"
+      << wrapped("Numerical error: " + words_of_level(text_at(trust, "level")) + ". " + shown(text_at(trust, "text")) + remedy, 7, 3)
+      << "\n";
+  if (trust.contains("guards")) out << cut("Checked by: " + shown(list_of(trust.at("guards"))), k_columns) << "\n";
   print_warnings(out, run.summary.at("findings"), is_coloured);
   out << "Results: " << shown(run.folder) << "\n";
   out << "Page: steplap report RESULTS. Tables of all extremes: steplap show -v RESULTS.\n";

@@ -136,3 +136,91 @@ TEST_CASE("without --require-hold nobody else is asked") {
   CHECK_FALSE(has(outcome.out, "Second opinion"));
   CHECK_FALSE(has(text_of(bench.at("out/shaken/summary.json")), "second_opinion"));
 }
+
+namespace {
+
+// Beside it a strap that remembers whether it has broken, which time stepping does not follow.
+std::string with_a_strap(const std::string& scene) {
+  return scene + "[[element]]\nkind = \"tie\"\nname = \"strap\"\na = \"walker\"\nb = { body = \"ground\", at = [0.0, -1.0] }\n" +
+         "stiffness = 1.0\ndamping = 0.1\nstrength = 1e6\n";
+}
+
+// A push of 60 N while the walker, with 1 m/s, passes over two millimetres.
+std::string pushed_briefly() {
+  const std::string still = shaken_block("kind = \"constant\"\nvalue = 0.0\n");
+  return with_a_strap(
+      still + "[[element]]\nkind = \"force\"\nname = \"push\"\na = \"block\"\ncoordinate = \"x\"\nformula = \"'60 N' * exp(-((walker.x - "
+              "'0.1117 m') / '1 mm')^2)\"\n");
+}
+
+} // namespace
+
+TEST_CASE("where time stepping cannot serve another method is asked, in steps drawn at random") {
+  Workbench bench;
+  const std::string model = bench.write("strapped.toml", with_a_strap(shaken_block(k_below)));
+  for (const char* method : {"auto", "dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(std::string(method));
+    const Outcome outcome = steplap_does({"simulate", model, "-o", bench.at("out"), "--force", "--integrator", method, "--require-hold"});
+    CHECK(outcome.code == 0);
+    const std::string summary = text_of(bench.at("out/strapped/summary.json"));
+    CHECK(has(summary, std::string("A second method, ") + (method == std::string("tsit5") ? "rodas5p" : "tsit5") +
+                           " in steps drawn at random, agrees."));
+    CHECK_FALSE(has(summary, "\"drawn_step\": null"));
+  }
+}
+
+TEST_CASE("what passes between all looks of a run is met in steps drawn at random") {
+  Workbench bench;
+  const std::string model = bench.write("pushed.toml", pushed_briefly());
+  const std::vector<std::string> blind = {"simulate",      model,          "-o",  bench.at("out"), "--force",
+                                          "--no-estimate", "--integrator", "rk4", "--step",        "0.02"};
+  CHECK(has(steplap_does(blind).out, "HOLD  "));
+  std::vector<std::string> strict = blind;
+  strict.push_back("--require-hold");
+  const Outcome outcome = steplap_does(strict);
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.out, "not to be trusted: a second method disagrees beyond both errors"));
+}
+
+TEST_CASE("a verdict whose numbers nothing has checked does not hold, and says so") {
+  // A tie whose damper stops its body within a nanosecond: no explicit method gets on, and no other is left beside rodas5p.
+  Workbench bench;
+  const std::string model = bench.write("stiff.toml", R"(gravity = [0.0, 0.0]
+[simulation]
+end = 1.0
+integrator = "rodas5p"
+tolerance = 1e-6
+[[body]]
+name = "b"
+mass = 0.01
+inertia = 0.01
+[[element]]
+kind = "tie"
+name = "strap"
+a = { body = "b", at = [0.0, 0.0] }
+b = { body = "ground", at = [0.0, 1.0] }
+axis = [0.0, 1.0]
+acts = "both"
+stiffness = 1e9
+damping = 1e8
+strength = "20 kN"
+[[signal]]
+name = "push"
+kind = "haversine"
+peak = "100 N"
+start = 0.1
+duration = 0.3
+[[element]]
+kind = "load"
+name = "pusher"
+at = "b"
+force_y = "push"
+)");
+  const std::vector<std::string> command = {"simulate", model, "-o", bench.at("out"), "--force", "--require-hold"};
+  CHECK(steplap_does(command).code == 0); // its errors are estimated
+  std::vector<std::string> unchecked = command;
+  unchecked.push_back("--no-estimate");
+  const Outcome outcome = steplap_does(unchecked);
+  CHECK(outcome.code == 5);
+  CHECK(has(outcome.out, "nothing has checked its numbers"));
+}

@@ -88,7 +88,11 @@ TEST_CASE("on a terminal the verdict has the colour of its meaning; piped or wit
       {"HOLD", model("holds", asked + "within = 1e6\n"), "1;32"},
       {"INSPECT", model("inspect", asked + "within = 1\n"), "1;33"},
       {"REJECT", model("reject", asked + "within = 1\nconsequence = \"reject\"\n"), "1;31"},
-      {"OPEN", model("open", ""), "1;35"}};
+      {"OPEN",
+       model("open", asked + "within = 1e6\n[[acceptance]]\nname = \"no value\"\nchannel = \"nothing\"\nat_most = 0\n" +
+                         "[[channel]]\nname = \"nothing\"\nexpression = \"ln(-1 - abs(ball.vx / '1 m/s'))\"\n"),
+       "1;35"},
+      {"NO CRITERIA", model("asks_nothing", ""), "1;35"}};
   for (const auto& [verdict, file, colour] : all) {
     CAPTURE(verdict);
     Call call{.arguments = {"simulate", file, "-f", "-q", "-o", bench.at("out")}, .environment = k_colours};

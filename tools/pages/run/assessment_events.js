@@ -60,7 +60,7 @@ steplap.events = (() => {
     const drawing = curve(e);
     if (drawing) box.append(make('div', { class: 'curves' }, drawing));
     for (const m of e.models) {
-      box.append(make('h3', {}, `${m.model}: ${A.outcomes[m.verdict] || m.verdict}`), make('p', {}, `${m.reason ? `${m.reason} ` : ''}${m.trust ? `Trust: ${m.trust} ` : ''}Probability of slip: ${A.chanceText(m.probability)}.`));
+      box.append(make('h3', {}, `${m.model}: ${A.outcomes[m.verdict] || m.verdict}`), make('p', {}, `${m.reason ? `${m.reason} ` : ''}${m.trust ? `Numerical error: ${m.trust} ` : ''}Probability of slip: ${A.chanceText(m.probability)}.`));
       if (m.joints.length) box.append(table(['joint', 'slips', 'margin', 'at', 'slid', 'slid in all', 'overlap left'], m.joints.map((j) => [j.name, { text: j.came_apart ? 'comes apart' : j.slips ? 'slips' : 'holds', class: j.slips || j.came_apart ? 'reject' : 'hold' },
         A.margin(j), one(j.at, 's'), A.slidText(j.slid), A.slidText(j.slid_total), percent(j.overlap_left)]), [2, 3, 4, 5, 6]));
       if (m.feet.length) box.append(table(['foot', 'lifts', 'from', 'height'], m.feet.map((f) => [f.name, f.lifts ? 'lifts' : 'stays', one(f.from, 's'), one(f.height, 'm')]), [2, 3]));

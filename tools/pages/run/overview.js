@@ -34,9 +34,9 @@ steplap.overview = (() => {
   }
   // { word, name }: what the badge says, and the class that paints it.
   function badgeOf(run) {
-    const { verdict } = of(run);
-    if (verdict in words) return { word: words[verdict], name: verdict };
-    return { word: verdict ? String(verdict).toUpperCase() : 'NO CRITERIA', name: 'none' };
+    const { verdict, is_judged: isJudged } = of(run);
+    if (isJudged !== false && verdict in words) return { word: words[verdict], name: verdict };
+    return { word: isJudged !== false && verdict ? String(verdict).toUpperCase() : 'NO CRITERIA', name: 'none' };
   }
   // The worst instant of the run that is nearest to its limits, or furthest beyond; null if none has one.
   function worstOf(runs) {

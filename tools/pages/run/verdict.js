@@ -1,7 +1,7 @@
 // The verdict with its reason, and how far it can be trusted: a line each; the table behind the line is folded.
 steplap.verdict = (() => {
   const make = steplap.make, { few, table } = steplap.tables, { one, instant, full } = steplap.numbers;
-  const levels = { good: 'Trust: good.', limited: 'Trust: limited.', none: 'Trust: none.' };
+  const levels = { good: 'Numerical error: small.', limited: 'Numerical error: not known to be small.', none: 'Numerical error: not known.' };
 
   function trustLine(run) {
     const { trust } = steplap.overview.of(run);
@@ -35,6 +35,7 @@ steplap.verdict = (() => {
     return !o ? 'not asked' : o.none_because ? `none: ${o.none_because}` : o.agrees ? `${o.method} agrees` : `${o.method} disagrees: ${o.disagreement}`;
   }
   const list = (texts) => (texts.length ? make('ul', { class: 'caps' }, ...texts.map((text) => make('li', {}, text))) : 'nothing');
+  const sourcesOf = (r) => (r.summary.findings || []).filter((f) => f.code === 'friction_by_source').map((f) => f.text);
   function rows(runs) {
     const energy = (r) => r.summary.accuracy;
     return [
@@ -42,6 +43,7 @@ steplap.verdict = (() => {
       ['integrator', settingText],
       ['estimated error', errorText],
       ['second opinion', opinionText],
+      ['checked by', (r) => (steplap.overview.of(r).trust?.guards || []).join(', ') || '–'],
       ['forbids “hold”', (r) => list(r.summary.judgement ? r.summary.judgement.capped_by : [])],
       ['energy residual', (r) => `${few(energy(r).energy_residual)} J, ${few(energy(r).relative_energy_residual)} of what was exchanged`],
       ['dissipated energy', (r) => ({ text: one(energy(r).dissipated, 'J', { error: energy(r).error_dissipated }), value: energy(r).dissipated, full: full(energy(r).dissipated, 'J', energy(r).text_dissipated) })],
@@ -49,6 +51,7 @@ steplap.verdict = (() => {
       ['steps, evaluations', (r) => `${r.summary.statistics.steps}, ${r.summary.statistics.evaluations}`],
       ['events', (r) => String(r.summary.statistics.events)],
       ...(runs.some((r) => r.summary.left_out) ? [['not in the model', (r) => list(r.summary.left_out || [])]] : []),
+      ...(runs.some((r) => sourcesOf(r).length) ? [['unusual, with its source', (r) => list(sourcesOf(r))]] : []),
       ['warnings', (r) => list((r.summary.findings || []).filter((f) => f.level === 'warning').map((f) => f.text))]];
   }
   function buildCards(runs) {
