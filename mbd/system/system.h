@@ -246,6 +246,8 @@ public:
   }
   /// The completed model that is being compiled.
   [[nodiscard]] const Model& model() const { return model_; }
+  /// What is compiled so far: bodies and scales are complete before the first element.
+  [[nodiscard]] const System& compiled() const { return *system_; }
 
   // --- contributions ------------------------------------------------------------------------------
   /// The group of type Group, made on first use; append to its `entries`.
@@ -268,6 +270,11 @@ public:
   template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
   /// The same for one that is made for a model that asks for it ([output] also, an expression), and costs nothing else.
   template <class Value> Channel& offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
+  /// Calls `work` when the rows of all joints are compiled, before the elements of the second stage. What it calls error() for is noted
+  /// at the current element. Not called for an element that does not act.
+  void after_joints(std::function<void()> work) {
+    if (!acting_) after_joints_.emplace_back(element_, std::move(work));
+  }
   /// Index in System::rows that the next row will get.
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
   /// Slot in Snapshot::friction_force that the next friction element will get.
@@ -314,6 +321,7 @@ private:
   std::unordered_map<std::string, ContactIndex> contact_index_;
   std::vector<Diagnostic> errors_;
   int element_ = -1;
+  std::vector<std::pair<int, std::function<void()>>> after_joints_; ///< with the element that each belongs to
   const std::vector<std::string>* wanted_;
   std::vector<std::string> operand_names_; ///< of expressions, sorted
   std::vector<GroupType> group_types_;     ///< of each of the system's groups
