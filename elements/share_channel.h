@@ -10,7 +10,7 @@ namespace steplap {
 
 /// Adds "share" to the element that is being compiled, before its `friction` is added to the builder.
 ///
-///   sticks  |λ| / bound, with the static bound of the same evaluation
+///   sticks  |λ| / bound, with the static bound of the same evaluation, at most 1
 ///   slips   1, unless nothing holds at all
 ///   free    0
 ///
@@ -24,13 +24,13 @@ inline void add_share_channel(SystemBuilder& builder, const FrictionElement& fri
     const double unit_rate = 1.0, bound = self->support(*s.evaluation, state, &unit_rate);
     if (state.phase == FrictionPhase::slip) return bound > 0.0 ? 1.0 : 0.0;
     const double force = std::abs(s.friction_force[slot]);
-    return force > 0.0 ? force / std::max(bound, slight) : 0.0;
+    return force > 0.0 ? std::min(1.0, force / std::max(bound, slight)) : 0.0; // λ may pass its bound by rounding
   };
   // A share is never below zero: where it was zero once, only its largest value is looked for. At each reversal of λ it has a kink
-  // there, which would cost several evaluations.
+  // there, which would cost several evaluations. Nor is it above 1, which it has reached where it has slipped.
   builder.add_channel("share", "", {"force over what holds at the same instant; 1 where it slips, 0 without load", "never negative"}, share)
-      .bounds = [share](const Snapshot& s) {
-    return ValueBounds{0.0, share(s)};
+      .bounds = [share, f = builder.next_friction()](const Snapshot& s) {
+    return ValueBounds{0.0, s.evaluation->friction[f].has_slipped ? 1.0 : share(s)};
   };
 }
 

@@ -4,6 +4,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/system/system.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -50,7 +51,7 @@ void add_channels(const TyreGroup& group, int i, SystemBuilder& builder) {
                       [&group, i](const Snapshot& s) { return group.tread_state(i, *s.evaluation).most; });
   const auto share = [&group, i](const Snapshot& s) {
     const auto tread = group.tread_state(i, *s.evaluation);
-    return tread.most > 0.0 ? std::abs(tread.force) / tread.most : 0.0;
+    return tread.most > 0.0 ? std::min(1.0, std::abs(tread.force) / tread.most) : 0.0;
   };
   builder.add_channel("share", "", {"force of the tread over the largest at the same instant; 1 where it slides", "never negative"}, share)
       .bounds = [share](const Snapshot& s) {

@@ -1,4 +1,5 @@
 // The share of friction that is used, and ties: which of two frictions slips first. Truths are closed forms of masses on rails.
+#include "mbd/rest/start.h"
 #include "tests/physics/scene.h"
 #include "tests/random/random_number.h"
 
@@ -151,4 +152,35 @@ TEST_CASE("what is far from its bound is no tie") {
   const Run r = run_with_extremes(text, options({"auto", 1e-9, 0.9}));
   CHECK(r.event_times("f0").size() == 1);
   CHECK(r.result.ties.empty());
+}
+
+// Both crates need the same share of g. With 0.39996 the upper one gives way, 4.8e-6 before the lower one would; 4.8e-6 more friction turns
+// this round, and the crate that slides does so by 0.286 m. Either run shows the outcome of the other one.
+TEST_CASE("two crates on an edge: each run has the other one's outcome") {
+  for (const double mu_top : {0.39996, 0.3999619}) {
+    CAPTURE(mu_top);
+    std::unique_ptr<System> system;
+    const std::string file = std::string(STEPLAP_TEST_DATA) + "/defects/crates_on_an_edge.toml";
+    const Model model = read_model(file, transformer_catalog(), {"parameters.mu_top=" + number(mu_top)});
+    system = compile(model);
+    const State start = start_of(model, *system);
+    const auto way = [&](const RunResult& r, const std::string& crate) {
+      for (const ChannelRange& range : r.ranges)
+        if (range.channel->name == "way of the " + crate + " crate") return range.high.value;
+      return -1.0;
+    };
+    SimulationOptions o = options_of(model);
+    o.has_extremes = true;
+    const RunResult r = simulate(*system, start, o);
+    const bool is_upper = mu_top < 0.39996001;
+    const std::string slides = is_upper ? "upper" : "lower", holds = is_upper ? "lower" : "upper";
+    REQUIRE(r.ties.size() == 1);
+    CHECK(1.0 - r.ties.front().share < 1e-5);
+    CHECK(way(r, slides) == doctest::Approx(0.28594).epsilon(1e-4));
+    CHECK(way(r, holds) < 1e-6); // by which the contacts give way
+    o.other_slip = r.ties.front();
+    const RunResult other = simulate(*system, start, o);
+    CHECK(way(other, holds) == doctest::Approx(0.28594).epsilon(1e-4));
+    CHECK(way(other, slides) < 1e-6);
+  }
 }

@@ -1,10 +1,11 @@
-// `restitution` of contacts: the damper that gives it, and the rebound that follows.
+// `restitution` of contacts and stops: the damper that gives it, and the rebound that follows; and from where stops count.
 #include "elements/restitution.h"
 #include "tests/physics/scene.h"
 #include "tests/random/random_number.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -137,6 +138,34 @@ TEST_CASE("the stiffer the floor, the nearer the heights of a bouncing ball come
     const double first = std::sqrt(2.0 / 9.81), flight = closes[1] - closes[0], error = std::abs(flight / (2.0 * first) - 0.7);
     CHECK(error < 0.2 * before);
     before = error;
+  }
+}
+
+// Without a damper the stop's force is the stiffness times what is beyond it, whatever the reference pose and the markers' angles.
+TEST_CASE("the channel of a stop counts from where its stops do") {
+  struct Case {
+    const char *coordinate, *force;
+    double upper, start;
+  };
+  for (const Case& c : {Case{"angle", "couple", 0.3, 0.0}, Case{"x", "force", 0.2, 0.0}, Case{"y", "force", 0.1, 0.0},
+                        Case{"distance", "force", 1.0, 0.9}}) {
+    CAPTURE(std::string(c.coordinate));
+    const std::string free =
+        k_no_gravity +
+        "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 0.1\nposition = [0.54, 0.72]\nangle = 0.5\nvelocity = [0.6, 0.8]\n"
+        "angular_velocity = 2.0\n[[element]]\nkind = \"limit\"\nname = \"stop\"\na = \"b\"\ncoordinate = \"" +
+        std::string(c.coordinate) + "\"\nstiffness = 1e4\nupper = " + number(c.upper) + "\n";
+    for (const std::string b : {"b = \"ground\"\n", "b = { body = \"ground\", angle = 0.2 }\n"}) {
+      const Run r = run(free + b, {"dop853", 1e-10, 0.6, 0.001});
+      const auto value = r.series("stop.value"), force = r.series(std::string("stop.") + c.force);
+      CHECK(value.front() == doctest::Approx(c.start).epsilon(1e-12));
+      int pressed = 0;
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        CHECK(force[i] == doctest::Approx(-1e4 * std::max(0.0, value[i] - c.upper)).epsilon(1e-9));
+        pressed += force[i] < -1.0;
+      }
+      CHECK(pressed > 5);
+    }
   }
 }
 
