@@ -3,6 +3,7 @@
 #include "elements/coulomb_friction.h"
 #include "elements/round_contacts.h"
 #include "elements/round_measures.h"
+#include "elements/share_channel.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/system/system.h"
@@ -111,6 +112,7 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
                       [self](const Snapshot& s) { return self->normal_force(*s.evaluation); });
   builder.add_channel("capacity", "N", {"largest friction force that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
+  add_share_channel(builder, friction);
   builder.add_channel("slip_rate", "m/s", {"velocity of a's last contact point against b", "along b's tangent"},
                       [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
   builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
@@ -169,10 +171,8 @@ void compile_rolling(const CoulombStick& e, SystemBuilder& builder) {
 
 double lighter_mass(const ContactGeometry& g, const SystemBuilder& builder) {
   double mass = std::numeric_limits<double>::infinity();
-  for (const Body& body : builder.model().bodies) {
-    const int index = builder.body(body.name);
-    if ((index == g.a || index == g.b) && !body.fixed) mass = std::min(mass, body.mass);
-  }
+  for (const int index : {g.a, g.b})
+    if (index != k_ground) mass = std::min(mass, builder.compiled().bodies[static_cast<std::size_t>(index)].mass);
   return mass;
 }
 

@@ -1,6 +1,7 @@
 #include "elements/joint_friction.h"
 
 #include "elements/bounded_friction.h"
+#include "elements/share_channel.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/system.h"
 
@@ -147,6 +148,7 @@ void add_channels(SystemBuilder& builder, const CoordinateFriction& friction, bo
   const auto* row = &friction.row;
   builder.add_channel("friction", is_angle ? "N m" : "N", {"friction on a along the coordinate", "positive: towards larger values"},
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
+  add_share_channel(builder, friction);
   builder.add_channel("slip_rate", is_angle ? "rad/s" : "m/s", {"rate of the coordinate", "positive: it grows"},
                       [row](const Snapshot& s) { return evaluate_row<false>(*row, s.motion).rate; });
   builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},

@@ -73,18 +73,23 @@ struct StopsLaw {
   }
 };
 
-template <class Measure> void add(SystemBuilder& builder, int a, int b, const Measure& measure, const StopsLaw& law, bool is_angle) {
+// `zero`: the measure where the coordinate is zero, from which the stops count.
+template <class Measure>
+LawGroup<Measure, StopsLaw>& add(SystemBuilder& builder, int a, int b, const Measure& measure, double zero, const StopsLaw& law,
+                                 bool is_angle) {
   using Group = LawGroup<Measure, StopsLaw>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
   builder.add_unit(group, StopsLaw::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel(
-      "value", is_angle ? "rad" : "m", {"of the coordinate that is limited", "as the coordinate counts"},
-      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; }, row_of(a, b, measure)});
+  builder.add_channel("value", is_angle ? "rad" : "m",
+                      {"of the coordinate that is limited, from where its stops count", "as the coordinate counts"},
+                      MeasuredValue{[&group, i, zero](const Snapshot& s) { return group.measured(i, *s.evaluation).value - zero; },
+                                    row_of(a, b, measure), zero});
   builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N",
                       {"what the stop acts with on a along the coordinate, zero between the stops", "positive: towards larger values"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+  return group;
 }
 
 // Where a coordinate is given at a stop the stop lies by what closing joints and rounding may move it, and no more, on
@@ -104,10 +109,11 @@ void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measu
   const double zero = is_absolute ? 0.0 : now;
   const double never = std::numeric_limits<double>::max(); // a stop that is not there
   StopsLaw law;
-  const double damping = contact_damping(e.damping, e.restitution, e.stiffness, a, b, measure, builder);
-  law.lower = {e.stiffness, damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
-  law.upper = {e.stiffness, damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};
-  add(builder, a, b, measure, law, is_angle);
+  law.lower = {e.stiffness, e.damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
+  law.upper = {e.stiffness, e.damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};
+  auto& group = add(builder, a, b, measure, zero, law, is_angle);
+  const auto put = [](StopsLaw& stops, double c) { stops.lower.c = stops.upper.c = c; };
+  damp_after_joints(group, {e.damping, e.stiffness, e.restitution}, a, b, measure, builder, put);
 }
 
 void compile_limit(const Element& element, SystemBuilder& builder) {
@@ -148,7 +154,8 @@ const ElementKind& limit_kind() {
     f.add("restitution", &T::restitution)
         .positive()
         .at_most(1.0)
-        .doc("instead of damping: rate after a blow over that before it, of the two bodies alone in the reference pose");
+        .doc("instead of damping: rate after a blow over that before it, of its bodies with the joints that hold them, in the reference "
+             "pose");
     k.holds<T>();
     k.compile = compile_limit;
     return k;

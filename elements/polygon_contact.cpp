@@ -2,6 +2,7 @@
 
 #include "elements/convex_outline.h"
 #include "elements/coulomb_friction.h"
+#include "elements/share_channel.h"
 #include "mbd/system/approximate_place.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/swallowing_contacts.h"
@@ -396,6 +397,7 @@ void add_friction(const PolygonContact& e, const PolygonGroup::Entry& entry, Sys
                       [row](const Snapshot& s) { return s.friction_force[row]; });
   builder.add_channel("capacity", "N", {"largest friction force that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
+  add_share_channel(builder, *friction);
   builder.add_channel("slip_rate", "m/s", {"velocity of a against b along the touching face", "as friction"},
                       [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
   builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},

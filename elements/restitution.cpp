@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace steplap {
 
@@ -20,11 +21,68 @@ double log_loss(double ratio) {
   return 2.0 * ratio * angle / root;
 }
 
-double inverse_mass(int index, const double* j, const SystemBuilder& builder) {
+// Coordinates of joined bodies beyond which dense algebra takes more than a tenth of a second.
+constexpr std::size_t k_most_coordinates = 600;
+// What is left of a row's gradient when others span it, relative: rounding.
+constexpr double k_dependent = 1e-8;
+// What is left of J M⁻¹ Jᵀ where joints let nothing move along the gap, relative.
+constexpr double k_held = 1e-14;
+
+// Bodies that joints and drives connect with some given ones, and the rows between them. The ground connects nothing.
+class JoinedBodies {
+public:
+  JoinedBodies(const System& system, int a, int b) : system_(system), place_(system.bodies.size(), -1) {
+    add(a);
+    add(b);
+    for (std::size_t known = 0; known < bodies_.size() && coordinates() <= k_most_coordinates;) {
+      known = bodies_.size();
+      for (const RowSpec& row : system.rows) {
+        if (!moves(row)) continue;
+        for (const RowSpec* part = &row; part; part = part->next) {
+          add(part->a);
+          add(part->b);
+        }
+      }
+    }
+  }
+  /// Does a row act on one of them?
+  [[nodiscard]] bool moves(const RowSpec& row) const {
+    for (const RowSpec* part = &row; part; part = part->next)
+      if (is_in(part->a) || is_in(part->b)) return true;
+    return false;
+  }
+  [[nodiscard]] std::size_t coordinates() const { return 3 * bodies_.size(); }
+  /// Adds M^(−1/2) Jᵀ of a row, or a part of one, of bodies a and b.
+  void add_weighed(const RowGradient<double>& gradient, int a, int b, VecX& result) const {
+    for (int i = 0; i < 6; ++i) {
+      const int body = i < 3 ? a : b;
+      if (body == k_ground) continue;
+      const BodyData& data = system_.bodies[static_cast<std::size_t>(body)];
+      result[3 * place_[static_cast<std::size_t>(body)] + i % 3] += gradient.j[i] / std::sqrt(i % 3 < 2 ? data.mass : data.inertia);
+    }
+  }
+
+private:
+  [[nodiscard]] bool is_in(int body) const { return body != k_ground && place_[static_cast<std::size_t>(body)] >= 0; }
+  void add(int body) {
+    if (body == k_ground || is_in(body)) return;
+    place_[static_cast<std::size_t>(body)] = static_cast<int>(bodies_.size());
+    bodies_.push_back(body);
+  }
+  const System& system_;
+  std::vector<int> place_, bodies_;
+};
+
+double inverse_mass(int index, const double* j, const System& system) {
   if (index == k_ground) return 0.0;
-  for (const Body& body : builder.model().bodies)
-    if (builder.body(body.name) == index && !body.fixed) return (j[0] * j[0] + j[1] * j[1]) / body.mass + j[2] * j[2] / body.inertia;
-  return 0.0;
+  const BodyData& body = system.bodies[static_cast<std::size_t>(index)];
+  return (j[0] * j[0] + j[1] * j[1]) / body.mass + j[2] * j[2] / body.inertia;
+}
+
+// Takes from v what lies in the span of an orthonormal basis; twice, against rounding.
+void remove_span(const std::vector<VecX>& basis, VecX& v) {
+  for (int pass = 0; pass < 2; ++pass)
+    for (const VecX& q : basis) v -= q.dot(v) * q;
 }
 
 } // namespace
@@ -45,8 +103,29 @@ double damping_for_restitution(double restitution, double stiffness, double mass
 }
 
 double effective_mass(const RowGradient<double>& gradient, int a, int b, const SystemBuilder& builder) {
-  const double inverse = inverse_mass(a, gradient.side(0), builder) + inverse_mass(b, gradient.side(1), builder);
-  return inverse > 0.0 ? 1.0 / inverse : std::numeric_limits<double>::infinity();
+  const System& system = builder.compiled();
+  const JoinedBodies joined(system, a, b);
+  if (joined.coordinates() > k_most_coordinates) return std::numeric_limits<double>::quiet_NaN();
+  const VecX none = VecX::Zero(static_cast<Eigen::Index>(joined.coordinates()));
+  std::vector<VecX> held;
+  for (const RowSpec& row : system.rows) {
+    if (!joined.moves(row)) continue;
+    VecX v = none;
+    for (const RowSpec* part = &row; part; part = part->next)
+      joined.add_weighed(row_gradient(*part, builder.reference(part->a), builder.reference(part->b)), part->a, part->b, v);
+    const double size = v.norm();
+    remove_span(held, v);
+    if (v.norm() > k_dependent * size) held.push_back(v / v.norm());
+  }
+  const double free = inverse_mass(a, gradient.side(0), system) + inverse_mass(b, gradient.side(1), system);
+  double inverse = free;
+  if (!held.empty()) {
+    VecX gap = none;
+    joined.add_weighed(gradient, a, b, gap);
+    remove_span(held, gap);
+    inverse = gap.squaredNorm();
+  }
+  return inverse > k_held * free ? 1.0 / inverse : std::numeric_limits<double>::infinity();
 }
 
 } // namespace steplap

@@ -9,7 +9,8 @@ namespace steplap {
 
 namespace {
 
-template <class Measure, class Law> void add(int a, int b, const Measure& measure, const Law& law, SystemBuilder& builder) {
+template <class Measure, class Law>
+LawGroup<Measure, Law>& add(int a, int b, const Measure& measure, const Law& law, SystemBuilder& builder) {
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
@@ -22,14 +23,18 @@ template <class Measure, class Law> void add(int a, int b, const Measure& measur
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
   builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+  return group;
 }
 
 template <class Measure>
 void add_with_law(const RoundContact& e, int a, int b, const Measure& measure, double offset, SystemBuilder& builder) {
-  if (e.law == "hunt_crossley") add(a, b, measure, HuntCrossleyContact{e.stiffness, e.exponent, e.dissipation, offset}, builder);
-  else
-    add(a, b, measure,
-        KelvinVoigtContact{e.stiffness, contact_damping(e.damping, e.restitution, e.stiffness, a, b, measure, builder), offset}, builder);
+  if (e.law == "hunt_crossley") {
+    add(a, b, measure, HuntCrossleyContact{e.stiffness, e.exponent, e.dissipation, offset}, builder);
+    return;
+  }
+  auto& group = add(a, b, measure, KelvinVoigtContact{e.stiffness, e.damping, offset}, builder);
+  const auto put = [](KelvinVoigtContact& law, double c) { law.c = c; };
+  damp_after_joints(group, {e.damping, e.stiffness, e.restitution}, a, b, measure, builder, put);
 }
 
 bool check(const RoundContact& e, SystemBuilder& builder) {
@@ -124,7 +129,8 @@ template <class T> void add_fields(FieldTable& f) {
   f.add("restitution", &T::restitution)
       .positive()
       .at_most(1.0)
-      .doc("instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
+      .doc("instead of damping: speed after a blow over that before it, of its bodies with the joints that hold them, in the reference "
+           "pose");
   f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
   f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
 }

@@ -10,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-template <class Measure, class Law> void add(const ContactGeometry& g, const Measure& measure, const Law& law, SystemBuilder& builder) {
+template <class Measure, class Law>
+LawGroup<Measure, Law>& add(const ContactGeometry& g, const Measure& measure, const Law& law, SystemBuilder& builder) {
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({g.a, g.b, measure, law});
@@ -23,9 +24,21 @@ template <class Measure, class Law> void add(const ContactGeometry& g, const Mea
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
   builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+  return group;
 }
 
-template <class Law> void add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
+GivenDamper damper_of(const UnilateralContact& e) {
+  const double n = static_cast<double>(e.count);
+  return {n * e.damping, n * e.stiffness, e.restitution};
+}
+
+// Of the contact that has just been added to `group`.
+template <class Group> void damp(Group& group, const UnilateralContact& e, const ContactGeometry& g, SystemBuilder& builder) {
+  const auto put = [](KelvinVoigtContact& law, double c) { law.c = c; };
+  damp_after_joints(group, damper_of(e), g.a, g.b, g.gap, builder, put);
+}
+
+template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
   using Group = EndedContactGroup<Law>;
   Group& group = builder.group<Group>();
   typename Group::Entry entry;
@@ -48,6 +61,7 @@ template <class Law> void add_ended(const ContactGeometry& g, const Vec2& ends, 
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   builder.add_channel("along", "m", "place of the foot along the face, from marker b",
                       [&group, i](const Snapshot& s) { return group.along_of(i, *s.evaluation); });
+  return group;
 }
 
 bool check(const UnilateralContact& e, SystemBuilder& builder) {
@@ -86,20 +100,20 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
-  const double c = damping_of(e, g, builder);
+  const double c = n * e.damping; // a restitution gives it when the joints are known
   const KelvinVoigtContact kelvin_voigt{k, c, offset};
   if (e.ends) {
     if (e.law == "literal") add_ended(g, *e.ends, LiteralContact{k, c, offset}, builder);
     else if (e.law == "hunt_crossley") add_ended(g, *e.ends, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
-    else add_ended(g, *e.ends, kelvin_voigt, builder);
+    else damp(add_ended(g, *e.ends, kelvin_voigt, builder), e, g, builder);
     return;
   }
   if (e.law == "literal") add(g, g.gap, LiteralContact{k, c, offset}, builder);
   else if (e.law == "hunt_crossley") add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
-  else if (g.gap.is_axis_in_a) add(g, g.gap, kelvin_voigt, builder);
+  else if (g.gap.is_axis_in_a) damp(add(g, g.gap, kelvin_voigt, builder), e, g, builder);
   else // n through p_A and n through the tip act along the same line
     with_cheapest(AxisMeasure{g.gap.point_a, g.gap.point_b, g.gap.normal},
-                  [&](const auto& measure) { add(g, measure, kelvin_voigt, builder); });
+                  [&](const auto& measure) { damp(add(g, measure, kelvin_voigt, builder), e, g, builder); });
 }
 
 } // namespace
@@ -118,8 +132,7 @@ ContactGeometry contact_geometry(const UnilateralContact& contact, const SystemB
 }
 
 double damping_of(const UnilateralContact& contact, const ContactGeometry& geometry, SystemBuilder& builder) {
-  const double n = static_cast<double>(contact.count);
-  return contact_damping(n * contact.damping, contact.restitution, n * contact.stiffness, geometry.a, geometry.b, geometry.gap, builder);
+  return contact_damping(damper_of(contact), geometry.a, geometry.b, geometry.gap, builder);
 }
 
 const ElementKind& unilateral_contact_kind() {
@@ -142,7 +155,8 @@ const ElementKind& unilateral_contact_kind() {
     f.add("restitution", &T::restitution)
         .positive()
         .at_most(1.0)
-        .doc("instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
+        .doc("instead of damping: speed after a blow over that before it, of its bodies with the joints that hold them, in the reference "
+             "pose");
     f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
     f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");

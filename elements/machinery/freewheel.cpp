@@ -99,9 +99,8 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   clutch->low = is_forward ? -e.drags : -holds;
   clutch->high = is_forward ? holds : e.drags;
   double lighter = std::numeric_limits<double>::infinity();
-  for (const Body& body : builder.model().bodies)
-    if (const int index = builder.body(body.name); !body.fixed && (index == a.body || index == b.body))
-      lighter = std::min(lighter, body.inertia);
+  for (const int index : {a.body, b.body})
+    if (index != k_ground) lighter = std::min(lighter, builder.compiled().bodies[static_cast<std::size_t>(index)].inertia);
   clutch->rest = std::isfinite(lighter) ? k_least_acceleration * lighter : 0.0;
   RowSpec& row = clutch->row;
   row.kind = MeasureKind::angle;

@@ -4,6 +4,7 @@
 #include "elements/machinery/tyre.h"
 #include "elements/machinery/tyre_contact.h"
 #include "elements/round_contacts.h"
+#include "elements/share_channel.h"
 
 #include <optional>
 #include <utility>
@@ -36,6 +37,7 @@ void add_channels(const RollingFriction& friction, SystemBuilder& builder) {
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
   builder.add_channel("capacity", "N m", {"largest couple that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
+  add_share_channel(builder, friction);
   builder.add_channel("slip_rate", "rad/s", {"with which a turns over b", "positive counter-clockwise"},
                       [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
   builder.add_channel("mode", "", {"what it does", "", "0 in the air, 1 holds, 2 rolls"},

@@ -1,6 +1,7 @@
 #include "elements/machinery/skate.h"
 
 #include "elements/bounded_friction.h"
+#include "elements/share_channel.h"
 #include "mbd/system/system.h"
 
 #include <cmath>
@@ -87,6 +88,7 @@ void add_gripping(RowSpec row, double grip, double drags, SystemBuilder& builder
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   builder.add_channel("force", "N", {"friction on a, across its axis", "positive: to the left of its axis"},
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
+  add_share_channel(builder, *friction);
   add_speed(row, builder);
   builder.add_channel("slip_rate", "m/s", {"with which it slides across its axis", "positive: to the left"},
                       [row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; });

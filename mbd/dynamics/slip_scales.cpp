@@ -12,12 +12,13 @@ namespace steplap {
 namespace {
 
 // Coordinates that move a cluster of a mechanism: by how much each at most moves the place of slip.
-void narrow_scales(const Layout& layout, int cluster, const SlipScale& found, double lever, double* scale) {
+void narrow_scales(const Layout& layout, int cluster, const SlipScale& found, double lever, double* scale, double* speed) {
   const Mechanism& m = layout.mechanism_of_cluster(cluster);
   for (int i = 0; i < m.size(); ++i) {
     if ((m.moved_by(cluster) >> i & 1U) == 0) continue;
-    double& of_coordinate = scale[m.first_coordinate + i];
-    of_coordinate = std::min(of_coordinate, m.is_place(i) ? found.speed : found.speed / (lever + m.reach(i)));
+    const int c = m.first_coordinate + i;
+    scale[c] = std::min(scale[c], m.is_place(i) ? found.speed : found.speed / (lever + m.reach(i)));
+    speed[c] = std::min(speed[c], found.speed);
   }
 }
 
@@ -32,6 +33,7 @@ void Dynamics::sliding_rates(std::size_t i, double* rate) const {
 
 bool Dynamics::slip_scales(double* scale) {
   bool is_any = false;
+  double* const speed = scale + coordinate_count();
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const FrictionState& friction = state_->friction[layout_->sliding[i]];
     const FrictionElement& element = *system_.frictions[layout_->sliding[i]].friction;
@@ -41,7 +43,7 @@ bool Dynamics::slip_scales(double* scale) {
     sliding_rates(i, rate);
     const SlipScale found = element.slip_scale(evaluation_, friction, rate);
     if (!std::isfinite(found.speed)) continue;
-    if (!is_any) std::fill(scale, scale + coordinate_count(), std::numeric_limits<double>::infinity());
+    if (!is_any) std::fill(scale, speed + coordinate_count(), std::numeric_limits<double>::infinity());
     is_any = true;
     const RowSpec& row = element.rows(friction)[0];
     for (const int body : {row.a, row.b}) {
@@ -50,11 +52,14 @@ bool Dynamics::slip_scales(double* scale) {
       const Motion<double>& centre = motion_[layout_->clusters[cluster].motion];
       const double lever = found.lever + portable::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
       if (cluster >= layout_->absolute_count) {
-        narrow_scales(*layout_, cluster, found, lever, scale);
+        narrow_scales(*layout_, cluster, found, lever, scale, speed);
         continue;
       }
-      double* const of_cluster = scale + 3 * cluster;
-      for (int c = 0; c < 3; ++c) of_cluster[c] = std::min(of_cluster[c], c < 2 ? found.speed : found.speed / lever);
+      for (int c = 0; c < 3; ++c) {
+        const int k = 3 * cluster + c;
+        scale[k] = std::min(scale[k], c < 2 ? found.speed : found.speed / lever);
+        speed[k] = std::min(speed[k], found.speed);
+      }
     }
   }
   return is_any;

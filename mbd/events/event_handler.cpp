@@ -87,6 +87,12 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
 
 } // namespace
 
+// Of dimension 1 the event functions are bound ∓ λ, of dimension 3 the first is 1 − u.
+double share_of_bound(const FrictionUnit& unit, const std::vector<double>& watch) {
+  const double one = watch[unit.watch], other = watch[unit.watch + 1];
+  return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;
+}
+
 std::string Event::words() const { return detail.empty() ? words_of(kind) : words_of(kind) + (" " + detail); }
 
 EventHandler::EventHandler(const System& system, Dynamics& dynamics)
@@ -145,16 +151,24 @@ void EventHandler::meet_constraints(State& state) {
   dynamics_.unpack(state.t, y_.data(), state);
 }
 
-void EventHandler::start(State& state) {
-  dynamics_.forget_layouts();
-  meet_constraints(state);
-  dynamics_.rates(state.t, y_.data(), dy_.data());
+void EventHandler::begin_units(State& state) const {
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     state.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
   }
+}
+
+void EventHandler::start(State& state) {
+  dynamics_.forget_layouts();
+  meet_constraints(state);
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  begin_units(state);
   const bool is_any_tight = set_ropes(system_, state);
-  if (is_any_tight || turns_against_lock(system_, state)) take_blow(system_, dynamics_, state);
+  if (is_any_tight || turns_against_lock(system_, state)) {
+    take_blow(system_, dynamics_, state);
+    modes_.evaluate(state);
+    begin_units(state); // the blow changes velocities, on which modes of dampers and of formulas depend
+  }
   modes_.evaluate(state);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
@@ -520,6 +534,31 @@ bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_b
   }
 }
 
+// Friction alone: ropes have no bound, one-way clutches only one that counts. Event functions of elements that share a load are those of
+// their group.
+void EventHandler::note_ties(const State& state, const std::vector<double>& watch) {
+  const LoadSharing* const sharing = dynamics_.sharing();
+  const auto stuck = [&](std::size_t f) {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    return before_[f].phase == FrictionPhase::stick && !friction.never_slips() && !one_sided_row(friction) &&
+           !dynamic_cast<const OneWayLock*>(&friction);
+  };
+  const auto began = [&](std::size_t f) { return state.friction[f].phase == FrictionPhase::slip && stuck(f); };
+  std::size_t first = 0;
+  while (first < before_.size() && !began(first)) ++first;
+  if (first == before_.size()) return;
+  for (std::size_t f = 0; f < before_.size(); ++f) {
+    const FrictionUnit& unit = system_.frictions[f];
+    const bool is_in_group = sharing && sharing->group_of(static_cast<int>(f)) >= 0;
+    if (state.friction[f].phase != FrictionPhase::stick || is_in_group || !stuck(f)) continue;
+    const double share = share_of_bound(unit, watch);
+    if (!(share > 1.0 - k_near_bound)) continue;
+    for (std::size_t g = first; g < before_.size(); ++g)
+      if (began(g))
+        ties_.push_back({state.t, system_.element_names[system_.frictions[g].element], system_.element_names[unit.element], share});
+  }
+}
+
 // A state is evaluated, and set to rest, once in each set of modes that is tried: twice at most events, and what the last
 // evaluation found is where the next step begins.
 void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before,
@@ -532,6 +571,10 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   forget_moved_layouts(state);
   modes_.begin_event();
   modes_.evaluate(state);
+  ties_.clear();
+  const auto sticks = [](const FrictionState& friction) { return friction.phase == FrictionPhase::stick; };
+  const bool may_tie = std::count_if(before_.begin(), before_.end(), sticks) > 1;
+  if (may_tie) watch_before_ = dynamics_.watch();
   bool is_contact_changed = switch_units(state, fired, events);
   if (follow_jumps(state, watch_before, events)) is_contact_changed = true;
   const Fired found = fire(state, fired);
@@ -552,6 +595,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
     }
   }
   conclude(state, is_contact_changed || fired.empty(), is_settled, events); // at a breakpoint a signal may begin or cease to press
+  if (may_tie) note_ties(state, watch_before_);
 }
 
 // What did not act stands in its first mode, or holds nothing: both are found here.

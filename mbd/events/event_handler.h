@@ -24,6 +24,17 @@ struct Event {
   [[nodiscard]] bool is_at_start() const { return t == 0.0; }
 };
 
+/// An element began to slip while another one stuck and was all but at its bound: which slips first is a matter of digits.
+struct SlipTie {
+  double t = 0.0;     ///< s, when `slips` began to slip
+  std::string slips;  ///< element that began to slip
+  std::string sticks; ///< element that stuck before and after
+  double share = 0.0; ///< of what `sticks` holds, just before the event
+  double rate = 0.0;  ///< 1/s, of that share, mean over the step before
+};
+/// |λ| over its bound, by the event functions of an element while it sticks (FrictionElement::watch_stick()).
+[[nodiscard]] double share_of_bound(const FrictionUnit& unit, const std::vector<double>& watch);
+
 class EventHandler {
 public:
   EventHandler(const System& system, Dynamics& dynamics);
@@ -60,16 +71,21 @@ public:
   [[nodiscard]] bool is_evaluated() const { return modes_.is_evaluated(); }
   [[nodiscard]] const double* packed() const { return modes_.packed(); }
   [[nodiscard]] const double* rates() const { return modes_.rates(); }
+  /// Ties of the last handle() with a share within `k_near_bound` of 1.
+  [[nodiscard]] const std::vector<SlipTie>& ties() const { return ties_; }
+  static constexpr double k_near_bound = 1e-3;
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
   void meet_constraints(State& state);
+  void begin_units(State& state) const;
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   [[nodiscard]] std::vector<int> carried(const std::vector<double>& before) const;
   bool follow_jumps(State& state, const std::vector<double>* watch_before, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
+  void note_ties(const State& state, const std::vector<double>& watch);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
@@ -105,6 +121,8 @@ private:
   std::vector<double> y_, dy_;
   std::vector<FrictionState> before_; ///< as friction was when handle() began
   std::vector<double> memory_before_;
+  std::vector<double> watch_before_; ///< event functions when handle() began, if something stuck
+  std::vector<SlipTie> ties_;
   std::vector<char> is_released_;      ///< per group of those that share a load
   std::vector<char> has_fired_;        ///< per friction element
   std::vector<Motion<double>> motion_; ///< of the bodies: scratch

@@ -28,7 +28,8 @@ constexpr double k_slip_share = 5e-4;
 // The error norm is a mean over the numbers of the state. If there are more numbers than those of eight bodies, slip velocities get a
 // correspondingly larger weight.
 constexpr double k_slip_numbers = 50.0;
-// Within a step a slip slows down to this share at most. Errors that are k_slip_share of its speed where the step begins
+// Within a step a slip slows down to this share at most. The speeds are compared and not the scales of coordinates, which also
+// change with levers: an angle about the contact point itself has an infinite scale, and none that is finite is near to it. Errors that are k_slip_share of its speed where the step begins
 // are then a two hundredth of it wherever the step is looked into, and so is what they turn it by.
 constexpr double k_least_slip = 0.1;
 // Fraction of the distance to the place where the slip was too slow, for the next try. For a uniformly decelerated slip the speed there is
@@ -92,7 +93,8 @@ bool Integrator::resolves_slips(Dynamics& dynamics, double theta, const double* 
     if (!dynamics.slip_scales(slip_scale_inside_.data())) return true;
     scale = &slip_scale_inside_;
   }
-  for (int i = 0; i < dynamics.coordinate_count(); ++i)
+  const int m = dynamics.coordinate_count();
+  for (int i = m; i < 2 * m; ++i)
     if ((*scale)[i] < k_least_slip * slip_scale0_[i]) return !withdraw(dynamics, k_shorter_slip * theta * h_);
   return true;
 }

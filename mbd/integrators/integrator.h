@@ -193,7 +193,7 @@ protected:
   TurnLimit turn_limit_;
   DividedSteps divided_;
   double last_merged_look_ = 0.0;                 ///< theta at which joints that are merged were last looked at inside the step
-  std::vector<double> slip_scale0_, slip_scale1_; ///< per rate (Dynamics::slip_scales)
+  std::vector<double> slip_scale0_, slip_scale1_; ///< per rate, then speeds (Dynamics::slip_scales)
   std::vector<double> slip_scale_inside_;         ///< where the step is used up to
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;
   double slip_care_ = 1.0;  ///< of the errors that velocities of a slip may have: less where nothing checks the output within a step

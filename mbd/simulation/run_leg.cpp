@@ -295,6 +295,35 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
       {element});
 }
 
+// At the tie of options_.other_slip: the slot of `sticks` that is nearest to its bound instead of those of `slips`. The equal run met the
+// tie at the same instant to the last bit.
+std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired) const {
+  const SlipTie& tie = *options_.other_slip;
+  if (t != tie.t) return fired;
+  std::vector<int> slots = fired;
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+    const FrictionUnit& unit = system_.frictions[f];
+    const std::string& name = system_.element_names[unit.element];
+    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == unit.watch || slot == unit.watch + 1; });
+    if (name != tie.sticks) continue;
+    const std::vector<double>& watch = dynamics_.watch();
+    slots.push_back(watch[unit.watch] <= watch[unit.watch + 1] ? unit.watch : unit.watch + 1);
+  }
+  return slots;
+}
+
+// The integrator still has the step that led to the event.
+void RunLeg::keep_ties(double t) {
+  const double before = t - integrator_->t0();
+  for (SlipTie tie : handler_.ties()) {
+    if (record_->ties.size() >= RunRecord::k_most_ties) return;
+    for (const FrictionUnit& unit : system_.frictions)
+      if (before > 0.0 && system_.element_names[unit.element] == tie.sticks)
+        tie.rate = (tie.share - share_of_bound(unit, integrator_->watch0())) / before;
+    record_->ties.push_back(std::move(tie));
+  }
+}
+
 void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
@@ -309,7 +338,9 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
     ledger_->end(dynamics_.snapshot(dy_.data()));
   }
   const std::size_t known = record_->events.size();
-  handler_.handle(state_, fired, watch_before, record_->events);
+  if (options_.other_slip) handler_.handle(state_, slots_of_other(t, fired), watch_before, record_->events);
+  else handler_.handle(state_, fired, watch_before, record_->events);
+  if (!handler_.ties().empty()) keep_ties(t);
   energy_.check_settled(state_.t, handler_.settled());
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = record_->events.begin() + static_cast<std::ptrdiff_t>(known);

@@ -79,6 +79,8 @@ private:
   void keep_ledger(double t);
   void check_finite();
   void check_holding(double t, const std::vector<double>& watch) const;
+  void keep_ties(double t);
+  [[nodiscard]] std::vector<int> slots_of_other(double t, const std::vector<int>& fired) const;
   void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before);
   void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;

@@ -92,6 +92,7 @@ RunResult Simulation::result() && {
   result.final_state = actions_ ? actions_->in_first_system(*leg_) : leg_->state();
   result.trajectory = std::move(leg_->record().trajectory);
   result.events = std::move(leg_->record().events);
+  result.ties = std::move(leg_->record().ties);
   result.growth = std::move(leg_->record().growth);
   result.stop_reason = leg_->stop_reason();
   if (actions_) result.ended_by = actions_->ended_by();

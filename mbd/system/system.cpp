@@ -191,7 +191,7 @@ void SystemBuilder::compile_elements(RequestedChannels& requested) {
     system_->element_kinds.push_back(model_.elements[i].kind->name);
   }
   const std::vector<char> acts = acting_elements(model_);
-  for (const int stage : {0, 1})
+  for (const int stage : {0, 1}) {
     for (std::size_t i = 0; i < model_.elements.size(); ++i) {
       if (model_.elements[i].kind->stage != stage) continue;
       element_ = static_cast<int>(i);
@@ -203,6 +203,11 @@ void SystemBuilder::compile_elements(RequestedChannels& requested) {
       model_.elements[i].kind->compile(*model_.elements[i].element, *this);
       requested.end_element();
     }
+    for (const auto& [element, work] : std::exchange(after_joints_, {})) {
+      element_ = element;
+      work();
+    }
+  }
 }
 
 namespace {

@@ -245,6 +245,8 @@ public:
   }
   /// Returns the completed model that is being compiled.
   [[nodiscard]] const Model& model() const { return model_; }
+  /// What is compiled so far: bodies and scales are complete before the first element.
+  [[nodiscard]] const System& compiled() const { return *system_; }
 
   // --- contributions ------------------------------------------------------------------------------
   /// Returns the group of type Group, which is created on the first call. Elements append to its `entries`.
@@ -266,6 +268,11 @@ public:
   template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
   /// Adds a channel that is computed only if the model requests it ([output] also, or a formula). Otherwise as add_channel().
   template <class Value> Channel& offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
+  /// Calls `work` when the rows of all joints are compiled, before the elements of the second stage. What it calls error() for is noted
+  /// at the current element. Not called for an element that does not act.
+  void after_joints(std::function<void()> work) {
+    if (!acting_) after_joints_.emplace_back(element_, std::move(work));
+  }
   /// Returns the index in System::rows of the next row to be added.
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
   /// Returns the index in Snapshot::friction_force of the next friction element's first component.
@@ -312,6 +319,7 @@ private:
   std::unordered_map<std::string, ContactIndex> contact_index_;
   std::vector<Diagnostic> errors_;
   int element_ = -1;
+  std::vector<std::pair<int, std::function<void()>>> after_joints_; ///< with the element that each belongs to
   const std::vector<std::string>* wanted_;
   std::vector<std::string> operand_names_; ///< operands of formulas, sorted
   std::vector<GroupType> group_types_;     ///< one for each group of the system

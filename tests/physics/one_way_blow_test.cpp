@@ -139,6 +139,26 @@ TEST_CASE("two bodies that begin to turn against the lock are joined: momentum s
     }
 }
 
+// Behind the blow both turn with ω = (J₁ω₁ + J₂ω₂)/(J₁ + J₂), the other way than the second disc did before it.
+TEST_CASE("a formula's comparisons at the start are those behind a blow") {
+  for (const char* const method : k_methods) {
+    CAPTURE(method);
+    const std::string text =
+        discs_text({{1.0, 10.0}, {1.0, -4.0}}) + clutch_text("lock", {1, 0}) +
+        element("force", "drag", "a = 'disc1'; coordinate = 'angle'; formula = \"-'1 N m s2' * abs(rate) * rate\"; energy = 'dissipated'");
+    Run r;
+    r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
+    SimulationOptions o = options({method, 1e-10, 0.5});
+    o.has_extremes = true;
+    r.result = simulate(*r.system, r.system->initial_state(), o);
+    for (const ChannelRange& range : r.result.ranges) {
+      if (range.channel->name != "drag.couple") continue;
+      CHECK(range.high.value <= 0.0);
+      CHECK(range.low.value == doctest::Approx(-9.0).epsilon(1e-9)); // ω = 3
+    }
+  }
+}
+
 TEST_CASE("turning the way that is free takes no blow, nor does a lock whose couple has a bound") {
   for (const std::string more : {"", "; drags = 0.3", "; holds = 2.0"}) {
     CAPTURE(more);

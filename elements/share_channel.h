@@ -1,0 +1,37 @@
+// Channel "share" of dry friction of one dimension: how much of what holds is used, both at the same instant.
+#pragma once
+
+#include "mbd/system/slight_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+/// Adds "share" to the element that is being compiled, before its `friction` is added to the builder.
+///
+///   sticks  |λ| / bound, with the static bound of the same evaluation, at most 1
+///   slips   1, unless nothing holds at all
+///   free    0
+///
+/// Below a slight bound (slight_force()) the share of the slight bound counts: what is pressed by less holds nothing worth
+/// reporting, and its λ is rounding.
+inline void add_share_channel(SystemBuilder& builder, const FrictionElement& friction) {
+  const double slight = slight_force(builder.compiled(), *friction.rows({}));
+  const auto share = [self = &friction, f = builder.next_friction(), slot = builder.next_friction_row(), slight](const Snapshot& s) {
+    const FrictionState& state = s.evaluation->friction[f];
+    if (state.phase != FrictionPhase::stick && state.phase != FrictionPhase::slip) return 0.0;
+    const double unit_rate = 1.0, bound = self->support(*s.evaluation, state, &unit_rate);
+    if (state.phase == FrictionPhase::slip) return bound > 0.0 ? 1.0 : 0.0;
+    const double force = std::abs(s.friction_force[slot]);
+    return force > 0.0 ? std::min(1.0, force / std::max(bound, slight)) : 0.0; // λ may pass its bound by rounding
+  };
+  // A share is never below zero: where it was zero once, only its largest value is looked for. At each reversal of λ it has a kink
+  // there, which would cost several evaluations. Nor is it above 1, which it has reached where it has slipped.
+  builder.add_channel("share", "", {"force over what holds at the same instant; 1 where it slips, 0 without load", "never negative"}, share)
+      .bounds = [share, f = builder.next_friction()](const Snapshot& s) {
+    return ValueBounds{0.0, s.evaluation->friction[f].has_slipped ? 1.0 : share(s)};
+  };
+}
+
+} // namespace steplap
