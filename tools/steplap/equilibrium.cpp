@@ -24,6 +24,8 @@ using Align = TextTable::Align;
 
 constexpr double k_unit = 1e-3; // m, rad: what is below a billionth of it counts as rounding
 
+const char* const k_of_one_rest = " at this one of many rests: they depend on the way to it, since friction holds the machine";
+
 struct EquilibriumOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
@@ -43,9 +45,9 @@ void print_poses(std::ostream& out, const System& system, const State& start, co
   out << table;
 }
 
-void print_reactions(std::ostream& out, const Model& model, const State& found) {
+void print_reactions(std::ostream& out, const Model& model, const Equilibrium& found) {
   const std::unique_ptr<System> system = compile(model); // its drives are held
-  const std::vector<double> values = values_at_rest(*system, found);
+  const std::vector<double> values = values_at_rest(*system, found.state);
   std::map<std::string, double> scale; // by unit
   for (std::size_t i = 0; i < values.size(); ++i)
     scale[system->channels[i].unit] = std::max(scale[system->channels[i].unit], std::abs(values[i]));
@@ -55,11 +57,11 @@ void print_reactions(std::ostream& out, const Model& model, const State& found) 
     const Channel& channel = system->channels[i];
     if (is_reaction(channel)) table.add_row({channel.name, quantity_cell(values[i], channel.unit, scale[channel.unit])});
   }
-  if (!table.is_empty()) out << "\nReactions\n" << table;
+  if (!table.is_empty()) out << "\nReactions" << (found.hangs_on_way ? k_of_one_rest : "") << "\n" << table;
 }
 
 // How much more of the present load each friction element could bear before it slips.
-void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins) {
+void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins, bool hangs_on_way) {
   TextTable table({Align::left, Align::right, Align::right});
   table.set_head("friction", {"friction", "used", "slips at"});
   for (const FrictionMargin& margin : margins)
@@ -67,7 +69,7 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
                    Cell(quantity_text(100.0 * margin.used, "%", 1.0), 100.0 * margin.used, "%"),
                    margin.used > 0.0 ? Cell(quantity_text(1.0 / margin.used, "times its load", 1.0), 1.0 / margin.used, "times its load")
                                      : Cell("holds nothing now")});
-  if (!margins.empty()) out << "\nDistance from slipping\n" << table;
+  if (!margins.empty()) out << "\nDistance from slipping" << (hangs_on_way ? k_of_one_rest : "") << "\n" << table;
 }
 
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
@@ -78,8 +80,8 @@ void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equil
       << counted(static_cast<std::size_t>(found.iterations), "iteration", "iterations") << "; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
-  print_reactions(out, loaded.model, found.state);
-  print_margins(out, *loaded.system, found.margins);
+  print_reactions(out, loaded.model, found);
+  print_margins(out, *loaded.system, found.margins, found.hangs_on_way);
   print_tipping(out, loaded, found.state);
   std::vector<std::string> remarks = remarks_on(*loaded.system, found);
   for (std::string& text : tipping_over(loaded, loaded.assembled)) remarks.push_back(std::move(text));

@@ -155,3 +155,27 @@ TEST_CASE("cells without a number are text or null, tables without a head are on
   CHECK(results[1]["tables"]["rows"] == Json::array({Json{{"name", "rk4"}, {"steps", 7}}}));
   CHECK_THROWS_AS(out << rows, std::logic_error); // a name that is taken
 }
+
+// A block of 1 t on a slope: 5 kN pull it down. Friction of 0.3 bears 2.9 kN, and a spring the rest after it has slid; with 0.6 friction bears
+// all of it.
+TEST_CASE("a rest that depends on the way says so at its numbers") {
+  const Workbench bench;
+  const auto rest_with = [&bench](const std::string& friction) {
+    std::string model = "gravity = [5.0, -9.81]\n[[body]]\nname = 'block'\nmass = 1000\ninertia = 400\nposition = [0, 0.5]\n";
+    for (const std::string& place : {std::string("-0.8"), std::string("0.8")})
+      model += "[[element]]\nkind = 'unilateral_contact'\nname = 'foot " + place + "'\na = { body = 'block', at = [" + place +
+               ", 0] }\nb = { body = 'ground', at = [0, 0] }\nnormal = [0, 1]\nstiffness = 1e9\ndamping = 1e6\n";
+    model += "[[element]]\nkind = 'coulomb_stick'\nname = 'slope'\ncontacts = ['foot -0.8', 'foot 0.8']\nstatic_friction = " + friction +
+             "\n[[element]]\nkind = 'spring_damper'\nname = 'spring'\na = { body = 'block', at = [0, 0] }\nb = { body = 'ground', at = [0, "
+             "0] }\n"
+             "axis = [1, 0]\nstiffness = 1e6\ndamping = 1e3\n";
+    return steplap_does({"equilibrium", bench.write("slope.toml", model)});
+  };
+  const Outcome slid = rest_with("0.3"), held = rest_with("0.6");
+  CHECK(slid.code == 0);
+  CHECK(held.code == 0);
+  CHECK_MESSAGE(has(slid.out, "Reactions at this one of many rests: they depend on the way to it"), slid.out);
+  CHECK(has(slid.out, "Distance from slipping at this one of many rests"));
+  CHECK_MESSAGE(has(held.out, "Reactions\n"), held.out);
+  CHECK_FALSE(has(held.out, "one of many rests"));
+}
