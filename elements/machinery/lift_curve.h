@@ -22,12 +22,13 @@ public:
   LiftCurve() = default;
   /// At least two points [angle, lift], ascending in angle; three at least, and the last lift that of the first, for one whole turn.
   explicit LiftCurve(std::vector<Vec2> points);
-  /// A formula of its one operand, the angle, without switches. Its second derivative, which only Jacobians ask for, is a difference of
-  /// first ones.
-  explicit LiftCurve(FormulaProgram formula);
+  /// A formula whose operands are the angle, without switches; `tree`: the same formula. Its second derivative, which only Jacobians ask for,
+  /// is a difference of first ones.
+  LiftCurve(FormulaProgram formula, const FormulaTree& tree);
 
   [[nodiscard]] Lift at(double angle) const;
-  /// Angles of the points; none of a formula.
+  /// Angles of the points. Of a formula: angles between which it has no lobe that its values at both ends and in the middle do not show;
+  /// the last is the first one a whole turn later. None of a formula without narrow lobes, or that a turn does not repeat.
   [[nodiscard]] std::vector<double> knots() const;
   /// Do the points span one whole turn?
   [[nodiscard]] static bool is_whole_turn(const std::vector<Vec2>& points);
@@ -40,6 +41,7 @@ private:
   std::vector<double> curvature_; ///< h'' at the points
   bool is_periodic_ = false;
   std::optional<FormulaProgram> formula_;
+  std::vector<double> formula_knots_;
 };
 
 } // namespace steplap

@@ -118,6 +118,9 @@ public:
   /// Is every piece of it, and the quantity of every switch, linear in the operands and the time?
   [[nodiscard]] bool is_linear() const;
   [[nodiscard]] bool uses_time() const { return uses_time_; }
+  /// May its value rise and fall again within any part of what its operands change by? Several switches together, switches of what is not
+  /// linear, exponentials, powers and quotients of what varies may.
+  [[nodiscard]] bool may_peak() const;
 
   /// Its value with the bits given. `values` has room for size() numbers. `quantity`: one per switch, what its bit hangs on; untouched
   /// where that switch does not count now. Null: nobody asks.

@@ -9,7 +9,7 @@
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/action_triggers.h"
 #include "mbd/simulation/changeover.h"
-#include "mbd/simulation/condition_search.h"
+#include "mbd/simulation/formula_search.h"
 #include "mbd/simulation/energy_account.h"
 #include "mbd/simulation/power_ledger.h"
 #include "mbd/simulation/run_record.h"
@@ -91,7 +91,7 @@ private:
   [[noreturn]] void fail_infinite(double t) const;
   void refuse_time_stepping() const;
   [[nodiscard]] bool pass_step();
-  [[nodiscard]] bool ends_at_truth();
+  [[nodiscard]] bool ends_at_peak();
   [[nodiscard]] double next_limit() const;
   [[nodiscard]] double next_motion_limit() const;
   [[nodiscard]] double next_limit_of_steps(double step) const;
@@ -117,7 +117,7 @@ private:
   ActionTriggers* actions_ = nullptr;       ///< of the run; null if the model has none
   const ActionGroup* group_ = nullptr;      ///< of this system; null if the model has none
   /// Null if no condition is a formula that steps may leap over.
-  std::unique_ptr<ConditionSearch> conditions_;
+  std::unique_ptr<FormulaSearch> formula_search_;
   bool is_interrupted_ = false; ///< some action is due
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it

@@ -3,6 +3,8 @@
 
 #include "mbd/system/roles.h"
 
+#include <array>
+#include <functional>
 #include <vector>
 
 namespace steplap {
@@ -32,11 +34,21 @@ struct StateJacobian {
   }
 };
 
+class MotionFormula;
+/// A formula in the equations of motion, and what its names `value` and `rate` are; no function where it has none.
+struct FormulaInMotion {
+  const MotionFormula* formula = nullptr; ///< lives as long as its group
+  std::function<std::array<double, 2>(const Evaluation& e)> own = nullptr;
+  int unit = -1; ///< index of its mode, the bits of its switches; -1: it has none
+};
+
 /// A role of force groups that read own states. Entries come in the same order while the modes of its elements stay.
 class StateReader {
 public:
   virtual ~StateReader() = default;
   virtual void add_state_jacobian(const Evaluation& e, StateJacobian& out) const = 0;
+  /// Appends the formulas that give forces and rates of own states. To be called once all elements are compiled.
+  virtual void enter_formulas(std::vector<FormulaInMotion>& /*out*/) const {}
 };
 
 } // namespace steplap
