@@ -130,6 +130,15 @@ public:
     }
   }
 
+  void enter_formulas(std::vector<FormulaInMotion>& out) const override {
+    for (const Entry& entry : entries)
+      out.push_back({&entry.formula,
+                     [&entry](const Evaluation& e) {
+                       const OwnCoordinate<double> own = entry.own_now(e);
+                       return std::array<double, 2>{own.value, own.rate};
+                     },
+                     entry.unit});
+  }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) {
       is_used[entry.a] = is_used[entry.b] = 1;

@@ -181,7 +181,7 @@ std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
     if (formula.program().switch_count() > 0)
       return fail("'formula' has a kink or a jump (abs, min, max or a comparison), which a cam has not: give 'lift', as points");
     if (formula.operands().empty()) return fail("'formula' does not hold the angle `value`: such a cam lifts nothing");
-    LiftCurve curve(formula.program());
+    LiftCurve curve(formula.program(), formula.tree());
     if (!std::isfinite(curve.at(e.start_angle).value) || !std::isfinite(curve.at(e.start_angle).slope))
       return fail("'formula' has no finite value and slope at the start");
     return curve;

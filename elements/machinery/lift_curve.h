@@ -24,13 +24,14 @@ public:
   /// Curve through at least two points [angle, lift] in ascending order of angle. A whole turn requires at least three, with the last lift
   /// equal to the first.
   explicit LiftCurve(std::vector<Vec2> points);
-  /// Curve given by a formula with the angle as its only operand, without switches. Its second derivative, used only in Jacobians, is a
-  /// difference of first derivatives.
-  explicit LiftCurve(FormulaProgram formula);
+  /// Curve given by a formula whose operands are all the angle, without switches; `tree` is the same formula. Its second derivative, used
+  /// only in Jacobians, is a difference of first derivatives.
+  LiftCurve(FormulaProgram formula, const FormulaTree& tree);
 
   /// Returns the lift and its derivatives at an angle, rad.
   [[nodiscard]] Lift at(double angle) const;
-  /// Returns the angles of the points; empty for a formula.
+  /// Returns the angles of the points. For a formula: angles between which it has no lobe that its values at both ends and in the middle do
+  /// not show; the last is the first plus a whole turn. Empty for a formula without narrow lobes, or with another period.
   [[nodiscard]] std::vector<double> knots() const;
   /// Returns true if the points span one whole turn.
   [[nodiscard]] static bool is_whole_turn(const std::vector<Vec2>& points);
@@ -43,6 +44,7 @@ private:
   std::vector<double> curvature_; ///< h'' at the points
   bool is_periodic_ = false;
   std::optional<FormulaProgram> formula_;
+  std::vector<double> formula_knots_;
 };
 
 } // namespace steplap

@@ -85,6 +85,33 @@ bool FormulaProgram::is_linear() const {
   return true;
 }
 
+bool FormulaProgram::may_peak() const {
+  int switches = 0;
+  for (const Step& step : steps_)
+    switches += step.op == FormulaOp::min || step.op == FormulaOp::max || step.op == FormulaOp::less || step.op == FormulaOp::less_or_equal;
+  if (switches > 0) return switch_count_ > 1 || !is_linear();
+  std::vector<char> varies;
+  for (const Step& step : steps_) {
+    const auto in = [&](std::size_t k) { return step.of[k] >= 0 && varies[static_cast<std::size_t>(step.of[k])] != 0; };
+    const bool is_input = step.op == FormulaOp::operand || step.op == FormulaOp::time;
+    switch (step.op) {
+    case FormulaOp::divide:
+      if (in(1)) return true;
+      break;
+    case FormulaOp::power:
+    case FormulaOp::exp:
+    case FormulaOp::tan:
+    case FormulaOp::ln:
+    case FormulaOp::log10:
+      if (in(0) || in(1)) return true;
+      break;
+    default: break;
+    }
+    varies.push_back(is_input || in(0) || in(1) || in(2) ? 1 : 0);
+  }
+  return false;
+}
+
 bool FormulaProgram::has_comparisons() const {
   return std::any_of(comparisons_.begin(), comparisons_.end(), [](char is_one) { return is_one != 0; });
 }

@@ -73,8 +73,8 @@ void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& un
     if (before) ledger_->go_on_from(*before);
     dynamics_.show_integrals(ledger_.get());
   }
-  if (actions_) conditions_ = std::make_unique<ConditionSearch>(system_, group_);
-  if (conditions_ && conditions_->is_empty()) conditions_.reset();
+  formula_search_ = std::make_unique<FormulaSearch>(system_, actions_ ? group_ : nullptr);
+  if (formula_search_->is_empty()) formula_search_.reset();
   integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
   if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
   restart();
@@ -147,7 +147,7 @@ void RunLeg::restart(bool is_evaluated) {
     check_holding(state_.t, integrator_->watch0());
     swallowed_.check(dynamics_, state_.t, integrator_->y0(), state_.mode, integrator_->watch0());
   }
-  if (conditions_) conditions_->restart();
+  if (formula_search_) formula_search_->restart();
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()), *integrator_, dynamics_);
   if (extremes_ && options_.has_growth) keep_growth(state_.t, false);
@@ -406,10 +406,11 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
-// Ends the step where the condition of an armed action becomes true inside it. Returns true if the step is withdrawn for this purpose.
-bool RunLeg::ends_at_truth() {
+// Ends the step where the condition of an armed action becomes true inside it, or a formula leaves the range that the step shows. Returns
+// true if the step is withdrawn for this purpose.
+bool RunLeg::ends_at_peak() {
   if (!integrator_->bears_look(dynamics_)) return true;
-  const double place = conditions_->place_of_truth(*integrator_, dynamics_, actions_->is_armed);
+  const double place = formula_search_->place_of_peak(*integrator_, dynamics_, actions_ ? &actions_->is_armed : nullptr);
   if (place >= 1.0) return false;
   if (integrator_->is_adaptive()) return integrator_->shorten(dynamics_, place);
   (void)integrator_->end_at(dynamics_, place);
@@ -429,7 +430,7 @@ bool RunLeg::pass_step() {
   }
   check_finite();
   const double share = integrator_->is_adaptive() ? integrator_->turns_kept(dynamics_) : 1.0;
-  if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (conditions_ && ends_at_truth())) {
+  if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (formula_search_ && ends_at_peak())) {
     integrator_->begin_step(dynamics_, limit);
     return false;
   }
@@ -568,7 +569,7 @@ RunStatistics RunLeg::statistics() const {
   s.steps += integrator_->steps();
   s.rejections = integrator_->rejections();
   s.divided_steps = integrator_->divided_steps();
-  if (conditions_) s.undecided_condition = conditions_->undecided();
+  if (formula_search_) s.undecided_condition = formula_search_->undecided();
   s.evaluations = dynamics_.evaluations() - evaluations_behind_end_;
   s.coded_stages = dynamics_.coded_stages();
   s.max_position_residual = integrator_->max_position_residual();

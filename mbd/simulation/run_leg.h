@@ -9,8 +9,8 @@
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/action_triggers.h"
 #include "mbd/simulation/changeover.h"
-#include "mbd/simulation/condition_search.h"
 #include "mbd/simulation/energy_account.h"
+#include "mbd/simulation/formula_search.h"
 #include "mbd/simulation/power_ledger.h"
 #include "mbd/simulation/run_record.h"
 #include "mbd/simulation/swallowed_check.h"
@@ -94,7 +94,7 @@ private:
   [[noreturn]] void fail_infinite(double t) const;
   void refuse_time_stepping() const;
   [[nodiscard]] bool pass_step();
-  [[nodiscard]] bool ends_at_truth();
+  [[nodiscard]] bool ends_at_peak();
   [[nodiscard]] double next_limit() const;
   [[nodiscard]] double next_motion_limit() const;
   [[nodiscard]] double next_limit_of_steps(double step) const;
@@ -114,14 +114,13 @@ private:
   EventFinder finder_;
   SwallowedCheck swallowed_;
   std::unique_ptr<Integrator> integrator_;
-  std::unique_ptr<ExtremeFinder> extremes_; ///< null if extremes are not requested
-  std::unique_ptr<PowerLedger> ledger_;     ///< null if no channel needs it
-  std::shared_ptr<RunRecord> record_;       ///< shared with the legs before and after
-  ActionTriggers* actions_ = nullptr;       ///< triggers of the run; null if the model has no actions
-  const ActionGroup* group_ = nullptr;      ///< actions of this system; null if the model has none
-  /// Null if no condition is a formula that could be true within a step only.
-  std::unique_ptr<ConditionSearch> conditions_;
-  bool is_interrupted_ = false; ///< an action is due
+  std::unique_ptr<ExtremeFinder> extremes_;       ///< null if extremes are not requested
+  std::unique_ptr<PowerLedger> ledger_;           ///< null if no channel needs it
+  std::shared_ptr<RunRecord> record_;             ///< shared with the legs before and after
+  ActionTriggers* actions_ = nullptr;             ///< triggers of the run; null if the model has no actions
+  const ActionGroup* group_ = nullptr;            ///< actions of this system; null if the model has none
+  std::unique_ptr<FormulaSearch> formula_search_; ///< null if no formula can peak within a step
+  bool is_interrupted_ = false;                   ///< an action is due
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< created when the first storm occurs
   std::vector<double> y_, dy_;

@@ -111,6 +111,10 @@ void OwnStateGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) 
   }
 }
 
+void OwnStateGroup::enter_formulas(std::vector<FormulaInMotion>& out) const {
+  for (const Entry& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit});
+}
+
 void OwnStateGroup::mark_bodies(std::vector<char>& is_used) const {
   for (const Entry& entry : entries)
     for (const int body : entry.rate.bodies()) is_used[body] = 1;

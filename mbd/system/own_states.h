@@ -58,6 +58,7 @@ public:
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   [[nodiscard]] bool follows_jumps() const override { return true; }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
+  void enter_formulas(std::vector<FormulaInMotion>& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
   void enter_turns(TurnTable& turns) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;

@@ -1,0 +1,255 @@
+#include "mbd/simulation/formula_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_shortest = 1e-9; // of a step: spans that are not halved
+// Beside the ends of a step the condition may be about to change: there the event is, or was.
+constexpr double k_beside_end = 1e-6;
+constexpr std::size_t k_most_spans = 4000, k_most_spans_of_force = 200; // of a step
+constexpr double k_half = 0.5;                                          // between false and true
+constexpr double k_rounded_time = 4.0 * 0x1p-52;
+// Of what three places of a step differ by: a smooth formula goes beyond them by less.
+constexpr double k_beyond = 3.0;
+// A change behind this place of the first step behind an event is found by the event finder; a step with an earlier one is cut behind it.
+constexpr double k_found_by_events = 1e-2, k_behind_change = 2.0;
+constexpr double k_least_peak = 1e-3; // of what the formula may do in the step
+constexpr double k_rounding = 1e-9;   // of a force
+
+double value_of(const MotionOperand& operand, const FormulaInMotion& in_motion, const Snapshot& s) {
+  switch (operand.kind) {
+  case MotionOperand::Kind::coordinate: return motion_formula::coordinate_of(s.motion[operand.body], operand.coordinate);
+  case MotionOperand::Kind::measure: {
+    const MeasureValue<double> m = evaluate_row<false>(operand.row, s.motion[operand.row.a], s.motion[operand.row.b]);
+    return operand.is_rate ? m.rate : m.value - operand.zero;
+  }
+  case MotionOperand::Kind::state: return operand.unit * s.evaluation->inner[operand.inner];
+  case MotionOperand::Kind::signal: return operand.signal->value(s.t);
+  case MotionOperand::Kind::own_value: return in_motion.own(*s.evaluation)[0];
+  case MotionOperand::Kind::own_rate: return in_motion.own(*s.evaluation)[1];
+  }
+  return 0.0;
+}
+
+std::vector<FormulaChannel::Leaf> leaves_of(const FormulaInMotion& in_motion) {
+  std::vector<FormulaChannel::Leaf> leaves;
+  for (const MotionOperand& operand : in_motion.formula->operands())
+    leaves.push_back({"", [&operand, in_motion](const Snapshot& s) { return value_of(operand, in_motion, s); }, 1.0});
+  return leaves;
+}
+
+} // namespace
+
+FormulaSearch::FormulaSearch(const System& system, const ActionGroup* group)
+    : y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
+  std::vector<FormulaInMotion> formulas;
+  for (const auto& each : system.groups)
+    if (const auto* const reader = dynamic_cast<const StateReader*>(each.get())) reader->enter_formulas(formulas);
+  for (const FormulaInMotion& each : formulas)
+    if (each.formula->program().may_peak()) add(k_no_action, each);
+  has_forces_ = !sought_.empty();
+  for (std::size_t i = 0; group && i < group->entries.size(); ++i) {
+    const std::optional<MotionFormula>& formula = group->entries[i].trigger.formula;
+    if (formula && group->entries[i].unit >= 0 && formula->program().may_peak()) add(static_cast<int>(i), {&*formula});
+  }
+}
+
+void FormulaSearch::add(int action, const FormulaInMotion& in_motion) {
+  const FormulaTree& tree = in_motion.formula->tree();
+  const FormulaProgram& program = in_motion.formula->program();
+  const std::size_t count = in_motion.formula->operands().size(), nodes = std::max(values_.size(), tree.size());
+  Sought& sought = sought_.emplace_back(Sought{action, &tree, OperandCurves(leaves_of(in_motion)), {}, {}, &program, in_motion.unit});
+  // Switches are numbered in the order of the nodes.
+  for (std::size_t i = 0; action == k_no_action && program.has_comparisons() && i < tree.size(); ++i) {
+    const FormulaOp op = tree[i].op;
+    const bool is_comparison = op == FormulaOp::less || op == FormulaOp::less_or_equal;
+    if (is_comparison || op == FormulaOp::abs || op == FormulaOp::min || op == FormulaOp::max)
+      sought.comparisons.push_back(is_comparison ? static_cast<int>(i) : -1);
+  }
+  for (std::vector<double>& operands : sought.operands) operands.resize(count);
+  operands_.resize(std::max(operands_.size(), count));
+  leaf_.resize(operands_.size());
+  leaf_at_.resize(operands_.size());
+  values_.resize(nodes);
+  node_.resize(nodes);
+  node_at_.resize(nodes);
+}
+
+Snapshot FormulaSearch::look(double theta, Integrator& integrator, Dynamics& dynamics) {
+  Snapshot snapshot;
+  snapshot.t = integrator.t0() + theta * integrator.h();
+  integrator.dense(dynamics, theta, y_.data());
+  dynamics.rates(snapshot.t, y_.data(), dy_.data());
+  snapshot.motion = dynamics.motion().data();
+  snapshot.evaluation = &dynamics.evaluation();
+  return snapshot;
+}
+
+double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed) {
+  const auto is_asked = [&](const Sought& sought) {
+    return !sought.is_condition() || (is_armed && (*is_armed)[static_cast<std::size_t>(sought.action)] != 0);
+  };
+  if (!has_forces_ && std::none_of(sought_.begin(), sought_.end(), is_asked)) {
+    is_known_ = false;
+    return 1.0;
+  }
+  const auto read = [&](double theta, std::size_t place) {
+    const Snapshot snapshot = look(theta, integrator, dynamics);
+    for (Sought& sought : sought_) sought.curves.read(snapshot, sought.operands[place].data());
+  };
+  if (is_known_ && t_last_ == integrator.t0()) {
+    for (Sought& sought : sought_) std::swap(sought.operands[0], sought.operands[2]);
+  } else {
+    read(0.0, 0);
+  }
+  read(0.5, 1);
+  read(1.0, 2);
+  t_last_ = integrator.t1();
+  is_known_ = true;
+  if (is_behind_event_) t_event_ = integrator.t0();
+  is_behind_event_ = false;
+  const bool is_first = integrator.t0() == t_event_;
+  double place = 1.0;
+  for (Sought& sought : sought_) {
+    if (!is_asked(sought)) continue;
+    place = std::min(place, place_of_peak(sought, integrator, dynamics));
+    if (!is_first || sought.comparisons.empty() || sought.unit < 0) continue;
+    const double change = first_change(sought, integrator, dynamics);
+    if (change < k_found_by_events) place = std::min(place, k_behind_change * change);
+  }
+  return place;
+}
+
+// Returns false if nothing is to be looked for: a condition that is true at the begin, whose end the event finder looks for; a formula
+// without a value at one of the places.
+bool FormulaSearch::set_band(Sought& sought, double t0, double t1) {
+  if (sought.is_condition()) {
+    sought.high = k_half;
+    return !sought.is_outside(value(sought, sought.operands[0].data(), t0));
+  }
+  const double times[] = {t0, 0.5 * (t0 + t1), t1};
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double seen = value(sought, sought.operands[i].data(), times[i]);
+    if (!std::isfinite(seen)) return false;
+    low = std::min(low, seen);
+    high = std::max(high, seen);
+  }
+  const double beyond = k_beyond * (high - low) + k_rounding * std::max(std::abs(low), std::abs(high));
+  sought.low = low - beyond;
+  sought.high = high + beyond;
+  return true;
+}
+
+double FormulaSearch::place_of_peak(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
+  const double t0 = integrator.t0(), h = integrator.h(), t1 = integrator.t1();
+  if (!set_band(sought, t0, t1) || !may_be_outside_by_range(sought, t0, t1)) return 1.0;
+  sought.curves.begin(sought.operands[0].data(), sought.operands[2].data(),
+                      [&](double theta) { return look(theta, integrator, dynamics); });
+  std::size_t most_spans = k_most_spans;
+  if (!sought.is_condition()) {
+    const Interval all = range_over(sought, {}, t0, h);
+    const double least = k_least_peak * (all.high - all.low);
+    if (all.is_empty() || !std::isfinite(least)) return 1.0;
+    sought.low -= least;
+    sought.high += least;
+    most_spans = k_most_spans_of_force;
+  }
+  const bool ends_outside = sought.is_outside(value(sought, sought.operands[2].data(), t1));
+  spans_.assign(1, {});
+  for (std::size_t count = 0; !spans_.empty(); ++count) {
+    const Span span = spans_.back();
+    spans_.pop_back();
+    if (!sought.may_be_outside(range_over(sought, span, t0, h))) continue;
+    const double middle = 0.5 * (span.begin + span.end);
+    if (may_be_outside_at(sought, middle, t0 + middle * h)) {
+      sought.curves.read(look(middle, integrator, dynamics), operands_.data());
+      if (sought.is_outside(value(sought, operands_.data(), t0 + middle * h))) // to the end: the event finder sees that
+        return ends_outside && range_over(sought, {middle, 1.0}, t0, h).low > k_half ? 1.0 : middle;
+    }
+    if (span.end - span.begin > k_shortest && count < most_spans) {
+      spans_.push_back({middle, span.end});
+      spans_.push_back({span.begin, middle});
+    } else if (sought.is_condition() && span.begin > k_beside_end && span.end < 1.0 - k_beside_end && !undecided_) {
+      undecided_ = t0 + middle * h;
+    }
+  }
+  return 1.0;
+}
+
+// Is a comparison that counts with these bits not for certain what its bit says?
+template <class Value> bool FormulaSearch::may_change(const Sought& sought, SwitchBits bits, const Value& value_at) {
+  const SwitchBits counting = sought.program->counting(bits);
+  for (std::size_t s = 0; s < sought.comparisons.size(); ++s) {
+    const SwitchBits mask = SwitchBits{1} << s;
+    if (sought.comparisons[s] < 0 || (counting & mask) == 0) continue;
+    const double wanted = (bits & mask) != 0 ? 1.0 : 0.0;
+    const Interval value = value_at(static_cast<std::size_t>(sought.comparisons[s]));
+    if (!(value.low == wanted && value.high == wanted)) return true;
+  }
+  return false;
+}
+
+// Returns a place, in parts of the step and to a tenth of itself, where a comparison first differs from the mode; 1: nowhere.
+double FormulaSearch::first_change(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
+  const double t0 = integrator.t0(), h = integrator.h();
+  const SwitchBits bits = dynamics.evaluation().mode[sought.unit];
+  sought.curves.begin(sought.operands[0].data(), sought.operands[2].data(),
+                      [&](double theta) { return look(theta, integrator, dynamics); });
+  double first = 1.0;
+  spans_.assign(1, {});
+  for (std::size_t count = 0; !spans_.empty() && count < k_most_spans_of_force; ++count) {
+    const Span span = spans_.back();
+    spans_.pop_back();
+    (void)range_over(sought, span, t0, h);
+    if (!may_change(sought, bits, [&](std::size_t node) { return node_[node].range; })) continue;
+    const double middle = 0.5 * (span.begin + span.end);
+    sought.curves.read(look(middle, integrator, dynamics), operands_.data());
+    (void)value(sought, operands_.data(), t0 + middle * h);
+    if (may_change(sought, bits, [&](std::size_t node) { return Interval{values_[node], values_[node]}; })) {
+      first = middle;
+      spans_.clear();
+    } else if (span.end - span.begin > k_shortest) {
+      spans_.push_back({middle, span.end});
+    }
+    const double enough = first < 1.0 ? 0.1 * first : k_shortest;
+    if (middle - span.begin > enough) spans_.push_back({span.begin, middle});
+  }
+  return first;
+}
+
+// Operands within what is seen at three places, and as much again on either side: as of curves that are not smooth.
+bool FormulaSearch::may_be_outside_by_range(const Sought& sought, double t0, double t1) {
+  for (std::size_t i = 0; i < sought.curves.count(); ++i) {
+    const auto [low, high] = std::minmax({sought.operands[0][i], sought.operands[1][i], sought.operands[2][i]});
+    const double width = high - low;
+    leaf_at_[i] = Enclosure<0>::of_range({low - width, high + width}, std::isnan(width));
+  }
+  return sought.may_be_outside(
+      evaluate<EnclosingNumbers<0>>(*sought.tree, leaf_at_.data(), Enclosure<0>::of_range({t0, t1}), node_at_.data()).range);
+}
+
+Interval FormulaSearch::range_over(const Sought& sought, const Span& span, double t0, double h) {
+  for (std::size_t i = 0; i < sought.curves.count(); ++i) leaf_[i] = sought.curves.over(0, i, span.begin, span.end);
+  const double begin = t0 + span.begin * h, end = t0 + span.end * h;
+  std::array<double, k_degree + 1> c{};
+  c[0] = 0.5 * (begin + end);
+  c[1] = 0.5 * (end - begin);
+  return evaluate<EnclosingNumbers<k_degree>>(*sought.tree, leaf_.data(),
+                                              Enclosure<k_degree>::of_polynomial(c, k_rounded_time * std::abs(end)), node_.data())
+      .range;
+}
+
+bool FormulaSearch::may_be_outside_at(const Sought& sought, double theta, double t) {
+  for (std::size_t i = 0; i < sought.curves.count(); ++i) leaf_at_[i] = sought.curves.at(0, i, theta);
+  return sought.may_be_outside(evaluate<EnclosingNumbers<0>>(*sought.tree, leaf_at_.data(),
+                                                             Enclosure<0>::of_polynomial({t}, k_rounded_time * std::abs(t)),
+                                                             node_at_.data())
+                                   .range);
+}
+
+} // namespace steplap
