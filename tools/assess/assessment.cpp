@@ -104,7 +104,8 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
 
 // The same voyage by the way of the samples: two ways to one result.
 void check_against_samples(Assessment& a) {
-  const VoyageSummary twin = voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal()).summary;
+  const VoyageSummary twin =
+      a.by_samples ? *a.by_samples : voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal()).summary;
   if (!a.summary.unknown.empty()) return;
   const VoyageSummary& own = a.summary;
   const bool is_margin_same = (std::isinf(own.least_margin) && std::isinf(twin.least_margin)) ||
@@ -154,7 +155,8 @@ void assume(Assessment& a) {
   }
   if (a.uncertain->values().size() > 1) a.assumptions.push_back("Uncertain values are taken to be independent of each other.");
   for (const MissingEvidence& missing : a.missing)
-    if (a.is_accepted(missing.item)) a.assumptions.push_back("Accepted by whoever asked (" + std::string(name_of(missing.item)) + "): " + missing.reason);
+    if (a.is_accepted(missing.item))
+      a.assumptions.push_back("Accepted by whoever asked (" + std::string(name_of(missing.item)) + "): " + missing.reason);
   for (const RecordEvents& record : a.records) {
     const ReadFacts& facts = record.recording.facts;
     if (facts.repeated.count > 0)

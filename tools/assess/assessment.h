@@ -60,7 +60,8 @@ struct Assessment {
   std::vector<std::string> hangs_on, assumptions, tests;
   std::vector<MissingEvidence> missing; ///< of the records and of all together
   std::vector<Evidence> accepted;
-  int halvings = 0; ///< of the threshold, until the outcome stayed the same
+  std::optional<VoyageSummary> by_samples; ///< the voyage with the models' own values by the way of the samples, once it was made
+  int halvings = 0;                        ///< of the threshold, until the outcome stayed the same
 
   [[nodiscard]] bool is_accepted(Evidence item) const;
 };
@@ -79,7 +80,8 @@ void decide(Assessment& assessment);
 /// Fills events and histories from the events of the records.
 void list_events(Assessment& assessment);
 /// Voyages of the assessment's events with drawn values. `suffix` tells their store from others.
-[[nodiscard]] std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Assessment& assessment, const std::string& suffix);
+[[nodiscard]] std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Assessment& assessment,
+                                                   const std::string& suffix);
 
 /// The text of assessment.json.
 [[nodiscard]] std::string assessment_json(const Assessment& assessment);

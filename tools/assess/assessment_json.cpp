@@ -262,7 +262,10 @@ Json reasons(const Assessment& a) {
 Json missing_evidence(const Assessment& a) {
   Json all = Json::array();
   for (const MissingEvidence& missing : a.missing)
-    all.push_back({{"what", name_of(missing.item)}, {"reason", missing.reason}, {"remedy", missing.remedy}, {"accepted", a.is_accepted(missing.item)}});
+    all.push_back({{"what", name_of(missing.item)},
+                   {"reason", missing.reason},
+                   {"remedy", missing.remedy},
+                   {"accepted", a.is_accepted(missing.item)}});
   return all;
 }
 

@@ -10,7 +10,7 @@ namespace steplap::assess {
 namespace {
 
 constexpr std::size_t k_many = 100, k_very_many = 200; // rows: fewer may be alike by chance where steps are coarse
-constexpr std::size_t k_most_of_rest = 100000; // rows
+constexpr std::size_t k_most_of_rest = 100000;         // rows
 constexpr double k_long = 0.2;                         // s
 constexpr double k_moves = 0.05 * k_gravity;           // m/s²: another axis moves
 constexpr double k_coarse = 20.0;                      // steps of the converter: what moves another axis so far moves this one by one
@@ -84,7 +84,9 @@ std::optional<AxisWatch::Stuck> AxisWatch::stuck(std::size_t index) const {
   if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return Stuck{axis.moved.from, axis.moved.to};
   // Without a shock in it the noise tells: it was there before, the others have it still.
   const Run& run = axis.longest;
-  const auto share = [](std::size_t part, std::size_t all) { return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1)); };
+  const auto share = [](std::size_t part, std::size_t all) {
+    return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1));
+  };
   const bool was_noisy = rows_ - run.rows >= k_many && share(axis.changes, rows_ - run.rows) > k_often;
   if (run.rows >= k_very_many && run.to - run.from >= k_long && was_noisy && share(run.others_changes, run.rows) > k_often)
     return Stuck{run.from, run.to};
@@ -94,7 +96,8 @@ std::optional<AxisWatch::Stuck> AxisWatch::stuck(std::size_t index) const {
 bool AxisWatch::is_insensitive(std::size_t index) const {
   const Axis& axis = axes_[index];
   const double own = axis.greatest - axis.least, others = others_range(index);
-  return rows_ >= k_many && axis.changes > 0 && own <= (k_few_steps + 0.5) * axis.step && others >= 2.0 * k_moves && own < k_coupling * others;
+  return rows_ >= k_many && axis.changes > 0 && own <= (k_few_steps + 0.5) * axis.step && others >= 2.0 * k_moves &&
+         own < k_coupling * others;
 }
 
 } // namespace steplap::assess

@@ -37,8 +37,8 @@ private:
     double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< m/s²; smallest change
     double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
     std::size_t changes = 0;
-    Run now, moved, longest;                   ///< moved: that of all long runs in which others moved furthest
-    std::array<double, 3> low{}, high{};       ///< of all axes in the run
+    Run now, moved, longest;             ///< moved: that of all long runs in which others moved furthest
+    std::array<double, 3> low{}, high{}; ///< of all axes in the run
   };
   void end_run(Axis& axis) const;
   [[nodiscard]] double others_range(std::size_t axis) const;

@@ -12,7 +12,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_alive = 0.05 * k_gravity; // m/s²: a road, a rail and a crane move a recorder further than this
+constexpr double k_alive = 0.05 * k_gravity;          // m/s²: a road, a rail and a crane move a recorder further than this
 constexpr double k_hours = 7200.0, k_minutes = 120.0; // s: beyond, people count in hours, in minutes
 
 std::string span_text(double seconds) {
@@ -68,7 +68,8 @@ Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& v
 std::optional<Voyage> parse_voyage(const std::string& text) {
   const auto comma = text.find(',');
   if (comma == std::string::npos) return {};
-  const std::string from(trimmed_blanks(std::string_view(text).substr(0, comma))), to(trimmed_blanks(std::string_view(text).substr(comma + 1)));
+  const std::string from(trimmed_blanks(std::string_view(text).substr(0, comma))),
+      to(trimmed_blanks(std::string_view(text).substr(comma + 1)));
   Voyage v;
   v.text = text;
   const auto a = parse_number(from, '.'), b = parse_number(to, '.');
@@ -109,7 +110,8 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
   double greatest = 0.0;
   for (const RecordEvents& record : records) {
     if (record.recording.layout.is_peaks)
-      return missing("'" + record.file + "' is a list of peaks, which does not tell when the recorder was on.", "Read a record with waveforms.");
+      return missing("'" + record.file + "' is a list of peaks, which does not tell when the recorder was on.",
+                     "Read a record with waveforms.");
     for (const double value : record.greatest) greatest = std::max(greatest, value);
     if (!voyage->is_clock) continue;
     if (!record.clock_ns)
@@ -132,7 +134,8 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
                        " on.",
                    "Give the records of the rest as well.");
   if (greatest < k_alive)
-    return missing("No axis moved by more than " + rounded_text(greatest / k_gravity, 2) + " g: nothing shows that the recorder travelled at all.",
+    return missing("No axis moved by more than " + rounded_text(greatest / k_gravity, 2) +
+                       " g: nothing shows that the recorder travelled at all.",
                    "Look whether the recorder sat on the machine.");
   return {};
 }

@@ -137,7 +137,9 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   // An event begins and ends at rest: what is left of the signal there goes to zero along a cosine, in the half that is further from it.
   const std::size_t rise = window.lead / 2, fall = window.tail / 2;
   const auto weight = [&](std::size_t i) {
-    const auto ramp = [](std::size_t at, std::size_t length) { return 0.5 - 0.5 * portable::cos(std::numbers::pi * (static_cast<double>(at) + 0.5) / static_cast<double>(length)); };
+    const auto ramp = [](std::size_t at, std::size_t length) {
+      return 0.5 - 0.5 * portable::cos(std::numbers::pi * (static_cast<double>(at) + 0.5) / static_cast<double>(length));
+    };
     const std::size_t left = count - 1 - i;
     return (i < rise ? ramp(i, rise) : 1.0) * (left < fall ? ramp(left, fall) : 1.0);
   };
@@ -178,9 +180,8 @@ std::string check_gravity(const RecordEvents& record, const DrivenModel& model) 
     const double sign = axis.starts_with('-') ? -1.0 : 1.0, rest = record.rest[*index] / k_gravity;
     if (std::abs(sign * rest - share) < k_other) continue;
     throw FileError(record.file, "axis " + axis.substr(axis.size() - 1) + " of '" + record.file + "' reads " + rounded_text(rest, 3) +
-                                     " g at rest, and would read " + rounded_text(sign * share, 3) +
-                                     " g at rest if it sat as '" + model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" +
-                                     model.recorder.y +
+                                     " g at rest, and would read " + rounded_text(sign * share, 3) + " g at rest if it sat as '" +
+                                     model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" + model.recorder.y +
                                      "\" of [[recorder]]): correct the axes there, or choose columns and signs of the record");
   }
   return "";

@@ -224,7 +224,8 @@ bool find_events(const EventReading& reading, const EventRules& rules, double lo
 
 RecordEvents read_events(const std::string& file, const EventReading& reading) {
   RecordEvents record = read_without_events(file, reading);
-  if (!record.recording.layout.is_peaks) static_cast<void>(find_events(reading, reading.rules, std::numeric_limits<double>::infinity(), record));
+  if (!record.recording.layout.is_peaks)
+    static_cast<void>(find_events(reading, reading.rules, std::numeric_limits<double>::infinity(), record));
   return record;
 }
 
@@ -232,9 +233,11 @@ void order_records(std::vector<RecordEvents>& records, std::string& note, bool& 
   is_known = true;
   if (records.size() < 2) return;
   const bool have_clocks = std::all_of(records.begin(), records.end(), [](const RecordEvents& r) { return r.clock_ns.has_value(); });
-  const bool are_alike = std::all_of(records.begin(), records.end(), [&](const RecordEvents& r) { return r.clock_has_zone == records.front().clock_has_zone; });
+  const bool are_alike = std::all_of(records.begin(), records.end(),
+                                     [&](const RecordEvents& r) { return r.clock_has_zone == records.front().clock_has_zone; });
   if (have_clocks && !are_alike) {
-    note = "Some records tell their time with a zone and some without, which cannot be compared: they are taken in the order in which they were given.";
+    note = "Some records tell their time with a zone and some without, which cannot be compared: they are taken in the order in which they "
+           "were given.";
     is_known = false;
     return;
   }

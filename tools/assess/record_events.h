@@ -51,14 +51,14 @@ struct RecordEvents {
   double rate = 0.0, bandwidth = 0.0; ///< Hz, of the conditioned signal
   bool is_filtered = false;
   FallWatch fall;
-  std::vector<RecordedEvent> events;    ///< in order of time
-  std::array<double, 3> rest{};         ///< m/s², of each axis: the mean over the stretch of --rest, else the median of the first second
-  std::array<double, 3> greatest{};     ///< m/s² without sign, of each axis, filtered
+  std::vector<RecordedEvent> events; ///< in order of time
+  std::array<double, 3> rest{};      ///< m/s², of each axis: the mean over the stretch of --rest, else the median of the first second
+  std::array<double, 3> greatest{};  ///< m/s² without sign, of each axis, filtered
   std::vector<MissingEvidence> missing;
   std::optional<std::int64_t> clock_ns; ///< since 1970, of the time 0 of the record; none: it does not tell
   bool clock_has_zone = false;
-  std::optional<AssumedPulse> pulse;    ///< of a list of peaks that models are driven by
-  std::vector<std::string> assumed;     ///< of such a list, in whole sentences
+  std::optional<AssumedPulse> pulse; ///< of a list of peaks that models are driven by
+  std::vector<std::string> assumed;  ///< of such a list, in whole sentences
 
   /// Letters of the axes that its events have.
   [[nodiscard]] std::string axes() const;

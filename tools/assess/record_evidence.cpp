@@ -13,8 +13,9 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_felt = 0.5;         // of the threshold: what rests there is quiet, not clipped; what is beyond it next to a hole is a shock
-constexpr double k_least_band = 49.0;  // Hz: at 25 Hz the needed pressure of a joint is up to 22 % wrong, at 50 Hz up to 4 % (docs/evidence/recorders.md)
+constexpr double k_felt = 0.5; // of the threshold: what rests there is quiet, not clipped; what is beyond it next to a hole is a shock
+constexpr double k_least_band =
+    49.0; // Hz: at 25 Hz the needed pressure of a joint is up to 22 % wrong, at 50 Hz up to 4 % (docs/evidence/recorders.md)
 constexpr double k_no_gravity = 0.02 * k_gravity, k_gravity_seen = 0.9 * k_gravity, k_gravity_most = 1.1 * k_gravity; // m/s², size at rest
 constexpr double k_harmless_hole = 0.005; // s: a shock that hides in it has its frequencies above 100 Hz, which joints do not feel
 constexpr double k_beyond_transport = 1000.0 * k_gravity; // m/s²: nothing on wheels reads it, a wrong scale does
@@ -104,14 +105,16 @@ private:
     if (!hole && is_list_whole) return;
     if (!hole) hole = &facts_.hole_list.back();
     add(Evidence::gaps,
-        (facts_.holes.count == 1 ? std::string("The record has a hole: ") : "The record has " + std::to_string(facts_.holes.count) + " holes, one of them: ") +
+        (facts_.holes.count == 1 ? std::string("The record has a hole: ")
+                                 : "The record has " + std::to_string(facts_.holes.count) + " holes, one of them: ") +
             counted(hole->rows, "row is", "rows are") + " missing after " + rounded_text(hole->t, 7) + " s" +
             (is_beside_shock ? ", next to a shock." : ", and a shock of " + rounded_text(1e3 * hole->length, 3) + " ms could lie in it."),
         "Copy the file again from the recorder, or give a second record of that time.");
   }
 
   void find_ends() {
-    if (facts_.cut_line > 0) add(Evidence::cut, "The last line of the record is cut: what came after it is not known.", "Copy the file again from the recorder.");
+    if (facts_.cut_line > 0)
+      add(Evidence::cut, "The last line of the record is cut: what came after it is not known.", "Copy the file again from the recorder.");
     const SignalWatch::End& end = signal_.first_end();
     if (end.count == 0) return;
     add(Evidence::cut,
@@ -131,7 +134,8 @@ private:
                  "Find out what it means.");
     }
     if (facts_.remarks.size() >= ReadFacts::k_most_listed)
-      add(Evidence::comments, "The record has " + std::to_string(ReadFacts::k_most_listed) + " different comments or more among its rows.", "Read them.");
+      add(Evidence::comments, "The record has " + std::to_string(ReadFacts::k_most_listed) + " different comments or more among its rows.",
+          "Read them.");
   }
 
   void find_fall() {
@@ -151,7 +155,9 @@ private:
                        rounded_text(stuck->to, 7) + " s: it did not measure.",
                    "Have the recorder checked.");
       if (axes_.is_insensitive(i))
-        return add(Evidence::dead, "Axis " + letter(record_, i) + " moves by a few steps of its converter only, while another reads shocks: it did not measure.",
+        return add(Evidence::dead,
+                   "Axis " + letter(record_, i) +
+                       " moves by a few steps of its converter only, while another reads shocks: it did not measure.",
                    "Have the recorder checked.");
     }
   }
@@ -176,14 +182,18 @@ private:
   const SignalWatch& signal_;
 };
 
-// The stretch around sample `at` in which the signal is beyond a share of its peak there, s.
-double width_at(const std::vector<double>& a, std::size_t at, double share, double rate) {
+// The stretch around sample `at` in which the signal, straight between samples, is beyond a share of its value there, in samples.
+double width_at(const std::vector<double>& a, std::size_t at, double share) {
   const double sign = a[at] < 0.0 ? -1.0 : 1.0, level = share * std::abs(a[at]);
   std::size_t from = at, to = at;
   // A single sample below may be noise.
   while (from > 1 && (sign * a[from - 1] >= level || sign * a[from - 2] >= level)) --from;
   while (to + 2 < a.size() && (sign * a[to + 1] >= level || sign * a[to + 2] >= level)) ++to;
-  return static_cast<double>(to - from + 1) / rate;
+  const auto beyond = [&](std::size_t inside, std::size_t outside) {
+    const double in = sign * a[inside], out = sign * a[outside];
+    return in > level && out < level ? (in - level) / (in - out) : 0.0;
+  };
+  return static_cast<double>(to - from) + (from > 0 ? beyond(from, from - 1) : 0.0) + (to + 1 < a.size() ? beyond(to, to + 1) : 0.0);
 }
 
 } // namespace
@@ -196,7 +206,8 @@ void find_missing_evidence(const AxisWatch& axes, const SignalWatch& signal, Rec
 // that of a signal which cannot go further, or of braking and bends, which last longer.
 void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<MissingEvidence>& missing) {
   constexpr double k_wide = 0.6, k_longest = 0.3, k_near = 0.95; // share; s; of the record's extreme
-  constexpr double k_samples = 6.0;                              // above 0.9 of the peak: fewer are wide by chance
+  constexpr double k_samples = 3.0;                              // above 0.9 of the peak: fewer are wide by chance
+  constexpr double k_seen = 0.25;                                // of a shock: a top that is lower is none of one
   const auto is_clipped = [](const MissingEvidence& m) { return m.item == Evidence::clipped; };
   for (const RecordEvents& record : records) {
     const RecordLayout& layout = record.recording.layout;
@@ -205,20 +216,22 @@ void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<Mis
       double most = 0.0;
       for (const RecordedEvent& e : record.events)
         for (const double value : e.window.plain[i]) most = std::max(most, std::abs(value));
-      if (most < k_felt * shock_level(record.rules)) continue;
+      if (most < k_seen * shock_level(record.rules)) continue;
       for (const RecordedEvent& e : record.events) {
         const std::vector<double>& a = e.window.plain[i];
         const auto found = std::max_element(a.begin(), a.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
         if (found == a.end() || std::abs(*found) < k_near * most) continue;
         // At the end of its range a sensor reads more than anywhere else; in a fall it reads nothing.
-        const double read = *found + record.offset[i], extreme = std::max(std::abs(record.recording.facts.axes[i].least), std::abs(record.recording.facts.axes[i].greatest));
+        const double read = *found + record.offset[i],
+                     extreme = std::max(std::abs(record.recording.facts.axes[i].least), std::abs(record.recording.facts.axes[i].greatest));
         if (std::abs(read) < k_felt * extreme) continue;
         const auto at = static_cast<std::size_t>(found - a.begin());
-        const double top = width_at(a, at, 0.9, e.window.rate), half = width_at(a, at, 0.5, e.window.rate);
-        if (top < k_wide * half || top > k_longest || top * e.window.rate < k_samples) continue;
+        const double top = width_at(a, at, 0.9), half = width_at(a, at, 0.5);
+        if (top < k_wide * half || top > k_longest * e.window.rate || top < k_samples) continue;
         missing.push_back({Evidence::clipped,
-                           "'" + record.file + "': axis " + letter(record, i) + " stays near " + in_g(*found) + " for " + rounded_text(1e3 * top, 3) +
-                               " ms at " + rounded_text(e.window.times[at], 7) + " s, as a sensor does that cannot read more.",
+                           "'" + record.file + "': axis " + letter(record, i) + " stays near " + in_g(*found) + " for " +
+                               rounded_text(1e3 * top / e.window.rate, 3) + " ms at " + rounded_text(e.window.times[at], 7) +
+                               " s, as a sensor does that cannot read more.",
                            "Say how far the sensor reads: --range \"16 g\"."});
         break;
       }
@@ -227,10 +240,10 @@ void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<Mis
 }
 
 bool is_ordinary_end(const std::string& remark) {
-  static constexpr std::array k_words = {"end",   "of",      "the",      "file",    "data",      "record",   "recording", "measurement", "eof",
-                                         "stop",  "stopped", "by",       "user",    "button",    "manual",   "manually",  "operator",    "finished",
-                                         "complete", "completed", "done", "ok",     "normal",    "normally", "at",        "on",          "rows",
-                                         "samples", "log",   "logging",  "total",   "utc",       "and"};
+  static constexpr std::array k_words = {
+      "end",    "of",       "the",    "file",   "data",     "record",   "recording", "measurement", "eof",       "stop", "stopped",
+      "by",     "user",     "button", "manual", "manually", "operator", "finished",  "complete",    "completed", "done", "ok",
+      "normal", "normally", "at",     "on",     "rows",     "samples",  "log",       "logging",     "total",     "utc",  "and"};
   const std::string text = lower_case(remark);
   std::string word;
   bool is_known = true, has_word = false;

@@ -13,13 +13,13 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_release = 0.25;                 // of the threshold: what is cut off an event, and tapered, is that small
-constexpr double k_floor = 0.03;                   // of the threshold asked for: noise of a recorder, which nothing feels
-constexpr double k_same_margin = 0.02;             // relative
-constexpr double k_same_share = 0.1;               // of the interval of the probability
-constexpr double k_same_length = 0.2;              // s: an event that grows by less than this, below a quarter of its threshold, is the same
-constexpr double k_day = 86400.0;                  // s
-constexpr double k_most_samples = 4e6;             // of all events together: 200 MB
+constexpr double k_release = 0.25;     // of the threshold: what is cut off an event, and tapered, is that small
+constexpr double k_floor = 0.03;       // of the threshold asked for: noise of a recorder, which nothing feels
+constexpr double k_same_margin = 0.02; // relative
+constexpr double k_same_share = 0.1;   // of the interval of the probability
+constexpr double k_same_length = 0.2;  // s: an event that grows by less than this, below a quarter of its threshold, is the same
+constexpr double k_day = 86400.0;      // s
+constexpr double k_most_samples = 4e6; // of all events together: 200 MB
 const std::string k_too_long = "it lasts too long to be held in memory";
 constexpr int k_needed = 2, k_most_halvings = 12;
 
@@ -31,11 +31,14 @@ struct Outcome {
   double margin = 0.0;
   Probability damage;
   std::vector<VoyageSample> samples;
+  VoyageSummary summary;
 };
 
 bool is_same(const Outcome& a, const Outcome& b) {
-  const bool is_margin_same = (std::isinf(a.margin) && std::isinf(b.margin)) || std::abs(a.margin - b.margin) <= k_same_margin * std::abs(a.margin);
-  const bool is_share_same = a.damage.runs == 0 || std::abs(a.damage.value - b.damage.value) <= k_same_share * (a.damage.high - a.damage.low);
+  const bool is_margin_same =
+      (std::isinf(a.margin) && std::isinf(b.margin)) || std::abs(a.margin - b.margin) <= k_same_margin * std::abs(a.margin);
+  const bool is_share_same =
+      a.damage.runs == 0 || std::abs(a.damage.value - b.damage.value) <= k_same_share * (a.damage.high - a.damage.low);
   return a.decision == b.decision && is_margin_same && is_share_same;
 }
 
@@ -51,7 +54,8 @@ bool are_same(const Level& level, const Assessment& a) {
     const std::vector<RecordedEvent>&x = level.events[r], &y = a.records[r].events;
     if (x.size() != y.size()) return false;
     for (std::size_t e = 0; e < x.size(); ++e)
-      if (std::abs(x[e].event.begin - y[e].event.begin) > k_same_length || std::abs(x[e].event.end - y[e].event.end) > k_same_length) return false;
+      if (std::abs(x[e].event.begin - y[e].event.begin) > k_same_length || std::abs(x[e].event.end - y[e].event.end) > k_same_length)
+        return false;
   }
   return true;
 }
@@ -81,7 +85,8 @@ public:
         continue;
       }
       if (!fits || length() > affordable_) {
-        add_missing(halvings, fits ? "its runs would take longer than the budget of " + rounded_text(budget_, 3) + " s of computing" : k_too_long);
+        add_missing(halvings,
+                    fits ? "its runs would take longer than the budget of " + rounded_text(budget_, 3) + " s of computing" : k_too_long);
         break;
       }
       Outcome now = outcome(halvings);
@@ -95,6 +100,7 @@ public:
     }
     for (std::size_t r = 0; r < a_.records.size(); ++r) a_.records[r].events = std::move(reference.events[r]);
     a_.samples = std::move(reference.outcome.samples);
+    a_.by_samples = std::move(reference.outcome.summary);
     a_.halvings = reference.halvings;
     list_events(a_);
   }
@@ -104,7 +110,8 @@ private:
     double most = k_most_samples;
     for (RecordEvents& record : a_.records) {
       if (options_.stop)
-        if (const std::string why = options_.stop(); !why.empty()) throw RunStopped(why + " while '" + record.file + "' was searched for events.");
+        if (const std::string why = options_.stop(); !why.empty())
+          throw RunStopped(why + " while '" + record.file + "' was searched for events.");
       if (record.recording.layout.is_peaks) continue;
       if (!find_events(options_.reading, rules_at(record, used_, halvings), most / record.rate, record)) return false;
       most -= length_of(record) * record.rate;
@@ -144,9 +151,9 @@ private:
     const std::clock_t from = std::clock();
     if (options_.progress) options_.progress("threshold", halvings, k_most_halvings);
     Outcome now;
-    const VoyageSummary summary = voyage_with(a_.models, a_.histories, *a_.uncertain, a_.uncertain->nominal()).summary;
-    now.decision = decision_by_criteria(a_, summary);
-    now.margin = summary.least_margin;
+    now.summary = voyage_with(a_.models, a_.histories, *a_.uncertain, a_.uncertain->nominal()).summary;
+    now.decision = decision_by_criteria(a_, now.summary);
+    now.margin = now.summary.least_margin;
     if (!a_.uncertain->empty() && options_.sampling.samples > 0) {
       now.samples = samples_of(options_, a_, halvings == 0 ? "" : "_" + std::to_string(halvings));
       now.damage = damage_probability(now.samples);
@@ -180,7 +187,8 @@ private:
         for (const double value : *each)
           if (std::isfinite(value)) lowest = lowest == 0.0 ? value : std::min(lowest, value);
     a_.missing.push_back({Evidence::vibration,
-                          "Vibration above " + rounded_text(lowest / k_gravity, 2) + " g is not run whole, although the outcome may depend on it: " + why + ".",
+                          "Vibration above " + rounded_text(lowest / k_gravity, 2) +
+                              " g is not run whole, although the outcome may depend on it: " + why + ".",
                           "Give a larger --budget."});
   }
 

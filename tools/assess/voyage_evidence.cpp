@@ -20,16 +20,24 @@ void find_axes(Assessment& a) {
   for (const RecordEvents& record : a.records) {
     if (record.recording.layout.is_peaks) continue;
     const std::string axes = record.axes();
+    const auto is_used = [&](std::size_t i) { return used.find(axes[i]) != std::string::npos; };
+    double seen = 0.0; // by the models
     for (std::size_t i = 0; i < axes.size(); ++i)
-      if (used.find(axes[i]) == std::string::npos && record.greatest[i] > shock_level(record.rules))
+      if (is_used(i)) seen = std::max(seen, record.greatest[i]);
+    // A smaller shock counts where it is the largest of all axes: so a recorder reads that was turned.
+    constexpr double k_turned = 0.25;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (!is_used(i) && record.greatest[i] > (record.greatest[i] > seen ? k_turned : 1.0) * shock_level(record.rules))
         a.missing.push_back({Evidence::axis,
                              "Axis " + std::string(1, axes[i]) + " of '" + record.file + "' reads up to " +
-                                 rounded_text(record.greatest[i] / k_gravity, 3) + " g and drives no model: what these shocks did is not known.",
+                                 rounded_text(record.greatest[i] / k_gravity, 3) +
+                                 " g and drives no model: what these shocks did is not known.",
                              "Give a model of that plane, or correct the axes of [[recorder]] if the recorder was turned."});
     constexpr std::size_t k_axes = 3;
     if (axes.size() < k_axes)
       a.missing.push_back({Evidence::axis,
-                           "'" + record.file + "' has " + (axes.size() == 1 ? "one axis" : "two axes") + " of three: shocks along the others were not seen.",
+                           "'" + record.file + "' has " + (axes.size() == 1 ? "one axis" : "two axes") +
+                               " of three: shocks along the others were not seen.",
                            "Read all three axes."});
   }
 }
@@ -62,22 +70,25 @@ std::vector<std::vector<DriveHistory>> histories_of(const Assessment& a, const s
   for (const DrivenModel& model : a.models) {
     std::vector<DriveHistory>& histories = all.emplace_back();
     for (const VoyageEvent& event : a.events)
-      histories.push_back(drive_history(records[event.record], records[event.record].events[event.event], model.recorder, model.marker_angle));
+      histories.push_back(
+          drive_history(records[event.record], records[event.record].events[event.event], model.recorder, model.marker_angle));
   }
   return all;
 }
 
 void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
-  const bool is_known = std::any_of(a.missing.begin(), a.missing.end(), [](const MissingEvidence& m) { return m.item == Evidence::bandwidth; });
+  const bool is_known =
+      std::any_of(a.missing.begin(), a.missing.end(), [](const MissingEvidence& m) { return m.item == Evidence::bandwidth; });
   if (is_known || a.events.empty()) return;
   double lowest = 0.0;
   for (const RecordEvents& record : a.records)
     if (!record.recording.layout.is_peaks) lowest = lowest == 0.0 ? record.bandwidth : std::min(lowest, record.bandwidth);
   if (lowest == 0.0) return; // pulses that are assumed
   const auto open = [&](const std::string& what) {
-    a.missing.push_back({Evidence::bandwidth,
-                         "The decision depends on the frequencies that the models are driven by, up to " + rounded_text(lowest, 3) + " Hz: " + what + ".",
-                         "Give a record with more samples per second, or a higher --cfc."});
+    a.missing.push_back(
+        {Evidence::bandwidth,
+         "The decision depends on the frequencies that the models are driven by, up to " + rounded_text(lowest, 3) + " Hz: " + what + ".",
+         "Give a record with more samples per second, or a higher --cfc."});
   };
   for (const double factor : {0.5, 2.0}) {
     Assessment other;
@@ -99,7 +110,8 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
     }
     // Of a record without a filter what lies beyond half of its rate cannot be looked at: the step to it is taken for as large as the last.
     const bool can_double = std::any_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.is_filtered; });
-    if (factor < 1.0 && !can_double && a.summary.least_margin < summary.least_margin && a.summary.least_margin * a.summary.least_margin < summary.least_margin)
+    if (factor < 1.0 && !can_double && a.summary.least_margin < summary.least_margin &&
+        a.summary.least_margin * a.summary.least_margin < summary.least_margin)
       return open("half of them raise the least margin from " + rounded_text(a.summary.least_margin, 3) + " to " +
                   rounded_text(summary.least_margin, 3) + ", and twice as many may take it below 1");
   }
@@ -109,10 +121,11 @@ void find_place(Assessment& a) {
   if (!(a.summary.least_margin < k_lid_margin)) return;
   for (const DrivenModel& model : a.models)
     if (model.recorder.mounted == "lid")
-      return a.missing.push_back({Evidence::place,
-                                  "The least margin of a joint is " + rounded_text(a.summary.least_margin, 3) + ", and the recorder of '" + model.name +
-                                      "' sits on the lid: there a margin below 1.5 is not known.",
-                                  "Give a record from the frame or the bottom of the tank, and say so: mounted = \"frame\" of [[recorder]]."});
+      return a.missing.push_back(
+          {Evidence::place,
+           "The least margin of a joint is " + rounded_text(a.summary.least_margin, 3) + ", and the recorder of '" + model.name +
+               "' sits on the lid: there a margin below 1.5 is not known.",
+           "Give a record from the frame or the bottom of the tank, and say so: mounted = \"frame\" of [[recorder]]."});
 }
 
 } // namespace
@@ -127,7 +140,8 @@ std::string axes_used(const std::vector<DrivenModel>& models) {
 
 void find_unseen(const AssessmentOptions& options, Assessment& a) {
   for (const RecordEvents& record : a.records)
-    for (const MissingEvidence& missing : record.missing) a.missing.push_back({missing.item, "'" + record.file + "': " + missing.reason, missing.remedy});
+    for (const MissingEvidence& missing : record.missing)
+      a.missing.push_back({missing.item, "'" + record.file + "': " + missing.reason, missing.remedy});
   find_axes(a);
   if (auto missing = uncovered(a.records, options.voyage)) a.missing.push_back(std::move(*missing));
 }

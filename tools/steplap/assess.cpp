@@ -40,7 +40,8 @@ Command assess_command(const std::function<ExitCode(const AssessOptions& options
   Command command;
   command.name = "assess";
   command.summary = "from a shock recorder's file and models to a decision: energise, inspect or return";
-  command.examples = R"(  steplap assess shock.csv --model models/assess/transformer.toml --gravity z --voyage "2016-01-04 10:00, 2016-01-06 18:00" -o out/arrival
+  command.examples =
+      R"(  steplap assess shock.csv --model models/assess/transformer.toml --gravity z --voyage "2016-01-04 10:00, 2016-01-06 18:00" -o out/arrival
   steplap assess first.csv second.csv --model lengthwise.toml --model crosswise.toml --criteria mine.toml
   steplap assess --print-criteria acceptance-3g > mine.toml
   steplap assess --static road --plane lengthwise models/paper/interference.toml -o out/road

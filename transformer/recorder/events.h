@@ -13,9 +13,9 @@
 namespace steplap {
 
 struct EventRules {
-  double threshold = k_default_threshold; ///< m/s², of the filtered signal on any axis
-  double before = 0.1, after = 0.3;       ///< s kept before the first and after the last sample beyond the threshold
-  double merge = 0.3;                     ///< s: what follows sooner belongs to the same event
+  double threshold = k_default_threshold;    ///< m/s², of the filtered signal on any axis
+  double before = 0.1, after = 0.3;          ///< s kept before the first and after the last sample beyond the threshold
+  double merge = 0.3;                        ///< s: what follows sooner belongs to the same event
   std::optional<std::array<double, 3>> each; ///< m/s², thresholds of the axes; none: all have the one above
   double release = 1.0;                      ///< share of its threshold that each axis stays below before an event begins and after it ends
   static constexpr double k_default_threshold = 9.80665;

@@ -75,8 +75,9 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
   }
   if (facts.holes.count > k_told) lines.push_back("In all " + times_text(facts.holes, "hole", "holes") + " of missing rows.");
   add(facts.block_gaps, "block begins", "blocks begin",
-      std::isfinite(facts.longest_block_gap) ? " later than the one before ended, at most by " + rounded_text(facts.longest_block_gap, 4) + " s."
-                                             : " without a word on how long after the one before.");
+      std::isfinite(facts.longest_block_gap)
+          ? " later than the one before ended, at most by " + rounded_text(facts.longest_block_gap, 4) + " s."
+          : " without a word on how long after the one before.");
   add(facts.blocks, "line of text among the rows", "lines of text among the rows", ": a new block of the record begins after it.");
   add(facts.comments, "comment among or after the rows", "comments among or after the rows", " left out.");
   add(facts.short_rows, "row is", "rows are", " shorter than the header; the axes are there.");

@@ -13,8 +13,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_hole = 1.5;  // sampling intervals: a longer step lacks a row
-constexpr double k_early = 0.3; // of an interval: a row that comes sooner than this before its time makes up for one that was late
+constexpr double k_hole = 1.5;   // sampling intervals: a longer step lacks a row
+constexpr double k_early = 0.3;  // of an interval: a row that comes sooner than this before its time makes up for one that was late
 constexpr double k_bends = 0.95; // of the range of a sensor: from there on amplifiers bend before they clip
 constexpr std::size_t k_head_lines = 5000, k_head_bytes = std::size_t{1} << 20U;
 

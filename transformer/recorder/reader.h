@@ -64,9 +64,9 @@ struct Remark {
 
 /// Rows that are missing within a segment, which goes on over them.
 struct Hole {
-  std::size_t line = 0;                  ///< of the row after it
-  double t = 0.0, length = 0.0;          ///< s: time of the row before; from there to the row after
-  std::size_t rows = 0;                  ///< that are missing
+  std::size_t line = 0;                    ///< of the row after it
+  double t = 0.0, length = 0.0;            ///< s: time of the row before; from there to the row after
+  std::size_t rows = 0;                    ///< that are missing
   std::array<double, 3> before{}, after{}; ///< m/s², of the rows next to it
 };
 

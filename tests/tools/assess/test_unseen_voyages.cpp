@@ -19,7 +19,6 @@ using namespace assess_test;
 
 namespace {
 
-constexpr double k_rate = 500.0;
 constexpr double k_limit = 2e-3; // m, that the block may slide
 
 /// Draws of one voyage, always the same for its number.
@@ -44,6 +43,7 @@ struct Part { ///< a shock along x, or vibration
   double from = 0.0, length = 0.0, peak = 0.0, frequency = 0.0;
 };
 struct Made {
+  double rate = 0.0; ///< Hz
   std::vector<Row> rows;
   std::vector<Part> parts;
 };
@@ -56,18 +56,19 @@ double value_of(const Part& p, double t) {
   return p.peak * envelope * std::sin(2.0 * std::numbers::pi * p.frequency * (t - p.from));
 }
 
-// Five to eight seconds: shocks of 20 to 120 ms, of 0.3 to 2.5 g, or some seconds of vibration, and noise of 5 mg.
+// Some seconds at 250 or 500 Hz: shocks of 10 samples to 120 ms, of 0.3 to 2.5 g, or some seconds of vibration, and noise of 5 mg.
 Made make_voyage(Draw& draw) {
   Made made;
-  const double duration = draw.uniform(5.0, 8.0);
+  made.rate = draw.happens(0.2) ? 500.0 : 250.0;
+  const double duration = draw.uniform(3.5, 5.5);
   double t = 1.2;
-  while (t < duration - 2.0) {
-    if (draw.happens(0.3)) made.parts.push_back({t, draw.uniform(1.0, 1.9), draw.uniform(0.15, 0.5), draw.uniform(6.0, 20.0)});
-    else made.parts.push_back({t, draw.uniform(0.02, 0.12), draw.uniform(0.3, 2.5) * (draw.happens(0.5) ? 1.0 : -1.0), 0.0});
+  while (t < duration - 1.5) {
+    if (draw.happens(0.3)) made.parts.push_back({t, draw.uniform(0.8, 1.4), draw.uniform(0.15, 0.5), draw.uniform(6.0, 20.0)});
+    else made.parts.push_back({t, draw.uniform(10.0 / made.rate, 0.12), draw.uniform(0.3, 2.5) * (draw.happens(0.5) ? 1.0 : -1.0), 0.0});
     t = made.parts.back().from + made.parts.back().length + draw.uniform(0.7, 1.8);
   }
-  for (long i = 0; i < std::lround(duration * k_rate); ++i) {
-    Row row{static_cast<double>(i) / k_rate, {}};
+  for (long i = 0; i < std::lround(duration * made.rate); ++i) {
+    Row row{static_cast<double>(i) / made.rate, {}};
     double x = 0.0;
     for (const Part& part : made.parts) x += value_of(part, row.t);
     for (std::size_t k = 0; k < 3; ++k) row.a[k] = draw.uniform(-0.008, 0.008);
@@ -90,12 +91,16 @@ std::string csv_of(const std::vector<Row>& rows) {
 /// A block on a tank, and how it is asked.
 struct Bench {
   explicit Bench(double mu) {
-    assess_test::write(model, block_text(mu, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"2 mm\"\n"));
+    std::string text = block_text(mu, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"2 mm\"\n");
+    const auto set = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
+    set("tolerance = 1e-10", "tolerance = 1e-6"); // of slides of millimetres
+    assess_test::write(model, text);
     options.reading.gravity = "z";
     options.sampling.samples = 0;
     options.estimating = Estimating::never;
     options.criteria = folder.file("criteria.toml");
-    assess_test::write(options.criteria, "name = \"models\"\n[[criterion]]\nname = \"models\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n");
+    assess_test::write(options.criteria,
+                       "name = \"models\"\n[[criterion]]\nname = \"models\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n");
   }
   void say_voyage(const Made& made) {
     options.voyage = parse_voyage(std::to_string(made.rows.front().t) + "," + std::to_string(made.rows.back().t));
@@ -109,7 +114,8 @@ struct Bench {
     REQUIRE(events.events.size() == 1);
     const DrivenModel driven = read_driven_model(model);
     Traveller traveller(driven);
-    const Passage passage = traveller.pass(drive_history(events, events.events.front(), driven.recorder, driven.marker_angle), Estimating::never);
+    const Passage passage =
+        traveller.pass(drive_history(events, events.events.front(), driven.recorder, driven.marker_angle), Estimating::never);
     for (const LimitPassage& limit : passage.clearances)
       if (limit.name == "slide") return std::abs(limit.value);
     return std::nan("");
@@ -122,19 +128,33 @@ struct Bench {
 };
 
 /// Ways in which a record is less than the voyage.
-const char* const k_damages[] = {"its end is missing", "its begin is missing", "turned by 90 degrees", "an axis stops",  "one bit",
-                                 "rounded tops",       "rows are missing",     "a comment",            "an odd last line", "a wrong unit",
-                                 "a low filter",       "low rate",             "cut within a shock",   "an axis is not read"};
+const char* const k_damages[] = {"its end is missing",
+                                 "its begin is missing",
+                                 "turned by 90 degrees",
+                                 "an axis stops",
+                                 "one bit",
+                                 "rounded tops",
+                                 "rows are missing",
+                                 "a comment",
+                                 "an odd last line",
+                                 "a wrong unit",
+                                 "a low filter",
+                                 "low rate",
+                                 "cut within a shock",
+                                 "an axis is not read"};
 constexpr std::size_t k_ways = std::size(k_damages);
 
 const Part& strongest(const Made& made) {
-  return *std::max_element(made.parts.begin(), made.parts.end(), [](const Part& a, const Part& b) { return std::abs(a.peak) < std::abs(b.peak); });
+  return *std::max_element(made.parts.begin(), made.parts.end(),
+                           [](const Part& a, const Part& b) { return std::abs(a.peak) < std::abs(b.peak); });
 }
 
 std::string damaged(std::size_t way, Made made, Draw& draw, AssessmentOptions& options) {
   std::vector<Row>& rows = made.rows;
   const Part part = strongest(made);
-  const auto at = [&](double t) { return rows.begin() + std::min<std::ptrdiff_t>(std::lround(t * k_rate), static_cast<std::ptrdiff_t>(rows.size())); };
+  const auto at = [&](double t) {
+    return rows.begin() + std::min<std::ptrdiff_t>(std::lround(t * made.rate), static_cast<std::ptrdiff_t>(rows.size()));
+  };
   switch (way) {
   case 0: rows.erase(at(draw.uniform(1.0, rows.back().t)), rows.end()); break;
   case 1: rows.erase(rows.begin(), at(draw.uniform(0.1, rows.back().t - 1.0))); break;
@@ -186,12 +206,12 @@ long wanted() {
 } // namespace
 
 TEST_CASE("no decision on a damaged record is more favourable than the truth, and whole records are decided") {
-  const long damages = wanted(), whole = damages / 2;
+  const long damages = wanted(), whole = damages / 4;
   long open = 0, kept = 0, harmful = 0, energised = 0;
   for (std::uint64_t number = 1; kept < damages; ++number) {
     Draw draw(number);
     const Made made = make_voyage(draw);
-    Bench bench(draw.uniform(0.25, 0.5));
+    Bench bench(draw.uniform(0.3, 0.7));
     bench.say_voyage(made);
     assess_test::write(bench.record, csv_of(made.rows));
     const double slide = bench.whole_slide();
@@ -210,7 +230,7 @@ TEST_CASE("no decision on a damaged record is more favourable than the truth, an
     ++kept;
     harmful += truth == Decision::inspect;
     const std::size_t way = draw.below(k_ways);
-    CAPTURE(k_damages[way]);
+    CAPTURE(std::string(k_damages[way]));
     assess_test::write(bench.record, damaged(way, made, draw, bench.options));
     try {
       const Assessment a = bench.made();
@@ -220,6 +240,8 @@ TEST_CASE("no decision on a damaged record is more favourable than the truth, an
     }
   }
   CHECK(open <= whole / 20); // 95 % of the whole records are decided
+  MESSAGE("of " << whole << " whole records " << open << " are open, " << energised << " energised; of " << damages << " voyages "
+                << harmful << " did harm");
   CHECK(harmful > damages / 5); // both truths are common
   CHECK(energised > whole / 5);
 }

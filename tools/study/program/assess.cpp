@@ -101,9 +101,10 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   if (o.voyage) {
     options.voyage = parse_voyage(*o.voyage);
     if (!options.voyage)
-      throw UsageError("--voyage '" + *o.voyage +
-                       "': give its begin and end, as two dates with times of day (\"2016-01-04 10:00, 2016-01-06 18:00\", both with a zone or "
-                       "both without) or in the record's own seconds (0,7200)");
+      throw UsageError(
+          "--voyage '" + *o.voyage +
+          "': give its begin and end, as two dates with times of day (\"2016-01-04 10:00, 2016-01-06 18:00\", both with a zone or "
+          "both without) or in the record's own seconds (0,7200)");
   }
   if (o.budget) options.budget = number_of(o.budget, "--budget", 0.0, ", in s");
   options.criteria = o.criteria.value_or("acceptance-3g");
