@@ -106,7 +106,7 @@ std::string coverage_text(const std::vector<RecordEvents>& records) {
 std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& records, const std::optional<Voyage>& voyage) {
   const std::string seen = coverage_text(records);
   if (!voyage)
-    return missing(seen + " Nothing says that this is the whole journey.", "Say when the journey began and ended: --voyage FROM,TO.");
+    return missing(seen + " Nothing says that this is the whole journey.", "Say when the journey began and ended (voyage FROM,TO).");
   double greatest = 0.0;
   for (const RecordEvents& record : records) {
     if (record.recording.layout.is_peaks)
@@ -116,15 +116,15 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
     if (!voyage->is_clock) continue;
     if (!record.clock_ns)
       return missing("'" + record.file + "' does not tell the date and time at which it began.",
-                     "Give --voyage in the record's own seconds, one record at a time.");
+                     "Give the voyage in the record's own seconds, one record at a time.");
     if (record.clock_has_zone != voyage->has_zone)
-      return missing("'" + record.file + "' tells its time " + (record.clock_has_zone ? "with" : "without") + " a time zone, --voyage " +
+      return missing("'" + record.file + "' tells its time " + (record.clock_has_zone ? "with" : "without") + " a time zone, the voyage " +
                          (voyage->has_zone ? "with" : "without") + " one: they cannot be compared.",
-                     record.clock_has_zone ? "Give --voyage with zones, as in \"2016-01-04 10:00Z, 2016-01-06 18:00Z\"."
-                                           : "Give --voyage without zones, in the time of the recorder.");
+                     record.clock_has_zone ? "Give the voyage with zones, as in \"2016-01-04 10:00Z, 2016-01-06 18:00Z\"."
+                                           : "Give the voyage without zones, in the time of the recorder.");
   }
   if (!voyage->is_clock && records.size() > 1)
-    return missing("--voyage is given in seconds of one record, and there are " + std::to_string(records.size()) + ".",
+    return missing("The voyage is given in seconds of one record, and there are " + std::to_string(records.size()) + ".",
                    "Give two dates with times of day.");
   if (const Uncovered u = uncovered_of(records, *voyage); u.sum > 0.0)
     return missing(seen + " The journey was said to last " + voyage->text + ": " + span_text(u.sum) + " of it are not covered, the first " +

@@ -216,7 +216,7 @@ void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& r
   };
   for (const MissingEvidence& missing : a.missing)
     if (!a.is_accepted(missing.item))
-      open("evidence", missing.reason + " " + missing.remedy + " (--accept " + name_of(missing.item) + " takes it upon whoever decides.)");
+      open("evidence", missing.reason + " " + missing.remedy + " (accept " + name_of(missing.item) + " takes it upon whoever decides.)");
   if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
 }
 

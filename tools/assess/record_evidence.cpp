@@ -51,7 +51,7 @@ public:
       add(Evidence::bandwidth,
           "The models are driven by frequencies up to " + rounded_text(record_.bandwidth, 3) +
               " Hz: with less than 50 Hz the pressure that joints need comes out too low.",
-          record_.is_filtered ? "Give a higher --cfc, or none." : "A record of 100 samples per second or more is needed.");
+          record_.is_filtered ? "Give a higher frequency class, or none." : "A record of 100 samples per second or more is needed.");
   }
 
 private:
@@ -167,12 +167,12 @@ private:
       const double most = std::max(std::abs(facts_.axes[i].least), std::abs(facts_.axes[i].greatest));
       if (most < k_beyond_transport) continue;
       return add(Evidence::unit, "Axis " + letter(record_, i) + " reads " + in_g(most) + ", which no transport gives.",
-                 "Check the unit (--unit, --counts-per-g).");
+                 "Check the unit, or the counts that are 1 g.");
     }
     const double size = record_.size_at_rest();
     if (size < k_no_gravity || (size > k_gravity_seen && size < k_gravity_most)) return;
     add(Evidence::unit, "At rest the record reads " + in_g(size) + " in all, which is neither gravity nor nothing.",
-        "Check the unit (--unit), and name a stretch at rest (--rest FROM,TO).");
+        "Check the unit, and name a stretch at rest.");
   }
 
   RecordEvents& record_;
@@ -232,7 +232,7 @@ void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<Mis
                            "'" + record.file + "': axis " + letter(record, i) + " stays near " + in_g(*found) + " for " +
                                rounded_text(1e3 * top / e.window.rate, 3) + " ms at " + rounded_text(e.window.times[at], 7) +
                                " s, as a sensor does that cannot read more.",
-                           "Say how far the sensor reads: --range \"16 g\"."});
+                           "Say how far the sensor reads (range \"16 g\")."});
         break;
       }
     }

@@ -189,7 +189,7 @@ private:
     a_.missing.push_back({Evidence::vibration,
                           "Vibration above " + rounded_text(lowest / k_gravity, 2) +
                               " g is not run whole, although the outcome may depend on it: " + why + ".",
-                          "Give a larger --budget."});
+                          "Give a larger budget."});
   }
 
   const AssessmentOptions& options_;

@@ -88,7 +88,7 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
     a.missing.push_back(
         {Evidence::bandwidth,
          "The decision depends on the frequencies that the models are driven by, up to " + rounded_text(lowest, 3) + " Hz: " + what + ".",
-         "Give a record with more samples per second, or a higher --cfc."});
+         "Give a record with more samples per second, or a higher frequency class."});
   };
   for (const double factor : {0.5, 2.0}) {
     Assessment other;

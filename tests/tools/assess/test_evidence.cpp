@@ -61,7 +61,7 @@ TEST_CASE("what a record hides leaves the decision open, says what is missing, a
     const Assessment a = assessed(file, options);
     CHECK(a.decision == Decision::open);
     CHECK(lacks(a, item));
-    CHECK(a.reason.find(std::string("--accept ") + name_of(item)) != std::string::npos);
+    CHECK(a.reason.find(std::string("(accept ") + name_of(item)) != std::string::npos);
     options.accepted.push_back(item);
     options.accepted.push_back(Evidence::axis); // of a dead axis the others read more
     CHECK(assessed(file, options).decision == Decision::energise);
