@@ -3,10 +3,14 @@
 #include "mbd/base/shown_text.h"
 #include "run/failure.h"
 #include "tools/assess/hangs_on.h"
+#include "tools/assess/record_evidence.h"
+#include "tools/assess/vibration.h"
+#include "tools/assess/voyage_evidence.h"
 #include "transformer/recorder/fields.h"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace steplap::assess {
 
@@ -66,25 +70,19 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   a.shared = find_shared_frictions(a.models);
   for (const std::string& record : records) {
     stop_if_asked(options, "before '" + record + "' was read");
-    a.records.push_back(read_events(record, options.reading));
+    a.records.push_back(read_without_events(record, options.reading));
   }
   if (options.reading.pulse && std::none_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.pulse.has_value(); }))
     throw FileError(a.records.front().file,
                     "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: assume none");
   std::string order;
-  order_records(a.records, order);
+  bool is_order_known = true;
+  order_records(a.records, order, is_order_known);
   if (!order.empty()) a.assumptions.push_back(order);
-  for (std::size_t r = 0; r < a.records.size(); ++r)
-    for (std::size_t e = 0; e < a.records[r].events.size(); ++e) a.events.push_back({r, e, {}, {}, {}});
+  if (!is_order_known) a.missing.push_back({Evidence::clock, order, "Give all times with a zone, or all without."});
   for (const RecordEvents& record : a.records)
     for (const DrivenModel& model : a.models)
       if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
-  for (const DrivenModel& model : a.models) {
-    std::vector<DriveHistory>& histories = a.histories.emplace_back();
-    for (const VoyageEvent& event : a.events)
-      histories.push_back(
-          drive_history(a.records[event.record], a.records[event.record].events[event.event], model.recorder, model.marker_angle));
-  }
 }
 
 // Judges shared frictions in an event that all models have passed. Frees the traces: those of a whole voyage would be large.
@@ -123,7 +121,8 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
 
 // The same voyage by the way of the samples: two ways to one result.
 void check_against_samples(Assessment& a) {
-  const VoyageSummary twin = voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
+  const VoyageSummary twin =
+      a.by_samples ? *a.by_samples : voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
   if (!a.summary.unknown.empty()) return;
   const VoyageSummary& own = a.summary;
   const bool is_margin_same = (std::isinf(own.least_margin) && std::isinf(twin.least_margin)) ||
@@ -141,10 +140,7 @@ void sample(const AssessmentOptions& options, Assessment& a) {
   if (a.events.empty()) return;
   check_against_samples(a);
   if (a.uncertain->empty() || options.sampling.samples <= 0) return;
-  SamplingOptions sampling = options.sampling;
-  sampling.stop = options.stop;
-  if (options.progress) sampling.progress = [&](long done, long all) { options.progress("samples", done, all); };
-  a.samples = sample_voyages(a.models, a.histories, *a.uncertain, sampling, a.shared);
+  if (a.samples.empty()) a.samples = samples_of(options, a, "");
   a.damage = damage_probability(a.samples);
   a.shares = shares_of(a.samples);
   for (std::size_t e = 0; e < a.events.size(); ++e)
@@ -162,9 +158,9 @@ void assume(Assessment& a) {
       a.assumptions.push_back(name + "of each event a constant is taken away, so that velocity ends where it began.");
   }
   a.assumptions.push_back(
-      "The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
-      rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) +
-      " g is not run, but for what is greatest of each axis.");
+      "The voyage begins at rest, and each event where the one before left the machine. Events begin beyond " +
+      rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / std::exp2(a.halvings) / k_gravity, 3) +
+      " g on an axis that drives a model, or beyond the same share of the most that it reads; what stays below is not run.");
   for (std::string& sentence : assumptions_of(a.shared)) a.assumptions.push_back(std::move(sentence));
   for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
   for (const UncertainValue& value : a.uncertain->values())
@@ -178,18 +174,11 @@ void assume(Assessment& a) {
                             "): events in detail and probabilities are of different machines. Give both the same value.");
   }
   if (a.uncertain->values().size() > 1) a.assumptions.push_back("Uncertain values are taken to be independent of each other.");
-  for (const RecordEvents& record : a.records)
-    for (const RecordFault fault : record.faults)
-      if (std::find(a.accepted.begin(), a.accepted.end(), fault) != a.accepted.end())
-        a.assumptions.push_back("That '" + record.file + "' is not whole (" + name_of(fault) + ") was accepted by whoever asked.");
+  for (const MissingEvidence& missing : a.missing)
+    if (a.is_accepted(missing.item))
+      a.assumptions.push_back("Accepted by whoever asked (" + std::string(name_of(missing.item)) + "): " + missing.reason);
   for (const RecordEvents& record : a.records) {
     const ReadFacts& facts = record.recording.facts;
-    const std::string start = record.recording.layout.time.start;
-    constexpr double k_hours = 7200.0; // s: beyond, people count in hours
-    const double covered = facts.last - facts.first;
-    a.assumptions.push_back("'" + record.file + "' covers " +
-                            (covered > k_hours ? rounded_text(covered / 3600.0, 4) + " h" : rounded_text(covered, 4) + " s") +
-                            (start.empty() ? "" : "; it starts " + start) + ". What came before or after is in no record.");
     if (facts.repeated.count > 0)
       a.assumptions.push_back("Of '" + record.file + "' " + counted(facts.repeated.count, "row", "rows") +
                               " with the time of another are left out, as asked.");
@@ -201,11 +190,42 @@ void assume(Assessment& a) {
 
 } // namespace
 
+bool Assessment::is_accepted(Evidence item) const { return std::find(accepted.begin(), accepted.end(), item) != accepted.end(); }
+
+void list_events(Assessment& a) {
+  a.events.clear();
+  a.histories.clear();
+  for (std::size_t r = 0; r < a.records.size(); ++r)
+    for (std::size_t e = 0; e < a.records[r].events.size(); ++e) a.events.push_back({r, e, {}, {}, {}});
+  for (const DrivenModel& model : a.models) {
+    std::vector<DriveHistory>& histories = a.histories.emplace_back();
+    for (const VoyageEvent& event : a.events)
+      histories.push_back(
+          drive_history(a.records[event.record], a.records[event.record].events[event.event], model.recorder, model.marker_angle));
+  }
+}
+
+std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Assessment& a, const std::string& suffix) {
+  SamplingOptions sampling = options.sampling;
+  sampling.stop = options.stop;
+  if (!sampling.store.empty() && !suffix.empty()) {
+    const std::filesystem::path store(sampling.store);
+    sampling.store = (store.parent_path() / (store.stem().string() + suffix + store.extension().string())).string();
+  }
+  if (options.progress) sampling.progress = [&](long done, long all) { options.progress("samples", done, all); };
+  return sample_voyages(a.models, a.histories, *a.uncertain, sampling, a.shared);
+}
+
 Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options) {
   Assessment a;
   read_inputs(records, models, options, a);
+  find_unseen(options, a);
+  list_events(a);
+  find_events_that_matter(options, a);
+  find_rounded_tops(a.records, a.missing);
   pass_events(options, a);
   sample(options, a);
+  find_undecided(options, a);
   decide(a);
   find_what_it_hangs_on(options, a);
   assume(a);

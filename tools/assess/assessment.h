@@ -2,6 +2,7 @@
 // that is uncertain, then the criteria. The whole of what `steplap assess` does, without a console.
 #pragma once
 
+#include "tools/assess/coverage.h"
 #include "tools/assess/passage.h"
 #include "tools/assess/samples.h"
 #include "transformer/decision/criteria.h"
@@ -17,7 +18,9 @@ namespace steplap::assess {
 struct AssessmentOptions {
   EventReading reading;
   std::vector<std::string> overrides;     ///< "path=value", laid over every model
-  std::vector<RecordFault> accepted;      ///< faults of records that the user takes upon himself
+  std::vector<Evidence> accepted;         ///< missing evidence that the user takes upon himself
+  std::optional<Voyage> voyage;           ///< from when to when the machine travelled
+  double budget = 60.0;                   ///< s of computing, for each day of record begun, that the search for a threshold may take
   std::string criteria = "acceptance-3g"; ///< file or preset
   Estimating estimating = Estimating::cheap;
   SamplingOptions sampling;
@@ -57,7 +60,12 @@ struct Assessment {
   std::string reason;
   std::vector<Reason> reasons; ///< the gravest first; all criteria
   std::vector<std::string> hangs_on, assumptions, tests;
-  std::vector<RecordFault> accepted;
+  std::vector<MissingEvidence> missing; ///< of the records and of all together
+  std::vector<Evidence> accepted;
+  std::optional<VoyageSummary> by_samples; ///< the voyage with the models' own values by the way of the samples, once it was made
+  int halvings = 0;                        ///< of the threshold, until the outcome stayed the same
+
+  [[nodiscard]] bool is_accepted(Evidence item) const;
 };
 
 /// Throws RecordError, FileError and ModelError for what cannot be used, NumericalFailure if it was stopped.
@@ -69,6 +77,13 @@ void decide(Assessment& assessment);
 /// What criteria make of a voyage with values of its own: the worst outcome, records as the assessment has them. Probabilities are of
 /// all values together, and are left out.
 [[nodiscard]] Decision decision_of(const Assessment& assessment, const VoyageSummary& summary);
+/// The same by the criteria alone, whatever evidence is missing.
+[[nodiscard]] Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary& summary);
+/// Fills events and histories from the events of the records.
+void list_events(Assessment& assessment);
+/// Voyages of the assessment's events with drawn values. `suffix` tells their store from others.
+[[nodiscard]] std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Assessment& assessment,
+                                                   const std::string& suffix);
 
 /// The text of assessment.json.
 [[nodiscard]] std::string assessment_json(const Assessment& assessment);

@@ -29,9 +29,11 @@ Json records(const Assessment& a) {
   Json all = Json::array();
   for (const RecordEvents& record : a.records) {
     Json faults = Json::array();
-    for (const RecordFault fault : record.faults)
-      faults.push_back(
-          {{"what", name_of(fault)}, {"accepted", std::find(a.accepted.begin(), a.accepted.end(), fault) != a.accepted.end()}});
+    Json warnings = Json::array();
+    for (const MissingEvidence& missing : record.missing) {
+      faults.push_back({{"what", name_of(missing.item)}, {"accepted", a.is_accepted(missing.item)}});
+      warnings.push_back(missing.reason);
+    }
     Json subtracted = Json::object();
     for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i)
       subtracted[std::string(1, record.recording.layout.axes[i].axis)] = record.offset[i];
@@ -48,7 +50,7 @@ Json records(const Assessment& a) {
     all.push_back({{"file", record.file},
                    {"sha256", record.sha256},
                    {"taken_for", facts_text(record.recording)},
-                   {"warnings", record.warnings()},
+                   {"warnings", warnings},
                    {"faults", faults},
                    {"rate", number(record.rate)},
                    {"bandwidth", number(record.bandwidth)},
@@ -283,6 +285,16 @@ Json reasons(const Assessment& a) {
   return all;
 }
 
+Json missing_evidence(const Assessment& a) {
+  Json all = Json::array();
+  for (const MissingEvidence& missing : a.missing)
+    all.push_back({{"what", name_of(missing.item)},
+                   {"reason", missing.reason},
+                   {"remedy", missing.remedy},
+                   {"accepted", a.is_accepted(missing.item)}});
+  return all;
+}
+
 } // namespace
 
 std::string assessment_json(const Assessment& a) {
@@ -292,6 +304,8 @@ std::string assessment_json(const Assessment& a) {
                      {"decision", name_of(a.decision)},
                      {"reason", a.reason},
                      {"reasons", reasons(a)},
+                     {"missing_evidence", missing_evidence(a)},
+                     {"covered", coverage_text(a.records)},
                      {"records", records(a)},
                      {"models", models(a)},
                      {"events", std::move(events)},

@@ -228,23 +228,9 @@ void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& r
   const auto open = [&](const char* name, const std::string& text) {
     reasons.push_back({name, text, "rules of this program", Decision::open, {}});
   };
-  for (const RecordEvents& record : a.records)
-    for (const RecordFault& fault : record.faults)
-      if (std::find(a.accepted.begin(), a.accepted.end(), fault) == a.accepted.end())
-        open("whole record", "'" + record.file + "': " + record.warnings()[static_cast<std::size_t>(&fault - record.faults.data())] +
-                                 " What a record does not show cannot be judged.");
-  for (std::size_t e = 0; e < a.events.size(); ++e) {
-    const auto slips = [](const Passage& p) {
-      return std::any_of(p.joints.begin(), p.joints.end(), [](const JointPassage& j) { return j.slips; });
-    };
-    if (!a.records[a.events[e].record].events[a.events[e].event].is_below ||
-        std::none_of(a.events[e].passages.begin(), a.events[e].passages.end(), slips))
-      continue;
-    open("threshold", "A joint slips in event " + std::to_string(e + 1) + ", which stays below the threshold of " +
-                          rounded_text(a.records[a.events[e].record].rules.threshold / k_gravity, 3) +
-                          " g: others that were not run may slip it as well. Lower the threshold.");
-    break;
-  }
+  for (const MissingEvidence& missing : a.missing)
+    if (!a.is_accepted(missing.item))
+      open("evidence", missing.reason + " " + missing.remedy + " (accept " + name_of(missing.item) + " takes it upon whoever decides.)");
   if (!a.shared.empty()) reasons.push_back(judge_planes(s));
   if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
 }
@@ -259,10 +245,15 @@ std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
 
 } // namespace
 
-Decision decision_of(const Assessment& assessment, const VoyageSummary& summary) {
+Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary& summary) {
   Decision worst = Decision::energise;
   for (const DecisionCriterion& c : assessment.criteria.criteria)
     if (!c.quantity.ends_with("probability")) worst = std::max(worst, judge_criterion(c, assessment, summary).outcome);
+  return worst;
+}
+
+Decision decision_of(const Assessment& assessment, const VoyageSummary& summary) {
+  Decision worst = decision_by_criteria(assessment, summary);
   std::vector<Reason> own;
   add_own(assessment, summary, own);
   for (const Reason& reason : own) worst = std::max(worst, reason.outcome);
@@ -272,7 +263,11 @@ Decision decision_of(const Assessment& assessment, const VoyageSummary& summary)
 void decide(Assessment& a) {
   a.reasons = reasons_of(a, a.summary);
   a.decision = a.reasons.empty() ? Decision::open : a.reasons.front().outcome;
-  a.reason = a.decision == Decision::energise ? "All " + std::to_string(a.reasons.size()) + " criteria are met." : a.reasons.front().text;
+  a.reason = a.decision == Decision::energise ? "All " + std::to_string(a.reasons.size()) + " criteria are met. " + coverage_text(a.records)
+                                              : a.reasons.front().text;
+  const auto is_open = [&](const MissingEvidence& missing) { return !a.is_accepted(missing.item); };
+  if (a.decision == Decision::inspect && std::any_of(a.missing.begin(), a.missing.end(), is_open))
+    a.reason += " Evidence is missing, and what it would show may be worse.";
   a.tests.clear();
   for (const Reason& reason : a.reasons)
     for (const std::string& test : reason.tests)

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
 
 namespace steplap::assess {
@@ -189,6 +190,15 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
     return values;
   };
   DriveHistory history;
+  // An event begins and ends at rest: what is left of the signal there goes to zero along a cosine, in the half that is further from it.
+  const std::size_t rise = window.lead / 2, fall = window.tail / 2;
+  const auto weight = [&](std::size_t i) {
+    const auto ramp = [](std::size_t at, std::size_t length) {
+      return 0.5 - 0.5 * portable::cos(std::numbers::pi * (static_cast<double>(at) + 0.5) / static_cast<double>(length));
+    };
+    const std::size_t left = count - 1 - i;
+    return (i < rise ? ramp(i, rise) : 1.0) * (left < fall ? ramp(left, fall) : 1.0);
+  };
   history.step = 1.0 / window.rate;
   history.goes_on = event.event.goes_on;
   std::vector<double> a = along(recorder.x), b = along(recorder.y);
@@ -202,8 +212,9 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   }
   const double c = portable::cos(angle), s = portable::sin(angle);
   for (std::size_t i = 0; i < count; ++i) {
-    history.x.push_back(c * a[i] - s * b[i]);
-    history.y.push_back(s * a[i] + c * b[i]);
+    const double w = weight(i);
+    history.x.push_back(w * (c * a[i] - s * b[i]));
+    history.y.push_back(w * (s * a[i] + c * b[i]));
   }
   return history;
 }
@@ -212,7 +223,7 @@ std::string check_gravity(const RecordEvents& record, const DrivenModel& model) 
   constexpr double k_seen = 0.7, k_other = 0.5; // g: rests in the record at all; is somewhere else, whatever the first second shakes
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   double size = 0.0;
-  for (std::size_t i = 0; i < axes.size(); ++i) size += record.recording.facts.axes[i].rest * record.recording.facts.axes[i].rest;
+  for (std::size_t i = 0; i < axes.size(); ++i) size += record.rest[i] * record.rest[i];
   if (model.given.header.gravity.norm() < k_seen * k_gravity || record.recording.layout.is_peaks) return "";
   if (std::sqrt(size) < k_seen * k_gravity)
     return "'" + record.file + "' has no gravity in it: that its axes point as '" + model.name + "' says could not be seen.";
@@ -223,12 +234,11 @@ std::string check_gravity(const RecordEvents& record, const DrivenModel& model) 
   for (const auto& [axis, share] : felt) {
     const auto index = axis == "none" ? std::nullopt : record.axis(axis.back());
     if (!index) continue;
-    const double sign = axis.starts_with('-') ? -1.0 : 1.0, rest = record.recording.facts.axes[*index].rest / k_gravity;
+    const double sign = axis.starts_with('-') ? -1.0 : 1.0, rest = record.rest[*index] / k_gravity;
     if (std::abs(sign * rest - share) < k_other) continue;
     throw FileError(record.file, "axis " + axis.substr(axis.size() - 1) + " of '" + record.file + "' reads " + rounded_text(rest, 3) +
-                                     " g in its first second, and would read " + rounded_text(sign * share, 3) +
-                                     " g at rest if it sat as '" + model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" +
-                                     model.recorder.y +
+                                     " g at rest, and would read " + rounded_text(sign * share, 3) + " g at rest if it sat as '" +
+                                     model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" + model.recorder.y +
                                      "\" of [[recorder]]): correct the axes there, or choose columns and signs of the record");
   }
   return "";

@@ -10,8 +10,9 @@ namespace steplap::assess {
 /// Takes samples as they were read, m/s², and keeps the longest stretch in which all axes together read less than 0.3 g.
 class FallWatch {
 public:
-  static constexpr double k_weightless = 0.3 * 9.80665; ///< m/s²: a jolt of the road leaves more for longer than k_least
-  static constexpr double k_least = 0.1;                ///< s: a fall of 5 cm
+  static constexpr double k_weightless = 0.3 * 9.80665;   ///< m/s²: a jolt of the road leaves more for longer than k_least
+  static constexpr double k_gravity_seen = 0.7 * 9.80665; ///< m/s²: read at rest, at least, by a recorder that has gravity in it
+  static constexpr double k_least = 0.1;                  ///< s: a fall of 5 cm
 
   void begin_segment() { is_inside_ = false; }
   void put(double t, const double* a, std::size_t axes) {

@@ -1,8 +1,7 @@
 #include "tools/assess/record_events.h"
 
 #include "tools/assess/assumed_pulse.h"
-#include "tools/assess/quiet_watch.h"
-#include "tools/assess/record_faults.h"
+#include "tools/assess/record_evidence.h"
 
 #include "mbd/base/shown_text.h"
 #include "mbd/io/digest.h"
@@ -13,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 namespace steplap::assess {
 
@@ -95,11 +95,13 @@ public:
   void put(double t, const double* a) override {
     conditioner_->put(t, a);
     fall_.put(t, a, axes_);
+    watch_.put(t, a, axes_);
   }
   void end_segment() override { conditioner_->end_segment(); }
   [[nodiscard]] const Conditioner& conditioner() const { return *conditioner_; }
   [[nodiscard]] const Conditioning& conditioning() const { return conditioning_; }
   [[nodiscard]] const FallWatch& fall() const { return fall_; }
+  [[nodiscard]] AxisWatch& axes() { return watch_; }
 
 private:
   Conditioning conditioning_;
@@ -107,55 +109,27 @@ private:
   SignalSink& sink_;
   std::optional<Conditioner> conditioner_;
   FallWatch fall_;
+  AxisWatch watch_;
   std::size_t axes_ = 0;
 };
 
-// Both see the conditioned signal.
-class EventsAndQuiet : public SignalSink {
-public:
-  EventsAndQuiet(const EventRules& rules, ShockFinder::Found found) : quiet(rules), events_(rules, std::move(found)) {}
-  void begin(const RecordLayout& layout, double rate) override {
-    events_.begin(layout, rate);
-    quiet.begin(layout, rate);
-  }
-  void begin_segment(std::size_t line) override {
-    events_.begin_segment(line);
-    quiet.begin_segment(line);
-  }
-  void put(double t, const double* plain, const double* filtered) override {
-    events_.put(t, plain, filtered);
-    quiet.put(t, plain, filtered);
-  }
-  void end_segment() override {
-    events_.end_segment();
-    quiet.end_segment();
-  }
-  QuietWatch quiet;
+Conditioning conditioning_of(const EventReading& reading) {
+  Conditioning conditioning;
+  conditioning.frequency_class = reading.frequency_class;
+  conditioning.rate = reading.rate;
+  return conditioning;
+}
 
-private:
-  ShockFinder events_;
-};
-
-constexpr double k_noticed = 0.1; // of the threshold: what is smaller shakes nothing loose that the road had left
-
-// What stays below the threshold is run where it is greatest: of a record without an event that is all there is.
-void add_quiet(const QuietWatch& quiet, RecordEvents& record) {
-  const double least = record.events.empty() ? 0.0 : k_noticed * record.rules.threshold;
-  for (const QuietWatch::Stretch& stretch : quiet.greatest(least)) {
-    RecordedEvent event{describe_event(stretch.window, record.recording.layout.axes.size()), stretch.window, true};
-    event.event.segment = stretch.segment, event.event.line = stretch.line;
-    record.events.push_back(std::move(event));
-  }
-  const auto is_before = [](const RecordedEvent& a, const RecordedEvent& b) {
-    return a.event.segment != b.event.segment ? a.event.segment < b.event.segment : a.event.begin < b.event.begin;
-  };
-  std::stable_sort(record.events.begin(), record.events.end(), is_before);
+// The signal of a file with its offset: --gravity, or what it reads at rest.
+Recording read_signal(const std::string& file, const EventReading& reading, WithoutGravity& first) {
+  LineSource source(file);
+  return read_record(source, reading.read, first);
 }
 
 void refuse_gravity_as_shock(const RecordEvents& record) {
   const RecordLayout& layout = record.recording.layout;
   for (std::size_t i = 0; i < layout.axes.size(); ++i) {
-    const double rest = record.recording.facts.axes[i].rest - record.offset[i];
+    const double rest = record.rest[i] - record.offset[i];
     if (std::abs(rest) < k_felt * record.rules.threshold) continue;
     throw FileError(record.file, "axis " + std::string(1, layout.axes[i].axis) + " of '" + record.file + "' reads " + in_g(rest) +
                                      " at rest, which would count towards the threshold of " + in_g(record.rules.threshold) +
@@ -164,17 +138,26 @@ void refuse_gravity_as_shock(const RecordEvents& record) {
 }
 
 // The time 0 of the record, where its start is told with a date and a clock.
-std::optional<std::int64_t> clock_of(const RecordLayout& layout) {
+void read_clock(RecordEvents& record) {
+  const RecordLayout& layout = record.recording.layout;
   std::string text = layout.time.start.substr(0, layout.time.start.find(" ("));
-  if (text.ends_with(" UTC")) text.resize(text.size() - 4);
+  const bool is_utc = text.ends_with(" UTC");
+  if (is_utc) text.resize(text.size() - 4);
   const unsigned orders = possible_date_orders(text);
-  if (orders == 0 || (orders & (orders - 1)) != 0) return {}; // none, or more than one
+  if (orders == 0 || (orders & (orders - 1)) != 0) return; // none, or more than one
   const auto stamp = parse_stamp(text, orders);
-  if (!stamp || !stamp->has_date || !stamp->has_clock) return {};
-  return stamp->ns;
+  if (!stamp || !stamp->has_date || !stamp->has_clock) return;
+  record.clock_ns = stamp->ns;
+  record.clock_has_zone = is_utc || stamp->has_zone;
 }
 
 } // namespace
+
+double RecordEvents::size_at_rest() const {
+  double sum = 0.0;
+  for (const double value : rest) sum += value * value;
+  return std::sqrt(sum);
+}
 
 std::optional<std::size_t> RecordEvents::axis(char letter) const {
   const std::size_t index = axes().find(letter);
@@ -188,27 +171,26 @@ std::string RecordEvents::axes() const {
   return letters;
 }
 
-RecordEvents read_events(const std::string& file, const EventReading& reading) {
+RecordEvents read_without_events(const std::string& file, const EventReading& reading) {
   if (is_standard_input(file)) throw FileError(file, "a decision names its record: give a file, not standard input");
   RecordEvents record;
   record.file = file;
   record.rules = reading.rules;
-  Conditioning conditioning;
-  conditioning.frequency_class = reading.frequency_class;
-  conditioning.rate = reading.rate;
+  Conditioning conditioning = conditioning_of(reading);
   if (reading.rest) conditioning.offset = rest_of(file, reading);
-  EventsAndQuiet finder(reading.rules, [&](const ShockEvent& event, const Window& window) {
-    record.events.push_back({event, window, false});
-  });
-  WithoutGravity first(conditioning, reading, finder);
-  LineSource source(file);
-  record.recording = read_record(source, reading.read, first);
+  constexpr double k_within = 0.25; // of a shock: less is left of one before its begin, or after its end
+  SignalWatch signal(k_within * shock_level(reading.rules));
+  WithoutGravity first(conditioning, reading, signal);
+  record.recording = read_signal(file, reading, first);
   record.sha256 = sha256_of(file);
-  record.clock_ns = clock_of(record.recording.layout);
+  read_clock(record);
   record.fall = first.fall();
-  find_faults(record);
+  first.axes().finish();
+  for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i)
+    record.rest[i] = reading.rest ? conditioning.offset[i] : first.axes().rest(i);
   if (record.recording.layout.is_peaks) {
     record.pulse = reading.pulse;
+    find_missing_evidence(first.axes(), signal, record);
     if (record.pulse) add_assumed_pulses(reading, record);
     return record;
   }
@@ -216,14 +198,49 @@ RecordEvents read_events(const std::string& file, const EventReading& reading) {
   record.rate = first.conditioner().rate();
   record.bandwidth = first.conditioner().bandwidth();
   record.is_filtered = reading.frequency_class.has_value();
+  record.greatest = signal.greatest();
+  find_missing_evidence(first.axes(), signal, record);
   if (!reading.gravity || *reading.gravity != "none") refuse_gravity_as_shock(record);
-  add_quiet(finder.quiet, record);
   return record;
 }
 
-void order_records(std::vector<RecordEvents>& records, std::string& note) {
+bool find_events(const EventReading& reading, const EventRules& rules, double longest, RecordEvents& record) {
+  record.events.clear();
+  Conditioning conditioning = conditioning_of(reading);
+  if (reading.rest) conditioning.offset = rest_of(record.file, reading);
+  double sum = 0.0;
+  ShockFinder finder(rules, [&](const ShockEvent& event, const Window& window) {
+    sum += event.end - event.begin;
+    if (sum > longest) return;
+    const auto is_beyond = [&](const AxisEvent& axis) { return std::abs(axis.peak) > record.rules.threshold; };
+    record.events.push_back({event, window, std::none_of(event.axes.begin(), event.axes.end(), is_beyond)});
+  });
+  WithoutGravity first(conditioning, reading, finder);
+  static_cast<void>(read_signal(record.file, reading, first));
+  if (sum <= longest) return true;
+  record.events.clear();
+  return false;
+}
+
+RecordEvents read_events(const std::string& file, const EventReading& reading) {
+  RecordEvents record = read_without_events(file, reading);
+  if (!record.recording.layout.is_peaks)
+    static_cast<void>(find_events(reading, reading.rules, std::numeric_limits<double>::infinity(), record));
+  return record;
+}
+
+void order_records(std::vector<RecordEvents>& records, std::string& note, bool& is_known) {
+  is_known = true;
   if (records.size() < 2) return;
   const bool have_clocks = std::all_of(records.begin(), records.end(), [](const RecordEvents& r) { return r.clock_ns.has_value(); });
+  const bool are_alike = std::all_of(records.begin(), records.end(),
+                                     [&](const RecordEvents& r) { return r.clock_has_zone == records.front().clock_has_zone; });
+  if (have_clocks && !are_alike) {
+    note = "Some records tell their time with a zone and some without, which cannot be compared: they are taken in the order in which they "
+           "were given.";
+    is_known = false;
+    return;
+  }
   if (!have_clocks) {
     note = "Not every record tells when it began: they are taken one after the other, in the order in which they were given.";
     return;

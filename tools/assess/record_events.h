@@ -1,6 +1,7 @@
 // Shocks of a recorder's file, ready to drive a model: conditioned windows with gravity taken away once, and what the record cannot say.
 #pragma once
 
+#include "tools/assess/evidence.h"
 #include "tools/assess/fall_watch.h"
 #include "transformer/recorder/events.h"
 #include "transformer/recorder/read_options.h"
@@ -38,21 +39,8 @@ struct EventReading {
 struct RecordedEvent {
   ShockEvent event;
   Window window;
-  bool is_below = false; ///< the greatest of an axis that is no event: it stays below the threshold
+  bool is_below = false; ///< it stays below the threshold that was asked for
 };
-
-/// What a record lacks for a decision that rests on it.
-enum class RecordFault {
-  clipped,    ///< peaks were higher
-  gaps,       ///< what happened in them is not known
-  peaks_only, ///< no waveform
-  cut,        ///< it ends before the recorder was stopped
-  fall,       ///< the recorder read nothing for a time, gravity included
-  dead,       ///< an axis reads the same from first to last
-  slow        ///< sampled too seldom for what a joint needs (docs/evidence/recorders.md)
-};
-/// "clipped", "gaps", "peaks", "cut", "fall", "dead" or "slow"
-[[nodiscard]] const char* name_of(RecordFault fault);
 
 /// A file, read.
 struct RecordEvents {
@@ -63,27 +51,35 @@ struct RecordEvents {
   double rate = 0.0, bandwidth = 0.0; ///< Hz, of the conditioned signal
   bool is_filtered = false;
   FallWatch fall;
-  std::vector<RecordedEvent> events;    ///< in order of time
-  std::vector<RecordFault> faults;      ///< each once
+  std::vector<RecordedEvent> events; ///< in order of time
+  std::array<double, 3> rest{};      ///< m/s², of each axis: the mean over the stretch of --rest, else the median of the first second
+  std::array<double, 3> greatest{};  ///< m/s² without sign, of each axis, filtered
+  std::vector<MissingEvidence> missing;
   std::optional<std::int64_t> clock_ns; ///< since 1970, of the time 0 of the record; none: it does not tell
-  std::optional<AssumedPulse> pulse;    ///< of a list of peaks that models are driven by
-  std::vector<std::string> assumed;     ///< of such a list, in whole sentences
+  bool clock_has_zone = false;
+  std::optional<AssumedPulse> pulse; ///< of a list of peaks that models are driven by
+  std::vector<std::string> assumed;  ///< of such a list, in whole sentences
 
   /// Letters of the axes that its events have.
   [[nodiscard]] std::string axes() const;
 
   /// Index of an axis in its events; nothing if the record has none of that letter.
   [[nodiscard]] std::optional<std::size_t> axis(char letter) const;
-  /// Whole sentences.
-  [[nodiscard]] std::vector<std::string> warnings() const;
+  /// m/s², all axes together.
+  [[nodiscard]] double size_at_rest() const;
 };
 
-/// Throws RecordError and FileError for what cannot be read or known, and if what an axis reads at rest would count as a shock,
-/// or a list of peaks leaves open what a pulse of it needs.
+/// All but events of waveforms. Throws RecordError and FileError for what cannot be read or known, and if what an axis reads at rest would
+/// count as a shock, or a list of peaks leaves open what a pulse of it needs.
+[[nodiscard]] RecordEvents read_without_events(const std::string& file, const EventReading& reading);
+/// Reads the file of a record with waveforms again and fills its events by these rules. False: they would be longer than `longest`, s, in
+/// all, and there are none.
+[[nodiscard]] bool find_events(const EventReading& reading, const EventRules& rules, double longest, RecordEvents& record);
+/// Both, with the rules of the reading.
 [[nodiscard]] RecordEvents read_events(const std::string& file, const EventReading& reading);
 
 /// In order of time: by their clocks where all have one, else as given. Throws FileError if two of them overlap in time. `note`
-/// becomes a sentence that says by what they were ordered; "" of a single one.
-void order_records(std::vector<RecordEvents>& records, std::string& note);
+/// becomes a sentence that says by what they were ordered; "" of a single one. `is_known` becomes false if their clocks cannot be compared.
+void order_records(std::vector<RecordEvents>& records, std::string& note, bool& is_known);
 
 } // namespace steplap::assess

@@ -40,7 +40,8 @@ Command assess_command(const std::function<ExitCode(const AssessOptions& options
   Command command;
   command.name = "assess";
   command.summary = "from a shock recorder's file and models to a decision: energise, inspect or return";
-  command.examples = R"(  steplap assess shock.csv --model models/assess/transformer.toml --gravity z -o out/arrival
+  command.examples =
+      R"(  steplap assess shock.csv --model models/assess/transformer.toml --gravity z --voyage "2016-01-04 10:00, 2016-01-06 18:00" -o out/arrival
   steplap assess first.csv second.csv --model lengthwise.toml --model crosswise.toml --criteria mine.toml
   steplap assess --print-criteria acceptance-3g > mine.toml
   steplap assess --static road --plane lengthwise models/paper/interference.toml -o out/road
@@ -60,9 +61,12 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
       {"--samples", &o->samples, "N", "voyages with other values of what is uncertain (default: 200); 0: none, and no probability"},
       {"--seed", &o->seed, "N", "of the samples (default: 1)"},
       {"--threads", &o->threads, "N", "of the samples (default: all processors); results are the same for any number"},
-      {"--accept", &o->accepted, "FAULT",
-       "decide although a record is clipped, has gaps, holds peaks only, is cut, shows a fall, has a dead axis, or is sampled below 100 "
-       "Hz: clipped, gaps, peaks, cut, fall, dead or slow; may be repeated"},
+      {"--voyage", &o->voyage, "FROM,TO",
+       "when the journey began and ended: two dates with times of day, or seconds of the record. Less covered than that is open"},
+      {"--accept", &o->accepted, "EVIDENCE",
+       "decide although it is missing: clipped, gaps, peaks, cut, comments, fall, dead, unit, axis, coverage, clock, bandwidth, place or "
+       "vibration; may be repeated"},
+      {"--budget", &o->budget, "S", "computing time, for each day of record, to find how low the threshold has to be: 60"},
       {"--pulse", &o->pulse, "SHAPE",
        "of lists of peaks without waveforms: drive the models by a half-sine, haversine or triangle; \"half-sine 50 ms\" where the list "
        "does not tell how long. The decision is open unless --accept peaks"},

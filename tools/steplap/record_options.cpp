@@ -8,12 +8,12 @@ namespace steplap {
 namespace {
 
 // "3 g", "20 m/s^2", "3" in g.
-double threshold_of(const std::string& text) {
+double acceleration_of(const std::string& text, const char* option) {
   const auto end = text.find_first_not_of("0123456789.+-eE");
   const auto value = parse_number(trimmed_blanks(text.substr(0, end)), '.');
   const auto unit = acceleration_unit(end == std::string::npos ? "g" : text.substr(end));
   if (!value || !(*value > 0.0) || !unit || unit->is_counts)
-    throw UsageError("--threshold '" + text + "': give an acceleration above zero, such as \"3 g\" or \"20 m/s^2\"");
+    throw UsageError(std::string(option) + " '" + text + "': give an acceleration above zero, such as \"3 g\" or \"20 m/s^2\"");
   return *value * unit->factor;
 }
 
@@ -32,6 +32,7 @@ ReadOptions read_options(const ReadingOptions& o) {
   if (o.rate) r.rate = number_of(o.rate, "--rate", 0.0, ", in Hz");
   if (o.counts_per_g) r.counts_per_g = number_of(o.counts_per_g, "--counts-per-g", 0.0);
   if (o.gap) r.gap = number_of(o.gap, "--gap", 1.5, ", in sampling intervals");
+  if (o.range) r.range = acceleration_of(*o.range, "--range");
   if (o.delimiter) r.delimiter = choice(*o.delimiter, "--delimiter", k_delimiters);
   if (o.decimal) r.decimal = choice(*o.decimal, "--decimal", k_decimals);
   if (o.dates) r.dates = choice(*o.dates, "--dates", k_dates);
@@ -43,7 +44,7 @@ ReadOptions read_options(const ReadingOptions& o) {
 
 EventRules event_rules(const ReadingOptions& o) {
   EventRules rules;
-  if (o.threshold) rules.threshold = threshold_of(*o.threshold);
+  if (o.threshold) rules.threshold = acceleration_of(*o.threshold, "--threshold");
   if (o.before) rules.before = number_of(o.before, "--before", 0.0, ", in s");
   if (o.after) rules.after = number_of(o.after, "--after", 0.0, ", in s");
   if (o.merge) rules.merge = number_of(o.merge, "--merge", 0.0, ", in s");
@@ -68,6 +69,7 @@ std::vector<Option> reading_options(ReadingOptions& options) {
           {"--rate", &o->rate, "HZ", "rate of sampling"},
           {"--unit", &o->unit, "UNIT", "of accelerations: g, mg, m/s^2 or counts"},
           {"--counts-per-g", &o->counts_per_g, "N", "counts that are 1 g"},
+          {"--range", &o->range, "A", "how far the sensor reads, such as \"16 g\": beyond 0.95 of it a record is clipped"},
           {"--delimiter", &o->delimiter, "SIGN", "comma, semicolon, tab or blank"},
           {"--decimal", &o->decimal, "SIGN", "point or comma"},
           {"--dates", &o->dates, "ORDER", "day-first, month-first or year-first"},

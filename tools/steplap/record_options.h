@@ -12,7 +12,7 @@ namespace steplap {
 /// As given on the command line.
 struct ReadingOptions {
   using Text = std::optional<std::string>;
-  Text x, y, z, time, time_unit, rate, unit, counts_per_g, delimiter, decimal, dates, missing, repeated, backward, gap;
+  Text x, y, z, time, time_unit, rate, unit, counts_per_g, delimiter, decimal, dates, missing, repeated, backward, gap, range;
   Text quiet, gravity, cfc, resample, threshold, before, after, merge;
   bool holds = false;
 };

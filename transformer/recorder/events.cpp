@@ -67,11 +67,12 @@ void ShockFinder::begin(const RecordLayout& layout, double rate) {
   window_.rate = rate;
   kept_ = static_cast<std::size_t>(std::ceil(rules_.before * rate - 1e-9));
   kept_ = std::min(kept_, k_longest / 4);
+  thresholds_ = rules_.each.value_or(std::array{rules_.threshold, rules_.threshold, rules_.threshold});
 }
 
 void ShockFinder::begin_segment(std::size_t line) {
   forget_all_but(0);
-  is_inside_ = false;
+  is_inside_ = is_event_ = false;
   ++segment_;
   line_ = line;
 }
@@ -90,26 +91,39 @@ void ShockFinder::forget_all_but(std::size_t kept) {
 void ShockFinder::put(double t, const double* plain, const double* filtered) {
   if (!is_inside_ && window_.times.size() >= kept_ + 4096) forget_all_but(kept_); // seldom, so that dropping costs nothing
   window_.times.push_back(t);
-  bool is_beyond = false;
+  bool is_stirred = false;
   for (std::size_t i = 0; i < axes_; ++i) {
     window_.plain[i].push_back(plain[i]);
     window_.filtered[i].push_back(filtered[i]);
-    is_beyond |= std::abs(filtered[i]) > rules_.threshold;
+    is_stirred |= std::abs(filtered[i]) > rules_.release * thresholds_[i];
+    is_event_ |= std::abs(filtered[i]) > thresholds_[i];
   }
-  if (is_beyond && !is_inside_) {
+  if (is_stirred && !is_inside_) {
     forget_all_but(kept_ + 1);
     is_inside_ = true;
+    window_.lead = window_.times.size() - 1;
   }
   if (!is_inside_) return;
-  if (is_beyond) last_beyond_ = t;
+  if (is_stirred) last_stir_ = t, stirred_ = window_.times.size();
   const double slack = 1e-6 / window_.rate;
-  if (t - last_beyond_ <= rules_.after + slack) used_ = window_.times.size();
-  if (t - last_beyond_ > std::max(rules_.after, rules_.merge) + slack) close(false);
-  else if (window_.times.size() >= k_longest) close(true);
+  if (t - last_stir_ <= rules_.after + slack) used_ = window_.times.size();
+  if (t - last_stir_ > std::max(rules_.after, rules_.merge) + slack) {
+    close(false);
+  } else if (window_.times.size() >= k_longest) {
+    if (is_event_) return close(true);
+    forget_all_but(k_longest / 2);
+    used_ = stirred_ = window_.times.size(); // stirred for long without an event: what comes later begins in it
+    window_.lead = kept_;
+  }
 }
 
 void ShockFinder::close(bool goes_on) {
+  if (!is_event_) {
+    is_inside_ = false;
+    return forget_all_but(kept_);
+  }
   Window window = window_;
+  window.tail = used_ - stirred_;
   window.times.resize(used_);
   for (std::size_t i = 0; i < axes_; ++i) {
     window.plain[i].resize(used_);
@@ -121,7 +135,7 @@ void ShockFinder::close(bool goes_on) {
   event.line = line_;
   event.goes_on = goes_on;
   found_(event, window);
-  is_inside_ = false;
+  is_inside_ = is_event_ = false;
   forget_all_but(goes_on ? 0 : window_.times.size() - used_); // what was kept is of no event twice
 }
 

@@ -7,14 +7,17 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace steplap {
 
 struct EventRules {
-  double threshold = k_default_threshold; ///< m/s², of the filtered signal on any axis
-  double before = 0.1, after = 0.3;       ///< s kept before the first and after the last sample beyond the threshold
-  double merge = 0.3;                     ///< s: what follows sooner belongs to the same event
+  double threshold = k_default_threshold;    ///< m/s², of the filtered signal on any axis
+  double before = 0.1, after = 0.3;          ///< s kept before the first and after the last sample beyond the threshold
+  double merge = 0.3;                        ///< s: what follows sooner belongs to the same event
+  std::optional<std::array<double, 3>> each; ///< m/s², thresholds of the axes; none: all have the one above
+  double release = 1.0;                      ///< share of its threshold that each axis stays below before an event begins and after it ends
   static constexpr double k_default_threshold = 9.80665;
 };
 
@@ -23,6 +26,7 @@ struct Window {
   double rate = 0.0;                                  ///< Hz
   std::vector<double> times;                          ///< s
   std::array<std::vector<double>, 3> plain, filtered; ///< m/s²
+  std::size_t lead = 0, tail = 0;                     ///< samples at its begin and end that stay below the release; none where it is cut
 };
 
 /// One axis of an event. All but the two peaks of given classes are of the filtered signal.
@@ -66,9 +70,10 @@ private:
   EventRules rules_;
   Found found_;
   std::size_t axes_ = 0, kept_ = 0, count_ = 0, segment_ = 0, line_ = 0;
-  bool is_inside_ = false;
-  double last_beyond_ = 0.0;
-  std::size_t used_ = 0; ///< samples of the window that belong to the event
+  std::array<double, 3> thresholds_{};
+  bool is_inside_ = false, is_event_ = false; ///< beyond the release; beyond the threshold as well
+  double last_stir_ = 0.0;
+  std::size_t used_ = 0, stirred_ = 0; ///< samples of the window that belong to the event; up to the last beyond the release
   Window window_;
 };
 

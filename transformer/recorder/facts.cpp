@@ -5,6 +5,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace steplap {
@@ -66,6 +67,17 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
     if (what.count > 0) lines.push_back(times_text(what, one, several) + said);
   };
   add(facts.gaps, "gap", "gaps", ", the longest " + rounded_text(facts.longest_gap, 4) + " s: the record is split there.");
+  constexpr std::size_t k_told = 5; // holes one by one
+  for (std::size_t i = 0; i < std::min(k_told, facts.hole_list.size()); ++i) {
+    const Hole& hole = facts.hole_list[i];
+    lines.push_back(counted(hole.rows, "row is", "rows are") + " missing after " + number_text(hole.t) + " s, before line " +
+                    std::to_string(hole.line) + ": the signal is drawn smoothly across.");
+  }
+  if (facts.holes.count > k_told) lines.push_back("In all " + times_text(facts.holes, "hole", "holes") + " of missing rows.");
+  add(facts.block_gaps, "block begins", "blocks begin",
+      std::isfinite(facts.longest_block_gap)
+          ? " later than the one before ended, at most by " + rounded_text(facts.longest_block_gap, 4) + " s."
+          : " without a word on how long after the one before.");
   add(facts.blocks, "line of text among the rows", "lines of text among the rows", ": a new block of the record begins after it.");
   add(facts.comments, "comment among or after the rows", "comments among or after the rows", " left out.");
   add(facts.short_rows, "row is", "rows are", " shorter than the header; the axes are there.");

@@ -226,6 +226,7 @@ void scale_peaks(RecordLayout& layout, const std::vector<HeaderLine>& head, cons
 
 void find_range_and_holding(RecordLayout& layout, const Metadata& metadata, const ReadOptions& options) {
   if (const auto scale = scale_of(metadata); scale && scale->range > 0.0) layout.range = scale->range;
+  if (options.range) layout.range = options.range;
   const auto* deadband = metadata.find({"deadband"});
   const auto band = deadband ? parse_number(deadband->values.front(), '.') : std::nullopt;
   if (options.holds) layout.holds = true, layout.hold_reason = "--hold";

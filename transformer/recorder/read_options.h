@@ -18,6 +18,7 @@ struct ReadOptions {
   std::optional<double> rate;           ///< Hz
   std::optional<std::string> unit;      ///< of all axes
   std::optional<double> counts_per_g;
+  std::optional<double> range;   ///< m/s², where the sensor ends; none: as the file says
   std::optional<char> delimiter; ///< ',', ';', '\t' or ' '
   std::optional<char> decimal;   ///< '.' or ','
   std::optional<unsigned> dates; ///< one of DateOrder

@@ -13,6 +13,9 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_hole = 1.5;   // sampling intervals: a longer step lacks a row
+constexpr double k_early = 0.3;  // of an interval: a row that comes sooner than this before its time makes up for one that was late
+constexpr double k_bends = 0.95; // of the range of a sensor: from there on amplifiers bend before they clip
 constexpr std::size_t k_head_lines = 5000, k_head_bytes = std::size_t{1} << 20U;
 
 // Samples in a row at the end of an axis' values. A smooth peak comes and goes by single steps of the converter; a clipped one by a
@@ -123,8 +126,8 @@ private:
     ReadFacts& facts = recording_.facts;
     if (trimmed_blanks(text).empty()) return;
     if (is_comment(text, layout_->shape.delimiter)) {
-      facts.last_comment = shown(text.substr(0, 80));
       facts.comments.note(line_);
+      note_remark();
       return;
     }
     const bool may_name = layout_->shape.joins_pairs && split_fields(text, layout_->shape.delimiter, fields_); // names do not come in pairs
@@ -153,6 +156,20 @@ private:
   }
 
   void cut() { recording_.facts.cut_line = line_; }
+
+  void note_remark() {
+    ReadFacts& facts = recording_.facts;
+    facts.last_comment = shown(text_.substr(0, 80)); // of the file, if no row follows
+    const std::size_t rows = facts.rows + (waiting_ ? 1 : 0);
+    const auto is_known = [&](Remark& each) {
+      if (each.text != facts.last_comment) return false;
+      each.rows = rows; // one that ends the file counts as its end
+      return true;
+    };
+    if (std::any_of(facts.remarks.begin(), facts.remarks.end(), is_known)) return;
+    if (facts.remarks.size() >= ReadFacts::k_most_listed) facts.remarks.pop_back();
+    facts.remarks.push_back({line_, rows, facts.last_comment});
+  }
 
   std::size_t decimals(std::string_view field) const {
     const auto sign = field.find(layout_->shape.decimal);
@@ -205,7 +222,8 @@ private:
       fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) +
                                 ". Split the file before it, and read the parts one by one.");
     recording_.facts.blocks.note(line_);
-    recording_.facts.last_comment = shown(text_.substr(0, 80)); // of the file, if no row follows
+    if (is_of_full_width) recording_.facts.last_comment = shown(text_.substr(0, 80)); // names and units come again with each block
+    else note_remark();
     is_new_block_ = true;
   }
 
@@ -354,11 +372,14 @@ private:
     ++rows_in_block_;
     const std::string_view place = layout_->time.kind == TimeKind::none ? text_ : field_at(layout_->time.column, "time");
     const bool is_first = !is_in_segment_;
+    if (is_new_block_ && has_previous_ && !layout_->holds) note_block_gap(t - t_);
     if (!is_first && !is_new_block_) {
       const double passed = t - t_;
+      settle_hole(passed);
       if (passed == 0.0 && !take_repeated(place)) return;
       if (passed < 0.0 && !take_backward(place)) return;
-      if (passed > options_.gap * step_ || (layout_->holds && passed > 1.5 * step_)) take_gap(t, passed);
+      if (passed > options_.gap * step_ || (layout_->holds && passed > k_hole * step_)) take_gap(t, passed);
+      else if (!layout_->holds && passed > k_hole * step_) suspect_hole(passed);
     }
     if (is_new_block_ && is_in_segment_) end_segment();
     is_new_block_ = false;
@@ -369,6 +390,31 @@ private:
     }
     if (!has_previous_) facts.first = t;
     put(t);
+  }
+
+  // A block that begins where the one before ended goes on with it.
+  void note_block_gap(double passed) {
+    ReadFacts& facts = recording_.facts;
+    if (passed > 0.0 && passed <= k_hole * step_) return;
+    facts.block_gaps.note(line_);
+    facts.longest_block_gap = std::max(facts.longest_block_gap, passed > 0.0 ? passed : std::numeric_limits<double>::infinity());
+  }
+
+  // Rows are missing, unless the next one comes as much too early: then the clock jitters.
+  void suspect_hole(double passed) {
+    hole_ = Hole{line_, t_, passed, static_cast<std::size_t>(std::lround(passed / step_)) - 1, previous_, values_};
+  }
+  void settle_hole(double passed) {
+    if (!hole_) return;
+    const double on_time = static_cast<double>(hole_->rows + 1) * step_;
+    const bool is_jitter = hole_->length + passed < on_time + (1.0 - k_early) * step_;
+    if (!is_jitter) note_hole();
+    hole_.reset();
+  }
+  void note_hole() {
+    ReadFacts& facts = recording_.facts;
+    facts.holes.note(hole_->line);
+    if (facts.hole_list.size() < ReadFacts::k_most_listed) facts.hole_list.push_back(*hole_);
   }
 
   void put(double t) {
@@ -390,7 +436,7 @@ private:
     const bool is_at_begin = t - facts.first <= 1.0 && t >= facts.first;
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
       watches_[i].take(a[i], line);
-      if (layout_->range && std::abs(a[i]) >= 0.999 * *layout_->range) facts.axes[i].beyond_range.note(line);
+      if (layout_->range && std::abs(a[i]) >= k_bends * *layout_->range) facts.axes[i].beyond_range.note(line);
       if (is_at_begin) sums_[i] += a[i];
     }
     summed_ += is_at_begin;
@@ -425,7 +471,7 @@ private:
     ReadFacts& facts = recording_.facts;
     if (layout_->holds && (!uses_index_ || index_step_ > 1.0)) {
       facts.held.note(line_);
-      if (passed > 1.5 * step_) {
+      if (passed > k_hole * step_) {
         hand_on_waiting();
         const std::array<double, 3> before = previous_;
         sink_.put(t - step_, before.data());
@@ -438,6 +484,8 @@ private:
   }
 
   void end_segment() {
+    if (hole_) note_hole();
+    hole_.reset();
     hand_on_waiting();
     if (is_in_segment_) sink_.end_segment();
     is_in_segment_ = false;
@@ -501,6 +549,7 @@ private:
     std::array<double, 3> a{};
     std::size_t line = 0;
   };
+  std::optional<Hole> hole_;   ///< suspected, until the next row shows it
   std::optional<Row> waiting_; ///< of several rows of one time the last is kept
   std::array<double, 3> values_{}, previous_{}, sums_{};
   std::array<bool, 3> is_missing_{};

@@ -55,15 +55,34 @@ struct PeakEntry {
   double magnitude = 0.0, duration = 0.0, velocity_change = 0.0; ///< m/s², s, m/s
 };
 
+/// A line among or after the rows that is no row: a comment, or a title.
+struct Remark {
+  std::size_t line = 0;
+  std::size_t rows = 0; ///< samples before it
+  std::string text;
+};
+
+/// Rows that are missing within a segment, which goes on over them.
+struct Hole {
+  std::size_t line = 0;                    ///< of the row after it
+  double t = 0.0, length = 0.0;            ///< s: time of the row before; from there to the row after
+  std::size_t rows = 0;                    ///< that are missing
+  std::array<double, 3> before{}, after{}; ///< m/s², of the rows next to it
+};
+
 struct ReadFacts {
   std::size_t lines = 0, rows = 0, segments = 0; ///< rows: samples handed on, those that were held not counted
   double first = 0.0, last = 0.0;                ///< s
   double longest_gap = 0.0;                      ///< s
-  Counted gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
+  Counted gaps, holes, block_gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
   std::size_t cut_line = 0;         ///< the last line, left out because it is cut; 0: it is not
   std::size_t unended_line = 0;     ///< the last line, if no line break ends it; 0: one does
   bool is_unended_left_out = false; ///< it was left out, as its last number may lack digits
   std::string last_comment;         ///< after the last row: a comment, or a line of text
+  double longest_block_gap = 0.0;   ///< s without a sample between two blocks, at most; infinite: their times do not tell
+  std::vector<Remark> remarks;      ///< the first of each text, k_most_listed at most
+  std::vector<Hole> hole_list;      ///< the first k_most_listed
+  static constexpr std::size_t k_most_listed = 100;
   std::array<AxisFacts, 3> axes;
 };
 

@@ -56,6 +56,9 @@ const TableKind& recorder_kind() {
     f.add("replaces", &T::replaces)
         .as(FieldType::elements)
         .doc("elements that the record takes the place of: drives, loads and suspensions of the tank");
+    f.add("mounted", &T::mounted)
+        .one_of({"lid", "frame"})
+        .doc("frame: the frame or the bottom of the tank. With a recorder on the lid a margin of a joint below 1.5 is not known");
     f.add("rotation", &T::rotation)
         .one_of({"held", "free"})
         .doc("of the driven body: held: it keeps its angle; free: it turns as what else acts on it makes it turn");

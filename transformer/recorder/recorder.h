@@ -17,6 +17,7 @@ struct Recorder : TableObject {
   std::string across = "none";        ///< axis of the record out of the plane, from the front of a core's stack to its back
   std::string plane = "lengthwise";   ///< a word for people
   std::vector<std::string> replaces;  ///< elements that moved the tank and give way to the record
+  std::string mounted = "lid";        ///< "lid" or "frame": how far a margin can be believed
   std::string rotation = "held";      ///< of the driven body: "held" or "free"
   std::string drift = "none";         ///< of each event: "none", or "line": velocity ends where it began
   double settle = 0.5;                ///< s, run on after each event without a load

@@ -277,7 +277,8 @@ private:
                             ") is none that a recorder has. Give --rate HZ or --time-unit.");
   }
 
-  // Mean over the steps that are no gaps; samples that are counted are believed where some are left out.
+  // Intervals by time over the steps that are no gaps; samples that are counted are believed where some are left out. A step that
+  // lacks rows counts as the intervals that it is long; without such steps the mean is exact even where times are rounded.
   std::optional<double> rate_by_times() const {
     const std::vector<double> times = head_times();
     std::vector<double> steps, usual;
@@ -289,10 +290,18 @@ private:
     const double median = usual[usual.size() / 2];
     if (base_.index_column)
       if (const auto rate = rate_by_index(times)) return rate;
-    double sum = 0.0, count = 0.0;
+    constexpr double k_hole = 1.5, k_rare = 0.1; // a longer step lacks a row, if few do: else the clock jitters
+    double regular = 0.0, count = 0.0, all = 0.0;
+    for (const double step : steps) {
+      if (step <= k_hole * median) regular += step, count += 1.0;
+      if (step <= options_.gap * median) all += 1.0;
+    }
+    const bool has_holes = all - count <= k_rare * all && !layout_.holds;
+    const double mean = regular / count;
+    double sum = 0.0, intervals = 0.0;
     for (const double step : steps)
-      if (step <= options_.gap * median) sum += step, count += 1.0;
-    return count / sum;
+      if (step <= options_.gap * median) sum += step, intervals += has_holes && step > k_hole * median ? std::round(step / mean) : 1.0;
+    return intervals / sum;
   }
 
   std::optional<double> rate_by_index(const std::vector<double>& times) const {

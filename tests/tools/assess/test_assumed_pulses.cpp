@@ -27,7 +27,7 @@ struct Case {
     options.reading.gravity = "none";
     options.sampling.samples = 0;
     options.estimating = Estimating::never;
-    options.accepted = {RecordFault::peaks_only};
+    options.accepted = {Evidence::peaks, Evidence::coverage};
     options.criteria = folder.file("criteria.toml");
     assess_test::write(options.criteria, k_only_models);
     assess_test::write(record, list);

@@ -29,6 +29,7 @@ AssessmentOptions options_of() {
   options.reading.gravity = "z";
   options.sampling.samples = 0;
   options.estimating = Estimating::never;
+  options.voyage = parse_voyage("0,2");
   return options;
 }
 
@@ -69,6 +70,7 @@ TEST_CASE("one impact read at 18 g and at 1.5 g gives one decision") {
     options.reading.frequency_class = 60.0;
     const Assessment wide = assess::assess({record}, {k_transformer}, options);
     options.reading.frequency_class = 10.0;
+    options.accepted = {Evidence::bandwidth};
     const Assessment narrow = assess::assess({record}, {k_transformer}, options);
     REQUIRE(wide.events.size() == 1);
     REQUIRE(narrow.events.size() == 1);
@@ -112,7 +114,7 @@ TEST_CASE("a record that is clipped or has gaps leaves the decision open, unless
           return std::min(half_sine(t, 0.5, 0.1, 2.4 * k_gravity) + noise, 1.6 * k_gravity);
         }));
   CHECK(decision_on(record, model, options) == Decision::open);
-  options.accepted = {RecordFault::clipped};
+  options.accepted = {Evidence::clipped};
   CHECK(decision_on(record, model, options) == Decision::energise);
   std::string gap = record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.1, 1.2 * k_gravity); });
   const std::size_t from = gap.find("\n1.200000,"), to = gap.find("\n1.400000,");
@@ -120,7 +122,7 @@ TEST_CASE("a record that is clipped or has gaps leaves the decision open, unless
   gap.erase(from, to - from);
   write(record, gap);
   CHECK(decision_on(record, model, options) == Decision::open);
-  options.accepted = {RecordFault::gaps};
+  options.accepted = {Evidence::gaps};
   CHECK(decision_on(record, model, options) == Decision::energise);
 }
 
@@ -185,10 +187,14 @@ TEST_CASE("the program's exit code is the decision, and a file that is there is 
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   };
-  CHECK(run(block_file(folder, 0.5, "1 m"), "") == 0);
-  CHECK(run(block_file(folder, 0.5, "1 m"), "") == 2);
+  CHECK(run(block_file(folder, 0.5, "1 m"), "--voyage 0,2") == 0);
+  CHECK(run(block_file(folder, 0.5, "1 m"), "--voyage 0,2") == 2);
+  CHECK(run(block_file(folder, 0.5, "1 m"), "-f") == 12);
   CHECK(run(block_file(folder, 0.5, "1 mm"), "-f") == 10);
   CHECK(run(folder.file("none.toml"), "-f") == 3);
   CHECK(run(block_file(folder, 0.5, "1 m"), "-f --accept nonsense") == 2);
+  CHECK(run(block_file(folder, 0.5, "1 m"), "-f --voyage 0,3") == 12);
+  CHECK(run(block_file(folder, 0.5, "1 m"), "-f --voyage 0,3 --accept coverage") == 0);
+  CHECK(run(block_file(folder, 0.5, "1 m"), "-f --voyage tomorrow") == 2);
   CHECK(run(block_file(folder, 0.5, "1 m"), "-f --criteria nonsense") == 2);
 }

@@ -1,6 +1,7 @@
 // What a record does not show, or a user leaves out, never becomes "energise".
 #include "driven_scene.h"
 
+#include "tools/assess/vibration.h"
 #include "transformer/recorder/fields.h"
 
 #include <doctest/doctest.h>
@@ -31,6 +32,7 @@ struct Case {
     options.reading.gravity = "z";
     options.sampling.samples = 0;
     options.estimating = Estimating::never;
+    options.accepted = {Evidence::coverage}; // these tests are of everything else
     options.criteria = folder.file("criteria.toml");
     assess_test::write(options.criteria, criteria);
     assess_test::write(record, record_text);
@@ -40,13 +42,20 @@ struct Case {
   [[nodiscard]] Assessment made() const { return assess::assess({record}, {model}, options); }
   [[nodiscard]] Decision decision() const { return made().decision; }
   /// Open, and energise once the fault is accepted.
-  void check_fault(RecordFault fault) {
-    CAPTURE(name_of(fault));
+  void check_missing(Evidence item) {
+    CAPTURE(name_of(item));
     const Assessment a = made();
-    CHECK(a.records.at(0).faults == std::vector<RecordFault>{fault});
+    CHECK(missing(a) == std::vector<Evidence>{item});
     CHECK(a.decision == Decision::open);
-    options.accepted = {fault};
+    options.accepted.push_back(item);
     CHECK(decision() == Decision::energise);
+  }
+  // But for coverage.
+  [[nodiscard]] static std::vector<Evidence> missing(const Assessment& a) {
+    std::vector<Evidence> items;
+    for (const MissingEvidence& each : a.missing)
+      if (each.item != Evidence::coverage) items.push_back(each.item);
+    return items;
   }
 
   Folder folder;
@@ -73,9 +82,9 @@ TEST_CASE("a record that is whole and a machine that holds: energise") { CHECK(C
 
 TEST_CASE("a record that is cut, or that ends because a battery was empty, leaves the decision open") {
   const std::string whole = record_csv(1000.0, 2.0, shock);
-  Case(k_only_models, whole.substr(0, whole.size() - 12)).check_fault(RecordFault::cut);
+  Case(k_only_models, whole.substr(0, whole.size() - 12)).check_missing(Evidence::cut);
   for (const char* end : {";stopped, low battery\n", "# memory full\n", "; Vbat below limit\n"})
-    Case(k_only_models, whole + end).check_fault(RecordFault::cut);
+    Case(k_only_models, whole + end).check_missing(Evidence::cut);
   CHECK(Case(k_only_models, whole + ";stopped, by button\n").decision() == Decision::energise);
 }
 
@@ -85,17 +94,17 @@ TEST_CASE("a fall leaves the decision open, though no sample is beyond the thres
       return t >= from && t < to ? row_of(t, noise(t), noise(t), noise(t)) : row_of(t, noise(t), noise(t), 1.0 - noise(t));
     });
   };
-  Case(k_only_models, falling(1.2, 1.4)).check_fault(RecordFault::fall);
-  CHECK(Case(k_only_models, falling(1.2, 1.25)).made().records.at(0).faults.empty()); // 1.2 cm
+  Case(k_only_models, falling(1.2, 1.4)).check_missing(Evidence::fall);
+  CHECK(Case::missing(Case(k_only_models, falling(1.2, 1.25)).made()).empty()); // 1.2 cm
 }
 
 TEST_CASE("an axis that did not measure leaves the decision open") {
   Case(k_only_models, rows(1000.0, 2.0, [](double t) { return row_of(t, shock(t) / k_gravity, 0.0, 1.0 - noise(t)); }))
-      .check_fault(RecordFault::dead);
+      .check_missing(Evidence::dead);
 }
 
 TEST_CASE("a record of 50 Hz leaves the decision open, one of 100 Hz does not") {
-  Case(k_only_models, record_csv(50.0, 2.0, shock)).check_fault(RecordFault::slow);
+  Case(k_only_models, record_csv(50.0, 2.0, shock)).check_missing(Evidence::bandwidth);
   CHECK(Case(k_only_models, record_csv(100.0, 2.0, shock)).decision() == Decision::energise);
 }
 
@@ -133,23 +142,30 @@ TEST_CASE("what stays below the threshold is run where it is greatest") {
   CHECK(Case(k_only_models, record_csv(1000.0, 3.0, [](double t) { return 1e-3 * std::sin(1e5 * t); })).decision() == Decision::energise);
 }
 
-TEST_CASE("windows below the threshold meet neither events nor each other, in one long record and in many short parts") {
-  for (const double threshold : {0.4, 1.0}) {
-    Case many(k_only_models, record_csv(200.0, 400.0, [](double t) {
-                return (0.3 + 0.25 * std::sin(0.37 * t) + (std::fmod(t, 40.0) < 0.05 ? 0.9 : 0.0)) * k_gravity * std::sin(40.0 * t);
-              }));
-    EventReading reading = many.options.reading;
-    reading.rules.threshold = threshold * k_gravity;
-    const RecordEvents record = read_events(many.record, reading);
-    std::size_t below = 0;
+TEST_CASE("events at any number of halvings hold all that is beyond their thresholds, once, and begin and end at rest") {
+  const auto x = [](double t) {
+    return (0.3 + 0.25 * std::sin(0.37 * t) + (std::fmod(t, 40.0) < 0.05 ? 0.9 : 0.0)) * k_gravity * std::sin(40.0 * t);
+  };
+  constexpr double k_rate = 200.0, k_duration = 400.0;
+  const Case many(k_only_models, record_csv(k_rate, k_duration, x));
+  RecordEvents record = read_without_events(many.record, many.options.reading);
+  for (int halvings = 0; halvings < 4; ++halvings) {
+    CAPTURE(halvings);
+    const EventRules rules = rules_at(record, "xz", halvings);
+    const double threshold = rules.each->at(0);
+    CHECK(threshold == doctest::Approx(k_gravity / std::exp2(halvings)));
+    REQUIRE(find_events(many.options.reading, rules, 1e9, record));
+    std::size_t beyond = 0, expected = 0;
+    for (long i = 0; i < std::lround(k_duration * k_rate); ++i) expected += std::abs(x(static_cast<double>(i) / k_rate)) > threshold;
     for (std::size_t i = 0; i < record.events.size(); ++i) {
-      below += record.events[i].is_below;
+      const Window& window = record.events[i].window;
       if (i > 0) CHECK(record.events[i].event.begin > record.events[i - 1].event.end);
-      for (std::size_t k = 0; record.events[i].is_below && k < record.events[i].window.filtered[0].size(); ++k)
-        CHECK(std::abs(record.events[i].window.filtered[0][k]) <= reading.rules.threshold);
+      for (std::size_t k = 0; k < window.times.size(); ++k) {
+        beyond += std::abs(window.filtered[0][k]) > threshold;
+        if (k < window.lead || k + window.tail >= window.times.size()) CHECK(std::abs(window.filtered[0][k]) <= rules.release * threshold);
+      }
     }
-    CHECK(record.events.size() > below);
-    if (threshold > 0.5) CHECK(below == 1);
+    CHECK(beyond == expected);
   }
 }
 
@@ -182,7 +198,7 @@ TEST_CASE("peaks without a waveform decide nothing about a machine, accepted or 
     Case peaks(criteria, list);
     peaks.options.reading.gravity.reset();
     CHECK(peaks.decision() == Decision::open);
-    peaks.options.accepted = {RecordFault::peaks_only};
+    peaks.options.accepted.push_back(Evidence::peaks);
     CHECK(peaks.decision() == Decision::open);
   }
 }

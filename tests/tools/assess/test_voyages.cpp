@@ -80,14 +80,14 @@ namespace {
 const std::string k_uncertain = "[[uncertain]]\nname = \"floor\"\npaths = [\"element.floor.static_friction\"]\ndistribution = "
                                 "\"uniform\"\nlow = 0.2\nhigh = 0.4\nsource = \"assumed\"\nsource_text = \"a test\"\n";
 
-struct Voyage {
+struct UncertainVoyage {
   std::vector<DrivenModel> models;
   std::vector<std::vector<DriveHistory>> histories;
 };
 
 // |slide| beyond 3.602 mm, that of a friction of 0.3: half of the uniform distribution.
-Voyage uncertain_voyage() {
-  Voyage voyage;
+UncertainVoyage uncertain_voyage() {
+  UncertainVoyage voyage;
   voyage.models.push_back(
       driven(block_text(0.3, k_uncertain + "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"3.602 mm\"\n")));
   voyage.histories.push_back({triangles({0.6 * k_g}, 0.1, 0.2)});
@@ -97,7 +97,7 @@ Voyage uncertain_voyage() {
 } // namespace
 
 TEST_CASE("a probability by samples is that of the closed form, and the same for any number of threads") {
-  const Voyage voyage = uncertain_voyage();
+  const UncertainVoyage voyage = uncertain_voyage();
   const UncertainValues uncertain(voyage.models);
   SamplingOptions options;
   options.samples = 100;
@@ -117,7 +117,7 @@ TEST_CASE("a probability by samples is that of the closed form, and the same for
 
 TEST_CASE("samples that were made are kept, and an assessment that was interrupted goes on") {
   const Folder folder;
-  const Voyage voyage = uncertain_voyage();
+  const UncertainVoyage voyage = uncertain_voyage();
   const UncertainValues uncertain(voyage.models);
   SamplingOptions options;
   options.samples = 12;
@@ -145,7 +145,7 @@ TEST_CASE("samples that were made are kept, and an assessment that was interrupt
 
 TEST_CASE("what goes wrong on one of several threads reaches who asked for the samples, and what was made before is kept") {
   const Folder folder;
-  const Voyage voyage = uncertain_voyage();
+  const UncertainVoyage voyage = uncertain_voyage();
   const UncertainValues uncertain(voyage.models);
   SamplingOptions options;
   options.samples = 30;

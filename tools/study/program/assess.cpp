@@ -25,13 +25,6 @@ namespace fs = std::filesystem;
 using namespace assess;
 using Align = TextTable::Align;
 
-constexpr OptionWords<RecordFault, 7> k_faults{{{"clipped", RecordFault::clipped},
-                                                {"gaps", RecordFault::gaps},
-                                                {"peaks", RecordFault::peaks_only},
-                                                {"cut", RecordFault::cut},
-                                                {"fall", RecordFault::fall},
-                                                {"dead", RecordFault::dead},
-                                                {"slow", RecordFault::slow}}};
 constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
 
 // Made before anything is computed, so that hours of work do not end in a folder that cannot be; gone again if nothing came into it.
@@ -68,10 +61,18 @@ long whole_number(const std::optional<std::string>& text, const char* option, lo
   return value;
 }
 
-std::vector<RecordFault> accepted_faults(const AssessOptions& options) {
-  std::vector<RecordFault> faults;
-  for (const std::string& word : options.accepted) faults.push_back(choice(word, "--accept", k_faults));
-  return faults;
+std::vector<Evidence> accepted_evidence(const AssessOptions& options) {
+  std::vector<Evidence> accepted;
+  for (const std::string& word : options.accepted) {
+    std::string known;
+    const std::size_t before = accepted.size();
+    for (const Evidence item : all_evidence()) {
+      known += (known.empty() ? "" : ", ") + std::string(name_of(item));
+      if (word == name_of(item)) accepted.push_back(item);
+    }
+    if (accepted.size() == before) throw UsageError("--accept '" + word + "': give one of " + known);
+  }
+  return accepted;
 }
 
 AssessmentOptions assessment_options(const AssessOptions& o) {
@@ -96,7 +97,16 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
     options.reading.pulse->axis = o.pulse_axis->front();
   }
   options.overrides = o.overrides;
-  options.accepted = accepted_faults(o);
+  options.accepted = accepted_evidence(o);
+  if (o.voyage) {
+    options.voyage = parse_voyage(*o.voyage);
+    if (!options.voyage)
+      throw UsageError(
+          "--voyage '" + *o.voyage +
+          "': give its begin and end, as two dates with times of day (\"2016-01-04 10:00, 2016-01-06 18:00\", both with a zone or "
+          "both without) or in the record's own seconds (0,7200)");
+  }
+  if (o.budget) options.budget = number_of(o.budget, "--budget", 0.0, ", in s");
   options.criteria = o.criteria.value_or("acceptance-3g");
   if (o.is_estimate_left_out) options.estimating = Estimating::never;
   options.sampling.samples = whole_number(o.samples, "--samples", 0, options.sampling.samples);
@@ -192,8 +202,9 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
     out << "\nProbability of damage in the voyage: " << percent(a.damage.value) << " (95 %: " << percent(a.damage.low) << " to "
         << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
   for (std::size_t i = 0; i < a.hangs_on.size() && i < k_shown_sentences; ++i) out << a.hangs_on[i] << "\n";
-  for (const RecordEvents& record : a.records)
-    for (const std::string& warning : record.warnings()) out << "'" << record.file << "': " << warning << "\n";
+  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // else the first line says it
+  for (const MissingEvidence& missing : a.missing)
+    if (a.is_accepted(missing.item)) out << "Accepted (" << name_of(missing.item) << "): " << missing.reason << "\n";
   for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i)
     out << (i == 0 ? "What would show it: " : "  ") << a.tests[i] << "\n";
   out << "Written to " << file << "\n";
