@@ -34,7 +34,9 @@ constexpr double k_slower = 5.0;
 // those takes 1.07 times as long as the one before, or more.
 constexpr double k_suspicious = 5.0, k_seen = 16.0, k_even_doublings = 1.03;
 constexpr int k_parts_of_step = 8;
-constexpr int k_least_samples = 6; // in the last two doublings
+constexpr double k_least_steps = 100.0; // of a leg, so that doublings are seen between its steps
+constexpr double k_swing_step = 0.5;    // rad of a swing: methods from the fourth order on know it to 1e-4 then
+constexpr int k_least_samples = 6;      // in the last two doublings
 // A direction that a leg moves in at last was moved by a nudge too small to be seen if the exponent up to there is that large: joints are
 // met to some 1e-9 of a body's size, which grows to k_moved by it. Earlier than in this share of the leg what falls is seen to fall.
 constexpr double k_by_rounding = 6.0, k_early = 0.05;
@@ -52,6 +54,7 @@ struct Course {
   double exponent = 0.0; ///< ∫ rate dt
   double rate = 0.0;     ///< the largest, 1/s
   VecX shape;            ///< of that one
+  double swing = 0.0;    ///< rad/s, of that one (FrozenGrowth)
   int growing = 0;       ///< instants at which something grows
 };
 
@@ -104,6 +107,7 @@ Course course_of(const GrowthAt& growth_at, const std::vector<Instant>& instants
     if (!(growth.rate > course.rate)) continue;
     course.rate = growth.rate;
     course.shape = growth.shape;
+    course.swing = growth.swing;
   }
   return course;
 }
@@ -274,6 +278,7 @@ public:
 
   // Does half the difference of the run from the nudge and that from its mirror image grow along `shape` as `course` says?
   bool confirms(const Course& course) {
+    if (course.swing > 0.0) limit_steps(k_swing_step / course.swing);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
     if (!plus.reach_leg() || !minus.reach_leg()) return false;
     displace(plus, 1.0);
@@ -325,6 +330,7 @@ public:
 private:
   // Half the difference of the run from the nudge and that from its mirror image, up to the end of the leg.
   std::optional<std::pair<double, VecX>> grows_evenly() {
+    limit_steps((leg_.end - leg_.begin.t) / k_least_steps);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
     if (!plus.reach_leg() || !minus.reach_leg()) return {};
     displace(plus, 1.0);
@@ -359,6 +365,12 @@ private:
     }
     if (!is_found) return {};
     return std::pair{rate, VecX(beyond(leg_.moved, difference(plus, minus)))};
+  }
+  // Nudges are smaller than what tolerances let through: where all is at rest or even, an explicit method makes steps as long as it is stable
+  // with, and an implicit one damps swings.
+  void limit_steps(double most) {
+    double& limit = options_.settings.max_step;
+    limit = limit > 0.0 ? std::min(limit, most) : most;
   }
   // Rate, 1/s, at which a way doubled at last; 0: not as an exponential does.
   static double last_rate(const std::vector<double>& times, const std::vector<double>& way) {
@@ -437,10 +449,31 @@ Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape
   return found;
 }
 
-// Nothing but what actions do.
-bool is_without_events(const RunResult& run, const LegMotion& leg) {
+// Bodies on which the element of that name acts, those of others of its kind included; all, if it has no modes.
+std::vector<char> bodies_of(const System& system, const std::string& element) {
+  std::vector<char> is_used(system.bodies.size(), 0);
+  bool is_found = false;
+  const auto is_it = [&](int index) {
+    const bool is_this = system.element_names[static_cast<std::size_t>(index)] == element;
+    is_found = is_found || is_this;
+    return is_this;
+  };
+  for (const Unit& unit : system.units)
+    if (is_it(unit.element)) unit.group->mark_bodies(is_used);
+  for (const FrictionUnit& unit : system.frictions)
+    if (is_it(unit.element)) unit.friction->mark_bodies(is_used);
+  if (!is_found) std::fill(is_used.begin(), is_used.end(), char{1});
+  return is_used;
+}
+
+// Nothing but what actions do, and what happens to other bodies than those that the asked directions move.
+bool is_without_events(const System& system, const RunResult& run, const LegMotion& leg, const FrozenLeg& frozen) {
   return std::none_of(run.events.begin(), run.events.end(), [&](const Event& event) {
-    return event.t >= leg.begin.t && event.t <= leg.end && event.kind != EventKind::happens && !is_kink(event.kind);
+    if (event.t < leg.begin.t || event.t > leg.end || event.kind == EventKind::happens || is_kink(event.kind)) return false;
+    const std::vector<char> is_used = bodies_of(system, event.element);
+    for (std::size_t body = 1; body < is_used.size(); ++body)
+      if (is_used[body] != 0 && frozen.moves(body)) return true;
+    return false;
   });
 }
 
@@ -536,7 +569,7 @@ std::optional<Balance> AskedLeg::of(const LegMotion& leg) const {
     FrozenLeg frozen(own_system(leg), leg);
     if (frozen.directions() > 0) {
       if (auto found = by_stiffness(frozen, leg, k_exponent * std::min(duration, 1.0))) return found;
-      if (!is_at_rest(leg) && is_without_events(run, leg))
+      if (!is_at_rest(leg) && is_without_events(own_system(leg), run, leg, frozen))
         if (auto found = by_nudge(&frozen, leg)) return found;
     }
   }

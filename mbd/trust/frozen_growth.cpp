@@ -55,6 +55,7 @@ MatX at_rate(const MatX& a, const MatX& b, double rate) {
 struct Fastest {
   double rate = 0.0;
   VecX eta;
+  double swing = 0.0; // as in FrozenGrowth
 };
 
 // `least` is exceeded.
@@ -64,7 +65,7 @@ Fastest fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
     const double middle = 0.5 * (low + high);
     (is_positive_definite(at_rate(a, b, middle)) ? high : low) = middle;
   }
-  return {high, symmetric_eigen(at_rate(a, b, high)).vectors.col(0)};
+  return {high, symmetric_eigen(at_rate(a, b, high)).vectors.col(0), 0.0};
 }
 
 enum class Swings : unsigned char { count, do_not_count };
@@ -89,7 +90,7 @@ Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& 
     const std::complex<double> square = (mode.x.transpose() * mode.x)(0, 0);
     const double half = 0.5 * portable::atan2(square.imag(), square.real());
     const VecX eta = mode.x.real() * portable::cos(half) + mode.x.imag() * portable::sin(half);
-    found = {rate, eta};
+    found = {rate, eta, std::abs(mode.eigenvalue.imag()) > k_real * rate ? portable::hypot(rate, mode.eigenvalue.imag()) : 0.0};
   }
   return found;
 }
@@ -298,12 +299,12 @@ FrozenGrowth FrozenLeg::growth_at(const State& state, double least, std::size_t 
   }
   if (!(fastest.rate > least)) return {};
   const VecX shape = (z * fastest.eta).normalized();
-  if (may_swing) return {fastest.rate, shape};
+  if (may_swing) return {fastest.rate, shape, fastest.swing};
   // Growth is pushed by a negative stiffness, which has to be more than rounding of the terms it is the sum of.
   const VecX place = weights_.cwiseInverse().cwiseProduct(shape);
   const double rounding = k_epsilon * (k_rounded_terms * place.cwiseAbs().dot(size * place.cwiseAbs()) + 4.0 * a.cwiseAbs().maxCoeff());
   if (!(place.dot(stiffness * place) > rounding)) return {};
-  return {fastest.rate, shape};
+  return {fastest.rate, shape, 0.0};
 }
 
 // Displacements of bodies follow from those of their clusters by T, and those of the clusters from their roots' by S.
@@ -336,7 +337,7 @@ FrozenGrowth FrozenLeg::steady_growth_at(const State& state, double least) {
   const auto size_of = [&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); };
   const Fastest fastest = fastest_of_all({a, b, MatX::Identity(z.cols(), z.cols()), {}, {}}, size_of, Swings::count);
   if (!(fastest.rate > least)) return {};
-  return {fastest.rate, (z * fastest.eta).normalized()};
+  return {fastest.rate, (z * fastest.eta).normalized(), fastest.swing};
 }
 
 } // namespace steplap

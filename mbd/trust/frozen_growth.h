@@ -24,8 +24,9 @@ namespace steplap {
 
 /// Displacement that grows fastest.
 struct FrozenGrowth {
-  double rate = 0.0; ///< 1/s; 0: nothing grows as fast as was asked for
-  VecX shape;        ///< W δ, of length 1; three numbers for each body but the ground; empty if nothing grows
+  double rate = 0.0;  ///< 1/s; 0: nothing grows as fast as was asked for
+  VecX shape;         ///< W δ, of length 1; three numbers for each body but the ground; empty if nothing grows
+  double swing = 0.0; ///< rad/s: size of its eigenvalue if it swings while it grows, else 0
 };
 
 /// Frozen growth along one leg.
@@ -39,6 +40,11 @@ public:
   [[nodiscard]] Eigen::Index directions() const { return first_.cols(); }
   /// The part of W δ along these.
   [[nodiscard]] VecX along_directions(const VecX& weighted) const { return first_ * (first_.transpose() * weighted); }
+  /// Some of them move this body.
+  [[nodiscard]] bool moves(std::size_t body) const {
+    constexpr double k_share = 1e-9; // of a direction: less is rounding
+    return first_.middleRows(3 * static_cast<Eigen::Index>(body) - 3, 3).cwiseAbs().sum() > k_share;
+  }
   /// All bodies move evenly, and none turns; false at rest, and where the system has inner states.
   [[nodiscard]] bool is_steady() const { return is_steady_; }
   /// Variants of what touches at the start of the leg; the first one is that of the run.
