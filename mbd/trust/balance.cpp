@@ -538,6 +538,13 @@ std::optional<Balance> AskedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& le
   return balance_by(system, leg, gone->second, gone->first);
 }
 
+// Does something grow faster than `least`, 1/s, as far as that instant tells?
+bool grows_at(FrozenLeg& frozen, const State& state, double least) {
+  for (std::size_t variant = 0; variant < frozen.variants(); ++variant)
+    if (frozen.growth_at(state, least, variant).rate > 0.0) return true;
+  return frozen.is_steady() && frozen.steady_growth_at(state, least).rate > 0.0;
+}
+
 // Rounding grows, too: what balances for long leaves in the end. Each part of the leg up to where a direction was first moved is a
 // leg in which that direction was not.
 std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
@@ -552,7 +559,7 @@ std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
     FrozenLeg frozen(own_system(leg), part);
     if (frozen.directions() == 0) continue;
     const State& middle = part.states.empty() ? part.begin : part.states[part.states.size() / 2];
-    if (!(frozen.growth_at(middle, k_by_rounding / (t - leg.begin.t)).rate > 0.0)) continue;
+    if (!grows_at(frozen, middle, k_by_rounding / (t - leg.begin.t))) continue;
     if (auto found = by_stiffness(frozen, part, k_by_rounding)) return found;
   }
   return {};

@@ -27,7 +27,7 @@ constexpr Eigen::Index k_most_companion = 120; // directions: eigenvalues of twi
 constexpr int k_bisections = 30;
 constexpr double k_rank = 1e-6;    // rows below this share of their length beyond others depend on them, friction's included (theory.md)
 constexpr double k_within = 0.995; // cosine of 6°: a path that bends leaves its chords' span by less before it adds a direction to it
-constexpr double k_even = 1e-6;    // of the speed
+constexpr double k_even = 1e-3;    // of the speed: equations change as little then, and rounding that grows may be as large
 constexpr double k_idle = 1e-9;    // of the largest force: a row that bears less bears rounding
 // Displacements that tell what touches: far above the rounding of gaps that were given as zero, far below what loads press in.
 constexpr double k_trial = 1e-9; // of a body's size
