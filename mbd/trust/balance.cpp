@@ -46,7 +46,7 @@ constexpr int k_least_instants = 3;
 constexpr int k_most_coordinates = 300;
 constexpr double k_dense_work = 3e8; // cubes of coordinates, over all instants of a leg
 constexpr int k_most_instants = 32;
-constexpr int k_steady_instants = 4;         // of a steady leg, in which only loads change
+constexpr int k_steady_instants = 2;         // of a steady leg, in which only loads change
 constexpr std::size_t k_most_stretches = 32; // between breakpoints of loads that are told apart
 
 // Exponent of the fastest growth of a leg as its stiffness has it.
@@ -449,7 +449,7 @@ Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape
   return found;
 }
 
-// Bodies on which the element of that name acts, those of others of its kind included; all, if it has no modes.
+// Marks the bodies on which the element of that name acts, with those of others of its kind; all bodies, if it has no modes.
 std::vector<char> bodies_of(const System& system, const std::string& element) {
   std::vector<char> is_used(system.bodies.size(), 0);
   bool is_found = false;

@@ -216,7 +216,7 @@ void FrozenLeg::find_variants() {
   }
 }
 
-// Z of all directions that rows leave free.
+// Returns Z of all directions that rows leave free.
 MatX FrozenLeg::free_directions(Rows rows) const {
   const auto is_of_rates = [](const StaticRow& row) { return row.spec->kind == MeasureKind::skate; };
   if (rows == Rows::all || std::none_of(statics_.rows().begin(), statics_.rows().end(), is_of_rates)) {
@@ -235,9 +235,9 @@ MatX FrozenLeg::free_directions(Rows rows) const {
   return PivotedQr(columns, k_rank).complement();
 }
 
-// What the leg moves, along Z: orthonormal or empty. A drive moves all that rests on what it moves, in directions that are no free ones,
-// and whose parts along free ones say nothing of these: a rod that rides upright on a car is not tilted. Where drives move, only
-// displacements that keep every driven coordinate count, and only those that free directions make.
+// Returns the directions in which the leg moves, along Z: orthonormal, or empty. A drive moves all that rests on what it moves, in directions that
+// are not free and whose parts along Z say nothing of it: a rod that rides upright on a car is not tilted. Where drives move, only
+// displacements count that keep every driven coordinate and lie within Z.
 MatX FrozenLeg::moved_directions(const MatX& free) const {
   const auto count = static_cast<Eigen::Index>(leg_.moved.directions().size());
   if (count == 0) return MatX(free.cols(), 0);
