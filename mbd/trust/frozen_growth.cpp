@@ -31,7 +31,7 @@ constexpr double k_even = 1e-3;    // of the speed: equations change as little t
 constexpr double k_idle = 1e-9;    // of the largest force: a row that bears less bears rounding
 // Displacements that tell what touches: far above the rounding of gaps that were given as zero, far below what loads press in.
 constexpr double k_trial = 1e-9; // of a body's size
-constexpr std::uint64_t k_trials = 3;
+constexpr std::uint64_t k_trials = 2;
 
 bool is_positive_definite(MatX p) {
   const Eigen::Index n = p.rows();
@@ -55,7 +55,8 @@ MatX at_rate(const MatX& a, const MatX& b, double rate) {
 struct Fastest {
   double rate = 0.0;
   VecX eta;
-  double swing = 0.0; // as in FrozenGrowth
+  double swing = 0.0;     // as in FrozenGrowth
+  bool may_swing = false; // it is one of all eigenvalues
 };
 
 // `least` is exceeded.
@@ -65,7 +66,7 @@ Fastest fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
     const double middle = 0.5 * (low + high);
     (is_positive_definite(at_rate(a, b, middle)) ? high : low) = middle;
   }
-  return {high, symmetric_eigen(at_rate(a, b, high)).vectors.col(0), 0.0};
+  return {high, symmetric_eigen(at_rate(a, b, high)).vectors.col(0), 0.0, false};
 }
 
 enum class Swings : unsigned char { count, do_not_count };
@@ -90,9 +91,23 @@ Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& 
     const std::complex<double> square = (mode.x.transpose() * mode.x)(0, 0);
     const double half = 0.5 * portable::atan2(square.imag(), square.real());
     const VecX eta = mode.x.real() * portable::cos(half) + mode.x.imag() * portable::sin(half);
-    found = {rate, eta, std::abs(mode.eigenvalue.imag()) > k_real * rate ? portable::hypot(rate, mode.eigenvalue.imag()) : 0.0};
+    found = {rate, eta, std::abs(mode.eigenvalue.imag()) > k_real * rate ? portable::hypot(rate, mode.eigenvalue.imag()) : 0.0, false};
   }
   return found;
+}
+
+// Nothing, if all grows more slowly than `least`.
+Fastest fastest_above(double least, const FreeVibration& v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
+  const auto is_skewed = [](const MatX& m) { return (m - m.transpose()).cwiseAbs().sum() > k_skew * m.cwiseAbs().sum(); };
+  const bool is_skew = is_skewed(v.a);
+  const MatX a = symmetric_part(v.a), b = symmetric_part(v.b);
+  // With symmetric A a swing grows with xᵀBx/2 of its shape x.
+  const bool may_swing = swings == Swings::count && (is_skew || is_skewed(v.b) || symmetric_eigen(b).values.maxCoeff() > 2.0 * least);
+  if (!may_swing && is_positive_definite(at_rate(a, b, least))) return {};
+  if (!may_swing && !is_skew) return fastest_of_symmetric(a, b, least);
+  Fastest fastest = fastest_of_all(v, size_of, swings);
+  fastest.may_swing = may_swing;
+  return fastest;
 }
 
 bool is_steady_motion(const System& system, const LegMotion& leg) {
@@ -128,6 +143,8 @@ FrozenLeg::FrozenLeg(const System& system, const LegMotion& leg)
 
 // Reactions are those of the run's own equations at that instant; statics alone knows none of inertial loads.
 void FrozenLeg::linearise(const State& state, const Variant& variant) {
+  if (linearised_ == &variant && state.t == at_run_.t && state.q == at_run_.q && state.v == at_run_.v) return;
+  linearised_ = &variant;
   at_run_ = at_rest_ = state;
   dynamics_.forget_layouts();
   dynamics_.set_state(at_run_);
@@ -197,13 +214,14 @@ std::vector<VecX> FrozenLeg::trial_displacements() const {
 
 void FrozenLeg::find_variants() {
   const Rows rows = is_at_rest_ ? Rows::all : Rows::of_places;
-  variants_ = {{{}, false}};
+  variants_.assign(1, {{}, false});
   linearise(leg_.begin, variants_.front());
   if (const std::vector<char> idle = idle_one_sided_rows(); !idle.empty()) {
     variants_.push_back({{}, true});
     linearise(leg_.begin, variants_.back());
   }
   first_ = unmoved_directions(rows);
+  linearised_ = nullptr; // places of variants change, and statics_ is asked for other poses
   if (first_.cols() == 0) return;
   std::vector<std::vector<UnitMode>> seen = {at_rest_.mode};
   for (const VecX& displacement : trial_displacements()) {
@@ -284,22 +302,12 @@ FrozenGrowth FrozenLeg::growth_at(const State& state, double least, std::size_t 
   const MatX unweighted = weights_.cwiseInverse().asDiagonal() * z;
   const MatX stiffness = statics_.stiffness(lambda_);
   const MatX a = unweighted.transpose() * stiffness * unweighted, b = unweighted.transpose() * statics_.damping() * unweighted;
-  const MatX a_symmetric = symmetric_part(a), b_symmetric = symmetric_part(b);
-  const bool is_skew = (a - a.transpose()).cwiseAbs().sum() > k_skew * a.cwiseAbs().sum();
-  // With symmetric A a swing grows with xᵀBx/2 of its shape x.
-  const bool may_swing = is_at_rest_ && (is_skew || symmetric_eigen(b_symmetric).values.maxCoeff() > 2.0 * least);
-  if (!may_swing && is_positive_definite(at_rate(a_symmetric, b_symmetric, least))) return {};
   const MatX size = stiffness.cwiseAbs();
-  Fastest fastest;
-  if (is_skew || may_swing) {
-    const auto size_of = [&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); };
-    fastest = fastest_of_all({a, b, unweighted, {}, {}}, size_of, is_at_rest_ ? Swings::count : Swings::do_not_count);
-  } else {
-    fastest = fastest_of_symmetric(a_symmetric, b_symmetric, least);
-  }
+  const auto size_of = [&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); };
+  const Fastest fastest = fastest_above(least, {a, b, unweighted, {}, {}}, size_of, is_at_rest_ ? Swings::count : Swings::do_not_count);
   if (!(fastest.rate > least)) return {};
   const VecX shape = (z * fastest.eta).normalized();
-  if (may_swing) return {fastest.rate, shape, fastest.swing};
+  if (fastest.may_swing) return {fastest.rate, shape, fastest.swing};
   // Growth is pushed by a negative stiffness, which has to be more than rounding of the terms it is the sum of.
   const VecX place = weights_.cwiseInverse().cwiseProduct(shape);
   const double rounding = k_epsilon * (k_rounded_terms * place.cwiseAbs().dot(size * place.cwiseAbs()) + 4.0 * a.cwiseAbs().maxCoeff());
@@ -335,7 +343,7 @@ FrozenGrowth FrozenLeg::steady_growth_at(const State& state, double least) {
   const MatX a = out * by_pose * in, b = out * by_velocity * in;
   const MatX size = out.cwiseAbs() * by_pose.cwiseAbs() * in.cwiseAbs();
   const auto size_of = [&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); };
-  const Fastest fastest = fastest_of_all({a, b, MatX::Identity(z.cols(), z.cols()), {}, {}}, size_of, Swings::count);
+  const Fastest fastest = fastest_above(least, {a, b, MatX::Identity(z.cols(), z.cols()), {}, {}}, size_of, Swings::count);
   if (!(fastest.rate > least)) return {};
   return {fastest.rate, (z * fastest.eta).normalized(), fastest.swing};
 }

@@ -80,7 +80,8 @@ private:
   std::vector<double> y_;  ///< at_run_, packed
   VecX lambda_;            ///< multipliers of the rows of statics_
   std::vector<Variant> variants_;
-  MatX first_; ///< Z at the start of the leg
+  const Variant* linearised_ = nullptr; ///< that of the last linearise(); null: none that is still so
+  MatX first_;                          ///< Z at the start of the leg
 };
 
 } // namespace steplap
