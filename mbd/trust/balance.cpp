@@ -29,6 +29,14 @@ constexpr double k_confirmed = 0.5;        // of the exponent: instants are few,
 // drifts evenly a hundred times.
 constexpr double k_begun = 2.0, k_half_way = 100.0;
 constexpr double k_slower = 5.0;
+// Growth by less is looked at more closely, in the difference of two runs, which has no part of the motion itself. By 16 the last doublings
+// tell an exponential, of which each takes as long as the one before, or less from rest, from powers of time up to the fifth: the last one of
+// those takes 1.07 times as long as the one before, or more.
+constexpr double k_suspicious = 5.0, k_seen = 16.0, k_even_doublings = 1.03;
+constexpr int k_parts_of_step = 8;
+constexpr double k_least_steps = 100.0; // of a leg, so that doublings are seen between its steps
+constexpr double k_swing_step = 0.5;    // rad of a swing: methods from the fourth order on know it to 1e-4 then
+constexpr int k_least_samples = 6;      // in the last two doublings
 // A direction that a leg moves in at last was moved by a nudge too small to be seen if the exponent up to there is that large: joints are
 // met to some 1e-9 of a body's size, which grows to k_moved by it. Earlier than in this share of the leg what falls is seen to fall.
 constexpr double k_by_rounding = 6.0, k_early = 0.05;
@@ -38,6 +46,7 @@ constexpr int k_least_instants = 3;
 constexpr int k_most_coordinates = 300;
 constexpr double k_dense_work = 3e8; // cubes of coordinates, over all instants of a leg
 constexpr int k_most_instants = 32;
+constexpr int k_steady_instants = 2;         // of a steady leg, in which only loads change
 constexpr std::size_t k_most_stretches = 32; // between breakpoints of loads that are told apart
 
 // Exponent of the fastest growth of a leg as its stiffness has it.
@@ -45,6 +54,7 @@ struct Course {
   double exponent = 0.0; ///< ∫ rate dt
   double rate = 0.0;     ///< the largest, 1/s
   VecX shape;            ///< of that one
+  double swing = 0.0;    ///< rad/s, of that one (FrozenGrowth)
   int growing = 0;       ///< instants at which something grows
 };
 
@@ -86,15 +96,18 @@ std::vector<Instant> instants_in_motion(const LegMotion& leg, int count) {
   return instants;
 }
 
-Course course_of(FrozenLeg& frozen, const std::vector<Instant>& instants, double least) {
+using GrowthAt = std::function<FrozenGrowth(const State&)>;
+
+Course course_of(const GrowthAt& growth_at, const std::vector<Instant>& instants) {
   Course course;
   for (const Instant& instant : instants) {
-    const FrozenGrowth growth = frozen.growth_at(instant.state, least);
+    const FrozenGrowth growth = growth_at(instant.state);
     course.exponent += growth.rate * instant.duration;
     if (growth.rate > 0.0) ++course.growing;
     if (!(growth.rate > course.rate)) continue;
     course.rate = growth.rate;
     course.shape = growth.shape;
+    course.swing = growth.swing;
   }
   return course;
 }
@@ -180,11 +193,13 @@ public:
     return true;
   }
   [[nodiscard]] const State& now() const { return now_; }
+  [[nodiscard]] double step_begin() const { return before_.t; } ///< s, of the last step
   [[nodiscard]] double evaluations() const { return static_cast<double>(simulation_.statistics().evaluations); }
   // Poses at t within the last step, by the cubic through the places and velocities at its ends.
   [[nodiscard]] std::vector<double> pose_at(double t) const {
     const double h = now_.t - before_.t;
     if (!(h > 0.0) || t >= now_.t) return now_.q;
+    if (t <= before_.t) return before_.q;
     const double s = (t - before_.t) / h, r = 1.0 - s;
     std::vector<double> q(now_.q.size());
     for (std::size_t i = 0; i < q.size(); ++i)
@@ -263,6 +278,7 @@ public:
 
   // Does half the difference of the run from the nudge and that from its mirror image grow along `shape` as `course` says?
   bool confirms(const Course& course) {
+    if (course.swing > 0.0) limit_steps(k_swing_step / course.swing);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
     if (!plus.reach_leg() || !minus.reach_leg()) return false;
     displace(plus, 1.0);
@@ -281,7 +297,7 @@ public:
     return exponent_of(grown) > k_confirmed * course.exponent;
   }
 
-  // Looks for growth that the stiffness does not show. Returns the index of the body that leaves exponentially, and its displacement.
+  // Looks for growth that the stiffness does not show. Returns its rate, 1/s, and the displacement.
   std::optional<std::pair<double, VecX>> goes_off_otherwise() {
     NudgedRun run = nudged(1.0);
     if (!run.reach_leg()) return {};
@@ -295,17 +311,81 @@ public:
       growth[i].t_begun = leg_.begin.t;
     }
     if (!(largest_share(begin, nudges_) > k_least_part)) return {};
+    bool is_suspicious = false;
     for (double t = leg_.begin.t; run.advance();) {
       const std::vector<double> ways = ways_now();
-      for (std::size_t i = 0; i < ways.size(); ++i)
-        if (goes_off(growth[i], ways[i], t, run.now().t))
-          return std::pair{run.now().t, VecX(beyond(leg_.moved, displacement(run.now().q)))};
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (goes_off(growth[i], ways[i], t, run.now().t)) {
+          const double rate = exponent_of(k_far_grown_nudge) / (run.now().t - leg_.begin.t);
+          return std::pair{rate, VecX(beyond(leg_.moved, displacement(run.now().q)))};
+        }
+        is_suspicious = is_suspicious || growth[i].now > k_suspicious;
+      }
       t = run.now().t;
     }
+    if (is_suspicious) return grows_evenly();
     return {};
   }
 
 private:
+  // Half the difference of the run from the nudge and that from its mirror image, up to the end of the leg.
+  std::optional<std::pair<double, VecX>> grows_evenly() {
+    limit_steps((leg_.end - leg_.begin.t) / k_least_steps);
+    NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
+    if (!plus.reach_leg() || !minus.reach_leg()) return {};
+    displace(plus, 1.0);
+    displace(minus, -1.0);
+    const double duration = leg_.end - leg_.begin.t;
+    std::vector<double> times = {leg_.begin.t};
+    std::vector<std::vector<double>> ways = {ways_of(system_, beyond(leg_.moved, difference(plus, minus)))};
+    while (plus.advance()) {
+      while (minus.now().t < plus.now().t && minus.advance()) {}
+      if (plus.evaluations() + minus.evaluations() > most_evaluations_)
+        throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(plus.now().t) +
+                              " s of two runs from nudged poses");
+      const double from = plus.step_begin(), step = plus.now().t - from;
+      for (int part = 1; part <= k_parts_of_step; ++part) {
+        const double t = from + step * part / k_parts_of_step;
+        if (t < minus.step_begin() || !(t > times.back())) continue;
+        times.push_back(t);
+        ways.push_back(ways_of(system_, beyond(leg_.moved, difference(plus, minus, t))));
+      }
+    }
+    if (times.back() < leg_.end - k_early * duration) return {};
+    double rate = k_exponent / std::max(duration, 1.0);
+    bool is_found = false;
+    for (std::size_t body = 0; body < nudges_.size(); ++body) {
+      std::vector<double> way;
+      for (const std::vector<double>& all : ways) way.push_back(all[body]);
+      const double from = std::max(way.front(), k_least_fastest * nudges_[body]);
+      const double found = nudges_[body] > 0.0 && way.back() > k_seen * from ? last_rate(times, way) : 0.0;
+      if (!(found > rate)) continue;
+      rate = found;
+      is_found = true;
+    }
+    if (!is_found) return {};
+    return std::pair{rate, VecX(beyond(leg_.moved, difference(plus, minus)))};
+  }
+  // Nudges are smaller than what tolerances let through: where all is at rest or even, an explicit method makes steps as long as it is stable
+  // with, and an implicit one damps swings.
+  void limit_steps(double most) {
+    double& limit = options_.settings.max_step;
+    limit = limit > 0.0 ? std::min(limit, most) : most;
+  }
+  // Rate, 1/s, at which a way doubled at last; 0: not as an exponential does.
+  static double last_rate(const std::vector<double>& times, const std::vector<double>& way) {
+    std::size_t i = way.size() - 1;
+    const double end = way.back(), t_end = times.back();
+    const auto last_below = [&](double mark) { // its time, between samples as an exponential has it
+      while (i > 0 && way[i] > mark) --i;
+      if (!(way[i] > 0.0) || !(way[i] < way[i + 1])) return times[i];
+      return times[i] + (times[i + 1] - times[i]) * portable::log10(mark / way[i]) / portable::log10(way[i + 1] / way[i]);
+    };
+    const double t_half = last_below(0.5 * end), t_quarter = last_below(0.25 * end);
+    if (static_cast<int>(way.size() - 1 - i) < k_least_samples) return 0.0;
+    if (!(t_end - t_half <= k_even_doublings * (t_half - t_quarter))) return 0.0;
+    return 2.0 * std::numbers::ln2 / (t_end - t_quarter);
+  }
   [[nodiscard]] std::vector<double> by(double sign) const {
     std::vector<double> all(3, 0.0);
     for (Eigen::Index i = 0; i < nudge_.size(); ++i)
@@ -335,9 +415,9 @@ private:
     }
     return weighted;
   }
-  [[nodiscard]] VecX difference(const NudgedRun& plus, const NudgedRun& minus) const {
-    const std::vector<double>& a = plus.now().q;
-    const std::vector<double> b = minus.pose_at(plus.now().t);
+  [[nodiscard]] VecX difference(const NudgedRun& plus, const NudgedRun& minus) const { return difference(plus, minus, plus.now().t); }
+  [[nodiscard]] VecX difference(const NudgedRun& plus, const NudgedRun& minus, double t) const {
+    const std::vector<double> a = plus.pose_at(t), b = minus.pose_at(t);
     VecX weighted(nudge_.size());
     for (Eigen::Index i = 0; i < weighted.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -369,10 +449,31 @@ Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape
   return found;
 }
 
-// Nothing but what actions do.
-bool is_without_events(const RunResult& run, const LegMotion& leg) {
+// Marks the bodies on which the element of that name acts, with those of others of its kind; all bodies, if it has no modes.
+std::vector<char> bodies_of(const System& system, const std::string& element) {
+  std::vector<char> is_used(system.bodies.size(), 0);
+  bool is_found = false;
+  const auto is_it = [&](int index) {
+    const bool is_this = system.element_names[static_cast<std::size_t>(index)] == element;
+    is_found = is_found || is_this;
+    return is_this;
+  };
+  for (const Unit& unit : system.units)
+    if (is_it(unit.element)) unit.group->mark_bodies(is_used);
+  for (const FrictionUnit& unit : system.frictions)
+    if (is_it(unit.element)) unit.friction->mark_bodies(is_used);
+  if (!is_found) std::fill(is_used.begin(), is_used.end(), char{1});
+  return is_used;
+}
+
+// Nothing but what actions do, and what happens to other bodies than those that the asked directions move.
+bool is_without_events(const System& system, const RunResult& run, const LegMotion& leg, const FrozenLeg& frozen) {
   return std::none_of(run.events.begin(), run.events.end(), [&](const Event& event) {
-    return event.t >= leg.begin.t && event.t <= leg.end && event.kind != EventKind::happens && !is_kink(event.kind);
+    if (event.t < leg.begin.t || event.t > leg.end || event.kind == EventKind::happens || is_kink(event.kind)) return false;
+    const std::vector<char> is_used = bodies_of(system, event.element);
+    for (std::size_t body = 1; body < is_used.size(); ++body)
+      if (is_used[body] != 0 && frozen.moves(body)) return true;
+    return false;
   });
 }
 
@@ -396,6 +497,8 @@ struct AskedLeg {
     return leg.moved.directions().size() >= leg.moved.weights().size();
   }
   [[nodiscard]] bool is_at_rest(const LegMotion& leg) const { return leg.moved.directions().empty() && own_system(leg).inner_count() == 0; }
+  [[nodiscard]] std::optional<Balance> by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
+                                                 const std::vector<Instant>& looks, double least_exponent) const;
   [[nodiscard]] std::optional<Balance> by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const;
   [[nodiscard]] std::optional<Balance> by_nudge(FrozenLeg* frozen, const LegMotion& leg) const;
   [[nodiscard]] std::optional<Balance> until_it_fell(const LegMotion& leg) const;
@@ -403,17 +506,28 @@ struct AskedLeg {
 };
 
 // `least_exponent`: over the whole leg.
-std::optional<Balance> AskedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
-  const double duration = leg.end - leg.begin.t, least = least_exponent / duration;
-  const std::vector<Instant> looks =
-      is_at_rest(leg) ? instants_at_rest(own_system(leg), leg, instants()) : instants_in_motion(leg, instants());
-  const Course course = course_of(frozen, looks, k_least_share * least);
+std::optional<Balance> AskedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
+                                           const std::vector<Instant>& looks, double least_exponent) const {
+  const Course course = course_of(growth_at, looks);
   if (!(course.exponent > least_exponent)) return {};
   if (!is_at_rest(leg) && course.growing < std::min(k_least_instants, static_cast<int>(looks.size()))) return {};
   NudgedLeg nudged(system, initial, options, leg, most_evaluations);
   nudged.choose_nudge(&frozen, course.shape);
   if (course.exponent >= k_visible_exponent && !nudged.confirms(course)) return {};
-  return balance_by(system, leg, course.shape, course.exponent / duration);
+  return balance_by(system, leg, course.shape, course.exponent / (leg.end - leg.begin.t));
+}
+
+std::optional<Balance> AskedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
+  const double least = k_least_share * least_exponent / (leg.end - leg.begin.t);
+  const std::vector<Instant> looks =
+      is_at_rest(leg) ? instants_at_rest(own_system(leg), leg, instants()) : instants_in_motion(leg, instants());
+  for (std::size_t variant = 0; variant < frozen.variants(); ++variant) {
+    const auto growth_at = [&](const State& state) { return frozen.growth_at(state, least, variant); };
+    if (auto found = by_growth(frozen, growth_at, leg, looks, least_exponent)) return found;
+  }
+  if (!frozen.is_steady()) return {};
+  const auto growth_at = [&](const State& state) { return frozen.steady_growth_at(state, least); };
+  return by_growth(frozen, growth_at, leg, instants_in_motion(leg, std::min(instants(), k_steady_instants)), least_exponent);
 }
 
 std::optional<Balance> AskedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& leg) const {
@@ -421,7 +535,14 @@ std::optional<Balance> AskedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& le
   nudged.choose_nudge(frozen, {});
   const auto gone = nudged.goes_off_otherwise();
   if (!gone) return {};
-  return balance_by(system, leg, gone->second, exponent_of(k_far_grown_nudge) / (gone->first - leg.begin.t));
+  return balance_by(system, leg, gone->second, gone->first);
+}
+
+// Does something grow faster than `least`, 1/s, as far as that instant tells?
+bool grows_at(FrozenLeg& frozen, const State& state, double least) {
+  for (std::size_t variant = 0; variant < frozen.variants(); ++variant)
+    if (frozen.growth_at(state, least, variant).rate > 0.0) return true;
+  return frozen.is_steady() && frozen.steady_growth_at(state, least).rate > 0.0;
 }
 
 // Rounding grows, too: what balances for long leaves in the end. Each part of the leg up to where a direction was first moved is a
@@ -438,7 +559,7 @@ std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
     FrozenLeg frozen(own_system(leg), part);
     if (frozen.directions() == 0) continue;
     const State& middle = part.states.empty() ? part.begin : part.states[part.states.size() / 2];
-    if (!(frozen.growth_at(middle, k_by_rounding / (t - leg.begin.t)).rate > 0.0)) continue;
+    if (!grows_at(frozen, middle, k_by_rounding / (t - leg.begin.t))) continue;
     if (auto found = by_stiffness(frozen, part, k_by_rounding)) return found;
   }
   return {};
@@ -455,7 +576,7 @@ std::optional<Balance> AskedLeg::of(const LegMotion& leg) const {
     FrozenLeg frozen(own_system(leg), leg);
     if (frozen.directions() > 0) {
       if (auto found = by_stiffness(frozen, leg, k_exponent * std::min(duration, 1.0))) return found;
-      if (!is_at_rest(leg) && is_without_events(run, leg))
+      if (!is_at_rest(leg) && is_without_events(own_system(leg), run, leg, frozen))
         if (auto found = by_nudge(&frozen, leg)) return found;
     }
   }

@@ -9,10 +9,11 @@
 //    integral of that rate over the leg is the exponent of what grows. A leg whose exponent, or that of one second at the same mean rate, does
 //    not exceed k_exponent has no balance of this kind. Where nothing moves that decides at once.
 // 2. Nudge: what the stiffness says is confirmed by two runs of the leg, from a nudge in a pseudo-random direction and from its mirror
-//    image. Half their difference has to grow by half the exponent, or to k_grown_nudge. Stops without clearance and supports that vibrate
+//    image. Half their difference has to grow by half the exponent, or to k_grown_nudge. Stops on either side and supports that vibrate
 //    keep it small. A leg in which the nudge grows too little to be seen above rounding is left to the stiffness.
-// 3. Where something moves without events and the stiffness finds nothing, one nudged run looks for growth by other means, such as
-//    parametric resonance. In legs with events such growth is motion itself: rattling, rebounds, chaos.
+// 3. Where something moves and the stiffness finds nothing, one nudged run looks for growth by other means, such as slots that turn or
+//    parametric resonance; growth by less than k_far_grown_nudge has to show as exponential in two runs, as above. In legs in which the bodies that
+//    a nudge moves have events such growth is motion itself: rattling, rebounds, chaos.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -35,7 +36,7 @@ struct Balance {
 inline constexpr double k_exponent = 3.0;
 /// How far a nudge has to grow to show that what the stiffness says is so.
 inline constexpr double k_grown_nudge = 100.0;
-/// The same where the stiffness says nothing. Levers and slow swings make some ten or hundred times of it; and an
+/// The same where the stiffness says nothing and one nudged run decides. Levers and slow swings make some ten or hundred times of it; and an
 /// imperfection of a tenth of a millimetre, which is little in what is built, comes to a metre.
 inline constexpr double k_far_grown_nudge = 1e4;
 

@@ -65,6 +65,7 @@ const std::map<std::string, PublicHeaders> k_public_headers = {
       {"freedom.h", "motions that nothing holds"},
       {"statics.h", "forces, rows and stiffness of a pose at rest"},
       {"tangent.h", "the motions that rows leave"},
+      {"free_vibration.h", "eigenvalues of small vibrations that nothing binds"},
       {"modes.h", "frequencies and shapes of small vibrations"}}},
     {"mbd/trust",
      {{"accuracy_study.h", "convergence"},

@@ -47,6 +47,10 @@ public:
   [[nodiscard]] std::string at(const char* body, double x, double y) const {
     return std::string("{ body = \"") + body + "\", at = " + turned(x, y) + " }";
   }
+  /// The same place, with the axes of the scene.
+  [[nodiscard]] std::string axes_at(const char* body, double x, double y) const {
+    return std::string("{ body = \"") + body + "\", at = " + turned(x, y) + ", angle = \"" + number(degrees_) + " deg\" }";
+  }
   [[nodiscard]] double cosine() const { return cos_; }
   [[nodiscard]] double sine() const { return sin_; }
   [[nodiscard]] double degrees() const { return degrees_; }
@@ -229,11 +233,228 @@ BalanceScene box(Draw& draw) {
   return scene;
 }
 
+// A rod that stands or hangs on a car which a drive moves evenly or accelerates, leaning as its weight and its inertia ask for.
+BalanceScene carried(Draw& draw) {
+  const double length = draw.evenly_in_powers(0.05, 20.0), mass = draw.evenly_in_powers(0.1, 1e3),
+               car = mass * draw.evenly_in_powers(0.02, 100.0);
+  const bool is_upright = draw.choice(3) > 0, is_even = draw.coin();
+  const double acceleration = is_even ? 0.0 : draw.between(-5.0, 5.0), pull = std::hypot(k_gravity, acceleration);
+  const double rate = std::sqrt(1.5 * pull / length), speed = draw.between(0.1, 20.0);
+  BalanceScene scene;
+  const double leg = leg_of(draw, rate, scene.balances);
+  scene.balances = scene.balances && is_upright;
+  const double reach = (is_upright ? 0.5 : -0.5) * length / pull;
+  Text text(any_angle(draw));
+  text.run(leg);
+  const std::string velocity = "velocity = " + text.turned(speed, 0.0) + "\n";
+  text.body("car", car, 0.1 * car, 0.0, 0.0, velocity);
+  text.body("rod", mass, mass * length * length / 12.0, reach * acceleration, reach * k_gravity, velocity);
+  text.element("prismatic", "road", "a = \"car\"\naxis = " + text.turned(1.0, 0.0));
+  text.element("revolute", "pin", "a = " + text.at("rod", 0.0, 0.0) + "\nb = " + text.at("car", 0.0, 0.0));
+  text.add("[[signal]]\nname = \"drive\"\nkind = \"constant\"\nvalue = " + number(is_even ? speed : acceleration) + "\n");
+  text.element("prescribed_motion", "drive",
+               "a = \"car\"\nb = " + text.axes_at("ground", 0.0, 0.0) + "\nsignal = \"drive\"\nas = \"" +
+                   (is_even ? "velocity" : "acceleration") + "\"");
+  text.criterion("rod.theta", 0.1);
+  scene.text = text.text();
+  scene.what = std::string(is_upright ? "upright" : "hanging") + " rod of " + number(length) + " m on a car with " + number(acceleration) +
+               " m/s2, leg " + number(leg) + " s";
+  scene.is_sound = is_even; // what has not come to its end may leave the verdict open
+  return scene;
+}
+
+// A trailer on a car that is driven with v, its axle l ahead of the hitch or behind it: θ' = ± (v/l) θ.
+BalanceScene trailer(Draw& draw) {
+  const double length = draw.evenly_in_powers(0.2, 10.0), speed = draw.between(0.3, 20.0), rate = speed / length;
+  const bool is_pushed = draw.choice(3) > 0;
+  BalanceScene scene;
+  const double leg = leg_of(draw, rate, scene.balances);
+  scene.balances = scene.balances && is_pushed;
+  const double axle = is_pushed ? length : -length;
+  Text text(any_angle(draw), 0.0);
+  text.run(leg);
+  const std::string velocity = "velocity = " + text.turned(speed, 0.0) + "\n";
+  text.body("car", 1000.0, 500.0, 0.0, 0.0, velocity);
+  text.body("trailer", draw.evenly_in_powers(10.0, 1e4), draw.evenly_in_powers(1.0, 1e4), axle * draw.between(0.2, 1.2), 0.0, velocity);
+  text.element("prismatic", "road", "a = \"car\"\naxis = " + text.turned(1.0, 0.0));
+  text.element("revolute", "hitch", "a = " + text.at("trailer", 0.0, 0.0) + "\nb = " + text.at("car", 0.0, 0.0));
+  text.element("skate", "axle", "a = " + text.at("trailer", axle, 0.0) + "\naxis = " + text.turned(1.0, 0.0));
+  text.add("[[signal]]\nname = \"speed\"\nkind = \"constant\"\nvalue = " + number(speed) + "\n");
+  text.element("prescribed_motion", "drive",
+               "a = \"car\"\nb = " + text.axes_at("ground", 0.0, 0.0) + "\nsignal = \"speed\"\nas = \"velocity\"");
+  text.criterion("trailer.theta", 0.1);
+  scene.text = text.text();
+  scene.what =
+      std::string("trailer ") + (is_pushed ? "pushed" : "pulled") + " at " + number(rate) + " lengths a second, leg " + number(leg) + " s";
+  return scene;
+}
+
+// x'' − 2 σ x' + ω² x = 0, driven (σ > 0) or damped; swinging, or not: then the faster one of both exponentials counts.
+BalanceScene swing(Draw& draw) {
+  const double sigma = draw.evenly_in_powers(0.5, 50.0), mass = draw.evenly_in_powers(0.1, 100.0);
+  const bool is_driven = draw.coin(), swings = draw.choice(3) > 0;
+  const double rate = swings ? sigma : sigma * (1.0 + std::sqrt(0.75)); // ω = σ/2
+  BalanceScene scene;
+  // What creeps is at first drawn back by the spring, since a nudge displaces places: with r₁ = 13.9 r₂ it grows as 0.077 exp(r₁ t) then, and has
+  // grown by half the exponent from 5.2 on.
+  const double leg = swings ? leg_of(draw, rate, scene.balances) : std::max(1.0, draw.between(5.5, 12.0) / rate);
+  scene.balances = (scene.balances || !swings) && is_driven;
+  // Several swings within the leg, so that its growth shows.
+  const double omega = swings ? std::max(sigma, 1.0 / leg) * draw.between(30.0, 60.0) : 0.5 * sigma;
+  Text text(any_angle(draw), 0.0);
+  text.run(leg);
+  text.body("bob", mass, 0.1 * mass, 0.0, 0.0);
+  text.element("prismatic", "guide", "a = \"bob\"\naxis = " + text.turned(1.0, 0.0));
+  text.element("spring_damper", "spring",
+               "a = \"bob\"\naxis = " + text.turned(1.0, 0.0) + "\nstiffness = " + number(mass * omega * omega) + "\nfree_length = 0.0");
+  text.element("force", "drive",
+               "a = \"bob\"\nb = " + text.axes_at("ground", 0.0, 0.0) + "\ncoordinate = \"x\"\nformula = \"'" +
+                   number(2.0 * mass * sigma * (is_driven ? 1.0 : -1.0)) + " N s/m' * rate\"");
+  text.add("[[channel]]\nname = \"away\"\nexpression = \"hypot(bob.x, bob.y)\"\nunit = \"m\"\n");
+  text.criterion("away", 0.1);
+  scene.text = text.text();
+  scene.what =
+      std::string(is_driven ? "driven" : "damped") + (swings ? " swing, " : " creep, ") + number(rate) + " 1/s, leg " + number(leg) + " s";
+  return scene;
+}
+
+// A block that a driven car pulls evenly by a spring k and a damper d, over a plane whose friction falls by s for each m/s:
+// x'' = 2 σ x' − ω² x with 2 σ = (s − d)/m. Friction that falls by less than the damper takes is sound.
+BalanceScene pulled(Draw& draw) {
+  const double sigma = draw.evenly_in_powers(0.5, 50.0), mass = draw.evenly_in_powers(0.1, 100.0), speed = draw.between(0.1, 10.0);
+  const bool is_driven = draw.coin();
+  BalanceScene scene;
+  const double leg = leg_of(draw, sigma, scene.balances);
+  scene.balances = scene.balances && is_driven;
+  const double omega = std::max(sigma, 1.0 / leg) * draw.between(30.0, 60.0); // several swings within the leg
+  const double damper = 2.0 * mass * sigma * draw.between(1.2, 3.0), falls = damper + (is_driven ? 2.0 : -2.0) * mass * sigma;
+  const double friction = falls * speed + mass * k_gravity * draw.between(0.1, 0.5), stiffness = mass * omega * omega;
+  Text text(any_angle(draw), 0.0);
+  text.run(leg);
+  const std::string velocity = "velocity = " + text.turned(speed, 0.0) + "\n", along = "\naxis = " + text.turned(1.0, 0.0);
+  const std::string against_ground = "\nb = " + text.axes_at("ground", 0.0, 0.0);
+  text.body("car", 10.0 * mass, mass, 0.0, 0.0, velocity);
+  text.body("block", mass, 0.1 * mass, 0.0, 0.0, velocity);
+  text.element("prismatic", "road", "a = \"car\"" + along);
+  text.element("prismatic", "plane", "a = \"block\"" + along);
+  text.element("spring_damper", "rod",
+               "a = \"block\"\nb = \"car\"" + along + "\nstiffness = " + number(stiffness) + "\ndamping = " + number(damper) +
+                   "\nfree_length = " + number(friction / stiffness));
+  text.element("force", "friction",
+               "a = \"block\"" + against_ground + "\ncoordinate = \"x\"\nformula = \"'" + number(falls) + " N s/m' * (rate - '" +
+                   number(speed) + " m/s') - '" + number(friction) + " N'\"");
+  text.add("[[signal]]\nname = \"speed\"\nkind = \"constant\"\nvalue = " + number(speed) + "\n");
+  text.element("prescribed_motion", "drive", "a = \"car\"" + against_ground + "\nsignal = \"speed\"\nas = \"velocity\"");
+  text.add("[[channel]]\nname = \"away\"\nexpression = \"hypot(block.x - car.x, block.y - car.y)\"\nunit = \"m\"\n");
+  text.criterion("away", 0.1);
+  scene.text = text.text();
+  scene.what = std::string("block pulled over friction that ") + (is_driven ? "drives" : "is damped") + ", " + number(sigma) +
+               " 1/s, leg " + number(leg) + " s";
+  return scene;
+}
+
+// Two rods of 1 m and 1 kg, one on the other, with springs of stiffness c at the foot and at the knee, pressed by a load P that follows the
+// upper one (Ziegler). M θ'' = −K θ with M = [4/3 1/2; 1/2 1/3], K = [2c − P, P − c; −c, c]: λ² follows from a quadratic equation.
+BalanceScene follower(Draw& draw) {
+  const double c = draw.evenly_in_powers(10.0, 1e4);
+  const auto flutter = [c](double p) { // its rate, 0: none
+    const double square = 4.0 / 9.0 - 1.0 / 4.0, linear = 4.0 / 3.0 * c + (2.0 * c - p) / 3.0 - 0.5 * (p - 2.0 * c), constant = c * c;
+    const double inner = linear * linear - 4.0 * square * constant;
+    if (inner >= 0.0) return 0.0;
+    const double real = -linear / (2.0 * square), size = std::sqrt(constant / square);
+    return std::sqrt(0.5 * (size + real));
+  };
+  double low = 0.0, high = 3.5 * c; // flutter begins between
+  for (int i = 0; i < 60; ++i) (flutter(0.5 * (low + high)) > 0.0 ? high : low) = 0.5 * (low + high);
+  const bool flutters = draw.coin();
+  const double load = high * (flutters ? draw.between(1.1, 1.4) : draw.between(0.2, 0.95)), rate = flutter(load);
+  BalanceScene scene;
+  scene.balances = flutters;
+  const double leg = flutters ? std::max(1.0, draw.between(4.0, 12.0) / rate) : draw.between(0.5, 3.0);
+  scene.balances = flutters && rate * leg > k_decides;
+  Text text(any_angle(draw), 0.0);
+  text.run(leg);
+  const std::string angle = "angle = \"" + number(text.degrees()) + " deg\"\n";
+  text.body("lower", 1.0, 1.0 / 12.0, 0.5, 0.0, angle);
+  text.body("upper", 1.0, 1.0 / 12.0, 1.5, 0.0, angle);
+  text.element("revolute", "foot", "a = " + text.at("lower", 0.0, 0.0) + "\nb = \"ground\"");
+  text.element("revolute", "knee", "a = " + text.at("upper", 1.0, 0.0) + "\nb = " + text.at("lower", 1.0, 0.0));
+  text.element("rotational_spring_damper", "foot spring", "a = \"lower\"\nstiffness = " + number(c));
+  text.element("rotational_spring_damper", "knee spring", "a = \"upper\"\nb = \"lower\"\nstiffness = " + number(c));
+  text.element("load", "press",
+               "at = { body = \"upper\", at = " + text.turned(2.0, 0.0) + ", angle = 0.0 }\nframe = \"body\"\nforce = [" + number(-load) +
+                   ", 0.0]");
+  text.add("[[channel]]\nname = \"bent\"\nexpression = \"upper.theta - lower.theta\"\nunit = \"rad\"\n");
+  text.criterion("bent", 0.1);
+  scene.text = text.text();
+  scene.what = "column under " + number(load / high) + " of the load that follows it and lets it flutter, rate " + number(rate) + ", leg " +
+               number(leg) + " s";
+  return scene;
+}
+
+// A mass in the middle of a radial slot of a table that turns with Ω, on a spring: r'' = (Ω² − k/m) r. That nothing but the difference of
+// runs shows, which takes an exponent of about 5 to tell it from powers of time.
+BalanceScene slot(Draw& draw) {
+  const double turns = draw.evenly_in_powers(0.5, 30.0), mass = draw.evenly_in_powers(0.1, 10.0);
+  const double share = draw.coin() ? draw.between(0.0, 0.8) : draw.between(1.1, 4.0);
+  const double rate = turns * std::sqrt(std::abs(1.0 - share));
+  BalanceScene scene;
+  scene.balances = share < 1.0;
+  const double leg = std::max(draw.between(6.0, 12.0) / rate, 0.2);
+  Text text(any_angle(draw), 0.0);
+  text.run(leg);
+  const std::string turning = "angular_velocity = " + number(draw.coin() ? turns : -turns) + "\n";
+  text.body("table", 10.0, 5.0, 0.0, 0.0, turning);
+  text.body("slider", mass, 0.1 * mass, 0.0, 0.0, turning);
+  text.element("revolute", "pin", "a = \"table\"");
+  text.element("prismatic", "slot", "a = \"slider\"\nb = \"table\"\naxis = " + text.turned(1.0, 0.0));
+  if (share > 0.0)
+    text.element("spring_damper", "spring",
+                 "a = \"slider\"\nb = \"table\"\naxis = " + text.turned(1.0, 0.0) +
+                     "\nstiffness = " + number(share * mass * turns * turns) + "\nfree_length = 0.0");
+  text.add("[[channel]]\nname = \"away\"\nexpression = \"hypot(slider.x, slider.y)\"\nunit = \"m\"\n");
+  text.criterion("away", 0.1);
+  scene.text = text.text();
+  scene.what = "slider on a table with " + number(turns) + " rad/s and a spring of " + number(share) + ", leg " + number(leg) + " s";
+  return scene;
+}
+
+// A rod that stands or hangs and touches stops without pressing them: at one side it falls, between two it does not.
+BalanceScene beside_stop(Draw& draw) {
+  const double length = draw.evenly_in_powers(0.02, 50.0), mass = draw.evenly_in_powers(0.1, 1e3),
+               rate = std::sqrt(1.5 * k_gravity / length);
+  const bool is_upright = draw.choice(4) > 0;
+  const int stops = draw.choice(6); // lower, upper, freewheel either way, rope, both stops
+  BalanceScene scene;
+  const double leg = leg_of(draw, rate, scene.balances);
+  scene.balances = scene.balances && is_upright && stops < 5;
+  const double side = is_upright ? 1.0 : -1.0;
+  Text text(any_angle(draw));
+  text.run(leg);
+  text.body("rod", mass, mass * length * length / 12.0, 0.0, 0.5 * side * length);
+  text.element("revolute", "pin", "a = " + text.at("rod", 0.0, 0.0));
+  const std::string stiffness = "\nstiffness = " + number(mass * k_gravity * length * draw.evenly_in_powers(1e2, 1e5));
+  if (stops == 0 || stops == 5) text.element("limit", "right", "a = \"rod\"\nlower = 0.0" + stiffness);
+  if (stops == 1 || stops == 5) text.element("limit", "left", "a = \"rod\"\nupper = 0.0" + stiffness);
+  if (stops == 2 || stops == 3)
+    text.element("freewheel", "lock", std::string("a = \"rod\"\nfree = \"") + (stops == 2 ? "counter_clockwise" : "clockwise") + "\"");
+  if (stops == 4)
+    text.element("rope", "stay",
+                 "a = " + text.at("rod", 0.0, side * length) + "\nb = " + text.at("ground", length, side * length) +
+                     "\ninextensible = true");
+  text.criterion("rod.theta", 0.1);
+  scene.text = text.text();
+  scene.what = std::string(is_upright ? "upright" : "hanging") + " rod of " + number(length) + " m with stops " + std::to_string(stops) +
+               ", leg " + number(leg) + " s";
+  scene.is_sound = stops > 1 && stops < 5; // at a stop it may move by rounding, which is then all that is known of its motion
+  return scene;
+}
+
 } // namespace
 
 BalanceScene balance_scene(std::uint64_t seed) {
   Draw draw(seed);
-  constexpr std::array k_kinds = {rod, column, toggle, ball, box};
+  constexpr std::array k_kinds = {rod, column, toggle, ball, box, carried, trailer, swing, pulled, follower, slot, beside_stop};
   return k_kinds[seed % k_kinds.size()](draw);
 }
 

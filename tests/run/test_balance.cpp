@@ -140,9 +140,37 @@ TEST_CASE("neither axes nor actions hide what balances") {
   }
 }
 
+// Each with the body that leaves, and its rate. Told by derivatives of the equations of motion a rate is exact but for the eigenvalue's rounding,
+// or a bisection to 1e-6; told by nudged runs it is that of the last two doublings, between steps, or the mean up to 10⁴ times, which the part
+// of the nudge that grows is divided out of by a tenth at most.
+TEST_CASE("what balances on drives, beside stops, behind skates, by swinging or by turning is found") {
+  // Two rods of 1 m and 1 kg under a load P that follows, c = 100 N m (balance_scenes.cpp): λ⁴ 7/36 + λ² b + c² = 0.
+  const double c = 100.0, p = 331.8551404262401, b = 4.0 / 3.0 * c + (2.0 * c - p) / 3.0 - 0.5 * (p - 2.0 * c);
+  const double size = std::sqrt(c * c * 36.0 / 7.0), flutter = std::sqrt(0.5 * (size - b * 18.0 / 7.0));
+  const double falls = std::sqrt(1.5 * 9.81);
+  struct Case {
+    const char *name, *body;
+    double rate, within;
+  };
+  for (const auto& [name, body, rate, within] :
+       {Case{"rod_on_driven_car", "rod", falls, 1e-5}, Case{"trailer_pushed", "trailer", 3.0, 1e-5}, Case{"driven_swing", "b", 2.0, 1e-5},
+        Case{"follower_load", "b2", flutter, 1e-5}, Case{"slider_in_slot", "m", 4.0, 0.03},
+        Case{"slider_beside_bouncing_ball", "m", 4.0, 0.1}, Case{"rod_beside_stop", "rod", falls, 1e-5},
+        Case{"rod_on_backstop", "rod", falls, 1e-5}}) {
+    CAPTURE(name);
+    const Report report = judged_run(load_model(std::string(STEPLAP_TEST_DATA) + "/balance/" + name + ".toml", {}));
+    CHECK(is_found(report));
+    CHECK(report.judgement.verdict == Verdict::open);
+    REQUIRE(report.estimate.balance);
+    CHECK(report.estimate.balance->body == body);
+    CHECK(report.estimate.balance->t == 0.0);
+    CHECK(report.estimate.balance->rate == doctest::Approx(rate).epsilon(within));
+  }
+}
+
 TEST_CASE("random scenes balance where closed forms say so, and none of the others is told of") {
   long balancing = 0, sound = 0;
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < 480; ++seed) {
     const BalanceScene scene = balance_scene(seed);
     CAPTURE(seed);
     CAPTURE(scene.what);
@@ -153,8 +181,8 @@ TEST_CASE("random scenes balance where closed forms say so, and none of the othe
     else if (scene.is_sound) CHECK(report.judgement.verdict == Verdict::hold);
     (scene.balances ? balancing : sound) += 1;
   }
-  CHECK(balancing > 60);
-  CHECK(sound > 100);
+  CHECK(balancing > 150);
+  CHECK(sound > 150);
 }
 
 TEST_CASE("what hangs far away, drifts or slides off does not balance") {
