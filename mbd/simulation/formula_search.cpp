@@ -17,6 +17,7 @@ constexpr double k_rounded_time = 4.0 * 0x1p-52;
 constexpr double k_beyond = 3.0;
 // A change behind this place of the first step behind an event is found by the event finder; a step with an earlier one is cut behind it.
 constexpr double k_found_by_events = 1e-2, k_behind_change = 2.0;
+constexpr double k_smooth = 0.5;      // of what the middle differs from the ends by: what a cubic may be off by
 constexpr double k_least_peak = 1e-3; // of what the formula may do in the step
 constexpr double k_rounding = 1e-9;   // of a force
 
@@ -124,21 +125,31 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
   return place;
 }
 
-// Returns false if nothing is to be looked for: a condition that is true at the begin, whose end the event finder looks for; a formula
-// without a value at one of the places.
-bool FormulaSearch::set_band(Sought& sought, double t0, double t1) {
-  if (sought.is_condition()) {
-    sought.high = k_half;
-    return !sought.is_outside(value(sought, sought.operands[0].data(), t0));
+// Sets the band of a force or rate: its values at the ends and in the middle of the step, and three times their difference on either side.
+// A value in the middle that the ends do not show is compared with the cubic through two more places: no stage may have seen a peak there,
+// and then it is outside. Returns false without a finite value at one of the places.
+bool FormulaSearch::set_band(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
+  const double t0 = integrator.t0(), h = integrator.h();
+  const auto seen = [&](double theta, const std::vector<double>& operands) { return value(sought, operands.data(), t0 + theta * h); };
+  const double first = seen(0.0, sought.operands[0]), middle = seen(0.5, sought.operands[1]), last = seen(1.0, sought.operands[2]);
+  if (!std::isfinite(first) || !std::isfinite(middle) || !std::isfinite(last)) return false;
+  double low = std::min(first, last), high = std::max(first, last);
+  const double beyond_ends = std::max({low - middle, middle - high, 0.0});
+  bool is_shown = beyond_ends <= k_beyond * (high - low);
+  if (!is_shown) {
+    double quarter[2];
+    for (const std::size_t i : {0U, 1U}) {
+      const double theta = i == 0 ? 0.25 : 0.75;
+      sought.curves.read(look(theta, integrator, dynamics), operands_.data());
+      quarter[i] = seen(theta, operands_);
+      if (!std::isfinite(quarter[i])) return false;
+      low = std::min(low, quarter[i]);
+      high = std::max(high, quarter[i]);
+    }
+    const double cubic = (4.0 * (quarter[0] + quarter[1]) - first - last) / 6.0;
+    is_shown = std::abs(middle - cubic) <= k_smooth * beyond_ends;
   }
-  const double times[] = {t0, 0.5 * (t0 + t1), t1};
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double seen = value(sought, sought.operands[i].data(), times[i]);
-    if (!std::isfinite(seen)) return false;
-    low = std::min(low, seen);
-    high = std::max(high, seen);
-  }
+  if (is_shown) low = std::min(low, middle), high = std::max(high, middle);
   const double beyond = k_beyond * (high - low) + k_rounding * std::max(std::abs(low), std::abs(high));
   sought.low = low - beyond;
   sought.high = high + beyond;
@@ -147,7 +158,13 @@ bool FormulaSearch::set_band(Sought& sought, double t0, double t1) {
 
 double FormulaSearch::place_of_peak(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h(), t1 = integrator.t1();
-  if (!set_band(sought, t0, t1) || !may_be_outside_by_range(sought, t0, t1)) return 1.0;
+  if (sought.is_condition()) {
+    sought.high = k_half;
+    if (sought.is_outside(value(sought, sought.operands[0].data(), t0))) return 1.0; // it is true: the event finder looks for its end
+  } else if (!set_band(sought, integrator, dynamics)) {
+    return 1.0;
+  }
+  if (!may_be_outside_by_range(sought, t0, t1)) return 1.0;
   sought.curves.begin(sought.operands[0].data(), sought.operands[2].data(),
                       [&](double theta) { return look(theta, integrator, dynamics); });
   std::size_t most_spans = k_most_spans;

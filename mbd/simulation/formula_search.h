@@ -76,7 +76,7 @@ private:
   [[nodiscard]] double place_of_peak(Sought& sought, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] double first_change(Sought& sought, Integrator& integrator, Dynamics& dynamics);
   template <class Value> [[nodiscard]] static bool may_change(const Sought& sought, SwitchBits bits, const Value& value_at);
-  [[nodiscard]] bool set_band(Sought& sought, double t0, double t1);
+  [[nodiscard]] bool set_band(Sought& sought, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool may_be_outside_by_range(const Sought& sought, double t0, double t1);
   [[nodiscard]] Snapshot look(double theta, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] Interval range_over(const Sought& sought, const Span& span, double t0, double h);

@@ -315,7 +315,7 @@ void check_fields(const std::string& kind, int count) {
       if (std::abs(found.last(field.channel) - field.wanted) <= 1e-3 * field.wanted) continue;
       ++missed;
       MESSAGE(kind << " " << seed << " " << std::string(method) << ": " << digits(found.last(field.channel)) << " for "
-                   << digits(field.wanted) << "\n" + field.text);
+                   << digits(field.wanted) << ", end " << digits(field.end) << "\n" + field.text);
     }
   }
   CHECK_MESSAGE(missed == 0, kind);
