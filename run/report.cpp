@@ -6,6 +6,7 @@
 #include "run/findings.h"
 #include "run/plausible_run.h"
 #include "run/result_files.h"
+#include "run/slip_ties.h"
 #include "run/with_settings.h"
 
 namespace steplap {
@@ -111,6 +112,11 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
     add_cap(report.judgement, text_with_place(report.findings.back()));
   }
   if (const std::string& why = report.estimate.balance_unknown; !why.empty()) add_finding(report, balance_unknown_finding(why), options);
+  const GlobalErrorEstimate* const errors = report.estimate.errors ? &*report.estimate.errors : nullptr;
+  for (const Finding& finding : slip_ties(report.run, options, report.judgement, errors)) {
+    add_finding(report, finding, options);
+    if (caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
+  }
   weigh(report);
   ask_second_opinion(report, options);
   return report;

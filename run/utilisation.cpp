@@ -1,7 +1,5 @@
 #include "run/utilisation.h"
 
-#include "elements/joint_friction.h"
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -12,7 +10,7 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_most_frictions = 100;
-constexpr double k_unloaded = 1e-6; // of the largest capacity: what is pressed by less holds nothing worth telling
+constexpr double k_unused = 1e-9; // share of a friction that takes nothing but rounding
 
 std::string last_part(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 std::string element_part(const std::string& channel) { return channel.substr(0, channel.rfind('.')); }
@@ -175,102 +173,40 @@ private:
 
   struct Friction {
     std::string element;
-    const ChannelRange* force = nullptr;
-    double capacity = 0.0;                             // the largest, or the bound
-    std::size_t force_column = 0, capacity_column = 0; // 0: not sampled
-    double share = 0.0, at = 0.0, value = 0.0, limit = 0.0;
-    bool is_exact = false;
+    const ChannelRange* used = nullptr; ///< of its channel "share"
+    double share = 0.0, at = 0.0;
   };
 
   void add_frictions() {
     std::unordered_map<std::string, double> first_slip;
     for (const Event& event : report_.run.result.events)
       if (is_slip(event.kind)) first_slip.try_emplace(event.element, event.t);
-    std::vector<Friction> frictions = followed();
-    sample(frictions);
-    for (Friction& f : frictions)
+    std::vector<Friction> frictions;
+    for (const ChannelRange& range : report_.ranges()) {
+      const std::string& name = range.channel->name;
+      if (!name.ends_with(".share") || known_.contains(name) || !(range.high.value > k_unused)) continue;
+      Friction f{element_part(name), &range, std::min(1.0, range.high.value), range.high.t};
       if (const auto slip = first_slip.find(f.element); slip != first_slip.end()) {
         f.share = 1.0;
         f.at = slip->second;
-        f.is_exact = true;
       }
-    std::erase_if(frictions, [](const Friction& f) { return f.share <= 0.0; });
+      frictions.push_back(std::move(f));
+    }
     std::stable_sort(frictions.begin(), frictions.end(), [](const Friction& a, const Friction& b) { return a.share > b.share; });
     if (frictions.size() > k_most_frictions) frictions.resize(k_most_frictions);
     for (const Friction& f : frictions) add_friction(f, first_slip.contains(f.element));
   }
 
-  std::vector<Friction> followed() const {
-    std::vector<Friction> frictions;
-    for (const ChannelRange& range : report_.ranges()) {
-      const std::string& name = range.channel->name;
-      if (!name.ends_with(".capacity")) continue;
-      const std::string element = element_part(name);
-      const ChannelRange* force = ranges_.find(element + ".friction");
-      if (force && range.high.value > 0.0 && force->largest().value != 0.0) frictions.push_back({element, force, range.high.value});
-    }
-    for (const ElementEntry& entry : report_.run.loaded->model.elements) {
-      const auto* const found = dynamic_cast<const JointFriction*>(entry.element.get());
-      if (!found) continue;
-      const JointFriction& joint = *found;
-      const ChannelRange* force = ranges_.find(joint.name + ".friction");
-      if (!force || !std::isfinite(force->largest().value)) continue;
-      const Extreme& largest = force->largest();
-      frictions.push_back(
-          {joint.name, force, joint.holds, 0, 0, std::abs(largest.value) / joint.holds, largest.t, largest.value, joint.holds, true});
-    }
-    return frictions;
-  }
-
-  // Force and capacity have their extremes at different times: what counts is both at the same time, which samples tell.
-  void sample(std::vector<Friction>& frictions) const {
-    constexpr std::size_t k_most_looks = 20000000;
-    const Trajectory& trajectory = *report_.run.result.trajectory;
-    std::unordered_map<std::string_view, std::size_t> column;
-    for (std::size_t c = 0; c < trajectory.channels().size(); ++c) column.emplace(trajectory.channels()[c]->name, c + 1);
-    std::vector<Friction*> sampled;
-    for (Friction& f : frictions) {
-      if (f.is_exact) continue;
-      const auto force = column.find(f.force->channel->name);
-      const std::string name = f.element + ".capacity";
-      const auto capacity = column.find(name);
-      if (force == column.end() || capacity == column.end()) continue;
-      f.force_column = force->second;
-      f.capacity_column = capacity->second;
-      sampled.push_back(&f);
-    }
-    if (sampled.empty()) return;
-    const std::size_t stride = 1 + trajectory.size() * sampled.size() / k_most_looks;
-    for (std::size_t r = 0; r < trajectory.size(); r += stride) {
-      const auto row = trajectory.row(r);
-      for (Friction* f : sampled) {
-        const double capacity = row[f->capacity_column], force = std::abs(row[f->force_column]);
-        if (!(capacity > k_unloaded * f->capacity) || !(force > f->share * capacity)) continue;
-        f->share = std::min(1.0, force / capacity);
-        f->at = row[0];
-        f->value = force;
-        f->limit = capacity;
-      }
-    }
-  }
-
   void add_friction(const Friction& f, bool slipped) {
     Utilisation u;
     u.name = f.element + ": friction";
-    u.channel = f.force->channel->name;
+    u.channel = f.used->channel->name;
     u.share = f.share;
-    u.unit = f.force->channel->unit;
     u.at = f.at;
     u.beyond = slipped;
-    if (!slipped) {
-      u.value = std::abs(f.value);
-      u.limit = f.limit;
-    }
     if (slipped) u.detail = "it slips";
-    else
-      u.detail = shown_quantity(std::abs(f.value), u.unit, {.column = f.limit}, digits_) + " of " +
-                 shown_quantity(f.limit, u.unit, {.column = f.limit}, digits_);
-    u.text = shown_share(u.share, {}, digits_) + " of what friction holds: " + u.detail + (f.is_exact ? "" : ", at the instants written");
+    else u.error = report_.error_of(*f.used, &ChannelError::high);
+    u.text = shown_share(u.share, u.error, digits_) + " of what friction holds" + (slipped ? ": " + u.detail : "");
     found_.push_back(std::move(u));
   }
 

@@ -3,7 +3,7 @@
 //   at most L > 0       value / L                        a force of 274 kN of 300 kN: 91 %
 //   at least L > 0      L / value                        a margin of 1.32, at least 1.2: 91 %; a margin of friction is 1 / share
 //   L of another sign   the way from the value at the start to the limit, how much of it was gone
-//   friction            its force, of what holds at the same instant; 1 from where it slips
+//   friction            the largest value of its channel "share": force over what holds at the same instant; 1 from where it slips
 #pragma once
 
 #include "run/range_index.h"
@@ -21,7 +21,7 @@ struct Utilisation {
   std::string name;                   ///< "front joint: friction", or that of the criterion
   std::string channel;                ///< whose extreme it is
   double share = 0.0;                 ///< 1: the limit; more: beyond it; at most k_most_share
-  std::optional<double> value, limit; ///< SI; none of friction that slips: both are the same then, and change
+  std::optional<double> value, limit; ///< SI; none of friction, of which both change
   std::string unit;                   ///< of both
   std::optional<double> at;           ///< s
   bool is_judged = false;             ///< a criterion of the verdict
