@@ -9,7 +9,6 @@
 #include <cstdio>
 
 using namespace steplap;
-using namespace steplap::testing;
 
 namespace {
 
