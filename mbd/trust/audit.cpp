@@ -24,11 +24,12 @@ const char* const k_unknown = ".unknown";
 const char* const k_forces = "forces";
 const char* const k_velocities = "velocities";
 const char* const k_places = "places";
-constexpr double k_one_line = 1e-9; // of the bodies' size, rad
+constexpr double k_one_line = 1e-9; // relative to the size of the bodies, and rad: lines within it are the same line
 
-constexpr double k_no_bound = 1e20; // N or N m: what holds whatever it takes, as a one-way clutch does, is seen by what it bears
+constexpr double k_no_bound = 1e20; // N or N m: larger bounds count as infinite, as for a one-way clutch; its actual force is used instead
 
-// W: the most that the friction gives at rates that are known no better than zero, by the largest wrench that it can bear.
+// Returns the power that friction can appear to produce by rounding of velocities alone, W: Σ (largest possible force · accuracy of the
+// rate).
 double power_of_rounding(const Snapshot& s, const System& system, std::size_t f, double met) {
   const FrictionUnit& unit = system.frictions[f];
   const FrictionState& state = s.evaluation->friction[f];
@@ -65,7 +66,8 @@ double power_of_friction(const Snapshot& s, const System& system, std::size_t f)
   return most > k_no_bound * size ? power : most;
 }
 
-// Powers that are not positive are left as they are: what friction takes is asked for, too (audited_power).
+// Returns the power of friction, W, reduced by rounding if it is positive. Negative power is returned unchanged, because audited_power()
+// needs the dissipation.
 double pushing_power(const Snapshot& s, const System& system, std::size_t f, double met) {
   const FrictionPhase phase = s.evaluation->friction[f].phase;
   if (phase == FrictionPhase::free || phase == FrictionPhase::apart) return 0.0;
@@ -78,24 +80,27 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   const FrictionState& state = s.evaluation->friction[f];
   const double* wrench = s.friction_force + unit.row;
   const int n = unit.friction->dimension();
-  // Of a joint of sheets the set is known where it sticks only; sliding, its law is the set's boundary by construction.
+  // A step-lap joint knows its admissible set only while it sticks. While it slides, its wrench lies on the boundary by construction.
   if (unit.friction->never_slips() || (n > 1 && state.phase == FrictionPhase::slip)) return 0.0;
   const bool is_bearing = std::any_of(wrench, wrench + n, [](double w) { return w != 0.0; });
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
-  double normal[3], against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0}; // of what holds one way only, the side that bears
-  // No bound to be a share of: what it bears has to be rounding.
+  double normal[3],
+      against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0}; // in one dimension: direction opposed to the force, so that
+                                                                       // one-way elements use the bound of the loaded side
+  // No bound: the force must be rounding.
   if (!(unit.friction->support(*s.evaluation, state, against) > 0.0))
     return n == 1 ? std::abs(wrench[0]) / slight_force(system, *unit.friction->rows(state)) - 1.0 : 0.0;
   return unit.friction->gauge(*s.evaluation, state, wrench, normal) - 1.0;
 }
 
-// Of friction whose wrench turns with its slip: wrench over speed is what it changes by with a change of that.
+// Returns true for friction whose wrench depends on the direction of slip (step-lap joints). A change of slip velocity by dν changes the
+// wrench by up to |W| dν/|ν|.
 bool may_turn(const FrictionUnit& unit) {
   return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips();
 }
 
-// N: what forces change by where the slip of such friction does by `rate`.
+// Returns the change of friction forces if the slip velocity changes by `rate`, N.
 double turned_force(const Snapshot& s, const System& system, double rate) {
   double sum = 0.0;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
@@ -127,7 +132,7 @@ std::string element_of(const Channel& channel) {
   return channel.name.substr(k_prefix.size(), end - k_prefix.size());
 }
 
-// Frictions of one dimension that act on the same two bodies along one line, as given.
+// Returns groups of one-dimensional friction elements that act between the same two bodies along the same line in the initial pose.
 std::vector<std::vector<std::size_t>> frictions_on_one_line(const System& system) {
   const State start = system.initial_state();
   std::vector<Motion<double>> motion;
@@ -175,7 +180,7 @@ double borne_together(const Snapshot& s, const System& system, const std::vector
   return sum;
 }
 
-// Each share tells when it is one; the sum is a channel like others.
+// Adds a `shares` channel for each element of such a group, and one channel with the sum of their forces.
 void add_shared_channels(System& system) {
   const System* const self = &system;
   for (const std::vector<std::size_t>& group : frictions_on_one_line(system)) {
@@ -237,7 +242,7 @@ bool may_pull(const Model& model) {
 
 } // namespace
 
-// They are compared sample by sample, and have no extremes to look for.
+// The channels are compared sample by sample; they need no extremes.
 void add_unknown_channels(System& system, double met) {
   const auto scratch = std::make_shared<std::vector<PairJacobian>>();
   const System* const self = &system;
@@ -340,12 +345,12 @@ private:
   std::vector<int> parent_;
 };
 
-// Bodies that an element names, itself or by markers; the ground for one marker alone (a load).
+// Returns the bodies that an element names, directly or by markers. An element with a single marker (a load) acts from the ground.
 std::vector<int> bodies_of(const ElementEntry& entry, const std::map<std::string, int>& body_index,
                            const std::map<std::string, int>& marker_body) {
   std::vector<int> bodies;
   for (const Field& field : entry.kind->fields.fields()) {
-    if (field.name == "over" && field.type == FieldType::texts) { // what a rope runs over
+    if (field.name == "over" && field.type == FieldType::texts) { // bodies over which a rope runs
       const auto names = std::get<std::vector<std::string>>(field.get(entry.element.get()));
       for (const std::string& name : names)
         if (const auto found = marker_body.find(name); found != marker_body.end()) bodies.push_back(found->second);
@@ -382,8 +387,8 @@ std::vector<std::vector<int>> free_groups(const Model& model, const System& syst
 
 namespace {
 
-// Momentum less what gravity has given, and angular momentum about the group's centre of gravity; and the sums
-// of the single bodies' sizes, which are the scale. A velocity that all bodies have by rounding is worth `mass` and `moment` of them.
+// Momentum minus the impulse of gravity, and angular momentum about the group's centre of gravity. The sums of the absolute values of the
+// single bodies are the scale. If all velocities have the same rounding error ε, the momentum errors are `mass` ε and `moment` ε.
 struct Momentum {
   double x = 0.0, y = 0.0, turn = 0.0, size = 0.0, turn_size = 0.0;
   double mass = 0.0, moment = 0.0; ///< kg, kg m

@@ -18,53 +18,54 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_nudge = 1e-9;           // of a body's size
-constexpr double k_above_rounding = 1e4;   // at least so many roundings of its place
-constexpr double k_least_part = 1e-3;      // of a nudge: joints that leave less of it hold the body
-constexpr double k_least_fastest = 0.3;    // of the nudge: its part along what grows fastest
-constexpr double k_least_share = 0.5;      // of the mean rate that counts: slower instants count as 0
-constexpr double k_visible_exponent = 0.2; // a growth of 2 %, which is far above the rounding of a nudge
-constexpr double k_confirmed = 0.5;        // of the exponent: instants are few, and what grows turns while it grows
-// From 1 to 100 and from there to 1e4 an exponential takes as long, a body that falls or slides off ten times as long, one that
-// drifts evenly a hundred times.
+constexpr double k_nudge = 1e-9;           // size of a nudge over that of the body
+constexpr double k_above_rounding = 1e4;   // least size of a nudge, in roundings of the body's position
+constexpr double k_least_part = 1e-3;      // of a nudge; if constraints leave less of it, they hold the body
+constexpr double k_least_fastest = 0.3;    // least part of the nudge along the fastest growing direction
+constexpr double k_least_share = 0.5;      // of the mean rate that counts; slower growth at an instant counts as 0
+constexpr double k_visible_exponent = 0.2; // growth by 22 %, far above the rounding of a nudge; smaller exponents are not confirmed by runs
+constexpr double k_confirmed = 0.5;        // of the exponent that two runs must confirm: instants are few, and the growing direction turns
+// Test for exponential growth in one run. An exponential takes about as long from 1 to 100 as from 100 to 1e4. A body that falls or slides
+// off takes ten times as long, one that drifts evenly a hundred times. So the second time may be at most k_slower times the first.
 constexpr double k_begun = 2.0, k_half_way = 100.0;
 constexpr double k_slower = 5.0;
-// Growth by less is looked at more closely, in the difference of two runs, which has no part of the motion itself. By 16 the last doublings
-// tell an exponential, of which each takes as long as the one before, or less from rest, from powers of time up to the fifth: the last one of
-// those takes 1.07 times as long as the one before, or more.
+// Growth beyond k_suspicious in one run is examined again in the difference of two runs, which does not contain the motion itself. In that
+// difference a growth by 16 distinguishes exponentials from powers of time up to t⁵ by the last two doublings: for an exponential they take
+// equally long, or the last one less (growth from rest); for t⁵ the last one takes 1.07 times as long or longer.
 constexpr double k_suspicious = 5.0, k_seen = 16.0, k_even_doublings = 1.03;
 constexpr int k_parts_of_step = 8;
-constexpr double k_least_steps = 100.0; // of a leg, so that doublings are seen between its steps
-constexpr double k_swing_step = 0.5;    // rad of a swing: methods from the fourth order on know it to 1e-4 then
+constexpr double k_least_steps = 100.0; // in the leg, so that doublings are resolved
+constexpr double k_swing_step = 0.5;    // rad of phase per step; methods of fourth order or more have errors of 1e-4 then
 constexpr int k_least_samples = 6;      // in the last two doublings
-// A direction that a leg moves in at last was moved by a nudge too small to be seen if the exponent up to there is that large: joints are
-// met to some 1e-9 of a body's size, which grows to k_moved by it. Earlier than in this share of the leg what falls is seen to fall.
+// A direction may move late in a leg because rounding grew along it. Constraints are met to about 1e-9 of a body's size; at an exponent of 6
+// or more, growth by rounding is visible (k_moved). Motion earlier than the share k_early of the leg is part of the model.
 constexpr double k_by_rounding = 6.0, k_early = 0.05;
-// Instants of a leg in motion that have to show growth: a single one may lie within a blow.
+// Least number of instants with growth in a leg in motion; a single one may lie within an impact.
 constexpr int k_least_instants = 3;
-// Coordinates up to which the stiffness is analysed, by dense algebra; its cost at an instant grows with the cube.
+// Largest number of coordinates for which the stiffness is analysed. The algebra is dense; the cost of an instant grows with the cube of
+// the number.
 constexpr int k_most_coordinates = 300;
-constexpr double k_dense_work = 3e8; // cubes of coordinates, over all instants of a leg
+constexpr double k_dense_work = 3e8; // limit on (coordinates)³ · instants in a leg
 constexpr int k_most_instants = 32;
-constexpr int k_steady_instants = 2;         // of a steady leg, in which only loads change
-constexpr std::size_t k_most_stretches = 32; // between breakpoints of loads that are told apart
+constexpr int k_steady_instants = 2;         // instants in a steady leg, in which only loads change
+constexpr std::size_t k_most_stretches = 32; // most stretches between breakpoints of loads that are examined separately
 
-// Exponent of the fastest growth of a leg as its stiffness has it.
+// Growth over a leg according to its stiffness.
 struct Course {
   double exponent = 0.0; ///< ∫ rate dt
-  double rate = 0.0;     ///< the largest, 1/s
-  VecX shape;            ///< of that one
-  double swing = 0.0;    ///< rad/s, of that one (FrozenGrowth)
-  int growing = 0;       ///< instants at which something grows
+  double rate = 0.0;     ///< largest rate, 1/s
+  VecX shape;            ///< its displacement, W δ
+  double swing = 0.0;    ///< its angular frequency if it oscillates, rad/s (FrozenGrowth)
+  int growing = 0;       ///< number of instants with growth
 };
 
-// Instants at which a leg is looked at, each for a share of its duration.
+// Instant of a leg at which growth is calculated, with the part of the duration for which it counts.
 struct Instant {
   State state;
   double duration; ///< s
 };
 
-// Nothing moves, but loads may change. Instants lie in the middle of equal parts of the stretches between breakpoints.
+// Returns instants in a leg at rest, in which only loads change: the middle of equal parts of the stretches between breakpoints of loads.
 std::vector<Instant> instants_at_rest(const System& system, const LegMotion& leg, int count) {
   std::vector<double> edges = {leg.begin.t};
   for (const double t : system.breakpoints)
@@ -82,7 +83,7 @@ std::vector<Instant> instants_at_rest(const System& system, const LegMotion& leg
   return instants;
 }
 
-// The states that were kept, each up to half-way to its neighbours.
+// Returns recorded states of a leg in motion. Each counts for the time up to half-way to its neighbours.
 std::vector<Instant> instants_in_motion(const LegMotion& leg, int count) {
   std::vector<const State*> states = {&leg.begin};
   const std::size_t stride = std::max<std::size_t>(1, leg.states.size() / static_cast<std::size_t>(std::max(count, 1)));
@@ -112,7 +113,7 @@ Course course_of(const GrowthAt& growth_at, const std::vector<Instant>& instants
   return course;
 }
 
-// Sizes of nudges, m, per body but the ground.
+// Returns the size of the nudge of every body except the ground, m.
 std::vector<double> nudges_of(const System& system, const State& begin) {
   std::vector<double> nudges;
   for (std::size_t body = 1; body < system.bodies.size(); ++body) {
@@ -124,7 +125,7 @@ std::vector<double> nudges_of(const System& system, const State& begin) {
   return nudges;
 }
 
-// How far each body is displaced, m: an angle counts by the radius of gyration. `weighted`: W δ.
+// Returns the displacement of each body, m; angles are multiplied by the radius of gyration. `weighted`: W δ.
 std::vector<double> ways_of(const System& system, const VecX& weighted) {
   std::vector<double> ways;
   for (std::size_t body = 1; body < system.bodies.size(); ++body) {
@@ -134,7 +135,7 @@ std::vector<double> ways_of(const System& system, const VecX& weighted) {
   return ways;
 }
 
-// The largest displacement against the size of a nudge of its body.
+// Returns the largest ratio of displacement to nudge size over all bodies.
 double largest_share(const std::vector<double>& ways, const std::vector<double>& nudges) {
   double share = 0.0;
   for (std::size_t i = 0; i < ways.size(); ++i)
@@ -142,8 +143,8 @@ double largest_share(const std::vector<double>& ways, const std::vector<double>&
   return share;
 }
 
-// Pseudo-random, the same whenever the same machine is asked: between half a nudge and a whole one of either sign, so that no
-// motion of several coordinates together is without its part.
+// Returns a pseudo-random displacement W δ. It depends only on the model and the leg, so results are reproducible. Each component has a
+// random sign and between half and the whole nudge size, so that every mode has a part in it.
 VecX random_nudge(const System& system, std::size_t leg, const std::vector<double>& nudges) {
   Fingerprint machine;
   for (const BodyData& body : system.bodies) {
@@ -166,13 +167,13 @@ VecX beyond(const MotionSpan& moved, const VecX& weighted) {
   return Eigen::Map<const VecX>(parts.data(), weighted.size());
 }
 
-// The evaluations of all nudged runs together are bounded by what was granted.
+// A run whose pose is displaced by a nudge at the start of one leg. It stops with an exception beyond `most_evaluations`.
 class NudgedRun {
 public:
   NudgedRun(const System& system, const State& initial, const SimulationOptions& options, double most_evaluations, const LegMotion& leg)
       : simulation_(system, initial, options), progress_(options.progress), most_evaluations_(most_evaluations), leg_(leg) {}
 
-  // Up to the start of the leg. False: the run has ended before.
+  // Runs to the start of the leg. Returns false if the run ends before.
   bool reach_leg() {
     while (simulation_.past_legs() < leg_.past_legs)
       if (!step()) return false;
@@ -183,7 +184,7 @@ public:
     simulation_.displace(by);
     now_ = before_ = simulation_.current_state();
   }
-  // False where the leg is over.
+  // Makes one step. Returns false if the leg is over.
   bool advance() {
     if (is_over_) return false;
     before_ = std::move(now_);
@@ -193,9 +194,9 @@ public:
     return true;
   }
   [[nodiscard]] const State& now() const { return now_; }
-  [[nodiscard]] double step_begin() const { return before_.t; } ///< s, of the last step
+  [[nodiscard]] double step_begin() const { return before_.t; } ///< start of the last step, s
   [[nodiscard]] double evaluations() const { return static_cast<double>(simulation_.statistics().evaluations); }
-  // Poses at t within the last step, by the cubic through the places and velocities at its ends.
+  // Returns the pose at t within the last step by cubic Hermite interpolation of positions and velocities.
   [[nodiscard]] std::vector<double> pose_at(double t) const {
     const double h = now_.t - before_.t;
     if (!(h > 0.0) || t >= now_.t) return now_.q;
@@ -211,7 +212,7 @@ private:
   bool step() {
     const bool goes_on = simulation_.advance();
     const double t = simulation_.state().t;
-    if (progress_) progress_(t); // throws where it is to stop
+    if (progress_) progress_(t); // throws if the run is to be aborted
     if (evaluations() > most_evaluations_)
       throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
                             " s of a run from nudged poses");
@@ -226,18 +227,19 @@ private:
   bool is_over_ = false;
 };
 
-// What a way has grown to, and when it passed the marks.
+// Growth of one body's displacement and the times at which it passed the marks.
 struct Growth {
-  double from = 0.0, now = 0.0; // m; times `from`
+  double from = 0.0, now = 0.0; // initial displacement, m; present one over the initial one
   double t_begun = 0.0, t_half_way = 0.0;
 };
 
-// Between the ends of a step as a line, which what is no exponential may be over a long step.
+// Returns the time at which growth passed `mark`, by linear interpolation within a step. Linear, because growth over a long step need not
+// be exponential.
 double passed(double mark, double t0, double grown0, double t1, double grown1) {
   return grown1 > grown0 ? t0 + (t1 - t0) * (mark - grown0) / (grown1 - grown0) : t1;
 }
 
-// Has it gone off as what balances does?
+// Returns true if the displacement has passed k_far_grown_nudge as fast as an exponential would.
 bool goes_off(Growth& g, double way, double t0, double t1) {
   const double before = g.now;
   g.now = way / g.from;
@@ -249,10 +251,10 @@ bool goes_off(Growth& g, double way, double t0, double t1) {
   return t_far - g.t_half_way <= k_slower * (g.t_half_way - g.t_begun);
 }
 
-// Exponential growth from rest by the factor `grown` follows a cosh.
+// Returns the exponent x of growth from rest, cosh x = `grown`.
 double exponent_of(double grown) { return std::numbers::ln10 * portable::log10(grown + std::sqrt((grown - 1.0) * (grown + 1.0))); }
 
-// One leg of a run, asked by nudges.
+// Tests one leg of a run by nudges.
 class NudgedLeg {
 public:
   NudgedLeg(const System& system, const State& initial, const SimulationOptions& options, const LegMotion& leg, double most_evaluations)
@@ -263,7 +265,7 @@ public:
     options_.end = std::min(options_.end, leg.end);
   }
 
-  // Along the free directions, with a part along `shape`, if that is not empty.
+  // Sets the nudge along the free directions, with a part along `shape` unless that is empty.
   void choose_nudge(const FrozenLeg* frozen, const VecX& shape) {
     nudge_ = random_nudge(system_, leg_.past_legs, nudges_);
     nudge_ = frozen ? frozen->along_directions(nudge_) : beyond(leg_.moved, nudge_);
@@ -276,7 +278,7 @@ public:
     }
   }
 
-  // Does half the difference of the run from the nudge and that from its mirror image grow along `shape` as `course` says?
+  // Returns true if half the difference of the two runs from the nudge and its mirror image grows along `shape` as `course` predicts.
   bool confirms(const Course& course) {
     if (course.swing > 0.0) limit_steps(k_swing_step / course.swing);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
@@ -297,7 +299,7 @@ public:
     return exponent_of(grown) > k_confirmed * course.exponent;
   }
 
-  // Looks for growth that the stiffness does not show. Returns its rate, 1/s, and the displacement.
+  // Looks for growth that the stiffness does not show. Returns its rate, 1/s, and the displacement W δ; nothing if there is none.
   std::optional<std::pair<double, VecX>> goes_off_otherwise() {
     NudgedRun run = nudged(1.0);
     if (!run.reach_leg()) return {};
@@ -328,7 +330,7 @@ public:
   }
 
 private:
-  // Half the difference of the run from the nudge and that from its mirror image, up to the end of the leg.
+  // Looks for exponential growth in half the difference of the runs from the nudge and its mirror image, over the whole leg.
   std::optional<std::pair<double, VecX>> grows_evenly() {
     limit_steps((leg_.end - leg_.begin.t) / k_least_steps);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
@@ -366,17 +368,17 @@ private:
     if (!is_found) return {};
     return std::pair{rate, VecX(beyond(leg_.moved, difference(plus, minus)))};
   }
-  // Nudges are smaller than what tolerances let through: where all is at rest or even, an explicit method makes steps as long as it is stable
-  // with, and an implicit one damps swings.
+  // Limits the steps. Nudges are smaller than the tolerance, so error control ignores them: in a leg at rest or in even motion, explicit
+  // methods would take steps at their limit of stability and implicit ones would damp oscillations.
   void limit_steps(double most) {
     double& limit = options_.settings.max_step;
     limit = limit > 0.0 ? std::min(limit, most) : most;
   }
-  // Rate, 1/s, at which a way doubled at last; 0: not as an exponential does.
+  // Returns the growth rate over the last two doublings, 1/s; 0 if they are not exponential.
   static double last_rate(const std::vector<double>& times, const std::vector<double>& way) {
     std::size_t i = way.size() - 1;
     const double end = way.back(), t_end = times.back();
-    const auto last_below = [&](double mark) { // its time, between samples as an exponential has it
+    const auto last_below = [&](double mark) { // time at which the displacement was last below it, interpolated exponentially
       while (i > 0 && way[i] > mark) --i;
       if (!(way[i] > 0.0) || !(way[i] < way[i + 1])) return times[i];
       return times[i] + (times[i + 1] - times[i]) * portable::log10(mark / way[i]) / portable::log10(way[i + 1] / way[i]);
@@ -394,7 +396,7 @@ private:
                         : 0.0);
     return all;
   }
-  // The first leg begins at nudged poses, so that contacts and friction find their modes there.
+  // In the first leg the run starts from the displaced pose, so that modes of contacts and friction are determined there.
   [[nodiscard]] NudgedRun nudged(double sign) const {
     State start = initial_;
     if (leg_.past_legs == 0) {
@@ -406,7 +408,7 @@ private:
   void displace(NudgedRun& run, double sign) const {
     if (leg_.past_legs > 0) run.displace(by(sign));
   }
-  // W (q − q of the leg's start)
+  // Returns W (q − q₀) with q₀ the pose at the start of the leg.
   [[nodiscard]] VecX displacement(const std::vector<double>& q) const {
     VecX weighted(nudge_.size());
     for (Eigen::Index i = 0; i < weighted.size(); ++i) {
@@ -431,11 +433,11 @@ private:
   SimulationOptions options_;
   const LegMotion& leg_;
   double most_evaluations_;
-  std::vector<double> nudges_; ///< m, per body but the ground
+  std::vector<double> nudges_; ///< m, for every body except the ground
   VecX nudge_;                 ///< W δ
 };
 
-// The body that `shape` displaces most against its size, and how.
+// Returns the body that `shape` displaces most relative to its size, with the kind of displacement.
 Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape, double rate) {
   const std::vector<double> ways = ways_of(system, shape), nudges = nudges_of(system, leg.begin);
   std::size_t most = 0;
@@ -449,7 +451,7 @@ Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape
   return found;
 }
 
-// Marks the bodies on which the element of that name acts, with those of others of its kind; all bodies, if it has no modes.
+// Marks the bodies on which units of the named element act; all bodies if the name has no unit with modes.
 std::vector<char> bodies_of(const System& system, const std::string& element) {
   std::vector<char> is_used(system.bodies.size(), 0);
   bool is_found = false;
@@ -466,7 +468,7 @@ std::vector<char> bodies_of(const System& system, const std::string& element) {
   return is_used;
 }
 
-// Nothing but what actions do, and what happens to other bodies than those that the asked directions move.
+// Returns true if the leg has no events on bodies that the free directions move. Actions and kinks do not count.
 bool is_without_events(const System& system, const RunResult& run, const LegMotion& leg, const FrozenLeg& frozen) {
   return std::none_of(run.events.begin(), run.events.end(), [&](const Event& event) {
     if (event.t < leg.begin.t || event.t > leg.end || event.kind == EventKind::happens || is_kink(event.kind)) return false;
@@ -477,16 +479,16 @@ bool is_without_events(const System& system, const RunResult& run, const LegMoti
   });
 }
 
-// A leg, and what it is asked with.
+// Tests legs of one run for unstable equilibria.
 struct AskedLeg {
-  const System& system; ///< of the run
-  const State& initial; ///< of the run
+  const System& system; ///< system of the run
+  const State& initial; ///< initial state of the run
   const SimulationOptions& options;
   const RunResult& run;
   double most_evaluations;
 
   [[nodiscard]] const System& own_system(const LegMotion& leg) const { return leg.system ? *leg.system : system; }
-  // Instants that dense algebra is done at in a reasonable time.
+  // Returns the number of instants for which dense algebra is affordable.
   [[nodiscard]] int instants() const {
     const double coordinates = 3.0 * (system.body_count() - 1);
     return static_cast<int>(
@@ -505,7 +507,7 @@ struct AskedLeg {
   [[nodiscard]] std::optional<Balance> of(const LegMotion& leg) const;
 };
 
-// `least_exponent`: over the whole leg.
+// Tests whether the growth by `growth_at` at the instants `looks` exceeds `least_exponent` over the leg, and confirms it by nudged runs.
 std::optional<Balance> AskedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
                                            const std::vector<Instant>& looks, double least_exponent) const {
   const Course course = course_of(growth_at, looks);
@@ -538,15 +540,15 @@ std::optional<Balance> AskedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& le
   return balance_by(system, leg, gone->second, gone->first);
 }
 
-// Does something grow faster than `least`, 1/s, as far as that instant tells?
+// Returns true if some displacement grows faster than `least`, 1/s, at this state.
 bool grows_at(FrozenLeg& frozen, const State& state, double least) {
   for (std::size_t variant = 0; variant < frozen.variants(); ++variant)
     if (frozen.growth_at(state, least, variant).rate > 0.0) return true;
   return frozen.is_steady() && frozen.steady_growth_at(state, least).rate > 0.0;
 }
 
-// Rounding grows, too: what balances for long leaves in the end. Each part of the leg up to where a direction was first moved is a
-// leg in which that direction was not.
+// Tests equilibria that rounding ended during the leg. For each direction that moved late, the part of the leg before its first motion is
+// tested as a leg of its own in which that direction did not move.
 std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
   const double duration = leg.end - leg.begin.t;
   double last = -std::numeric_limits<double>::infinity();

@@ -1,19 +1,18 @@
-// Does a machine stay where it is only because nothing disturbs it?
+// Detects unstable equilibria that a run keeps only because its model has no disturbance.
 //
-// A rod that stands on its end, or a column pressed beyond what it can bear straight, stays so to the last bit in a scene that is
-// exactly symmetric: with every method and at every tolerance, so that finer runs agree and energies balance. Nothing real is
-// that exact. So each leg of a run is asked in which directions of the configuration space it did not move (leg_motion.h), and whether
-// a nudge in these directions grows.
+// A rod that stands on its end, or a column above its buckling load, stays straight to the last bit in an exactly symmetric model. This
+// happens with every method and tolerance, so finer runs agree and energies balance. No real machine is that exact. For each leg of a run
+// (the part in which the same elements are active) the directions in which it did not move (leg_motion.h) are examined: does a small displacement along them
+// grow?
 //
-// 1. Stiffness: how fast small displacements would grow if the instant lasted (frozen_growth.h), at instants spread over the leg. The
-//    integral of that rate over the leg is the exponent of what grows. A leg whose exponent, or that of one second at the same mean rate, does
-//    not exceed k_exponent has no balance of this kind. Where nothing moves that decides at once.
-// 2. Nudge: what the stiffness says is confirmed by two runs of the leg, from a nudge in a pseudo-random direction and from its mirror
-//    image. Half their difference has to grow by half the exponent, or to k_grown_nudge. Stops on either side and supports that vibrate
-//    keep it small. A leg in which the nudge grows too little to be seen above rounding is left to the stiffness.
-// 3. Where something moves and the stiffness finds nothing, one nudged run looks for growth by other means, such as slots that turn or
-//    parametric resonance; growth by less than k_far_grown_nudge has to show as exponential in two runs, as above. In legs in which the bodies that
-//    a nudge moves have events such growth is motion itself: rattling, rebounds, chaos.
+// 1. Stiffness: growth rate σ of small displacements with forces and stiffness frozen at an instant (frozen_growth.h), at instants spread
+// over the leg. The exponent is ∫σ dt over the leg. If neither this nor the mean rate times one second exceeds k_exponent, there is no
+// unstable equilibrium of this kind. If nothing moves, this decides alone. 2. Nudge: two runs of the leg confirm the stiffness, one from a
+// pseudo-random displacement and one from its mirror image. Half their difference must grow by half the exponent, or to k_grown_nudge. It
+// stays small between stops on either side and on supports that vibrate. If the growth is too small to be seen above rounding, the
+// stiffness decides. 3. If something moves and the stiffness shows no growth, one nudged run looks for other causes, such as rotating slots
+// or parametric resonance. Growth by less than k_far_grown_nudge must be exponential in two runs as above. If the bodies that a nudge moves
+// have events in the leg, growth is taken as motion (rattling, rebounds, chaos).
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -23,25 +22,25 @@
 
 namespace steplap {
 
-/// A body that stays where it is, and leaves when it is nudged.
+/// Body in an unstable equilibrium.
 struct Balance {
-  std::string body;       ///< the one that leaves fastest
-  int coordinate = 0;     ///< 0: along `direction`; 2: it turns
-  double direction = 0.0; ///< rad, of its displacement against the x axis, in (−π/2, π/2]
-  double t = 0.0;         ///< s, since when
-  double rate = 0.0;      ///< 1/s, mean: a nudge grows as exp(rate t)
+  std::string body;       ///< name of the body that leaves fastest
+  int coordinate = 0;     ///< 0: it moves along `direction`; 2: it turns
+  double direction = 0.0; ///< angle of its displacement to the x axis, rad, in (−π/2, π/2]
+  double t = 0.0;         ///< start of the equilibrium, s
+  double rate = 0.0;      ///< mean growth rate, 1/s: a displacement grows as exp(rate t)
 };
 
-/// Exponent of growth, over the longer of the leg and one second, from which on a machine balances.
+/// Least exponent of an unstable equilibrium, over the leg or one second, whichever is longer.
 inline constexpr double k_exponent = 3.0;
-/// How far a nudge has to grow to show that what the stiffness says is so.
+/// Growth of a nudge that confirms an instability found by the stiffness.
 inline constexpr double k_grown_nudge = 100.0;
-/// The same where the stiffness says nothing and one nudged run decides. Levers and slow swings make some ten or hundred times of it; and an
-/// imperfection of a tenth of a millimetre, which is little in what is built, comes to a metre.
+/// Growth of a nudge that shows an instability if the stiffness shows none and one run decides. Levers and slow oscillations magnify by ten
+/// to some hundred. At 1e4 an imperfection of 0.1 mm, usual in a real machine, becomes 1 m.
 inline constexpr double k_far_grown_nudge = 1e4;
 
-/// `run` was made from `initial` with `options`, with notes of its motion (SimulationOptions::notes_motion). None: all that could move does,
-/// or returns, or drifts. Throws EstimateTooDear if the nudged runs take more than `most_evaluations`.
+/// Returns the first unstable equilibrium of `run`, or nothing. `run` was made from `initial` with `options` and recorded its motion
+/// (SimulationOptions::notes_motion). Throws EstimateTooDear if the nudged runs need more than `most_evaluations` evaluations.
 [[nodiscard]] std::optional<Balance> balance_of(const System& system, const State& initial, const SimulationOptions& options,
                                                 const RunResult& run, double most_evaluations);
 

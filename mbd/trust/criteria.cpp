@@ -16,7 +16,7 @@ struct Worst {
   const Channel* channel = nullptr;
 };
 
-// How far a value is beyond its limits: negative inside, the least of the distances to them.
+// Returns how far a value is beyond its limits; negative inside, then minus the distance to the nearest limit.
 double excess(const Criterion& c, double value) {
   double worst = -std::numeric_limits<double>::infinity();
   if (c.within) worst = std::abs(value) - *c.within;
@@ -32,7 +32,7 @@ double limit_for(const Criterion& c, double value) {
   return value - *c.at_most > *c.at_least - value ? *c.at_most : *c.at_least;
 }
 
-// The extreme that is furthest beyond the limits, or nearest to them. Empty where a channel had no value.
+// Returns the extreme furthest beyond the limits or nearest to them; empty if a channel has no value.
 std::optional<Worst> worst_extreme(const Criterion& c, const std::vector<ChannelRange>& ranges) {
   std::optional<Worst> worst;
   bool is_complete = true;
@@ -85,7 +85,7 @@ CriterionResult judge_channel(const Criterion& c, const std::vector<ChannelRange
   return result;
 }
 
-// The first time that an event which is not wanted happened.
+// Judges a criterion that forbids an event; the value is the time of the first such event.
 CriterionResult judge_event(const Criterion& c, const RunResult& run) {
   const std::string element = c.element.empty() ? "*" : c.element;
   const std::string whose = c.element.empty() ? "any element" : "'" + c.element + "'";

@@ -1,6 +1,5 @@
-// The criteria that a model states: [[acceptance]].
-//
-// Channels are judged by their extremes over the whole run (mbd/simulation/extremes.h), whatever is written of them.
+// Evaluates the acceptance criteria of a model ([[acceptance]]). Channels are judged by their extremes over the whole run
+// (mbd/simulation/extremes.h), whatever the output step.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -9,8 +8,8 @@
 
 namespace steplap {
 
-/// Judges one criterion of the model by the extremes and events of a run that looked for extremes. Without the value asked for
-/// the outcome is "open".
+/// Judges one criterion by the extremes and events of a run. Precondition: the run located extremes. The outcome is "open" if the required
+/// value is missing.
 [[nodiscard]] CriterionResult judge_criterion(const Criterion& criterion, const RunResult& result);
 
 } // namespace steplap

@@ -16,26 +16,29 @@ namespace steplap {
 
 namespace {
 
-// Of a channel's scale: where estimates of all adaptive methods may be too good to be true, because what limits
-// them (how far an event's end is known, projection) does not follow the tolerance.
+// Floors of error estimates, relative to a channel's scale. Estimates of adaptive methods can be too small, because some errors do not
+// follow the tolerance (location of the end of a slip, projection).
 constexpr double k_floor = 1e-7, k_reaction_floor = 1e-6, k_time_floor = 1e-6;
 constexpr double k_integral_floor = 1e-6;
-constexpr double k_energy_allowed = 1e-5;                        // residual of an adaptive run over the energy exchanged
-constexpr double k_stepped_energy_allowed = 0.2;                 // of a run of fixed steps: it damps, and says so
-constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2; // of the run's own powers and forces
-constexpr double k_shrinking = 0.8;                              // of the residual at twice the step
-constexpr int k_persistent = 4;                                  // samples: time stepping's forces at an instant are not what it steps with
-constexpr double k_brief_steps = 20.0;                           // what changes back within so many fixed steps is not missed
-constexpr double k_own_doubt = 1e-3;                             // an adaptive method's estimate beyond it is looked at
+constexpr double k_energy_allowed = 1e-5;                        // largest residual of energy over the energy exchanged, adaptive runs
+constexpr double k_stepped_energy_allowed = 0.2;                 // the same for fixed steps, which damp
+constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2; // of the run's own powers and forces, for adaptive and for fixed steps
+constexpr double k_shrinking = 0.8;                              // of the value at twice the step; below it the violation shrinks with the
+                                                                 // step
+constexpr int k_persistent = 4;                                  // samples: forces of time stepping are averages over a step, so single
+                                                                 // samples do not count
+constexpr double k_brief_steps = 20.0;                           // a change that is reversed within so many fixed steps is not missed
+constexpr double k_own_doubt = 1e-3;                             // own error of an adaptive method above which it is questioned
 constexpr double k_momentum_allowed = 1e-6;
-constexpr double k_rest_share = 1e-9;     // of the bodies' size: smaller errors of places are those of rest (run_comparison.cpp)
-constexpr double k_rest_errors = 0.1;     // the same over the tolerance: a hundred times 1e-3, to which errors are absolute (Integrator)
-constexpr long k_steps_between_looks = 8; // a step of time stepping may take milliseconds
-constexpr double k_closer = 0.25;         // steps and samples of a closer look
+constexpr double k_rest_share = 1e-9;     // of the bodies' size: smaller position errors count as rest (run_comparison.cpp)
+constexpr double k_rest_errors = 0.1;     // the same over the tolerance: 100 · 1e-3, because errors are absolute to 1e-3 of the size
+                                          // (Integrator)
+constexpr long k_steps_between_looks = 8; // limits are checked every so many steps, since a step of time stepping may take milliseconds
+constexpr double k_closer = 0.25;         // factor on steps and sample spacing of a repetition
 
-constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // of the coarsest level, in a run
+constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // steps of the coarsest level over the whole run
 
-// `cpu_limit`: s, of this run.
+// Runs to the end. Throws NumericalFailure beyond the limit of evaluations or of CPU time (`cpu_limit`, s).
 RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, const CrossCheckOptions& limits,
                      double cpu_limit) {
   const double start = thread_cpu_seconds();
@@ -55,7 +58,7 @@ bool is_finite(const RunResult& run) {
   const Trajectory& t = *run.trajectory;
   for (std::size_t c = 0; c < t.channels().size(); ++c) {
     const std::string& unit = t.channels()[c]->unit;
-    if (unit != "m/s" && unit != "rad/s" && unit != "N" && unit != "N m") continue; // of others some are infinite by nature
+    if (unit != "m/s" && unit != "rad/s" && unit != "N" && unit != "N m") continue; // other channels may be infinite by definition
     for (std::size_t row = 0; row < t.size(); ++row)
       if (!std::isfinite(t.value(row, c))) return false;
   }
@@ -86,13 +89,13 @@ public:
 
 private:
   struct Method {
-    std::size_t run = 0; ///< in check_.runs
+    std::size_t run = 0; ///< index in check_.runs
     std::vector<RunResult> coarser;
     bool is_adaptive = true;
-    double tolerance = 0.0; ///< of the coarsest run
+    double tolerance = 0.0; ///< tolerance of the coarsest run
   };
 
-  // The levels of a method within an even part of what is left: `methods_left`, this one among them.
+  // Runs all settings of a method within an equal share of the time left. `methods_left` counts this method too.
   void run(const CrossMethod& method, double methods_left) {
     CrossRun made;
     Method levels;
@@ -122,7 +125,7 @@ private:
     if (check_.runs.back().failure.empty()) methods_.push_back(std::move(levels));
   }
 
-  // After all runs, whose places no longer change.
+  // Makes the error estimates. Called after all runs, because they hold pointers to elements of check_.runs.
   void make_curves() {
     std::vector<Method> sound;
     for (Method& method : methods_) {
@@ -153,7 +156,7 @@ private:
   [[nodiscard]] const std::string& name_of_run(std::size_t i) { return run_of(i).setting.integrator; }
   [[nodiscard]] bool is_stepping(std::size_t i) { return method(run_of(i).setting.integrator).is_time_stepping; }
 
-  // Keeps the worst of each pair and doubt, and of each method.
+  // Records a disagreement; keeps the worst of each pair of methods and each own fault, and of each method.
   void note(const Disagreement& d) {
     for (CrossRun& r : check_.runs)
       if ((r.setting.integrator == d.first || r.setting.integrator == d.second) && !(d.ratio <= r.worst.ratio)) r.worst = d;
@@ -167,15 +170,15 @@ private:
     check_.disagreements.push_back(d);
   }
 
-  // --- alone ------------------------------------------------------------------------------------
+  // --- checks of one run alone
 
   void check_laws(std::size_t i) {
     const CrossRun& r = run_of(i);
     const double exchanged = energy_scale(system_, r.result), residual = r.result.statistics.energy_residual;
     const double allowed = (methods_[i].is_adaptive ? k_energy_allowed : k_stepped_energy_allowed) * exchanged + energy_of_rest(i);
-    // Time stepping damps: a residual that goes with the step is its error, and estimated as such.
+    // Time stepping damps. A residual that shrinks with the step is its discretisation error.
     const bool is_shrinking = !methods_[i].is_adaptive && residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
-    // One that does not is a step too coarse for the scene: such a run has no opinion.
+    // A residual that does not shrink shows that the step is too long for the model: the run is discarded.
     if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) dismiss(i);
     if (exchanged > 0.0 && methods_[i].is_adaptive)
       note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
@@ -196,7 +199,7 @@ private:
           number_text(change.value) + " of its own"});
   }
 
-  // J: rounding of energies, and what a method leaves of them in steps that are at rest for it.
+  // Returns the energy residual that does not count, J: rounding, and for adaptive methods the error tolerated in steps at rest.
   double energy_of_rest(std::size_t i) {
     const CrossRun& r = run_of(i);
     const RunStatistics& s = r.result.statistics;
@@ -206,19 +209,19 @@ private:
     return s.energy_rounding + k_margin * static_cast<double>(s.steps) * of_step;
   }
 
-  // Such a run has no opinion.
+  // Discards the run: none of its results is taken as known.
   void dismiss(std::size_t i) {
     curves_[i]->distrust();
     run_of(i).known_until = 0.0;
   }
 
-  // The same breach at twice the step, anywhere: a share of it is left where it is the steps' own error.
+  // Returns true if the same violation was clearly larger at twice the step. It then is the discretisation error.
   static bool is_smaller_than_before(const AuditFinding& now, const std::vector<AuditFinding>& before) {
     return std::any_of(before.begin(), before.end(),
                        [&](const AuditFinding& f) { return f.what == now.what && now.ratio() < k_shrinking * f.ratio(); });
   }
 
-  // A method of high order that knows its own answer less well than time stepping does.
+  // Reports adaptive methods whose own error exceeds twice that of time stepping.
   void check_own() {
     const auto stepping = std::find_if(curves_.begin(), curves_.end(),
                                        [&](const auto& c) { return is_stepping(static_cast<std::size_t>(&c - curves_.data())); });
@@ -234,7 +237,8 @@ private:
     }
   }
 
-  // Allowance, relative to the channel's scale: an error of places that is none, and the velocity with which the stiffest spring lets a body swing by that.
+  // Returns the error below which the bodies count as at rest, relative to the channel's scale. For velocities: that position error times
+  // the natural frequency of a body on the stiffest spring.
   double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
     const auto channel =
         std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });
@@ -249,7 +253,7 @@ private:
     return error / (channel->arm * channel->wide_scale);
   }
 
-  // --- together ---------------------------------------------------------------------------------
+  // --- comparisons of two runs
 
   void compare(std::size_t i, std::size_t j) {
     compare_channels(i, j);
@@ -262,7 +266,7 @@ private:
   void compare_channels(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const std::size_t rows = std::min(x.rows(), y.rows());
-    const double until = std::min(x.known_until(), y.known_until());     // beyond it nothing can be told
+    const double until = std::min(x.known_until(), y.known_until());     // no comparison beyond it
     const UnknownColumns columns = unknown_columns(*x.run().trajectory); // the same in all runs
     const auto unknown = [&](ErrorKind kind, std::size_t row) {
       const std::size_t column = kind == ErrorKind::reaction ? columns.force : (kind == ErrorKind::velocity ? columns.rate : columns.place);
@@ -272,8 +276,8 @@ private:
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
       const double floor = (channel.kind == ErrorKind::reaction ? k_reaction_floor : k_floor) * channel.scale;
-      // In the step in which friction reverses, or a contact closes, time stepping has one force for what is two: its impulse is right,
-      // the force at that instant is not what it steps with. There one has to differ for some samples.
+      // In a step in which friction reverses or a contact closes, time stepping has one force for two phases. The impulse is right, but not
+      // the force at an instant. So with time stepping a reaction must differ in k_persistent consecutive samples.
       const bool may_be_brief = channel.kind == ErrorKind::reaction && (is_stepping(i) || is_stepping(j));
       std::array<double, k_persistent> recent{};
       for (std::size_t row = 0; row < rows && x.run().trajectory->times()[row] <= until; ++row) {
@@ -297,7 +301,7 @@ private:
     note(worst);
   }
 
-  // Events that i is certain of and j does not have.
+  // Compares the events that are certain in run i and missing in run j.
   void compare_events(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const double until = std::min(x.known_until(), y.known_until());
@@ -308,7 +312,7 @@ private:
     Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
-      // A slip along several coordinates that passes through rest: steps that end before and behind see it go on.
+      // A slip in several coordinates that passes through rest is invisible to steps that end before and after it.
       if (event.kind == EventKind::slips_another_way && is_stepping(j)) continue;
       double distance = INFINITY, allowed = 0.0;
       bool is_doubted = false;
@@ -320,7 +324,7 @@ private:
         allowed = k_margin * (event.shift + (std::isfinite(other.shift) ? other.shift : 0.0));
       }
       if (is_doubted) continue;
-      // What it takes of energy is less than is known of that: nothing can be told.
+      // Ignore the event if the energy it dissipates is below the error of the energy.
       const double energy =
           std::max(x.friction_energy(event.element, event.t, event.lasts), y.friction_energy(event.element, event.t, event.lasts));
       const double ratio = std::min(std::min(distance, base_.end) / (allowed + near), energy / energy_allowed);
@@ -336,7 +340,7 @@ private:
   }
 
   void compare_integrals(std::size_t i, std::size_t j) {
-    if (std::min(curves_[i]->known_until(), curves_[j]->known_until()) < base_.end * (1.0 - 1e-6)) return; // of the whole run
+    if (std::min(curves_[i]->known_until(), curves_[j]->known_until()) < base_.end * (1.0 - 1e-6)) return; // verdicts need the whole run
     const RunStatistics &a = run_of(i).result.statistics, &b = run_of(j).result.statistics;
     const double scale = std::max(energy_scale(system_, run_of(i).result), energy_scale(system_, run_of(j).result));
     const auto one = [&](const char* what, double x, double y, double estimates) {
@@ -385,7 +389,7 @@ private:
   std::vector<std::unique_ptr<MethodCurves>> curves_;
 };
 
-// A disagreement that smaller steps and denser samples could remove.
+// Returns true if a disagreement could disappear with smaller steps and denser samples.
 bool is_worth_a_closer_look(const CrossCheck& check) {
   return std::any_of(check.disagreements.begin(), check.disagreements.end(), [&](const Disagreement& d) {
     return std::any_of(check.runs.begin(), check.runs.end(), [&](const CrossRun& run) {
@@ -435,7 +439,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
   for (int look = 1; look <= options.closer_looks && is_worth_a_closer_look(check); ++look) {
     const double begin = thread_cpu_seconds();
     used.cpu_limit = options.cpu_limit - (begin - start);
-    if (last / k_closer > used.cpu_limit) break; // it would not come to its end
+    if (last / k_closer > used.cpu_limit) break; // the repetition would exceed the CPU time
     sampling.output_step *= k_closer;
     for (CrossMethod& method : used.methods)
       for (MethodSetting& level : method.levels)
@@ -444,7 +448,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
     const auto stops = [](const CrossCheck& c) {
       return std::count_if(c.runs.begin(), c.runs.end(), [](const CrossRun& r) { return !r.failure.empty(); });
     };
-    if (stops(closer) > stops(check)) break; // more than there is time for
+    if (stops(closer) > stops(check)) break; // the repetition ran out of time: keep the first result
     check = std::move(closer);
     check.closer_looks = look;
     last = thread_cpu_seconds() - begin;
@@ -456,7 +460,7 @@ SimulationOptions sampled_for_comparison(const Model& model) {
   constexpr double k_most_samples = 2000.0, k_least_samples = 400.0;
   SimulationOptions options = options_of(model);
   options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
-  options.has_extremes = true; // verdicts are judged by them
+  options.has_extremes = true; // verdicts are judged by extremes
   return options;
 }
 

@@ -12,13 +12,15 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_least_part = 1e-3; // of the largest range of its kind: a channel that moves less is measured by that
+constexpr double k_least_part = 1e-3; // of the largest range of its kind, which is the scale of channels with smaller ranges
 constexpr double k_wide_part = 0.1;
-constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9;         // of the differences of three settings
-constexpr double k_doubtful_event = 0.02;                         // of the run: where an event is or is not, reactions are not compared
-constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1; // of the largest estimate in it
-constexpr double k_lacking = 0.1;                                 // of a residual of energy
-constexpr double k_still = 1e-3;                                  // of the bodies' size: what moves less does not move
+constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9;         // limits of the ratio of differences of three settings
+constexpr double k_doubtful_event = 0.02;                         // of the run: near an event that is uncertain by more, reactions are not
+                                                                  // compared
+constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1; // of the largest estimate in the body or mechanism, as lower bounds of
+                                                                  // the others
+constexpr double k_lacking = 0.1;                                 // of the residual of energy, as an error of dissipated energy and work
+constexpr double k_still = 1e-3;                                  // of the bodies' size; smaller motions count as none
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;
@@ -35,7 +37,7 @@ double arm_of(const Channel& channel, double size) {
   return channel.unit == "N m" ? 1.0 / size : 1.0;
 }
 
-// Bodies that act on each other without the ground have the same number.
+// Returns the mechanism of each body: bodies that act on each other, not through the ground, have the same number.
 std::vector<int> mechanisms_of(const System& system) {
   std::vector<int> number(system.bodies.size());
   std::iota(number.begin(), number.end(), 0);
@@ -49,7 +51,7 @@ std::vector<int> mechanisms_of(const System& system) {
   const State start = system.initial_state();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const RowSpec& row = system.frictions[f].friction->rows(start.friction[f])[0];
-    int before = k_ground; // parts of one row act on each other, whatever is between them
+    int before = k_ground; // all bodies of one row act on each other, even with others between them
     for (const RowSpec* part = &row; part; part = part->next) {
       join(part->a, part->b);
       const int moving = part->a == k_ground ? part->b : part->a;
@@ -60,7 +62,7 @@ std::vector<int> mechanisms_of(const System& system) {
   return number;
 }
 
-// Of "one.friction" the column that tells where it is a share.
+// Returns the `shares` column for a channel such as "one.friction"; −1 if there is none.
 int share_column(const std::vector<const Channel*>& channels, const Channel& channel) {
   const std::size_t dot = channel.name.rfind('.');
   if (dot == std::string::npos || channel.name.substr(dot) != ".friction") return -1;
@@ -69,7 +71,7 @@ int share_column(const std::vector<const Channel*>& channels, const Channel& cha
   return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
 }
 
-// Of all bodies, or the force that accelerates them by `acceleration`.
+// Returns the weight of all bodies, or the force for `acceleration` if there is no gravity.
 double weight_of(const System& system, double acceleration) {
   double mass = 0.0;
   for (const BodyData& body : system.bodies) mass += body.mass;
@@ -92,7 +94,7 @@ double middle_range(const std::vector<const RunResult*>& runs, std::size_t colum
   return ranges.empty() ? 0.0 : ranges[ranges.size() / 2];
 }
 
-// Do most runs exchange no more energy than is rounding? Then what moves has no range; the scene itself is the scale.
+// Returns true if most runs exchange only energy of the size of rounding. Ranges are then rounding, and the size of the model is the scale.
 bool is_at_rest(const System& system, const std::vector<const RunResult*>& runs) {
   const auto rests = [&system](const RunResult* run) {
     const RunStatistics& s = run->statistics;
@@ -101,7 +103,7 @@ bool is_at_rest(const System& system, const std::vector<const RunResult*>& runs)
   return 2 * std::count_if(runs.begin(), runs.end(), rests) > static_cast<std::ptrdiff_t>(runs.size());
 }
 
-using Key = std::tuple<std::string, EventKind, bool>; // the last: at the start?
+using Key = std::tuple<std::string, EventKind, bool>; // the last: is it at t = 0?
 struct EventTime {
   double t = 0.0, within = 0.0; // s: Event::located_within
 };
@@ -120,7 +122,7 @@ EventTime nearest(const std::vector<EventTime>& times, double t) {
   return best;
 }
 
-// What an event lies away from its like in another run; infinite where it has none of its own.
+// Returns the distance in time to the same event of another run; infinite if that run lacks it.
 double shift_of(double t, const std::vector<EventTime>& times, const Times& other, const Key& key) {
   const auto found = other.find(key);
   if (found == other.end()) return INFINITY;
@@ -202,7 +204,8 @@ double extrapolated_error(const std::vector<double>& differences) {
   if (differences.size() < 2 || last == 0.0) return last;
   const double before = differences[differences.size() - 2];
   const double ratio = std::clamp(before > 0.0 ? last / before : k_most_ratio, k_least_ratio, k_most_ratio);
-  return std::max(last * ratio / (1.0 - ratio), k_least_ratio * before); // neither of the two may be small by chance
+  return std::max(last * ratio / (1.0 - ratio), k_least_ratio * before); // the last difference may be small by chance, so half of the one
+                                                                         // before is the least estimate
 }
 
 MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels, double step,
@@ -219,7 +222,7 @@ MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const s
     dissipated.push_back(std::abs(levels_[i]->statistics.dissipated - levels_[i - 1]->statistics.dissipated));
     work.push_back(std::abs(levels_[i]->statistics.work - levels_[i - 1]->statistics.work));
   }
-  // What the balance lacks is in one of the two.
+  // The error of the energy balance lies in dissipated energy or work; a part of the residual counts for each.
   const double lacking = step_ > 0.0 ? k_lacking * levels_.back()->statistics.energy_residual : 0.0;
   const double in_a_step = std::max(lacking, step_ * audited_power(*levels_.back()));
   dissipated_error_ = std::max(extrapolated_error(dissipated), in_a_step);
@@ -234,7 +237,7 @@ void MethodCurves::estimate_events(const EventFilter& is_counted) {
   for (const Event& event : levels_.back()->events) of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
     const auto& [element, kind, is_at_start] = key;
-    const double of_steps = is_at_start ? 0.0 : 2.0 * step_; // where it begins every run knows
+    const double of_steps = is_at_start ? 0.0 : 2.0 * step_; // an event at t = 0 has an exact time
     for (const auto& [t, located_within] : times) {
       const double within = of_steps + located_within;
       TimedEvent event{element, kind, is_at_start, t, within, INFINITY, INFINITY, !is_counted || is_counted({t, element, kind})};
@@ -269,7 +272,7 @@ void MethodCurves::estimate_channels() {
   std::vector<double> difference(pairs);
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     std::fill(difference.begin(), difference.end(), 0.0);
-    // Two settings may have the same reaction by chance just behind an event: the next sample counts, too.
+    // Just after an event two settings may have equal reactions by chance, so the next sample is compared too.
     const std::size_t ahead = channels_[c].kind == ErrorKind::reaction ? 1 : 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       const std::size_t at = std::min(row + ahead, rows_ - 1);
@@ -280,8 +283,8 @@ void MethodCurves::estimate_channels() {
                                                                 std::min(slack_[k], most_slack)));
       };
       look(INFINITY);
-      // Graphs that rise or fall past each other are near each other within the slack of an event, however far apart they are at a time:
-      // what a run of fixed steps is off by beside an event is asked for within its steps as well.
+      // Curves that jump in opposite directions are close to each other within the time slack of the event, even if their values differ at
+      // the same time. So with fixed steps the distance is also taken within two steps only.
       if (step_ > 0.0 && ahead > 0) look(2.0 * step_);
       estimate_[c][row] = extrapolated_error(difference);
     }
@@ -290,9 +293,9 @@ void MethodCurves::estimate_channels() {
   share_estimates();
 }
 
-// What one coordinate of a body is uncertain by the others hardly escape, nor, in part, the bodies that it acts on:
-// one that has not moved yet in any of the runs may be about to be hit at another time. None is known better by chance.
-// Reactions are all of one mechanism here: what a channel belongs to is not known.
+// Raises estimates of channels that depend on uncertain ones. If one coordinate of a body is uncertain, its other coordinates are too, and
+// partly the bodies on which it acts: a body still at rest may be hit at another time. Its own difference would be zero by chance. All
+// reactions count as one mechanism, since their bodies are not known here.
 void MethodCurves::share_estimates() {
   std::map<std::pair<int, ErrorKind>, std::vector<std::size_t>> bodies, mechanisms;
   for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -311,8 +314,8 @@ void MethodCurves::share_estimates() {
   share(mechanisms, k_part_of_mechanism);
 }
 
-// An event lies anywhere within a fixed step, so differences of three steps may be small by chance: such a run is
-// known to what passes within a step, before or after, at best.
+// With fixed steps an event lies anywhere within a step, and three runs may agree by chance. The error is at least the motion within one
+// step before or after.
 void MethodCurves::add_step_of_motion(std::size_t c) {
   const Trajectory& t = *levels_.back()->trajectory;
   double most = 0.0;

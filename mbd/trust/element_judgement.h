@@ -1,4 +1,4 @@
-// What a kind of element asks of every run, by itself: ElementKind::judge.
+// Criteria that a kind of element applies to every run: the result of ElementKind::judge, and helpers.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,18 +7,18 @@
 
 namespace steplap {
 
-/// What a kind of element says of one of its elements after a run.
+/// Judgement of one element after a run.
 struct ElementJudgement {
   std::vector<CriterionResult> criteria; ///< may be none
   std::vector<std::string> caps;         ///< why the run cannot mean "hold" (Judgement::caps)
-  std::string distrust;                  ///< not empty: the run says of the element what cannot be
+  std::string distrust;                  ///< not empty: reason why the result of this element is impossible and the run cannot be trusted
 };
 
-/// The range of a channel, or nullptr if the run has none.
+/// Returns the range of a channel, or nullptr if the run has none.
 [[nodiscard]] const ChannelRange* find_range(const RunResult& result, const std::string& channel);
-/// Without an exponent where that is shorter to read: "300000", not "3e+05".
+/// Returns the number as text, without an exponent if that is shorter: "300000", not "3e+05".
 [[nodiscard]] std::string limit_text(double value);
-/// Which smaller step or tolerance, or which other method, to try: "try a tolerance of 1e-10, or the integrator rodas5p".
+/// Returns advice on a smaller step or tolerance, or another method: "try a tolerance of 1e-10, or the integrator rodas5p".
 [[nodiscard]] std::string remedy(const SimulationSettings& settings);
 
 } // namespace steplap

@@ -20,16 +20,18 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_rounded_terms = 64.0;
-constexpr double k_part_of_motion = 1e-3;      // of a direction of motion: less than that along the rows' free directions is none of them
-constexpr double k_skew = 1e-9;                // of A: below that it is symmetric
-constexpr double k_real = 1e-6;                // imaginary part of an eigenvalue, as a share of it: it grows without swinging
-constexpr Eigen::Index k_most_companion = 120; // directions: eigenvalues of twice their number are found by dense algebra
+constexpr double k_part_of_motion = 1e-3;      // of a direction of motion; a smaller part along the free directions is rounding
+constexpr double k_skew = 1e-9;                // of A; smaller asymmetry is rounding
+constexpr double k_real = 1e-6;                // imaginary part over modulus of an eigenvalue; below it the growth has no oscillation
+constexpr Eigen::Index k_most_companion = 120; // directions; their dense eigenvalue problem has twice the size
 constexpr int k_bisections = 30;
-constexpr double k_rank = 1e-6;    // rows below this share of their length beyond others depend on them, friction's included (theory.md)
-constexpr double k_within = 0.995; // cosine of 6°: a path that bends leaves its chords' span by less before it adds a direction to it
-constexpr double k_even = 1e-3;    // of the speed: equations change as little then, and rounding that grows may be as large
-constexpr double k_idle = 1e-9;    // of the largest force: a row that bears less bears rounding
-// Displacements that tell what touches: far above the rounding of gaps that were given as zero, far below what loads press in.
+constexpr double k_rank = 1e-6;    // rows whose independent part is below this share of their length are dependent, friction rows included
+                                   // (theory.md)
+constexpr double k_within = 0.995; // cosine of 6°; a curved path leaves the span of its recorded chords by less than that before another
+                                   // chord is recorded
+constexpr double k_even = 1e-3;    // of the speed; motion is even if velocities change by less, since the equations change as little
+constexpr double k_idle = 1e-9;    // of the largest force; a smaller reaction is rounding
+// Displacement by which the touching rows are found: far above rounding of gaps given as zero, far below the compression by loads.
 constexpr double k_trial = 1e-9; // of a body's size
 constexpr std::uint64_t k_trials = 2;
 
@@ -45,7 +47,7 @@ bool is_positive_definite(MatX p) {
 
 MatX symmetric_part(const MatX& a) { return 0.5 * (a + a.transpose()); }
 
-// P(σ)
+// Returns P(σ) = σ² − σ B − A for σ = `rate`.
 MatX at_rate(const MatX& a, const MatX& b, double rate) {
   MatX p = -a - rate * b;
   p.diagonal().array() += rate * rate;
@@ -56,10 +58,10 @@ struct Fastest {
   double rate = 0.0;
   VecX eta;
   double swing = 0.0;     // as in FrozenGrowth
-  bool may_swing = false; // it is one of all eigenvalues
+  bool may_swing = false; // result of the general eigenvalue problem
 };
 
-// `least` is exceeded.
+// Returns the largest σ with singular P(σ) by bisection on positive definiteness, for symmetric A. Precondition: σ > `least`.
 Fastest fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
   double low = least, high = std::max(2.0 * least, std::sqrt(std::max(symmetric_eigen(a).values.maxCoeff(), 0.0)));
   for (int i = 0; i < k_bisections && high - low > 1e-6 * high; ++i) {
@@ -71,8 +73,8 @@ Fastest fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
 
 enum class Swings : unsigned char { count, do_not_count };
 
-// The eigenvalue of the first-order equations with the largest real part. Motions that nothing holds are parted off before, with
-// rounding that is theirs. `size_of`: |K| |x| of each column x of displacements along `v.basis`.
+// Returns the eigenvalue of the first-order equations with the largest real part. Rigid motions without stiffness are separated first, with
+// their rounding. `size_of` returns |K| |x| for each column x of displacements along `v.basis`, the scale of that rounding.
 Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
   Fastest found;
   if (v.a.cols() > k_most_companion) return found;
@@ -81,13 +83,13 @@ Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& 
   try {
     modes = modes_of(v);
   } catch (const NumericalFailure&) {
-    return found; // what has not converged shows nothing
+    return found; // no convergence: no growth is shown
   }
   for (const FreeMode& mode : modes) {
     const double rate = mode.eigenvalue.real();
     if (swings == Swings::do_not_count && std::abs(mode.eigenvalue.imag()) > k_real * rate) continue;
     if (rate <= found.rate) continue;
-    // The phase in which the displacement is largest: xᵀx real and positive.
+    // Choose the phase in which the displacement is largest: xᵀx real and positive.
     const std::complex<double> square = (mode.x.transpose() * mode.x)(0, 0);
     const double half = 0.5 * portable::atan2(square.imag(), square.real());
     const VecX eta = mode.x.real() * portable::cos(half) + mode.x.imag() * portable::sin(half);
@@ -96,12 +98,12 @@ Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& 
   return found;
 }
 
-// Nothing, if all grows more slowly than `least`.
+// Returns the fastest growth if it may exceed `least`, else an empty result.
 Fastest fastest_above(double least, const FreeVibration& v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
   const auto is_skewed = [](const MatX& m) { return (m - m.transpose()).cwiseAbs().sum() > k_skew * m.cwiseAbs().sum(); };
   const bool is_skew = is_skewed(v.a);
   const MatX a = symmetric_part(v.a), b = symmetric_part(v.b);
-  // With symmetric A a swing grows with xᵀBx/2 of its shape x.
+  // For symmetric A an oscillation of shape x grows at the rate xᵀBx/2.
   const bool may_swing = swings == Swings::count && (is_skew || is_skewed(v.b) || symmetric_eigen(b).values.maxCoeff() > 2.0 * least);
   if (!may_swing && is_positive_definite(at_rate(a, b, least))) return {};
   if (!may_swing && !is_skew) return fastest_of_symmetric(a, b, least);
@@ -125,7 +127,7 @@ bool is_steady_motion(const System& system, const LegMotion& leg) {
          std::all_of(leg.states.begin(), leg.states.end(), is_even);
 }
 
-// A row that holds one side without a force: a rope that is just taut, or a freewheel without a drag.
+// Returns true for a row that resists one side only and may touch without force: a rope that is just taut, a freewheel without drag.
 bool is_one_sided(const FrictionElement& friction) {
   if (one_sided_row(friction)) return true;
   const OneWayLock* const lock = one_way_lock(friction);
@@ -141,7 +143,7 @@ FrozenLeg::FrozenLeg(const System& system, const LegMotion& leg)
   find_variants();
 }
 
-// Reactions are those of the run's own equations at that instant; statics alone knows none of inertial loads.
+// Linearises at `state`. Reactions come from the run's equations of motion, because statics would omit inertial loads.
 void FrozenLeg::linearise(const State& state, const Variant& variant) {
   if (linearised_ == &variant && state.t == at_run_.t && state.q == at_run_.q && state.v == at_run_.v) return;
   linearised_ = &variant;
@@ -170,7 +172,7 @@ void FrozenLeg::take_reactions(const Snapshot& now) {
   }
 }
 
-// Per slot of Snapshot::friction_force; empty: there is none.
+// Marks one-sided rows without force, by slot of Snapshot::friction_force. Empty if there are none.
 std::vector<char> FrozenLeg::idle_one_sided_rows() const {
   std::vector<char> idle;
   double size = 0.0;
@@ -190,15 +192,15 @@ std::vector<char> FrozenLeg::idle_one_sided_rows() const {
   return idle;
 }
 
-// Pseudo-random displacements along the free directions, each followed by its mirror image: of what touches without a force each
-// opens by one of the two.
+// Returns pseudo-random displacements along the free directions, each followed by its mirror image. A contact that touches without force
+// opens under one of the two.
 std::vector<VecX> FrozenLeg::trial_displacements() const {
   std::vector<VecX> trials;
   for (std::uint64_t trial = 0; trial < k_trials; ++trial) {
     VecX parts(first_.cols());
     for (Eigen::Index i = 0; i < parts.size(); ++i) parts[i] = 2.0 * counter_uniform(trial, 11, 0, static_cast<std::uint32_t>(i)) - 1.0;
     VecX displacement = weights_.cwiseInverse().cwiseProduct(first_ * parts);
-    double largest = 0.0; // of a body's size
+    double largest = 0.0; // relative to a body's size
     for (Eigen::Index body = 0; 3 * body < displacement.size(); ++body) {
       const double radius = weights_[3 * body + 2] / weights_[3 * body];
       const double way = std::max(displacement.segment<2>(3 * body).norm(), radius * std::abs(displacement[3 * body + 2]));
@@ -221,7 +223,7 @@ void FrozenLeg::find_variants() {
     linearise(leg_.begin, variants_.back());
   }
   first_ = unmoved_directions(rows);
-  linearised_ = nullptr; // places of variants change, and statics_ is asked for other poses
+  linearised_ = nullptr; // variants_ may be reallocated and statics_ moves to other poses, so the stored linearisation is invalid
   if (first_.cols() == 0) return;
   std::vector<std::vector<UnitMode>> seen = {at_rest_.mode};
   for (const VecX& displacement : trial_displacements()) {
@@ -234,7 +236,7 @@ void FrozenLeg::find_variants() {
   }
 }
 
-// Returns Z of all directions that rows leave free.
+// Returns Z: an orthonormal basis of the directions that the rows leave free.
 MatX FrozenLeg::free_directions(Rows rows) const {
   const auto is_of_rates = [](const StaticRow& row) { return row.spec->kind == MeasureKind::skate; };
   if (rows == Rows::all || std::none_of(statics_.rows().begin(), statics_.rows().end(), is_of_rates)) {
@@ -253,9 +255,10 @@ MatX FrozenLeg::free_directions(Rows rows) const {
   return PivotedQr(columns, k_rank).complement();
 }
 
-// Returns the directions in which the leg moves, along Z: orthonormal, or empty. A drive moves all that rests on what it moves, in directions that
-// are not free and whose parts along Z say nothing of it: a rod that rides upright on a car is not tilted. Where drives move, only
-// displacements count that keep every driven coordinate and lie within Z.
+// Returns the directions in which the leg moves, in coordinates along Z: orthonormal, or empty. Without drives they are the projections of
+// the motion on Z. A drive also moves all bodies carried by the driven one, and these projections would be misleading: a rod that rides
+// upright on a car does not tilt. With drives, only those combinations of motions count that keep all driven coordinates constant and lie
+// within Z.
 MatX FrozenLeg::moved_directions(const MatX& free) const {
   const auto count = static_cast<Eigen::Index>(leg_.moved.directions().size());
   if (count == 0) return MatX(free.cols(), 0);
@@ -281,7 +284,7 @@ MatX FrozenLeg::moved_directions(const MatX& free) const {
   const MatX others = PivotedQr(by_drives, k_part_of_motion).complement();
   if (others.cols() == 0) return MatX(free.cols(), 0);
   const MatX along = free.transpose() * (directions * others);
-  const RightSingular angles = right_singular(along); // cosines of the angles between the two spans
+  const RightSingular angles = right_singular(along); // cosines of the angles between the two subspaces
   Eigen::Index within = 0;
   while (within < angles.values.size() && angles.values[within] > k_within) ++within;
   return along * angles.v.leftCols(within);
@@ -308,14 +311,14 @@ FrozenGrowth FrozenLeg::growth_at(const State& state, double least, std::size_t 
   if (!(fastest.rate > least)) return {};
   const VecX shape = (z * fastest.eta).normalized();
   if (fastest.may_swing) return {fastest.rate, shape, fastest.swing};
-  // Growth is pushed by a negative stiffness, which has to be more than rounding of the terms it is the sum of.
+  // The growth must come from a negative stiffness that exceeds rounding of its terms.
   const VecX place = weights_.cwiseInverse().cwiseProduct(shape);
   const double rounding = k_epsilon * (k_rounded_terms * place.cwiseAbs().dot(size * place.cwiseAbs()) + 4.0 * a.cwiseAbs().maxCoeff());
   if (!(place.dot(stiffness * place) > rounding)) return {};
   return {fastest.rate, shape, 0.0};
 }
 
-// Displacements of bodies follow from those of their clusters by T, and those of the clusters from their roots' by S.
+// Displacements of bodies are T times those of their clusters; displacements of clusters are S times those of their root bodies.
 FrozenGrowth FrozenLeg::steady_growth_at(const State& state, double least) {
   const OneThread alone;
   linearise(state, variants_.front());

@@ -1,19 +1,19 @@
-// How fast a small displacement would grow if forces and stiffness stayed what they are at one instant of a leg.
+// Growth rate of small displacements if forces and stiffness stayed constant at one instant of a leg.
 //
-// Displacements δ along which the leg does not move, and which its rows and sticking friction leave free, are δ = W⁻¹ Z η: W holds the
-// roots of the masses, Z is orthonormal. They follow
+// Displacements δ are admitted along which the leg does not move and which constraint rows and sticking friction leave free: δ = W⁻¹ Z η,
+// with W the square roots of the masses and Z orthonormal. They follow
 //   η'' = A η + B η',   A = Zᵀ W⁻¹ K W⁻¹ Z,   B = Zᵀ W⁻¹ ∂Q/∂v W⁻¹ Z,
-// where K has the curvature of the rows with the reactions of that instant, inertial loads included. A displacement that grows as exp(σt)
-// makes P(σ) = σ² − σ B − A singular. For symmetric A and damping B ≤ 0 the definiteness of P(σ) grows with σ: P(σ) is
-// positive definite if and only if nothing grows faster than σ. Otherwise (loads that follow, damping that drives) the eigenvalues of the
-// first-order equations decide: in a leg at rest all of them, in motion the real ones, since a swing is no instant.
+// where K contains the curvature of the rows with the reactions of that instant, inertial loads included. If a displacement grows as
+// exp(σt), P(σ) = σ² − σ B − A is singular. For symmetric A and damping B ≤ 0, P(σ) is positive definite if and only if nothing grows
+// faster than σ. Otherwise (follower loads, negative damping) the eigenvalues of the first-order equations decide. In a leg at rest all
+// eigenvalues count; in motion only the real ones, because an oscillation takes longer than an instant.
 //
-// A leg in which all bodies move evenly and do not turn has equations as constant as one at rest. There A and B are the derivatives of the
-// accelerations of the whole equations of motion (linearization.h), with the terms of velocities. Rows that have a rate and no value (skates)
-// hold no place: they are part of these derivatives, and Z has the directions that the other rows leave free.
+// If all bodies move evenly and without rotation, the equations are as constant as at rest. Then A and B are the derivatives of the
+// accelerations of the full equations of motion (linearization.h), with their velocity terms. Rows on velocities only (skates) do not hold
+// a position: they are part of these derivatives, and Z contains the directions that the other rows leave free.
 //
-// Stops, ropes and freewheels that touch without a force are there for displacements to one side only. Each set of them that a displacement
-// leaves in touch is a *variant* with a linearisation of its own.
+// Stops, ropes and freewheels that touch without force act only on displacements to one side. Each set of them that stays in touch under
+// some displacement is a *variant* with its own linearisation.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -24,40 +24,40 @@ namespace steplap {
 
 /// Displacement that grows fastest.
 struct FrozenGrowth {
-  double rate = 0.0;  ///< 1/s; 0: nothing grows as fast as was asked for
-  VecX shape;         ///< W δ, of length 1; three numbers for each body but the ground; empty if nothing grows
-  double swing = 0.0; ///< rad/s: size of its eigenvalue if it swings while it grows, else 0
+  double rate = 0.0;  ///< growth rate, 1/s; 0 if nothing grows faster than the requested rate
+  VecX shape;         ///< W δ with length 1, three numbers for each body except the ground; empty if nothing grows
+  double swing = 0.0; ///< imaginary part of the eigenvalue if the displacement oscillates while it grows, rad/s; else 0
 };
 
 /// Frozen growth along one leg.
 class FrozenLeg {
 public:
-  /// `system`: in which the leg was made.
+  /// `system` is the system in which the leg was computed.
   FrozenLeg(const System& system, const LegMotion& leg);
 
-  /// Directions in which the leg does not move and which its rows leave free at its start: those that hold places, unless it is at rest, and
-  /// that bear something, where they hold one side only.
+  /// Returns the number of directions in which the leg does not move and which its rows leave free at its start. Velocity-only rows count
+  /// in a leg at rest only. One-sided rows count if they carry force.
   [[nodiscard]] Eigen::Index directions() const { return first_.cols(); }
-  /// The part of W δ along these.
+  /// Returns the part of W δ in these directions.
   [[nodiscard]] VecX along_directions(const VecX& weighted) const { return first_ * (first_.transpose() * weighted); }
-  /// Some of them move this body.
+  /// Returns true if one of these directions moves the body.
   [[nodiscard]] bool moves(std::size_t body) const {
-    constexpr double k_share = 1e-9; // of a direction: less is rounding
+    constexpr double k_share = 1e-9; // share of a direction; less is rounding
     return first_.middleRows(3 * static_cast<Eigen::Index>(body) - 3, 3).cwiseAbs().sum() > k_share;
   }
-  /// All bodies move evenly, and none turns; false at rest, and where the system has inner states.
+  /// Returns true if all bodies move evenly and none turns; false at rest and if the system has inner states.
   [[nodiscard]] bool is_steady() const { return is_steady_; }
-  /// Variants of what touches at the start of the leg; the first one is that of the run.
+  /// Returns the number of variants of contacts at the start of the leg; the first is that of the run.
   [[nodiscard]] std::size_t variants() const { return variants_.size(); }
-  /// At the instant of `state`, if it grows faster than `least`, 1/s.
+  /// Returns the fastest growth at the instant of `state`, if it exceeds `least`, 1/s.
   [[nodiscard]] FrozenGrowth growth_at(const State& state, double least, std::size_t variant = 0);
-  /// The same by the whole equations of motion; for a steady leg.
+  /// Returns the same by the full equations of motion. Precondition: is_steady().
   [[nodiscard]] FrozenGrowth steady_growth_at(const State& state, double least);
 
 private:
   struct Variant {
-    VecX displacement;      ///< δ, which tells what touches; empty: none
-    bool is_let_go = false; ///< rows that hold one side and bear nothing are left out
+    VecX displacement;      ///< displacement δ that decides which one-sided rows touch; empty: none
+    bool is_let_go = false; ///< one-sided rows without force are left out
   };
   enum class Rows : unsigned char { all, of_places };
 
@@ -76,11 +76,11 @@ private:
   Dynamics dynamics_;
   Statics statics_;
   bool is_at_rest_, is_steady_;
-  State at_run_, at_rest_; ///< in the modes of the run, and in those of statics
-  std::vector<double> y_;  ///< at_run_, packed
+  State at_run_, at_rest_; ///< state with the modes of the run, and with those of statics
+  std::vector<double> y_;  ///< at_run_ as a packed vector
   VecX lambda_;            ///< multipliers of the rows of statics_
   std::vector<Variant> variants_;
-  const Variant* linearised_ = nullptr; ///< that of the last linearise(); null: none that is still so
+  const Variant* linearised_ = nullptr; ///< variant of the last linearise(); null if none is valid
   MatX first_;                          ///< Z at the start of the leg
 };
 

@@ -17,18 +17,19 @@ namespace steplap {
 namespace {
 
 constexpr double k_finer_tolerance = 0.01;
-constexpr double k_least_tolerance = 1e-14; // below it rounding makes the steps
+constexpr double k_least_tolerance = 1e-14; // smaller tolerances are dominated by rounding
 constexpr int k_division = 2;
 constexpr double k_finer_step = 1.0 / k_division;
-constexpr double k_finer_cost = 3.0;  // of a hundredth of the tolerance: order 5 takes 2.5 times the steps
+constexpr double k_finer_cost = 3.0;  // cost of a hundredth of the tolerance; a method of order 5 takes 2.5 times the steps
 constexpr double k_rounding = 1e-14;  // of a channel's largest value, and of times
-constexpr double k_first_order = 0.5; // what half the step leaves
+constexpr double k_first_order = 0.5; // share of the error left by half the step
 constexpr double k_safety = 1.5;
-constexpr double k_most_left = 0.9;       // of the error, by a finer run: its difference is the rest, a tenth of the error
-constexpr double k_stepping_safety = 3.0; // where nothing is located
-constexpr double k_little = 1e7;          // parts evaluated that references may take in any case
-// Of an extreme beside a singular position (within 1e-5 rad): a force that goes with one over the distance is larger by far than
-// away from it, and runs that come to other distances do not agree on it.
+constexpr double k_most_left = 0.9;       // share of the error left by a finer run; beyond it the difference is less than a tenth of the
+                                          // error, and the estimate is useless
+constexpr double k_stepping_safety = 3.0; // for time stepping, which locates no events
+constexpr double k_little = 1e7;          // evaluations times parts that references may take even if the run was short
+// Extremes near a singular position (within 1e-5 rad) are not known: a force proportional to 1/distance is k_grown times its usual size
+// there, and runs that come to different distances disagree by more than k_disagreed.
 constexpr double k_disagreed = 0.01, k_grown = 1e3;
 
 bool locates_events(const SimulationOptions& options) { return !method(options.integrator).is_time_stepping; }
@@ -37,8 +38,8 @@ bool takes_shorter_steps(const RunStatistics& finer, const RunStatistics& run) {
   return finer.steps > run.steps || finer.evaluations > run.evaluations;
 }
 
-// Error over difference; unknown where the finer run was none. What it leaves of the error is told by the steps that were
-// taken, not by those that were asked for.
+// Returns the ratio of error to difference; unknown if the other run is not finer. The ratio of steps actually taken counts, not only that
+// of the settings.
 double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine, const RunStatistics& finer,
                   bool has_storm) {
   if (fine.settings.step != coarse.settings.step) {
@@ -51,7 +52,7 @@ double factor_for(const SimulationOptions& coarse, const RunStatistics& run, con
 }
 
 double difference(double a, double b) {
-  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also equal infinities
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also for equal infinities
   const double d = std::abs(a - b);
   return std::isfinite(d) ? d : k_unknown_error;
 }
@@ -61,7 +62,7 @@ double difference(const std::optional<double>& a, const std::optional<double>& b
   return a ? difference(*a, *b) : 0.0;
 }
 
-// Beside its pole a number without a unit, as the margin of what bears nothing, is one over rounding: it may be infinite.
+// Near a pole, a number without unit (such as the margin of an unloaded element, which is infinite) is determined by rounding only.
 double difference(const Channel& channel, double a, double b) {
   const bool is_at_pole = channel.unit.empty() && std::max(std::abs(a), std::abs(b)) > ExtremeFinder::k_at_pole;
   return is_at_pole && a != b ? k_unknown_error : difference(a, b);
@@ -69,10 +70,10 @@ double difference(const Channel& channel, double a, double b) {
 
 void keep_larger(double& error, double other) { error = larger_error(error, other); }
 
-// Do values of the unit jump at events? Places do not; velocities do where contacts are blows.
+// Returns true if values of this unit may jump at events. Positions do not; velocities jump at impacts.
 bool may_jump(const Channel& channel) { return channel.unit != "m" && channel.unit != "rad"; }
 
-// One finer run against the run whose error is wanted.
+// Comparison of a run with one finer run.
 class Comparison {
 public:
   /// `run` has every `stride`-th of the samples of `fine`.
@@ -81,7 +82,7 @@ public:
 
   [[nodiscard]] const EventMatch& match() const { return match_; }
 
-  /// The errors of `run`.
+  /// Adds the errors of `run` to the estimate.
   void add_to(GlobalErrorEstimate& estimate) const {
     const std::size_t ranges = std::min(run_.ranges.size(), fine_.ranges.size());
     for (std::size_t c = 0; c < ranges; ++c) add_range(c, estimate.channels[c]);
@@ -103,7 +104,7 @@ private:
     if (mine.had_no_value != fine.had_no_value) error.low = error.high = k_unknown_error;
   }
 
-  // Row after row, for they may be on disk.
+  // Compares row by row, because trajectories may be on disk.
   void add_curves(std::vector<ChannelError>& errors) const {
     const Trajectory &mine = *run_.trajectory, &fine = *fine_.trajectory;
     const auto& channels = mine.channels();
@@ -142,11 +143,11 @@ private:
 
 double spread_of(const ChannelRange& range) { return range.high.value - range.low.value; }
 
-// Of channels in the same unit.
+// Properties of all channels with the same unit.
 struct Kind {
-  double range = 0.0, largest = 0.0; ///< the largest range, the largest value
-  double scale = 0.0;                ///< what forces could come to: rounding of theirs is what is left where nothing moves
-  double typical_error = 0.0;        ///< of extremes, of their ranges: half of the channels have less
+  double range = 0.0, largest = 0.0; ///< largest range, largest value
+  double scale = 0.0;                ///< possible size of forces or motions in the model; rounding of it remains if nothing moves
+  double typical_error = 0.0;        ///< median error of extremes over their ranges
 };
 
 double median(std::vector<double> values) {
@@ -171,15 +172,15 @@ std::map<std::string, Kind> kinds_of(const std::vector<ChannelRange>& ranges, co
   return kinds;
 }
 
-// What the largest force could accelerate, and what that could come to over the scene's length, as in extreme_scales.cpp; about a
-// body's centre what accelerates its centre does so at its radius of gyration.
+// Sets the scales of all units, as in extreme_scales.cpp: acceleration a = F/m by the largest force, velocity √(a L) over the length L of
+// the model. Angular accelerations also have the scale (g + acceleration of the centre)/radius of gyration.
 void set_scales(const System& system, const RunResult& run, std::map<std::string, Kind>& kinds) {
   const auto largest = [&](const char* unit) {
     const auto found = kinds.find(unit);
     return found == kinds.end() ? 0.0 : found->second.largest;
   };
   double mass = 0.0, turned = 0.0;
-  std::map<std::string, double> acceleration; // by body, m/s²
+  std::map<std::string, double> acceleration; // of each body by name, m/s²
   for (const ChannelRange& range : run.ranges)
     if (const std::string& name = range.channel->name; range.channel->unit == "m/s^2" && std::isfinite(range.largest().value))
       acceleration[name.substr(0, name.rfind('.'))] += std::abs(range.largest().value);
@@ -206,13 +207,13 @@ bool diverges(const ChannelRange& range, const Extreme& extreme, double error) {
   return !(error <= k_disagreed * size) && size > k_grown * std::max(std::abs(range.first), std::abs(range.final));
 }
 
-// A formula whose bounds could not be closed may go beyond what both runs found, however well they agree.
+// Returns false for a formula whose extremes could not be bounded to the resolution. Both runs may then have missed the same extreme.
 bool is_located(const ChannelRange& range, const Kind& kind) {
   const double size = std::max({kind.range, kind.largest, range.channel->unit.empty() ? 1.0 : 0.0});
   return !formula_of(*range.channel) || range.resolution <= ExtremeFinder::k_resolution * size;
 }
 
-// What the finest run does not know itself.
+// Adds errors that the finest run shares with the run.
 void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate& estimate) {
   const SimulationOptions& options = estimate.finer.back();
   const IntegratorSettings& settings = options.settings;
@@ -229,7 +230,8 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
     ChannelError& error = estimate.channels[c];
     const double floor = tolerance * kind.range + k_rounding * std::max(kind.largest, kind.scale);
     const double spread = spread_of(range);
-    // Where blows fall in a step is chance, and so is what one extreme shows of it.
+    // Time stepping: the position of impacts within a step is random, so a single extreme may agree by chance. The median error of its unit
+    // is the least estimate.
     const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
     const double resolution = std::isinf(range.resolution) ? k_unknown_error : range.resolution;
     error.low = larger_error(larger_error(error.low, least), range.unsure_low) + floor + resolution;
@@ -249,7 +251,7 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
   if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
 }
 
-// No finer run was one. What is the same throughout is known all the same, and so is when the run begins.
+// Sets all errors to unknown, because no finer run exists. Constants and events at t = 0 stay known.
 void forget(const RunResult& run, GlobalErrorEstimate& estimate) {
   constexpr double unknown = k_unknown_error;
   for (std::size_t c = 0; c < run.ranges.size(); ++c)
@@ -263,7 +265,7 @@ void forget(const RunResult& run, GlobalErrorEstimate& estimate) {
   estimate.unknown_because = "no finer run took shorter steps, so that none tells an error";
 }
 
-// An event without partner has no time that could be called known.
+// Sets the error of event times to unknown if an event has no partner.
 void note_unmatched(GlobalErrorEstimate& estimate, const RunResult& run, const EventFilter& is_counted) {
   if (estimate.error.unmatched_events == 0) return;
   WorstError& worst = estimate.error.worst[static_cast<std::size_t>(ErrorKind::event_time)];
@@ -284,9 +286,9 @@ void keep_worst(RunDifference& worst, const RunDifference& other, double factor)
   worst.compared_until = other.compared_until;
 }
 
-// --- by references
+// --- errors by reference runs
 
-// Error of the reference itself, from the other run, which may have few samples and no extremes.
+// Adds the error of the reference, from the coarse reference run, which may have few samples and no extremes.
 void add_own_errors(const System& system, const RunResult& run, const ReferenceRuns& pair, const EventMatch& match,
                     GlobalErrorEstimate& estimate) {
   GlobalErrorEstimate own;
@@ -296,7 +298,7 @@ void add_own_errors(const System& system, const RunResult& run, const ReferenceR
   comparison.add_to(own);
   std::vector<double> of_event(pair.reference.events.size(), k_unknown_error);
   for (const EventPair& same : comparison.match().pairs) of_event[same.reference] = own.event_times[same.mine];
-  double time = 0.0; // of events that both have
+  double time = 0.0; // largest error of events that both runs have
   for (const EventPair& same : match.pairs) {
     estimate.event_times[same.mine] += of_event[same.reference];
     if (std::isfinite(of_event[same.reference])) time = std::max(time, of_event[same.reference]);
@@ -304,7 +306,7 @@ void add_own_errors(const System& system, const RunResult& run, const ReferenceR
   for (std::size_t c = 0; c < estimate.channels.size(); ++c) {
     ChannelError& error = estimate.channels[c];
     const ChannelError& o = own.channels[c];
-    const bool has_range = c < run.ranges.size(); // some channels have samples, but no extremes
+    const bool has_range = c < run.ranges.size(); // some channels have samples but no extremes
     if (has_range && std::isfinite(run.ranges[c].low.value)) error.low += larger_error(o.low, o.curve);
     if (has_range && std::isfinite(run.ranges[c].high.value)) error.high += larger_error(o.high, o.curve);
     error.final += larger_error(o.final, o.curve);
@@ -321,7 +323,8 @@ std::string tolerances_of(const ReferenceRuns& pair) {
          rounded_text(pair.options.settings.tolerance);
 }
 
-// Results before the two references part are known: times of events, and when a number passed 1. An extreme is one of the whole run.
+// Sets errors to unknown from t on, where the two references diverge. Earlier events and crossings of 1 stay known. Extremes cover the
+// whole run and become unknown.
 void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, GlobalErrorEstimate& estimate) {
   const std::vector<ChannelError> channels = estimate.channels;
   const std::vector<double> times = estimate.event_times;
@@ -335,7 +338,7 @@ void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, Glob
                              " s, so that the motion from there on depends on the last digits, and no run tells it";
 }
 
-// Errors of `run` by a reference. False: there is none.
+// Estimates the errors of `run` by reference runs. Returns false if there are none.
 bool measure_by_references(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
                            const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
   const double parts = parts_evaluated(system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));
@@ -355,7 +358,7 @@ bool measure_by_references(const System& system, const State& initial, const Sim
   return true;
 }
 
-// --- by the same method
+// --- errors by finer runs of the same method
 
 void compare_with_finer_runs(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
                              const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
@@ -393,7 +396,7 @@ double ChannelError::largest() const {
 bool is_adaptive(const System& system, const std::string& integrator) {
   const Dynamics dynamics(system);
   IntegratorSettings settings;
-  settings.step = 1e-3; // any: it makes no step
+  settings.step = 1e-3; // any value, since no step is made
   return make_integrator(integrator, dynamics, settings)->is_adaptive();
 }
 

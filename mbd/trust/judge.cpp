@@ -23,7 +23,7 @@ std::string limit_text(double value) {
 
 Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure) {
   Judgement judgement;
-  std::string contradiction; // the first: others follow from the same cause
+  std::string contradiction; // first contradiction found; later ones have the same cause
   for (const ElementEntry& entry : model.elements) {
     if (!entry.kind->judge) continue;
     const ElementJudgement of_element = entry.kind->judge(*entry.element, model, result);

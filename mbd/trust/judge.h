@@ -1,4 +1,4 @@
-// The verdict on a run.
+// Judges a run: calculates its verdict from all criteria.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,12 +7,12 @@
 
 namespace steplap {
 
-/// By the criteria of elements (ElementKind::judge), in the model's order, and by those that the model states.
-/// `failure`: what stopped the run, empty if it reached its end.
+/// Applies the criteria of elements (ElementKind::judge), in the model's order, and those of the model. `failure`: reason why the run
+/// stopped early, empty if it reached its end.
 [[nodiscard]] Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure);
 
-/// Names of the channels whose extremes tell whether a run can be trusted: who leaves out channels keeps these, or takes a
-/// run for trusted that is not.
+/// Returns the names of the channels whose extremes decide whether a run can be trusted. A caller that omits channels must keep these;
+/// otherwise untrustworthy runs pass as trusted.
 [[nodiscard]] std::vector<std::string> channels_of_trust(const Model& model);
 
 } // namespace steplap

@@ -12,7 +12,7 @@ namespace {
 
 double radius_of(const BodyData& body) { return body.mass > 0.0 && body.inertia > 0.0 ? std::sqrt(body.inertia / body.mass) : 1.0; }
 
-// Accuracy to which a body's pose and velocity are known: along both axes, and about its centre.
+// Accuracy of the pose and velocity of a body: along both axes, and about its centre.
 struct OfBody {
   double place = 0.0, angle = 0.0, rate = 0.0, spin = 0.0;
 };
@@ -24,7 +24,7 @@ OfBody of_body(const System& system, int b, const Motion<double>& m, double met)
           met + k_rounded_sum * std::abs(m.omega)};
 }
 
-// Accuracy of one row of a pair's Jacobian, from that of its twelve numbers.
+// Returns the accuracy of the displacement along one row of a pair's Jacobian: Σ |J| · accuracy of the six coordinates.
 double changed_by(const PairJacobian& pair, int row, const OfBody& a, const OfBody& b) {
   const double pose[6] = {a.place, a.place, a.angle, b.place, b.place, b.angle};
   const double velocity[6] = {a.rate, a.rate, a.spin, b.rate, b.rate, b.spin};

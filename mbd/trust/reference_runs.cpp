@@ -12,18 +12,19 @@ namespace steplap {
 namespace {
 
 constexpr const char* k_method = "auto";
-// Errors of rk4 at usual steps are 1e-9 to 1e-4 of a range, those of a run some ten to a hundred times its tolerance. A reference at 1e-11
-// costs little more than one at 1e-8, since samples and extremes are most of its cost; below 1e-13 rounding makes the steps.
+// rk4 at usual steps has errors of 1e-9 to 1e-4 of a range; an adaptive run has errors of ten to a hundred times its tolerance. A reference
+// at 1e-11 costs little more than one at 1e-8, since samples and extremes dominate. Below 1e-13 rounding dominates.
 constexpr double k_first_tolerance = 1e-9, k_tightening = 0.01;
 constexpr double k_most_tolerance_of_last = 1e-12;
 constexpr int k_division = 2;
-constexpr double k_most_own_error = 1.0 / 3.0; // of what the run differs by
-constexpr double k_safety = 1.5;               // no error follows the tolerance exactly
-constexpr double k_parted = 0.01;              // of a range: a millionfold of the larger tolerance and more
-constexpr double k_fewest_rows = 100.0;        // of the coarse run: half periods that count are longer
-constexpr long k_steps_between_looks = 64;     // at the evaluations made
+constexpr double k_most_own_error = 1.0 / 3.0; // of the run's difference from the reference
+constexpr double k_safety = 1.5;               // because no error is exactly proportional to the tolerance
+constexpr double k_parted = 0.01;              // of a range; more than a million times the larger tolerance
+constexpr double k_fewest_rows = 100.0;        // least number of samples of the coarse run, so that the relevant oscillations are resolved
+constexpr long k_steps_between_looks = 64;     // checks of the cost, every so many steps
 
-// Samples of the coarse run: a share of those of the reference. Where there are few of these, or not of all channels, extremes tell.
+// Returns the options of the coarse run: every stride-th sample of the reference. With few samples, or samples of some channels only,
+// extremes are located instead.
 SimulationOptions thinned_out(SimulationOptions coarse, const System& system, const RunResult& run, std::size_t stride) {
   coarse.output_step *= static_cast<double>(stride);
   const bool has_all = run.trajectory->channels().size() == system.channels.size();
@@ -33,20 +34,20 @@ SimulationOptions thinned_out(SimulationOptions coarse, const System& system, co
 
 bool is_stepped(const RunResult& run) { return run.statistics.storms > 0; }
 
-// Is the own error small beside what the run differs by, wherever both are known?
+// Returns true if the reference's own error is small compared with the run's difference, wherever both are known.
 bool is_fine_enough(const RunDifference& own, const RunDifference& of_run) {
   for (std::size_t k = 0; k < k_error_kinds; ++k)
     if (!std::isnan(of_run.worst[k].value) && !(own.worst[k].value <= k_most_own_error * of_run.worst[k].value)) return false;
   return true;
 }
 
-// One run of the ladder of tolerances.
+// One run of the sequence of tolerances.
 struct Rung {
   SimulationOptions options;
   RunResult run;
 };
 
-// Error of `fine`, from its difference to `coarse`.
+// Returns the reference `fine` with its error estimated from the difference to `coarse`.
 ReferenceRuns pair_of(const Rung& coarse, const Rung& fine, std::size_t stride, const System& system, const EventFilter& is_counted) {
   ReferenceRuns pair;
   pair.stride = stride;
@@ -90,14 +91,14 @@ std::optional<ReferenceRuns> reference_runs(const System& system, const State& i
   std::size_t stride = std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(run.trajectory->size()) / k_fewest_rows));
   SimulationOptions next = options;
   next.integrator = k_method;
-  next.settings.step = 0.0; // the first step is the method's choice: from a very short one both would grow alike
+  next.settings.step = 0.0; // chosen by the method; from a very short given step both runs would grow their steps alike
   next.settings.tolerance = k_first_tolerance;
   Rung coarse{thinned_out(next, system, run, stride), {}}, fine;
   std::optional<ReferenceRuns> best;
-  try { // the next run may fail or be too dear: then what the ones before tell is all there is
+  try { // the next run may fail or be too expensive; the earlier ones then decide
     coarse.run = budget.simulate(system, initial, coarse.options, left());
     for (;;) {
-      // Other limits of steps are divided, too: both would take the same ones, and their difference would be zero.
+      // Other limits on the steps are divided too. Otherwise both runs would take the same steps and have no difference.
       next.settings.division *= k_division;
       next.settings.tolerance *= k_tightening;
       Rung finer{next, budget.simulate(system, initial, next, left())};

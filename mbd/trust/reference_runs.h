@@ -1,17 +1,17 @@
-// Two adaptive runs by which the error of a run with fixed steps is measured.
+// Measures the error of a run with fixed steps by two adaptive runs.
 //
-// Half the step and a quarter of it share with the run what all fixed steps share, and take six times its cost. An adaptive run shares
-// neither. The reference is made at a tolerance of 1e-11, another run at a hundred times that; what these two differ by tells the
-// reference's own error, which the run's error adds to what it differs from the reference by:
+// Runs with half and a quarter of the step share the errors of all fixed steps and cost six times the run. An adaptive run does neither.
+// The reference has a tolerance of 1e-11, a second run 1e-9. Their difference gives the error of the reference, which is added to the run's
+// difference from the reference:
 //
 //   |run − truth| ≤ |run − reference| + |reference − truth|
 //
-// If the second part is more than a third of the first, in positions, velocities, reactions or times of events, both tolerances
-// become a hundredth, once. The run at the larger tolerance looks for no extremes and has few samples: its difference is
-// multiplied by a small part only.
+// If the second term exceeds a third of the first in positions, velocities, reactions or event times, both tolerances are reduced to a
+// hundredth, once. The run with the larger tolerance locates no extremes and has few samples, because its difference enters with a small
+// factor only.
 //
-// From the time at which the two references part, the motion depends on the last digits, and no error of it is known. If they have
-// different events, their difference does not follow the tolerance, and counts in full.
+// From the time at which the two references diverge, the motion depends on the last digits and no error is known. If they have different
+// events, their difference does not follow the tolerance and counts in full.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -23,17 +23,17 @@
 
 namespace steplap {
 
-/// Limit of what finer runs may take together, in evaluations: a computer may be fast or slow.
+/// Limit on all finer runs together, as a number of evaluations, so that it does not depend on the computer's speed.
 class EvaluationBudget {
 public:
   explicit EvaluationBudget(double most) : most_(most) {}
 
-  /// Throws EstimateTooDear if the run takes more than what is left, or than `most_of_run`.
+  /// Runs the simulation. Throws EstimateTooDear if it needs more evaluations than are left, or more than `most_of_run`.
   [[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options,
                                    double most_of_run = std::numeric_limits<double>::infinity());
   /// Returns the cost of all runs so far, including those that were given up.
   [[nodiscard]] const RunStatistics& spent() const { return spent_; }
-  /// Evaluations.
+  /// Returns the number of evaluations left.
   [[nodiscard]] double left() const { return most_ - static_cast<double>(spent_.evaluations); }
 
 private:
@@ -41,19 +41,19 @@ private:
   RunStatistics spent_;
 };
 
-/// The reference, and what is known of its own error.
+/// Reference run with the estimate of its own error.
 struct ReferenceRuns {
-  SimulationOptions coarse_options, options; ///< of `coarse` and `reference`
+  SimulationOptions coarse_options, options; ///< options of `coarse` and `reference`
   RunResult coarse, reference;
-  std::size_t stride = 1;          ///< `coarse` has every so many samples of `reference`
-  double factor = 0.0;             ///< the reference's own error over the difference of the two
-  RunDifference own;               ///< that own error, scaled as in run_comparison.h
-  RunDifference of_run;            ///< what the run differs from the reference by, scaled in the same way
-  std::optional<double> parted_at; ///< s: from there on the two go different ways
+  std::size_t stride = 1;          ///< `coarse` has every stride-th sample of `reference`
+  double factor = 0.0;             ///< error of the reference over the difference of the two
+  RunDifference own;               ///< error of the reference, scaled as in run_comparison.h
+  RunDifference of_run;            ///< difference between the run and the reference, scaled in the same way
+  std::optional<double> parted_at; ///< time from which the two diverge, s
 };
 
-/// References of `run`, which was made from `initial` with `options`: fixed steps of a method that locates events. Empty: they would
-/// take more than `most_evaluations` or more than is left of the budget, they fail or need time stepping, or both take the same steps.
+/// Returns the references of `run`, which was made from `initial` with `options`, by fixed steps of a method that locates events. Returns
+/// nothing if they would exceed `most_evaluations` or the budget, if they fail or need time stepping, or if both take the same steps.
 [[nodiscard]] std::optional<ReferenceRuns> reference_runs(const System& system, const State& initial, const SimulationOptions& options,
                                                           const RunResult& run, const EventFilter& is_counted, double most_evaluations,
                                                           EvaluationBudget& budget);

@@ -12,12 +12,12 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_least_range = 1e-3; // of the largest range among channels of one kind
-constexpr double k_is_constant = 1e-9; // a range below this part of the value is rounding
-// Share of the bodies' size L, m: motions below it are none. Errors of places are absolute to 1e-3 L (Integrator), and steps by the hundred
-// leave 1e-9 L of them at the usual tolerance; a tenth of this is that.
+constexpr double k_least_range = 1e-3; // of the largest range of channels of one kind
+constexpr double k_is_constant = 1e-9; // of the value; a smaller range is rounding
+// Of the bodies' size L, m: smaller motions count as none. Errors of positions are absolute to 1e-3 L (Integrator); hundreds of steps at
+// the usual tolerance leave 1e-9 L. A tenth of k_no_motion is that error.
 constexpr double k_no_motion = 1e-8;
-// Of the largest value of its kind, as in mbd/simulation/extremes.h: a channel whose whole range is less shows rounding only.
+// Of the largest value of its kind, as in mbd/simulation/extremes.h: a channel with a smaller range shows only rounding.
 constexpr double k_rounding = 1e-12;
 
 struct Compared {
@@ -25,7 +25,7 @@ struct Compared {
   ErrorKind kind = ErrorKind::position;
   std::size_t column = 0;
   double low = 0.0, high = 0.0, size = 0.0; ///< of the reference
-  double arm = 1.0;                         ///< m: times an angle it is a length; by it a couple is a force
+  double arm = 1.0;                         ///< m: factor from angles to lengths, divisor from torques to forces
   [[nodiscard]] double range() const { return high - low; }
 };
 
@@ -38,7 +38,7 @@ std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::str
   return std::nullopt;
 }
 
-// Largest radius of gyration.
+// Returns the largest radius of gyration.
 double size_of(const System& system) {
   double size = 0.0;
   for (const BodyData& body : system.bodies)
@@ -46,7 +46,7 @@ double size_of(const System& system) {
   return size > 0.0 ? size : 1.0;
 }
 
-// What turns the channel's unit into that of the translations of its kind.
+// Returns the factor that converts the channel's unit into that of translations of its kind.
 double arm_of(const Channel& channel, double size) {
   if (channel.unit == "rad" || channel.unit == "rad/s") return size;
   return channel.unit == "N m" ? 1.0 / size : 1.0;
@@ -58,7 +58,7 @@ void widen(Compared& c, double value) {
   c.size = std::max(c.size, std::abs(value));
 }
 
-// Of the whole run where that is known, whatever the samples fell on. Row after row, for they may be on disk.
+// Sets the ranges: of the whole run if extremes were located, else over samples. Reads row by row, because trajectories may be on disk.
 void set_ranges(std::vector<Compared>& list, const System& system, const RunResult& run) {
   const Trajectory& reference = *run.trajectory;
   for (std::size_t row = 0; row < reference.size(); ++row) {
@@ -97,7 +97,7 @@ std::vector<Compared> compared_channels(const System& system, const RunResult& r
   return list;
 }
 
-// By kind, of a translation or force.
+// Scale by kind, in units of translations or forces.
 using Scales = std::map<ErrorKind, double>;
 
 Scales sizes_of(const std::vector<Compared>& channels) {
@@ -106,18 +106,18 @@ Scales sizes_of(const std::vector<Compared>& channels) {
   return size;
 }
 
-// The largest range, or the largest value where nothing moves.
+// Returns the largest range of each kind, or its largest value if nothing moves.
 Scales scales_of(const std::vector<Compared>& channels) {
   Scales range, size = sizes_of(channels);
   for (const Compared& c : channels) range[c.kind] = std::max(range[c.kind], c.arm * c.range());
   for (auto& [kind, value] : range) {
     if (value <= k_is_constant * size[kind]) value = size[kind];
-    if (value == 0.0) value = 1.0; // zero throughout: the error as it is
+    if (value == 0.0) value = 1.0; // all values are zero: errors are not scaled
   }
   return range;
 }
 
-bool is_worse(double value, const WorstError& worst) { // NaN is worse than anything
+bool is_worse(double value, const WorstError& worst) { // not-a-number is worse than anything
   return !(value <= worst.value) && !std::isnan(worst.value);
 }
 
@@ -132,23 +132,23 @@ void keep_worst(WorstError& worst, double value, double t) {
 }
 
 double difference(double a, double b) {
-  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also equal infinities
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also for equal infinities
   return std::abs(a - b);
 }
 
-// Scale that an error of the channel is compared with; `size` is that of the bodies, m.
+// Returns the scale of the channel's error; `size` is the size of the bodies, m.
 double scale_of(const Compared& c, const Scales& scales, double size) {
   const double of_kind = std::max(k_least_range * scales.at(c.kind), c.kind == ErrorKind::position ? k_no_motion * size : 0.0);
   return std::max(c.range(), of_kind / c.arm);
 }
 
-// The largest error of every channel and its time. Rows are read one after another, because they may be on disk.
+// Returns the largest error of every channel with its time. Rows are read one after another, because they may be on disk.
 std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, double size,
                                                                       const Trajectory& mine, const Trajectory& theirs,
                                                                       const RowPairs& rows, const BetweenEvents& between) {
   const Scales scales = scales_of(channels), sizes = sizes_of(channels);
   std::vector<std::pair<const Compared*, WorstError>> list;
-  std::vector<double> scale, rounding; // rounding: of a channel that does nothing else; 0 of all others
+  std::vector<double> scale, rounding; // rounding: largest value of its kind times k_rounding, for channels whose range is less; else 0
   for (const Compared& c : channels) {
     list.push_back({&c, {}});
     scale.push_back(scale_of(c, scales, size));
@@ -190,7 +190,7 @@ double RunDifference::largest() const {
 RowPairs::RowPairs(const Trajectory& mine, const Trajectory& theirs, std::size_t stride)
     : stride_(stride), size_(mine.size()), last_(theirs.size() > 0 ? theirs.size() - 1 : 0) {
   if (theirs.size() == 0) size_ = 0;
-  // The end of a run is sampled wherever it falls; a run that ended earlier than the other has no partner for later rows.
+  // The last row of a run may lie anywhere. If one run ended earlier, later rows of the other have no partner.
   else if (size_ > 0) size_ = std::min(size_, (last_ + stride - 1) / stride + 1);
 }
 
@@ -220,7 +220,7 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
   return d;
 }
 
-// Positions decide: velocities and forces of a scene at rest are rounding, of which no share means anything.
+// Only positions are compared, because velocities and forces of a model at rest are rounding.
 std::optional<double> parts_at(const System& system, const RunResult& run, const RunResult& reference, std::size_t stride, double share) {
   const Trajectory &mine = *run.trajectory, &theirs = *reference.trajectory;
   const RowPairs rows(mine, theirs, stride);

@@ -13,10 +13,10 @@ namespace steplap {
 
 namespace {
 
-// Rounding of coordinates, and what steps left joints open by, of the bodies' size: beyond it a run says nothing.
+// Limits relative to the size of the bodies: rounding of coordinates, and gaps of joints that steps left before projection.
 constexpr double k_rounded_share = 1e-6, k_open_share = 1e-2;
 
-// The largest radius of gyration: what tolerances are measured by (Integrator).
+// Returns the largest radius of gyration, which is the scale of tolerances (Integrator).
 double size_of(const System& system) {
   double size = 0.0;
   for (const BodyData& body : system.bodies)

@@ -1,4 +1,4 @@
-// Can what a run says be so?
+// Checks whether the result of a run is physically possible.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -8,9 +8,12 @@
 
 namespace steplap {
 
-/// Why the run is not to be trusted, and what to try; empty: no reason is known. Energy made or lost beyond what the method's
-/// errors can be, an hundredth of what was turned over (mbd/simulation/energy_account.h); joints that a step left wide open,
-/// whatever projection made of them; coordinates so large that their rounding is a motion; loads passed over.
+/// Returns why the run is not to be trusted and what to try; empty if no reason is known. Reasons are:
+/// - energy created or lost beyond the errors of the method, by more than a hundredth of the energy exchanged
+///   (mbd/simulation/energy_account.h);
+/// - joints that a step left wide open, even if projection closed them;
+/// - coordinates so large that their rounding is a visible motion;
+/// - loads that the steps passed over.
 [[nodiscard]] std::string distrust_of(const Model& model, const System& system, const RunResult& result);
 
 } // namespace steplap

@@ -26,8 +26,8 @@ namespace {
 
 constexpr const char* k_smaller_step = "try a smaller step, or the integrator auto";
 constexpr double k_most_trusted_error = 0.1; // of the range of positions, and of a slid distance
-// Slid distances that tolerances leave: of the largest range of displacements, and of the bodies' size, a thousandth of
-// which errors are absolute to (Integrator).
+// Slid distances at or below the tolerance: share of the largest range of displacements, and of the bodies' size (errors are absolute to
+// 1e-3 of it, Integrator).
 constexpr double k_slide_share = 1e-6, k_size_share = 1e-9;
 
 void set_errors(CriterionResult& c, const System& system, const RunResult& run, const GlobalErrorEstimate& estimate) {
@@ -40,13 +40,13 @@ void set_errors(CriterionResult& c, const System& system, const RunResult& run, 
   }
   if (!c.t || c.t_error) return;
   c.t_error = event_error(c.where, *c.t, run, estimate);
-  if (!c.t_error && *c.t == 0.0) c.t_error = 0.0; // of a joint that is only monitored: beyond its limit from the start
+  if (!c.t_error && *c.t == 0.0) c.t_error = 0.0; // monitored joint that is beyond its limit from the start
   if (c.t_error) return;
-  const ChannelError* usage = find_error(c.where + ".u", system, estimate); // of a joint that is only monitored
+  const ChannelError* usage = find_error(c.where + ".u", system, estimate); // monitored joint: time at which its utilisation passed 1
   c.t_error = usage ? usage->first_above_one : k_unknown_error;
 }
 
-// `finer`: the same criterion of a finer run.
+// Returns the doubt about a criterion as text. `finer`: the same criterion of a finer run.
 std::string doubt_about(const CriterionResult& c, const CriterionResult& finer) {
   const bool is_met = c.outcome == Verdict::hold;
   const std::string verb = is_met ? "met" : "not met";
@@ -59,9 +59,9 @@ std::string doubt_about(const CriterionResult& c, const CriterionResult& finer) 
   return verb + ", but the error reaches the limit";
 }
 
-// --- what slips in one of two runs only
+// --- slips in one of two runs only
 
-// In one run and not in the other; the earliest of its element.
+// Slip that only one of the two runs has; the earliest of its element.
 struct LoneSlip {
   std::string element;
   double t = 0.0;
@@ -85,7 +85,7 @@ std::vector<LoneSlip> lone_slips(const RunResult& run, const RunResult& finer) {
 
 double spread_of(const ChannelRange* range) { return range ? range->high.value - range->low.value : 0.0; }
 
-// The largest spread of channels in a unit.
+// Returns the largest range of the channels with this unit.
 double largest_spread(const std::string& unit, const RunResult& run) {
   double largest = 0.0;
   for (const ChannelRange& range : run.ranges)
@@ -93,8 +93,8 @@ double largest_spread(const std::string& unit, const RunResult& run) {
   return largest;
 }
 
-// Does a slid distance of the element depend on which of the runs is asked? Friction of a joint's coordinate has none: its
-// rate of slip tells.
+// Returns true if a slid distance of the element differs clearly between the two runs. Joint friction has no slid distance; its slip rate
+// is compared instead.
 bool changes_slide(const std::string& element, const System& system, const RunResult& run, const RunResult& finer) {
   double size = 0.0;
   for (const BodyData& body : system.bodies)
@@ -111,7 +111,7 @@ bool changes_slide(const std::string& element, const System& system, const RunRe
   return false;
 }
 
-// Which of the criteria that only one of the runs meets is the element's?
+// Returns true if a criterion of the element is met in one of the two runs only.
 bool changes_verdict(const std::string& element, const Judgement& judgement, const Judgement& finer) {
   for (const CriterionResult& mine : judgement.criteria)
     for (const CriterionResult& other : finer.criteria) {
@@ -121,7 +121,7 @@ bool changes_verdict(const std::string& element, const Judgement& judgement, con
   return false;
 }
 
-// A run and its finer run that tell different stories: which of them is right is not known, unless two references agree.
+// Describes the first slip that only one run has and that matters. Without two agreeing references it is not known which run is right.
 std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer, const System& system, const RunResult& run,
                               const GlobalErrorEstimate& estimate) {
   for (const LoneSlip& slip : lone_slips(run, estimate.finest)) {
@@ -161,7 +161,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
       if (c.name == mine.name && c.text == mine.text) return &c;
     return nullptr;
   };
-  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate); // before doubts change outcomes
+  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate); // before doubts change the outcomes
   for (std::size_t i = 0; i < judgement.criteria.size(); ++i) {
     CriterionResult& c = judgement.criteria[i];
     set_errors(c, system, run, estimate);

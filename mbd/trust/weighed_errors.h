@@ -1,10 +1,8 @@
-// A judgement weighed by the errors of its numbers (mbd/trust/global_error.h): what a criterion is worth whose value is known
-// to so many digits only.
+// Takes the errors of a run's numbers (mbd/trust/global_error.h) into account in its judgement.
 //
-// A criterion that is met, but whose error reaches the limit, is not: nor is it one to inspect the machine for, since
-// nothing is known to be wrong with it. It is *open*, and a run at a smaller tolerance or step decides. The same goes
-// for one whose error is unknown, and for one that a finer run does not meet. A criterion that is not met stays so,
-// even where the error reaches back to the limit: that is said beside it.
+// A criterion that is met, but whose limit lies within the error, becomes *open*: a run at a smaller tolerance or step decides. It does not
+// mean "inspect", since no fault is known. A criterion also becomes open if its error is unknown or if a finer run does not meet it. A
+// criterion that is not met stays so, even if the limit lies within the error; this is reported in `doubt`.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -13,17 +11,17 @@
 
 namespace steplap {
 
-/// Gives every criterion its error, and takes back those that are met within it only. A run whose motion is known to
-/// less than a tenth of its range is not to be trusted, nor one in which something slips that holds in the finer run, or
-/// the other way round, where a verdict or a tenth of a slid distance depends on it.
+/// Sets the error of every criterion, and sets those to open that are met only within their error. The run is not to be trusted if its
+/// motion is known to less than a tenth of its range, or if an element slips in the run and sticks in the finer run, or the reverse, and a
+/// verdict or a tenth of a slid distance depends on it.
 void weigh_errors(Judgement& judgement, const Model& model, const System& system, const RunResult& run,
                   const GlobalErrorEstimate& estimate);
-/// Of a run whose error should have been estimated and could not: no criterion can be called met.
+/// Sets all criteria that are met to open, because the error of the run could not be estimated.
 void leave_open(Judgement& judgement, const std::string& why);
 
-/// The error of a channel by its name; nullptr if there is no such channel.
+/// Returns the error of the channel with that name; nullptr if there is no such channel.
 [[nodiscard]] const ChannelError* find_error(const std::string& channel, const System& system, const GlobalErrorEstimate& estimate);
-/// The error of the time, s, of an event of the element at exactly `t`; empty if there is none.
+/// Returns the error of the time of the element's event at exactly `t`, s; empty if there is no such event.
 [[nodiscard]] std::optional<double> event_error(const std::string& element, double t, const RunResult& run,
                                                 const GlobalErrorEstimate& estimate);
 
