@@ -1,4 +1,4 @@
-// Where an element that sticks is held: its rows have the values there as their targets from then on.
+// Stores the position at which a friction element begins to stick. Its rows keep the values of that pose as targets.
 #pragma once
 
 #include "mbd/system/one_sided_row.h"
@@ -6,10 +6,10 @@
 
 namespace steplap {
 
-/// Anchors the rows of friction element f at the pose of `motion`, one a slot.
+/// Anchors the rows of friction element f at the pose of `motion`; each row has its own memory slot.
 inline void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
   const FrictionElement& friction = *system.frictions[f].friction;
-  if (one_sided_row(friction)) return; // held at its length, wherever it is
+  if (one_sided_row(friction)) return; // a rope is held at its length, whatever the pose
   const RowSpec* const rows = friction.rows(state.friction[f]);
   for (int r = 0; r < friction.dimension(); ++r)
     if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion).value;

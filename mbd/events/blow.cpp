@@ -14,26 +14,26 @@ namespace steplap {
 namespace {
 
 constexpr double k_projection_tolerance = 1e-12; // m, rad
-// Ropes that are this near to their lengths, of these, share a blow, whether or not they lengthen before it: as far as a
-// flight that is none.
+// Ropes that are closer to their lengths than this, relative to the length, take part in an impact whether or not they lengthen before it.
+// Such a gap is rounding.
 constexpr double k_same_length = 1e-9;
 constexpr double k_rounded_share = 1e-13;
-// Of its length: a taut rope that would leave it by no more than this before it is pulled back stays taut, if its tension lets
-// it. Two ropes that are caught in turn, each blow shortening the other, would else come to rest after infinitely many ever
-// smaller blows; and no nearer than the dead band, which gives each flight a little speed.
+// Largest flight of a rope after an impact, relative to its length, that is suppressed: the rope stays taut if its tension allows.
+// Otherwise two ropes that become taut in turn would come to rest only after infinitely many ever smaller impacts; the dead band would even
+// maintain a small speed.
 constexpr double k_shortest_flight = 1e-9;
 
 double rest_rate(const OneSidedRow& rope, const std::vector<Motion<double>>& motion) {
   return k_rest_velocity + k_rest_share * rope.speed(motion.data());
 }
 
-// What can take a part in a blow, and what impulses along its row it can give.
+// Elements that may take part in an impact, with the bounds of their impulses.
 struct Struck {
   std::vector<int> elements;
   std::vector<double> rate, rounding, lower, upper;
-  std::vector<double> acceleration; ///< with nothing of it acting
+  std::vector<double> acceleration; ///< acceleration without any of these elements
 
-  void add(int f, double at_rate, double rounding_of_it, int refuses) { // the impulse is against the rate that is refused
+  void add(int f, double at_rate, double rounding_of_it, int refuses) { // the impulse acts against the direction that the element prevents
     constexpr double k_any = std::numeric_limits<double>::infinity();
     elements.push_back(f);
     rate.push_back(at_rate);
@@ -45,7 +45,7 @@ struct Struck {
 
 struct LockRate {
   int refuses = 0;
-  double rate = 0.0, rounding = 0.0, rest = 0.0; ///< rad/s
+  double rate = 0.0, rounding = 0.0, rest = 0.0; ///< rad/s; rest: largest rate that counts as zero
   [[nodiscard]] bool is_against() const { return refuses * rate > rest; }
 };
 
@@ -56,7 +56,8 @@ LockRate rate_of(const OneWayLock& lock, const FrictionState& friction, const st
   return {lock.refuses(), m.rate, k_rest_velocity + k_rounded_share * speed, rest_rate(row, m, motion.data())};
 }
 
-// Ropes at their length, and clutches, whose lock may be reached by any blow.
+// Returns the ropes at their length, and all clutches, since an impact may drive any of them against its lock. Returns nothing if there is
+// no impact.
 Struck struck_in(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -97,7 +98,7 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
                        {system.element_names[system.frictions[struck.elements.front()].element]});
 }
 
-// What holds in the modes of `state` is met by its places and velocities.
+// Projects positions and velocities onto everything that is held in the modes of `state`.
 void meet(Dynamics& dynamics, State& state) {
   std::vector<double> y(static_cast<std::size_t>(dynamics.system().largest_dimension()));
   dynamics.set_state(state);
@@ -113,7 +114,7 @@ bool is_any_driven(const System& system) {
   return false;
 }
 
-// A clutch that gives an impulse is locked behind the blow, at the angle that it has.
+// Locks a clutch that took an impulse, at its present angle, and records the impulse.
 void note_lock(const OneWayLock& lock, int f, double impulse, double rate, State& state, State& after) {
   if (!(std::abs(impulse) > 0.0)) return;
   state.memory[lock.blow] = std::abs(impulse);
@@ -126,7 +127,7 @@ void note_lock(const OneWayLock& lock, int f, double impulse, double rate, State
   after.memory[row.memory] = evaluate_row<false>(row, motion.data()).value;
 }
 
-// No impulse does that which drives and joints do not let it.
+// Throws if joints and drives turn a clutch against its lock, which no impulse can prevent.
 void check_locks(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -140,14 +141,15 @@ void check_locks(const System& system, const State& state) {
   }
 }
 
-// What slips beyond a bound bears none of a blow.
+// Releases friction, which takes no part of an impact.
 void free_friction(const System& system, State& state) {
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
     if (!system.frictions[f].friction->never_slips() && state.friction[f].phase != FrictionPhase::apart)
       state.friction[f].phase = FrictionPhase::free;
 }
 
-// Dissipation and work of a blow that leaves `after`: of the change of velocities where drives move, else what motion has lost.
+// Adds dissipation and work of the impact that leads to `after`. With moving drives the dissipation is the kinetic energy of the velocity
+// change, else the loss of kinetic energy.
 void book_blow(const System& system, bool is_driven, State& after, State& state) {
   const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
   State jump = after;

@@ -1,13 +1,15 @@
-// The blow when inextensible ropes reach their length, or one-way clutches would turn against their lock: velocities jump, places do
+// Impact of inextensible ropes that become taut, and of one-way clutches that are turned against their lock. Velocities jump, positions do
 // not.
 //
-// Impulses Λ ≥ 0 along the ropes that are taut or at their length, and of all clutches, with u their rates of lengthening, or of
-// turning against the lock, before:
-//   u⁺ = u − A Λ ≤ 0,  Λᵀu⁺ = 0,  A = J P Jᵀ, P the inverse mass under what holds (joints, drives)
-// without restitution: a rope that bears a part of the blow lengthens no more, a clutch that does is locked. What gives forces only
-// bears none of it: springs, contacts, and friction, whose bound is a multiple of a force (what sticks may slide behind the blow),
-// and a clutch whose couple has a bound. What is lost, ½ Δvᵀ M Δv = ½ Λᵀu, is dissipated; what drives that move give beside that is
-// their work.
+// Impulses Λ ≥ 0 act along all ropes at their full length and on all clutches. With u the rates of lengthening (or of turning against the
+// lock) before the impact and u⁺ those after it:
+//   u⁺ = u − A Λ ≤ 0,  Λᵀu⁺ = 0,  A = J P Jᵀ,
+// where P is the inverse mass matrix under the constraints of joints and drives. There is no restitution: a rope with Λ > 0 does not
+// lengthen afterwards, a clutch with Λ > 0 is locked.
+//
+// Elements whose force is bounded take no part of the impulse: springs, contacts, clutches with a bounded torque, and friction, whose bound
+// is a multiple of a finite force (a sticking element may slide after the impact). The energy ½ Δvᵀ M Δv = ½ Λᵀu is dissipated. With moving
+// drives, the rest of the change of energy is their work.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -18,26 +20,27 @@
 
 namespace steplap {
 
-/// The detail of an action's event ends with these words, behind the energy, if joints that it closed took a blow.
+/// End of the event text of an action that closed joints with an impact; the energy precedes it.
 inline constexpr std::string_view k_with_a_blow = " J lost in a blow";
 
-/// Ropes at the pose of `state`, as a run begins: taut at their length unless they shorten, else slack. True if some would
-/// lengthen beyond it, which takes a blow. Throws where one is too short for its pose.
+/// Sets the ropes at the start of a run: taut if they are at their length and do not shorten, else slack. Returns true if a taut rope
+/// lengthens, which requires take_blow(). Throws ElementFailure if the ends of a rope are further apart than its length.
 [[nodiscard]] bool set_ropes(const System& system, State& state);
 
-/// Changes velocities, the ropes' phases, memories, dissipated energy and work; phases of friction are left as they were, those of
-/// clutches too: whether they are locked is seen by their rates.
+/// Applies the impact. Changes velocities, phases of ropes, memories, dissipated energy and work. Phases of friction and clutches stay
+/// unchanged; the caller decides them from the new velocities. Throws ElementFailure if the impulses cannot be determined or drives turn a
+/// clutch against its lock.
 void take_blow(const System& system, Dynamics& dynamics, State& state);
 
-/// Do the bodies of some clutch turn against its lock, by more than counts as rest? That takes a blow.
+/// Returns true if the bodies of some clutch turn against its lock faster than counts as rest. This requires take_blow().
 [[nodiscard]] bool turns_against_lock(const System& system, const State& state);
 
-/// The blow when joints and drives close that did not act before: their rows' rates jump to what they hold, as the least change of
-/// velocities in the measure of the kinetic energy does it, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction bears none of it, nor do
-/// ropes and clutches: take_blow() comes after it. ½ Δvᵀ M Δv is dissipated; what moving drives give beside that is their work.
+/// Applies the impact of joints and drives that become active: their rates jump to the prescribed ones with the least change of velocities
+/// in the metric of kinetic energy, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction, ropes and clutches take no part; call take_blow()
+/// afterwards. The energy ½ Δvᵀ M Δv is dissipated; the rest of the change of energy is work of moving drives.
 void close_rows(const System& system, Dynamics& dynamics, State& state);
 
-/// Of the last blow that a rope or a clutch took; `before`: the memory as it was then.
+/// Impact of a rope or clutch since the memory was `before`: was there one, and its impulse and energy loss as text (empty if none).
 [[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
 [[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
 

@@ -10,10 +10,10 @@ namespace steplap {
 
 namespace {
 
-// Rows of A, scaled to a diagonal of 1, that are beyond the others by less than this depend on them.
-constexpr double k_dependent = 1e-12; // a square: SchurSolver::k_dependent
-constexpr double k_rounding = 1e-13;  // of the terms of g_i
-constexpr int k_most_steps = 2;       // to the minimum of one set of free variables: what these leave is rounding
+// Rows of A, scaled to a diagonal of 1, count as dependent if their part independent of the other rows is smaller.
+constexpr double k_dependent = 1e-12; // squared length, as in SchurSolver::k_dependent
+constexpr double k_rounding = 1e-13;  // relative to the terms of g_i
+constexpr int k_most_steps = 2;       // steps to the minimum for one set of free variables; what remains afterwards is rounding
 
 class ActiveSet {
 public:
@@ -38,10 +38,10 @@ private:
   [[nodiscard]] double tolerance(Eigen::Index i) const {
     return rounding_[i] + k_rounding * (a_.row(i).cwiseAbs().dot(w_.cwiseAbs()) + std::abs(b_[i]));
   }
-  // Is g_i no rounding?
+  // Returns true if g_i exceeds its rounding.
   [[nodiscard]] bool pulls(Eigen::Index i, double g) const { return std::abs(g) > tolerance(i); }
 
-  // Of the free variables: to their minimum, or as far as bounds let them. False if they are there already.
+  // Moves the free variables to their minimum, or up to the first bound. Returns false if they are there already.
   bool move_free() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < n_; ++i)
@@ -58,8 +58,8 @@ private:
       for (Eigen::Index j = 0; j < m; ++j) own(i, j) = scale[i] * scale[j] * a_(free[i], free[j]);
     }
     VecX direction = shortest_solution(own, right, k_dependent);
-    const VecX left = right - own * direction; // in the null space, if not rounding
-    // First to the minimum where there is one: as long as the way there is far, what is left is its rounding, too.
+    const VecX left = right - own * direction; // component in the null space of A, or rounding
+    // Go to the minimum first. As long as it is far, the residual `left` may be its rounding rather than a direction of unbounded decrease.
     bool is_near = steps_to_minimum_ >= k_most_steps, is_endless = false, is_far = false;
     for (Eigen::Index i = 0; i < m; ++i) {
       is_far = is_far || pulls(free[i], (right[i] - left[i]) / scale[i]);
@@ -92,7 +92,7 @@ private:
     return true;
   }
 
-  // The variable at its bound that is pulled back inside most.
+  // Frees the variable whose g points from its bound to the inside most strongly. Returns false if there is none.
   bool release_one() {
     const VecX g = gradient();
     Eigen::Index worst = -1;
@@ -114,7 +114,7 @@ private:
   const VecX &b_, &lower_, &upper_, &rounding_;
   Eigen::Index n_;
   VecX w_;
-  int steps_to_minimum_ = 0;          ///< of the present set
+  int steps_to_minimum_ = 0;          ///< for the present set of free variables
   std::vector<signed char> at_bound_; ///< −1, 1: at the lower or upper bound; 0: free
 };
 

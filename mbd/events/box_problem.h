@@ -1,12 +1,13 @@
-// Convex quadratic problems with bounds: min ½ wᵀA w + bᵀw over |w_i| ≤ c_i, A symmetric and positive semidefinite; or
-// over lower_i ≤ w_i ≤ upper_i, of which one may be infinite (ropes: they pull without bound and never push).
+// Convex quadratic problem with bounds: min ½ wᵀA w + bᵀw over |w_i| ≤ c_i, or over lower_i ≤ w_i ≤ upper_i, one of which may be infinite
+// (the tension of a rope has a lower bound of zero only). A is symmetric and positive semidefinite.
 //
-// The dual of the mode problem for friction of one dimension: A the compliance of the candidates' rows, b their
-// relative acceleration without friction, g = A w + b the one with it. A solution has g_i = 0 where |w_i| < c_i, and
-// g_i against w_i where it is at its bound. A may be singular, as rows depend on each other (two feet of one body) or on
-// driven coordinates (a zero row): g is unique all the same, and where no w within the bounds makes g_i vanish, i slides.
+// It is the dual of the mode problem for one-dimensional friction: A is the compliance of the rows of the candidates, b their relative
+// acceleration without friction, and g = A w + b the one with friction. In the solution g_i = 0 if |w_i| < c_i (stick), and g_i is opposed
+// to w_i at its bound (slip). A may be singular: rows may be dependent (two feet of one body) or act on driven coordinates (a zero row). g
+// is still unique. If no w within the bounds makes g_i vanish, element i slides.
 //
-// Primal active-set method: exact after finitely many changes of the set; free variables move to their common
+// Method: primal active set, exact after finitely many changes of the set. Free variables move to their common minimum. If the objective is
+// unbounded below, they move along the direction of decrease to the next bound.
 // minimum or, where there is none, along the direction in which the objective falls without end, to the next bound.
 #pragma once
 
@@ -16,16 +17,17 @@
 
 namespace steplap {
 
+/// Solution of the problem.
 struct BoxSolution {
   VecX w;                    ///< minimiser
   VecX g;                    ///< A w + b
-  std::vector<char> is_free; ///< g_i = 0: not held at its bound by g_i
-  bool is_solved = false;    ///< false: the set of bounds repeated itself
+  std::vector<char> is_free; ///< g_i = 0 up to rounding: the variable is not pressed against a bound
+  bool is_solved = false;    ///< false: the active sets repeated (by rounding) and no solution was found
 };
 
-/// `rounding`: how much of b_i is not known.
+/// Solves the problem with |w_i| ≤ c_i. `rounding`: error of each b_i.
 [[nodiscard]] BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding);
-/// lower ≤ 0 ≤ upper.
+/// Solves the problem with separate bounds. Precondition: lower ≤ 0 ≤ upper.
 [[nodiscard]] BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& lower, const VecX& upper, const VecX& rounding);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// EventFinder: the root inside a bracket, to the rounding of the values.
+// EventFinder: locates the root inside a bracket to rounding.
 #include "mbd/events/event_finder.h"
 
 #include <algorithm>
@@ -11,22 +11,22 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_looks = 130;
-constexpr int k_free_looks = 60;           // halving alone from then on: the last 70 close any bracket
-constexpr int k_patience = 6;              // looks that need not halve the bracket
-constexpr double k_least_reach = 4.0;      // in spacings of t;
-constexpr double k_tolerance_share = 1e-6; // … or of the tolerance, by which the motion is off anyway: in parts of the step;
-constexpr double k_most_tolerance = 1e-3;  // larger ones are given to have steps of a fixed length
-constexpr double k_unexpected = 16.0;      // times the error expected
-constexpr double k_most_rounding = 1e-8;   // of the step: beyond it an error is not rounding
-constexpr double k_wider = 8.0;            // a reach that did not find the other side
-constexpr int k_polish = 3;                // secants inside a bracket that was closed by a wider reach
-constexpr double k_closed = 4.0;           // a bracket of so many times its ends' uncertainty
+constexpr int k_free_looks = 60;           // after these only bisection is used; the remaining 70 close any bracket
+constexpr int k_patience = 6;              // evaluations that need not halve the bracket
+constexpr double k_least_reach = 4.0;      // in spacings of t, the difference of neighbouring floating-point times
+constexpr double k_tolerance_share = 1e-6; // share of the tolerance, relative to the step: errors of the motion are larger anyway
+constexpr double k_most_tolerance = 1e-3;  // larger tolerances only serve to get steps of a fixed length
+constexpr double k_unexpected = 16.0;      // factor on the expected error; a larger change of the estimate is rounding
+constexpr double k_most_rounding = 1e-8;   // in θ; a larger change is not rounding
+constexpr double k_wider = 8.0;            // factor on the half-width if the root is not inside
+constexpr int k_polish = 3;                // secant steps inside a bracket that needed a larger half-width
+constexpr double k_closed = 4.0;           // width of a closed bracket, in half-widths
 
 } // namespace
 
-// What is known of the fired values so far goes into polynomials; the first of their roots is looked at next.
-// Once that is known to the spacing of t, a millionth of the tolerance, or the rounding of the values, a look beyond it
-// closes the bracket, if the values there and their slopes say that the root lies as near as that; else one on either side.
+// Root finding. Polynomials through all samples of the fired functions estimate the next root. Once the estimate is known to the spacing of
+// t, a millionth of the tolerance, or the rounding of the values, one sample just beyond it closes the bracket, if its value and slope show
+// that the root is that near. Otherwise one sample on either side does.
 void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
   const double spacing =
       2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
@@ -40,13 +40,13 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
   for (int looks = 0; looks < k_max_looks; ++looks) {
     const double width = high_.theta - low_.theta;
     if (width <= std::max(spacing, k_closed * at_first.reach)) return;
-    // What reach was needed may have been too wide for what there is of rounding.
+    // A half-width that was increased may be larger than rounding, so the bracket is refined by secants.
     const bool is_closed = looks < k_free_looks && aim_.is_settled && width <= k_closed * aim_.reach;
     if (is_closed && polished++ == k_polish) return;
     double theta = 0.5 * (low_.theta + high_.theta);
     const bool is_known_beyond = high_.theta - aim_.root <= 2.0 * aim_.reach;
     const bool is_below = is_known_beyond && aim_.root - low_.theta > high_.theta - aim_.root;
-    // A kink or a pole inside the bracket cannot stall the search for long.
+    // A kink or a pole inside the bracket must not stall the search: bisection follows after k_patience evaluations.
     if (is_closed) theta = first_secant();
     else if (aim_.is_settled && looks < k_free_looks) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
     else if (since_halved < k_patience && looks < k_free_looks) theta = next_look(theta);
@@ -61,17 +61,18 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     if (!is_beyond) fired_ = fired_before_;
     std::swap(is_beyond ? high_ : low_, middle_);
     if (is_beyond && aim_.is_settled && is_root_just_before(high_, k_closed * at_first.reach)) return;
-    if (aim_.is_settled && !is_closed && is_beyond == is_below) { // not yet on the other side
+    if (aim_.is_settled && !is_closed && is_beyond == is_below) { // the root is still on the same side
       aim_.root = theta;
       aim_.reach *= k_wider;
-      if (aim_.reach > k_most_rounding) aim_ = at_first; // it was not settled
+      if (aim_.reach > k_most_rounding) aim_ = at_first; // the estimate had not converged
     }
     since_halved = high_.theta - low_.theta < 0.5 * halved ? 0 : since_halved + 1;
     if (since_halved == 0) halved = high_.theta - low_.theta;
   }
 }
 
-// By the slopes of the values that have fired, or where they are not known, of their chords over the bracket.
+// Returns true if the roots of all fired functions lie within `reach` before the sample, by their slopes, or by chords over the bracket if
+// slopes are unknown.
 bool EventFinder::is_root_just_before(const Look& beyond, double reach) const {
   return std::all_of(fired_.begin(), fired_.end(), [&](int slot) {
     const double chord = (beyond.watch[slot] - low_.watch[slot]) / (beyond.theta - low_.theta);
@@ -83,11 +84,11 @@ bool EventFinder::is_root_just_before(const Look& beyond, double reach) const {
 double EventFinder::first_secant() const {
   double share = 1.0;
   for (const int slot : fired_) share = std::min(share, low_.watch[slot] / (low_.watch[slot] - high_.watch[slot]));
-  // Not too near an end, where rounding has made the value what it is.
+  // Keep away from the ends, where the values are rounding.
   return low_.theta + std::clamp(share, 0.1, 0.9) * (high_.theta - low_.theta);
 }
 
-// `middle`: where no estimate can be made.
+// Returns the next estimate of the first root; `middle` if none can be made.
 double EventFinder::next_look(double middle) {
   double theta = high_.theta;
   for (const int slot : fired_) {
@@ -101,8 +102,8 @@ double EventFinder::next_look(double middle) {
     theta = std::min(theta, estimate_.root(low_.theta, high_.theta, 0.25 * aim_.reach));
   }
   if (std::isnan(theta)) return middle;
-  // The last look was at such a root too, and off by the distance to this one; how much nearer that is than the
-  // last distance tells how near the next one would be. A distance larger than was to be expected is rounding.
+  // The previous sample was at an estimate too, so the distance between the estimates is its error. The ratio of this error to the one
+  // before predicts the error of the present estimate. A distance much larger than predicted is rounding.
   const double distance = std::abs(theta - aim_.root);
   if (aim_.looks >= 3 && distance > k_unexpected * aim_.expected && distance < k_most_rounding) {
     aim_.reach = std::max(aim_.reach, 2.0 * distance);

@@ -9,9 +9,9 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_usual_parts = 128; // as many as a survey may hold without allocating
-// Times what steps were off the joints before they were projected: inside a step dense output is no nearer to them, and what is
-// measured on longer levers than between the joints is off by more.
+constexpr int k_usual_parts = 128; // number of parts that a survey holds without allocation
+// Factor on the constraint residual before projection. Dense output inside a step has the same error in the joints, and larger ones in
+// measurements with longer levers.
 constexpr double k_off_joints = 10.0;
 
 } // namespace
@@ -47,7 +47,7 @@ void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double th
   for (double& rate : look.rate) rate *= integrator.h();
 }
 
-// An end of the step.
+// Takes the stored sample at the start or end of the step.
 void EventFinder::look_at_end(const Integrator& integrator, bool is_last, Look& look) {
   look.theta = is_last ? 1.0 : 0.0;
   look.watch = is_last ? integrator.watch1() : integrator.watch0();
@@ -55,7 +55,7 @@ void EventFinder::look_at_end(const Integrator& integrator, bool is_last, Look& 
   for (double& rate : look.rate) rate *= integrator.h();
 }
 
-// Is this a value of a joint that holds inside a cluster? Those are not looked at by every stage.
+// Returns true if the slot belongs to a joint inside a cluster; these are not evaluated at every stage.
 bool EventFinder::is_merged(const Dynamics& dynamics, int slot) {
   if (!are_merged_known_) {
     std::fill(merged_.begin(), merged_.end(), 0);
@@ -80,8 +80,8 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const Dyna
     const WatchedStep watched{
         i, is_merged(dynamics, i), is_of_joint_[i] != 0, {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]}};
     if (w1 < 0.0) {
-      // A plain crossing. A value that is fresh, or negative from the start (rounding, or the projection at another
-      // event), has to be followed.
+      // A simple sign change. A function that is fresh, or negative at the start (rounding, or the projection at another event), must be
+      // surveyed.
       const bool is_plain = !fresh[i] && w0 >= 0.0 && nodes.crosses_once(watched);
       worst = std::max(worst, is_plain ? Suspicion::at_end : Suspicion::inside);
       if (!is_plain) near_.push_back(i);
@@ -94,7 +94,7 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const Dyna
   return worst;
 }
 
-// Slots that were believed positive in `low` and are negative in `high` go to fired_.
+// Puts armed slots that are ≥ 0 in `low` and negative in `high` into fired_.
 bool EventFinder::crosses(const Look& low, const Look& high) {
   fired_.clear();
   for (int i = 0; i < slots_; ++i)
@@ -122,7 +122,7 @@ void EventFinder::set_slack(const Integrator& integrator, const Dynamics& dynami
   for (const int slot : place_slots_) slack_[slot] = place_slack;
 }
 
-// Joints that are merged and certain to hold through the step need not be looked at in it.
+// Returns true if a joint inside a cluster may slip in this step. If not, such joints need no evaluation in it.
 bool EventFinder::is_any_merged_near(const Integrator& integrator, const Dynamics& dynamics) const {
   const std::vector<int>& merged = dynamics.layout().merged;
   return std::any_of(merged.begin(), merged.end(), [&](int f) {
@@ -150,8 +150,8 @@ bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::ve
   is_merged_near_ = is_any_merged_near(integrator, dynamics);
   Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh) : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;
-  // What lies below zero by less than its slack where the bracket begins, and does not come up again, has passed zero before: there
-  // the event is. What was not above at the start is left at once.
+  // A function between −slack_ and zero at the start of the bracket that does not recover has passed zero before; the event is there. A
+  // function that was negative at the start of the step ends its mode at once.
   const auto has_passed = [&](int slot) {
     return armed_[slot] != 0 && fresh[slot] == 0 && integrator.watch0()[slot] >= 0.0 && low_.watch[slot] < 0.0;
   };

@@ -17,13 +17,14 @@ namespace steplap {
 namespace {
 
 constexpr double k_projection_tolerance = 1e-12; // m, rad
-// Rows that rest together one way only, as nearly parallel ones do (two feet of a box that is not quite level), take
-// what is left of one's slip from the motion many times over. More than this is no rest.
+// Limit of rest, as the ratio of the velocity change by settle() to the remaining slip rate. Two rows can be nearly parallel without being
+// equal, such as those of two feet of a slightly tilted box: holding both then stops the rotation too, and a remaining slip rate ε changes
+// velocities by ε divided by the small angle. A change of more than 1000 ε is real motion, so the slip has not ended.
 constexpr double k_most_taken = 1e3;
-// Share of its bound by which friction has to be inside the bound to hold for certain: a thousand times what wrenches are known to.
+// Least margin, relative to the bound, of friction that certainly sticks; a thousand times the accuracy of wrenches.
 constexpr double k_inside = 1e-9;
 
-// What holds of one dimension: fills in f(row, its measure).
+// Calls f(row, its measure) for each sticking element of dimension 1.
 template <class F> void for_each_held(const System& system, const State& state, const std::vector<Motion<double>>& motion, const F& f) {
   for (std::size_t i = 0; i < system.frictions.size(); ++i) {
     const FrictionElement& friction = *system.frictions[i].friction;
@@ -33,8 +34,8 @@ template <class F> void for_each_held(const System& system, const State& state, 
   }
 }
 
-// Are the velocities that setting to rest has taken those of what was left of slips? Else a slip has not ended: velocities
-// are known no better than that it may have turned, and what turned it goes on.
+// Returns true if settling changed velocities only by the order of the remaining slip rates (k_most_taken). If not, the slip has not ended:
+// the sign change of the slip rate was an error of the velocities.
 bool is_slight(const System& system, const State& before, const State& after) {
   std::vector<Motion<double>> motion;
   double left = 0.0, taken = 0.0;
@@ -51,15 +52,15 @@ bool is_slight(const System& system, const State& before, const State& after) {
   return taken <= k_most_taken * left;
 }
 
-// Several elements have reached what they bear at one instant, and all were let go. Where some of them do slide, what the kinetic
-// coefficient takes from their force may relieve the others: these have no rate to begin with, and hold as `before`. One that is not
-// inside its static bound then is let go for good, so that no set of modes is tried twice.
+// Several elements reached their bounds at the same instant and all were released. Those that slide drop from μ_s to μ_k, and this may
+// unload others. An unloaded element has no slip rate yet and returns to the phase in `before`. If it is then not inside its static bound,
+// it is released for good, so no set of modes is tried twice.
 void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& modes, const std::vector<FrictionState>& before, State& state) {
   std::vector<int> begun, relieved;
   const LoadSharing* const sharing = dynamics.sharing();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const bool is_let_go = before[f].phase == FrictionPhase::stick && state.friction[f].phase == FrictionPhase::slip;
-    const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // a group is let go as a whole
+    const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // a group is released as a whole
     if (is_let_go && is_alone && system.frictions[f].friction->dimension() == 1 && !one_sided_row(*system.frictions[f].friction))
       begun.push_back(static_cast<int>(f));
   }
@@ -70,7 +71,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
     dynamics.slip_motion(f, modes.rates(), &rate, &acceleration, &rounding);
     if (!(state.friction[f].sign * acceleration > rounding)) relieved.push_back(f);
   }
-  if (relieved.size() == begun.size()) return; // with no kinetic coefficient below the static one all begin without acceleration
+  if (relieved.size() == begun.size()) return; // if no μ_k is below μ_s, all begin without acceleration and stay released
   const std::vector<FrictionState> released = state.friction;
   while (!relieved.empty()) {
     state.friction = released;
@@ -87,7 +88,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
 
 } // namespace
 
-// Of dimension 1 the event functions are bound ∓ λ, of dimension 3 the first is 1 − u.
+// The event functions are bound ∓ λ in one dimension; in three dimensions the first one is 1 − u.
 double share_of_bound(const FrictionUnit& unit, const std::vector<double>& watch) {
   const double one = watch[unit.watch], other = watch[unit.watch + 1];
   return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;
@@ -112,8 +113,8 @@ void EventHandler::slip_rates(const State& state, int f, double* rate) {
   for (int r = 0; r < friction.dimension(); ++r) rate[r] = evaluate_row<false>(rows[r], motion_.data()).rate;
 }
 
-// Element f has got its normal force: at the place that the pose asks for (it is not watched while there
-// is no force), anchored there, at rest or sliding as the bodies move.
+// Element f has gained its normal force. Sets its contact point by the pose (it was not monitored without force), the anchor there, and its
+// phase: sticking or sliding as the bodies move.
 void EventHandler::load(State& state, int f) {
   FrictionState& friction = state.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
@@ -135,13 +136,13 @@ void EventHandler::load(State& state, int f) {
   element.aim(friction, rate);
 }
 
-// While a rigid joint slides, its two bodies move against each other: layouts that merge them are stale.
+// Layouts that merge the two bodies of a rigid joint are invalid after the joint has slid.
 void EventHandler::forget_moved_layouts(const State& state) {
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
     if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid()) return dynamics_.forget_layouts();
 }
 
-// Joints and drives alone, friction let go: which friction slides depends on the velocities they leave.
+// Projects the state onto joints and drives with all friction released. Which elements slide depends on the resulting velocities.
 void EventHandler::meet_constraints(State& state) {
   for (FrictionState& friction : state.friction)
     if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
@@ -167,7 +168,7 @@ void EventHandler::start(State& state) {
   if (is_any_tight || turns_against_lock(system_, state)) {
     take_blow(system_, dynamics_, state);
     modes_.evaluate(state);
-    begin_units(state); // the blow changes velocities, on which modes of dampers and of formulas depend
+    begin_units(state); // the impact changes velocities, on which modes of dampers and formulas depend
   }
   modes_.evaluate(state);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
@@ -180,7 +181,8 @@ void EventHandler::start(State& state) {
   modes_.forget_evaluation();
   (void)modes_.decide(state);
   const auto slips = [](const FrictionState& friction) { return friction.phase == FrictionPhase::slip; };
-  if (std::any_of(state.friction.begin(), state.friction.end(), slips)) modes_.evaluate(state); // decide() may end with a trial
+  if (std::any_of(state.friction.begin(), state.friction.end(), slips))
+    modes_.evaluate(state); // decide() may end with the evaluation of a trial state
   clear_fresh();
 }
 
@@ -190,7 +192,7 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std
     const int u = unit_of_slot_[slot];
     if (u < 0) continue;
     const Unit& unit = system_.units[u];
-    // Inside a step the joints are met to its tolerance only: what is no kink where they are met was none.
+    // Inside a step, joints are satisfied only to its tolerance. An event function that is not zero once they are satisfied was no event.
     if (unit.group->watch_kind(slot - unit.watch) != WatchKind::exact && dynamics_.watch()[slot] > 0.5 * k_met) continue;
     const UnitMode from = state.mode[u];
     const UnitMode to = unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
@@ -212,7 +214,7 @@ void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t,
   const Unit& unit = system_.units[u];
   const EventKind kind = unit.group->transition(from, to);
   if (kind != EventKind::none) events.push_back({t, system_.element_names[unit.element], kind});
-  const EventKind slide = sliding_of(*unit.group, to); // it closes, and slides from there
+  const EventKind slide = sliding_of(*unit.group, to); // a contact that closes and slides at once
   if (!is_slip(kind) && slide != EventKind::none && slide != sliding_of(*unit.group, from))
     events.push_back({t, system_.element_names[unit.element], slide});
 }
@@ -220,7 +222,7 @@ void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t,
 void EventHandler::fire_friction(State& state, int f, int slot) {
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
-  if (one_sided_row(*unit.friction)) { // slack from here on; one that has reached its length is struck
+  if (one_sided_row(*unit.friction)) { // The rope becomes slack. Ropes that become taut are handled by an impact.
     friction.phase = FrictionPhase::slip;
     friction.sign = 0;
   } else if (slot == unit.watch + 2) {
@@ -239,14 +241,14 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
     slip_rates(state, f, rate);
     if (unit.friction->goes_on_slipping(dynamics_.evaluation(), friction, rate, slot - unit.watch)) return;
     modes_.end_slip(state, f);
-    friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
+    friction.phase = FrictionPhase::stick; // or it reverses: the mode problem decides
     if (unit.friction->dimension() == 1) modes_.note_rest(f, rate[0]);
   }
 }
 
-// Element f acts at another place, on another point of its bodies: where that moves friction slides as it does. What held at
-// the old place cannot hold there without a blow, and what slid may slide the other way. Of a place that only stands for a
-// face, what it is wrong by is no motion.
+// The contact point of element f has moved to another point of its bodies. If that point has a velocity, the element slides with it:
+// sticking there would require an impact, and a slip may have the opposite direction. If the contact point only approximates a face, the
+// velocity error of this approximation does not count.
 void EventHandler::move_on(State& state, int f, const FrictionState& from) {
   FrictionState& friction = state.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
@@ -264,7 +266,7 @@ void EventHandler::move_on(State& state, int f, const FrictionState& from) {
   element.aim(friction, &m.rate);
 }
 
-// Friction gains or loses its normal force with contacts and signals. True if any does.
+// Updates friction elements that gained or lost their normal force by contacts or signals. Returns true if there are any.
 bool EventHandler::update_loading(State& state) {
   bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
@@ -294,7 +296,7 @@ EventKind EventHandler::slip_kind(std::size_t f, const FrictionState& old, const
   return old.phase == FrictionPhase::slip ? EventKind::slips_another_way : EventKind::slips;
 }
 
-// Is there any direction in which it takes a force to make it slide?
+// Returns true if slip needs a force in at least one direction.
 bool EventHandler::has_capacity(const State& state, std::size_t f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   for (int r = 0; r < friction.dimension(); ++r) {
@@ -321,7 +323,7 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
 
 namespace {
 
-// What a rope has done: taut, slack, or taut and slack again at once.
+// Adds the events of a rope: it became taut, slack, or taut and slack again at once.
 void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase phase_before, const std::vector<double>& memory_before,
                const State& state, std::vector<Event>& events) {
   const OneSidedRow& rope = *unit.row;
@@ -332,7 +334,7 @@ void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase pha
   if ((was_taut || is_caught) && !is_taut) events.push_back({state.t, name, EventKind::enters_gap});
 }
 
-// Slots whose values were not negative, and are.
+// Returns the slots that were ≥ 0 and are negative now.
 std::vector<int> fallen(const std::vector<double>& before, const std::vector<double>& now) {
   std::vector<int> slots;
   for (std::size_t i = 0; i < now.size(); ++i)
@@ -340,7 +342,8 @@ std::vector<int> fallen(const std::vector<double>& before, const std::vector<dou
   return slots;
 }
 
-// Watch values of units from each body's own motion: bodies that a joint is about to close on are one to an evaluation already.
+// Computes event functions of units from each body's own motion. An evaluation would already use one common motion for bodies that a joint
+// is about to connect.
 void watch_apart(const System& system, const State& state, std::vector<double>& watch) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -360,7 +363,7 @@ void watch_apart(const System& system, const State& state, std::vector<double>& 
 
 } // namespace
 
-// True if anything but a rope's tension has changed of friction f.
+// Adds events for changes of friction element f. Returns true if anything changed except a rope's tension.
 bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old, const std::vector<double>& memory_before,
                                         const State& state, std::vector<Event>& events) {
   const FrictionState& now = state.friction[f];
@@ -407,7 +410,7 @@ void EventHandler::settle_phases(State& state) {
   forget_moved_layouts(state);
   settle(state);
   (void)modes_.decide(state);
-  std::fill(fresh_.begin(), fresh_.end(), 1); // none of the watch values was followed up to here
+  std::fill(fresh_.begin(), fresh_.end(), 1); // none of the event functions was followed up to here
 }
 
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
@@ -421,7 +424,7 @@ void EventHandler::list_changes(const State& before, const State& state, std::ve
   for (std::size_t f = 0; f < state.friction.size(); ++f) (void)list_friction_change(f, before.friction[f], before.memory, state, events);
 }
 
-// Changes of units, and of friction that sticks in both states but may have slipped in between.
+// Adds changes of units, and slips of elements that stick in both states but slipped in between.
 void EventHandler::list_changes_within(const State& before, const State& state, std::vector<Event>& events) const {
   for (std::size_t u = 0; u < system_.units.size(); ++u)
     if (before.mode[u] != state.mode[u]) list_unit_change(static_cast<int>(u), before.mode[u], state.mode[u], state.t, events);
@@ -443,7 +446,8 @@ void EventHandler::fail_on_pulley(const State& state, int f) const {
   throw rope_has_run_in(state.t, system_.element_names[rope.row.element], one, next);
 }
 
-// The friction of the slots that have fired leaves its phase or place; ropes at their length are struck behind it.
+// Applies the transition of every friction slot that fired. Ropes that became taut are only reported; the caller resolves their impact.
+// Throws if a rope has run into a pulley.
 EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fired) {
   Fired found;
   const LoadSharing* const sharing = dynamics_.sharing();
@@ -460,13 +464,13 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
     }
     if (rope && slot == system_.frictions[f].watch + 1) fail_on_pulley(state, f);
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
-    if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
-    if (group >= 0) {                                                   // fires in the slots of all its elements
+    if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // the rows separate; decide() finds out how
+    if (group >= 0) {                                                   // fires in the slots of all elements of the group
       if (!is_released_[group]) modes_.release(state, group);
       is_released_[group] = 1;
       continue;
     }
-    // What both slots of an element say was said of the phase before: the first one changes it.
+    // If both slots of an element fired, only the first counts: it changes the phase to which the second belongs.
     if (slot != system_.frictions[f].watch + 2) {
       if (has_fired_[f]) continue;
       has_fired_[f] = 1;
@@ -477,7 +481,8 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
   return found;
 }
 
-// Contacts and friction behind a blow are those of the new velocities. True if a contact has changed its mode.
+// Applies an impact and updates modes of contacts and phases of friction for the new velocities. Returns true if a contact changed its
+// mode.
 bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   modes_.evaluate(state);
   std::vector<double> watch = dynamics_.watch();
@@ -506,7 +511,7 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   return is_contact_changed;
 }
 
-// What a jump has carried below zero, of units that have to follow jumps; a value that has changed sides in this event stays there.
+// Returns slots that a jump made negative, of units that follow jumps. A unit that has already switched in this event does not switch back.
 std::vector<int> EventHandler::carried(const std::vector<double>& before) const {
   std::vector<int> slots = fallen(before, dynamics_.watch());
   std::erase_if(slots, [this](int slot) {
@@ -516,8 +521,9 @@ std::vector<int> EventHandler::carried(const std::vector<double>& before) const 
   return slots;
 }
 
-// A signal jumps at its breakpoint, and a formula where one of its comparisons changes: other comparisons of it may be on their other
-// side at once, and change it further. The state is evaluated in the modes that it had; each switch changes sides once.
+// A signal jumps at a breakpoint, and a formula where one of its comparisons changes. Other comparisons of the formula may change as a
+// consequence, and so on. The state is evaluated in the previous modes, and switches are repeated until none follows. Each comparison
+// switches once at most, so this ends.
 bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_before, std::vector<Event>& events) {
   bool is_any = watch_before && switch_units(state, carried(*watch_before), events);
   const auto has_jumped = [this] {
@@ -534,8 +540,8 @@ bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_b
   }
 }
 
-// Friction alone: ropes have no bound, one-way clutches only one that counts. Event functions of elements that share a load are those of
-// their group.
+// Records ties of friction elements. Ropes have no bound and clutches rarely a relevant one, so both are excluded. Groups that share a load
+// are excluded too, since their event functions are common to all elements.
 void EventHandler::note_ties(const State& state, const std::vector<double>& watch) {
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
@@ -559,8 +565,8 @@ void EventHandler::note_ties(const State& state, const std::vector<double>& watc
   }
 }
 
-// A state is evaluated, and set to rest, once in each set of modes that is tried: twice at most events, and what the last
-// evaluation found is where the next step begins.
+// The state is evaluated and projected once for each set of modes that is tried, at most events twice. The next step starts from the last
+// evaluation.
 void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before,
                           std::vector<Event>& events) {
   clear_fresh();
@@ -581,8 +587,8 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   if (fired.size() > 1) hold_relieved(system_, dynamics_, modes_, before_, state);
   if (!fired.empty()) modes_.forget_evaluation();
   if (found.is_any_tight && strike(state, Blow::ropes, events)) is_contact_changed = true;
-  bool is_settled = false; // in the modes that it has
-  // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
+  bool is_settled = false; // the state satisfies the rows of its modes
+  // The mode problem assumes elements at rest, so the remaining rate of a slip that ended is removed first.
   if (found.is_any_at_rest) {
     const State unsettled = state;
     const double settled = settled_;
@@ -598,7 +604,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   if (may_tie) note_ties(state, watch_before_);
 }
 
-// What did not act stands in its first mode, or holds nothing: both are found here.
+// Elements that were inactive have their initial mode and do not stick. Modes and phases of all are decided here.
 void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>& events) {
   clear_fresh();
   settled_ = 0.0;
@@ -610,7 +616,7 @@ void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>&
   conclude(state, true, false, events);
 }
 
-// Modes of units are decided, and what has slipped to rest is: now all of friction is. `is_settled`: in the modes that it has.
+// Decides all friction after modes of units are known and ended slips are at rest. `is_settled`: the state satisfies the rows of its modes.
 void EventHandler::conclude(State& state, bool is_loading_changed, bool is_settled, std::vector<Event>& events) {
   if (is_loading_changed) {
     modes_.evaluate(state);
@@ -628,7 +634,7 @@ void EventHandler::conclude(State& state, bool is_loading_changed, bool is_settl
   if (!is_settled && has_new_rows(before_, state)) settle(state);
 }
 
-// Some friction holds that did not, or holds elsewhere: the state was not projected onto its rows yet.
+// Returns true if an element sticks that did not before, or at another contact point. The state is not yet projected onto its rows.
 bool EventHandler::has_new_rows(const std::vector<FrictionState>& before, const State& state) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before[f], &now = state.friction[f];
@@ -637,8 +643,7 @@ bool EventHandler::has_new_rows(const std::vector<FrictionState>& before, const 
   return false;
 }
 
-// What sticks may still have a relative velocity of the size of errors: projecting it away books what
-// is lost as dissipated.
+// Projects the state onto the sticking rows. Their residual velocities have the size of errors; the energy lost counts as dissipated.
 void EventHandler::settle(State& state) {
   modes_.forget_evaluation();
   dynamics_.set_state(state);

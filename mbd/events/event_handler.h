@@ -1,5 +1,5 @@
-// What happens at an event: contacts change mode, friction changes place or phase, and all friction
-// modes that this may upset are decided anew together.
+// Handles events: switches modes of contacts, contact points and phases of friction, and then decides the phases of all affected friction
+// elements together.
 #pragma once
 
 #include "mbd/base/event_kind.h"
@@ -10,68 +10,71 @@
 
 namespace steplap {
 
-/// One line of the list of events.
+/// One entry of the event list.
 struct Event {
   double t = 0.0;
   std::string element;
   EventKind kind = EventKind::none;
-  std::string detail = {};     ///< for people, behind the words of the kind: mostly nothing
-  double located_within = 0.0; ///< s: it happened at most so long before t; 0 of events that were closed in on
+  std::string detail = {};     ///< additional text after the words of the kind; mostly empty
+  double located_within = 0.0; ///< uncertainty of t, s: the event happened at most this long before t; 0 for events located by root finding
 
-  /// As it is written, never compared: "slips forward".
+  /// Returns the text of the event for output, such as "slips forward". Not for comparisons.
   [[nodiscard]] std::string words() const;
-  /// It slides from where runs begin: a time without error, and not that of a slip that begins later.
+  /// Returns true for an event at t = 0. Its time has no error, and it is not the same as a slip that begins later.
   [[nodiscard]] bool is_at_start() const { return t == 0.0; }
 };
 
-/// An element began to slip while another one stuck and was all but at its bound: which slips first is a matter of digits.
+/// Two elements that reach their friction bounds almost at once: one began to slip, the other one stuck close to its bound. Rounding
+/// decides which one slips first.
 struct SlipTie {
-  double t = 0.0;     ///< s, when `slips` began to slip
+  double t = 0.0;     ///< time at which `slips` began to slip, s
   std::string slips;  ///< element that began to slip
   std::string sticks; ///< element that stuck before and after
-  double share = 0.0; ///< of what `sticks` holds, just before the event
-  double rate = 0.0;  ///< 1/s, of that share, mean over the step before
+  double share = 0.0; ///< utilisation of `sticks` just before the event
+  double rate = 0.0;  ///< rate of change of that utilisation, 1/s, mean over the step before
 };
-/// |λ| over its bound, by the event functions of an element while it sticks (FrictionElement::watch_stick()).
+/// Returns the utilisation |λ|/bound of a sticking element (u for a step-lap joint) from its event functions
+/// (FrictionElement::watch_stick()).
 [[nodiscard]] double share_of_bound(const FrictionUnit& unit, const std::vector<double>& watch);
 
+/// Applies events to states of one system.
 class EventHandler {
 public:
   EventHandler(const System& system, Dynamics& dynamics);
 
-  /// Modes and phases at the start: contacts from their gaps, friction from the mode problem.
+  /// Determines modes and phases at the start: contacts by their gaps, friction by the mode problem.
   void start(State& state);
   /// Behind start(): notes what slides from there, if it could hold at all (friction of zero never does).
   void note_start(const State& state, std::vector<Event>& events) const;
-  /// `state` is at the event, `fired` the watch slots that fell below zero (none: a breakpoint of a
-  /// signal, at which loads may jump). `watch_before`: at a breakpoint, all watch values just before it; else null. Changes modes,
-  /// phases and anchors, notes what changed.
+  /// Handles an event at `state`: changes modes, phases and anchors, and appends events. `fired`: slots of the event functions that became
+  /// negative; empty at a breakpoint of a signal, where loads may jump. `watch_before`: all event functions just before a breakpoint, else
+  /// null.
   void handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before, std::vector<Event>& events);
-  /// `state` comes from another system at the same time (mbd/simulation/changeover.h): some elements act that did not, or the other way
-  /// round. `closes_rows`: new constraints may take a blow.
+  /// Takes over a state from another system at the same time (mbd/simulation/changeover.h), in which some elements were active that are not
+  /// now, or the reverse. `closes_rows`: new constraints may cause an impact.
   void take_over(State& state, bool closes_rows, std::vector<Event>& events);
-  /// A watch value that is at its zero, and not to be believed negative.
+  /// Marks an event function as zero up to rounding: it is not armed before it has been positive.
   void mark_fresh(int slot) { fresh_[slot] = 1; }
 
-  /// After a method that decides modes and phases itself: those that hold at the accelerations' level.
+  /// Decides phases at acceleration level after a method that decides modes and phases itself (time stepping).
   void settle_phases(State& state);
-  /// Notes what has changed between two states, for a method that decides modes and phases itself.
+  /// Appends the changes between two states, for such a method, and updates fresh().
   void note_changes(const State& before, const State& state, std::vector<Event>& events);
-  /// Appends the events that lead from one state to the other, in a system without inextensible ropes, and changes nothing else but
-  /// stop_reason().
+  /// Appends the events that lead from one state to the other. It changes nothing else except stop_reason(). Precondition: the system has
+  /// no inextensible ropes.
   void list_changes(const State& before, const State& state, std::vector<Event>& events);
 
-  /// Slots whose unit or friction changed in the last handle(), for EventFinder.
+  /// Returns flags per slot: the unit or friction element changed in the last handle(). For EventFinder.
   [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
-  /// Not empty once an element has ended the run: which, and why.
+  /// Returns which element ended the run and why; empty if none did.
   [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
-  /// Kinetic energy that setting to rest took in the last handle(), J: what errors have left of it.
+  /// Returns the kinetic energy removed in the last handle() by projecting residual velocities of sticking elements, J.
   [[nodiscard]] double settled() const { return settled_; }
-  /// Did handle() end with an evaluation of the state that it left? Then packed() and rates() are its.
+  /// Returns true if the last evaluation belongs to the final state of handle(). packed() and rates() are then valid.
   [[nodiscard]] bool is_evaluated() const { return modes_.is_evaluated(); }
   [[nodiscard]] const double* packed() const { return modes_.packed(); }
   [[nodiscard]] const double* rates() const { return modes_.rates(); }
-  /// Ties of the last handle() with a share within `k_near_bound` of 1.
+  /// Returns the ties of the last handle(): sticking elements with a utilisation above 1 − k_near_bound.
   [[nodiscard]] const std::vector<SlipTie>& ties() const { return ties_; }
   static constexpr double k_near_bound = 1e-3;
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
@@ -115,17 +118,17 @@ private:
   FrictionModes modes_;
   std::vector<int> unit_of_slot_, friction_of_slot_;
   std::vector<char> fresh_;
-  std::vector<char> has_switched_; ///< per watch slot, in the event at hand
+  std::vector<char> has_switched_; ///< per slot: the mode has switched in the present event
   std::string stop_reason_;
   double settled_ = 0.0;
   std::vector<double> y_, dy_;
-  std::vector<FrictionState> before_; ///< as friction was when handle() began
+  std::vector<FrictionState> before_; ///< friction states at the start of handle()
   std::vector<double> memory_before_;
-  std::vector<double> watch_before_; ///< event functions when handle() began, if something stuck
+  std::vector<double> watch_before_; ///< event functions at the start of handle(), if two or more elements stuck
   std::vector<SlipTie> ties_;
-  std::vector<char> is_released_;      ///< per group of those that share a load
+  std::vector<char> is_released_;      ///< per group of LoadSharing
   std::vector<char> has_fired_;        ///< per friction element
-  std::vector<Motion<double>> motion_; ///< of the bodies: scratch
+  std::vector<Motion<double>> motion_; ///< scratch: motions of the bodies
 };
 
 } // namespace steplap

@@ -1,7 +1,5 @@
-// Counts the events of each element in a window of time: a storm is where one element has too many.
-//
-// The window is a share of the times in which the scene changes otherwise (Simulation::storm_window): what has fewer events
-// goes at the scene's own pace, and is followed from one to the next.
+// Detects event storms: too many events of one element in a window of time. The window is a share of the typical time between other changes
+// of the model (Simulation::storm_window). An element with fewer events is simulated from event to event.
 #pragma once
 
 #include <string>
@@ -10,9 +8,10 @@
 
 namespace steplap {
 
+/// Event times of each element, the last k_limit of them.
 class EventStorm {
 public:
-  /// Notes an event of `element` at t, s; true if it is one of too many within `window`, s.
+  /// Records an event of `element` at t, s. Returns true if it is one of more than k_limit events within `window`, s.
   bool note(double t, const std::string& element, double window) {
     std::vector<double>& times = times_[element];
     if (times.size() < k_limit) times.push_back(t);
@@ -21,13 +20,13 @@ public:
     const double oldest = times[next_[element] % k_limit];
     return t - oldest < window;
   }
-  /// After an interval of time stepping counting begins anew.
+  /// Resets the count, after an interval of time stepping.
   void clear() {
     times_.clear();
     next_.clear();
   }
 
-  static constexpr std::size_t k_limit = 50; ///< a bounce that dies out has some 40 above rounding
+  static constexpr std::size_t k_limit = 50; ///< a decaying bounce has about 40 events above rounding
 
 private:
   std::unordered_map<std::string, std::vector<double>> times_;

@@ -16,26 +16,26 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_sweeps = 20000;
-// Wrenches settle to rounding; what is left after that is the conditioning of A.
+// Relative change at which the wrenches have converged to rounding. The remaining error is the conditioning of A.
 constexpr double k_settled = 1e-15;
-// Three-dimensional blocks are solved to about 1e-11 and jitter at that level: no progress for this
-// many sweeps, once the change is small, is the end too.
+// Three-dimensional blocks are solved to about 1e-11 only, and sweeps fluctuate at that level. So sweeps also end after this many without
+// progress, once the change is small.
 constexpr int k_stalled_sweeps = 20;
 constexpr double k_small_change = 1e-9;
-// Relative velocity, m/s, that counts as rest for an event or drive that brings several to rest at once: what projection
-// and the instant's own rounding leave of their rates.
+// Relative velocity, m/s, that counts as rest if an event or a drive stops several elements at once: rounding of the event time and error
+// of the projection.
 constexpr double k_rest_at_event = 1e-11;
-// Accelerations that a sweep still changes by more than this share have not settled.
+// Largest relative change of accelerations by one more sweep; beyond it they have not converged.
 constexpr double k_settled_acceleration = 1e-7;
-// Of the second watch value of a group, 1 where its rows hold together exactly: what begins to move apart is at zero, and by
-// rounding on either side of it. It would be held again and let go without end.
+// Least value of the second event function of a group for rejoining. It is 1 if its rows are compatible exactly. Rows that begin to
+// separate are at zero with rounding of either sign, and would be held and released without end.
 constexpr double k_surely_together = 0.5;
-// Times what an element had left of its rate as it came to rest: the rates of rows that depend on it are known no better.
+// Factor on the residual rate with which an element came to rest; it is also the error of rows that depend on it.
 constexpr double k_rest_error = 2.0;
 
-// The dual. Of elements of one dimension an active-set method makes an exact end (box_problem.h). With others among
-// them block Gauss–Seidel: each element's part is solved exactly in turn. It converges for every positive semidefinite
-// A, and the accelerations are unique even where the wrenches are not.
+// Dual problem for a set of candidates. If all are one-dimensional, an active-set method gives the exact solution (box_problem.h).
+// Otherwise block Gauss–Seidel solves each element's block exactly in turn. It converges for every positive semidefinite A. The
+// accelerations are unique even if the wrenches are not.
 class DualProblem {
 public:
   DualProblem(const System& system, const State& state, const std::vector<int>& elements, const Evaluation& evaluation,
@@ -45,7 +45,7 @@ public:
     for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
   }
 
-  // μ_s first; those that slip get μ_k, and so on: the slipping set only grows (physics.md §3).
+  // Solves with μ_s first; slipping elements then get μ_k and the problem is solved again. The slipping set only grows (physics.md §3).
   const std::vector<FrictionBlock>& solve() {
     for (std::size_t pass = 0; pass <= elements_.size(); ++pass) {
       if (is_flat_) solve_flat();
@@ -73,7 +73,7 @@ private:
       for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
     }
     const BoxSolution solution = solve_box_problem(a, b, lower, upper, rounding);
-    if (!solution.is_solved) return sweep_until_settled(); // its set of bounds repeats itself, by rounding
+    if (!solution.is_solved) return sweep_until_settled(); // its active sets repeat by rounding
     for (Eigen::Index i = 0; i < n; ++i) {
       FrictionBlock& block = blocks_[i];
       block = {};
@@ -115,7 +115,8 @@ private:
       least = std::min(least, change);
       if (stalled >= k_stalled_sweeps && least <= k_small_change * size) return;
     }
-    // Wrenches that depend on each other may wander where the accelerations have long settled.
+    // If wrenches are not unique they may change without end although the accelerations have converged, so one more sweep tests the
+    // accelerations.
     const std::vector<double> before = wrench_;
     double change = 0.0, size = 0.0;
     std::size_t row = 0;
@@ -159,10 +160,10 @@ private:
   std::vector<double> wrench_;
   std::vector<FrictionBlock> blocks_;
   std::vector<char> is_kinetic_;
-  bool is_flat_ = true; ///< all of one dimension
+  bool is_flat_ = true; ///< all elements are one-dimensional
 };
 
-// Ropes that would push although their row holds without them: others hold it, and one of them has none of the load.
+// Releases a rope that would have to push although its constraint is satisfied: other ropes carry its load. Returns true if there is one.
 bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) {
   for (const auto& [rope, f] : one_sided_rows(system)) {
     if (state.friction[f].phase != FrictionPhase::stick || dynamics.watch()[system.frictions[f].watch] >= 0.0) continue;
@@ -179,8 +180,8 @@ FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
     : system_(system), dynamics_(dynamics), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()),
       rest_error_(system.frictions.size(), 0.0) {}
 
-// Of a group that comes to rest one row is projected to it and another, left out of the equations, takes over what the
-// first had left of its rate.
+// Returns the error of the rate of element f at rest. In a group some dependent rows are left out of the equations; they keep the residual
+// rate of the others.
 double FrictionModes::rest_error(int f) const {
   const LoadSharing* const sharing = dynamics_.sharing();
   const int group = sharing ? sharing->group_of(f) : -1;
@@ -195,7 +196,7 @@ void FrictionModes::set_anchor(State& state, int f) const {
   anchor_friction(system_, state, f, motion_.data());
 }
 
-// Within one slip the direction does not change.
+// Within one slip the direction does not change, so distances can be added.
 void FrictionModes::end_slip(State& state, int f) const {
   const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
   const double before = rows[0].memory >= 0 ? state.memory[rows[0].memory] : 0.0;
@@ -216,7 +217,7 @@ std::vector<int> FrictionModes::violated(const State& state) {
   return held_beyond(state);
 }
 
-// By the watch values at hand.
+// Returns the sticking elements with a negative event function in the last evaluation.
 std::vector<int> FrictionModes::held_beyond(const State& state) const {
   std::vector<int> result;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
@@ -227,7 +228,7 @@ std::vector<int> FrictionModes::held_beyond(const State& state) const {
   return result;
 }
 
-// The candidates alone, everything else as it is: fills in their phases.
+// Solves the mode problem for the candidates, with all other elements unchanged, and sets their phases.
 void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
   for (const int f : candidates) state.friction[f].phase = FrictionPhase::free;
   dynamics_.set_state(state);
@@ -330,7 +331,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   for (const int f : slow) {
     double rate = 0.0, acceleration = 0.0, rounding = 0.0;
     dynamics_.slip_motion(f, dy_.data(), &rate, &acceleration, &rounding);
-    if (state.friction[f].sign * acceleration > rounding) continue; // it has only begun
+    if (state.friction[f].sign * acceleration > rounding) continue; // the slip has only begun
     end_slip(state, f);
     state.friction[f].phase = FrictionPhase::stick;
     is_any = true;
@@ -338,7 +339,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   return is_any;
 }
 
-// Rows that hold together only at rest, of which some move: those slide, the way they move.
+// Groups whose rows are compatible only at rest: releases the elements that move, in the direction of their motion.
 void FrictionModes::let_go_moving(State& state) {
   bool is_any = false;
   const LoadSharing* const sharing = dynamics_.sharing();
@@ -359,8 +360,8 @@ void FrictionModes::let_go_moving(State& state) {
   if (is_any) (void)violated(state);
 }
 
-// Rows that hold together at rest, and have crept apart since they were anchored by less than counts as motion: they hold
-// where they are.
+// Groups whose rows are compatible at rest but have drifted since they were anchored, by less than counts as motion: anchors them at the
+// present pose.
 void FrictionModes::anchor_resting(State& state) const {
   const LoadSharing* const sharing = dynamics_.sharing();
   if (!sharing) return;
@@ -387,7 +388,7 @@ bool FrictionModes::decide(State& state) {
 }
 
 void FrictionModes::settle_candidates(State& state, std::vector<int> candidates) {
-  // Candidates only grow, but where a group is let go, which happens to an element once.
+  // The set of candidates only grows, except when a group is released, which happens to an element only once.
   const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
   for (std::size_t pass = 0; !candidates.empty(); ++pass) {
     if (pass > most) throw NumericalFailure("friction modes cannot be decided at t = " + rounded_text(state.t, 12) + " s");
@@ -395,7 +396,7 @@ void FrictionModes::settle_candidates(State& state, std::vector<int> candidates)
     std::vector<int> more = violated(state);
     const bool is_any_over = !more.empty();
     std::erase_if(more, [&](int f) { return std::find(candidates.begin(), candidates.end(), f) != candidates.end(); });
-    // Candidates that were found to stick and yet are overloaded: rounding. Of a group limit analysis tells.
+    // Candidates that stick by the mode problem but are overloaded: rounding, or a group, which limit analysis decides.
     if (more.empty() && is_any_over && slacken_idle(system_, dynamics_, state)) {
       candidates = violated(state);
     } else if (more.empty()) {
