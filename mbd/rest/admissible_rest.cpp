@@ -12,19 +12,19 @@ namespace steplap {
 namespace {
 
 constexpr double k_rank = 1e-9;
-constexpr double k_balance = 1e-7;  // of the forces: what may be left of their balance
-constexpr double k_give = 4.0;      // contacts give way by the load's scale over their stiffness, or so many times it
-constexpr double k_settled = 1e-12; // of the same: of the last change of the pose
+constexpr double k_balance = 1e-7;  // largest remaining imbalance, relative to the forces
+constexpr double k_give = 4.0;      // largest deformation of contacts, in units of (load scale)/(contact stiffness)
+constexpr double k_settled = 1e-12; // largest last change of the pose, relative to the size of the model
 constexpr double k_most_usage = 64.0;
 constexpr int k_rounds = 10, k_halvings = 40, k_projections = 12;
 
-// Constraints a·z + b ≤ t.
+// Inequalities a z + b ≤ t.
 struct Inequalities {
   MatX a;
   VecX b;
 };
 
-// min t over (z, t): a logarithmic barrier, followed by Newton's method.
+// Minimises t over (z, t) by Newton's method on a logarithmic barrier.
 class LeastViolation {
 public:
   explicit LeastViolation(Eigen::Index dimension) : z_(VecX::Zero(dimension)) {}
@@ -70,7 +70,7 @@ private:
     return false;
   }
 
-  static constexpr double k_tie = 1e-9; // what nothing decides stays where it is
+  static constexpr double k_tie = 1e-9; // weight of |z|²/2: keeps unknowns near zero that no constraint determines
   static constexpr double k_ln10 = 2.302585092994046;
   VecX z_;
   double t_ = 0.0;
@@ -106,7 +106,7 @@ private:
     for (int r = 0; r < static_cast<int>(statics_.rows().size()); ++r) (is_bounded(statics_.rows()[r]) ? bounded_ : hard_).push_back(r);
   }
 
-  // Motions that the joints leave free, and the balance along them as A x = right for x = (κ η, w).
+  // Determines the motions that the joints leave free, and the balance along them as A x = right, for x = (κ η, w).
   bool linearise() {
     statics_.evaluate(state_);
     statics_.collect_rows(state_);
@@ -139,7 +139,7 @@ private:
     return give_ > 0.0;
   }
 
-  // Capacities and normal forces as functions of x.
+  // Determines capacities and normal forces as linear functions of x.
   void find_capacities() {
     std::vector<PairJacobian> parts;
     for (const auto& group : system_.groups) group->add_jacobian(statics_.evaluation(), parts);
@@ -179,7 +179,7 @@ private:
     normal_by_ = MatX(normal_.size(), unknowns);
     for (Eigen::Index i = 0; i < normal_.size(); ++i) normal_by_.row(i) = normals[static_cast<std::size_t>(i)].transpose();
   }
-  // The most that it bears in the direction of growing rates (side 0), and against it (1): a freewheel bears one of them alone.
+  // Returns the capacity against increasing (side 0) or decreasing (side 1) rates. A freewheel has one of them only.
   [[nodiscard]] double support(Eigen::Index i, int side) const {
     const double rate = side == 0 ? -1.0 : 1.0;
     const int f = statics_.rows()[bounded_[static_cast<std::size_t>(i)]].friction;
@@ -199,7 +199,7 @@ private:
       }
     rows.middleRows(2 * count, normal_.size()) = -normal_by_;
     constant.segment(2 * count, normal_.size()) = -normal_;
-    // Poses that contacts can reach by giving way; others would be other machines.
+    // Bounds on δq: only poses that contacts can reach by their deformation belong to the same configuration.
     rows.block(forces, 0, places, free_.cols()) = free_ / kappa_ * (force_scale_ / give_);
     rows.block(forces + places, 0, places, free_.cols()) = -rows.block(forces, 0, places, free_.cols());
     for (Eigen::Index k = 0; k < places; ++k) {
@@ -236,7 +236,7 @@ private:
     return true;
   }
 
-  // By what was found; the largest displacement.
+  // Moves the pose by the solution. Returns the largest displacement.
   double move() {
     const VecX step = free_ * at_.head(free_.cols()) / kappa_;
     for (int k = 0; k < statics_.coordinates(); ++k) state_.q[k + 3] += scale_[k] * step[k];

@@ -1,14 +1,13 @@
-// Is there an admissible set of friction forces in whose hold a machine rests, and how far is it from its border?
+// Finds whether some admissible distribution of friction forces holds a machine at rest, and how close it is to the limit of friction.
 //
-// Friction that sticks bears whatever it got when it got its load: a ladder between wall and floor may lean on either
-// of its ends. What is admissible is a question of all the ways in which elastic contacts and friction can share the
-// load. With poses that differ by as little as contacts give way, δq along the joints, and the friction forces w:
+// The force in a sticking contact depends on the history of loading: a ladder between wall and floor may carry its load at either end. So
+// all distributions of the load over elastic contacts and friction are admitted. With small displacements δq along the joints, as large as
+// contacts deform, and friction forces w:
 //   Q + K δq + Jᵀλ + Fᵀw = 0,   |w_e| ≤ u c_e(δq),   N_c(δq) ≥ 0,
-// F the rows of friction, c_e its capacity and N_c the normal forces, all linear in δq. The least u is found by
-// bisection, with a linear program for each u (an interior-point method: S. Boyd, L. Vandenberghe, Convex Optimization,
-// 2004, ch. 11); the pose moves there, and all is linearised anew until nothing changes. u ≤ 1: it can rest, and in the
-// pose found each element uses no more than u of what it can bear. Friction of several dimensions takes part as it is
-// stuck; whether it holds is looked at afterwards.
+// where F are the rows of friction, c_e its capacities and N_c the normal forces, all linear in δq. The least u is found by bisection with
+// a linear program for each u (interior-point method: S. Boyd, L. Vandenberghe, Convex Optimization, 2004, ch. 11). The pose moves there
+// and everything is linearised again until nothing changes. If u ≤ 1, the machine can rest, and in the pose found each element uses at most
+// the share u of its capacity. Friction of several dimensions is taken as sticking; whether it can is checked afterwards.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -18,12 +17,12 @@
 namespace steplap {
 
 struct AdmissibleRest {
-  State state;        ///< the pose in which friction uses least
-  double usage = 0.0; ///< u; above 1: no set of forces is admissible
+  State state;        ///< pose in which friction uses the least share of its capacity
+  double usage = 0.0; ///< u; above 1 no distribution of forces is admissible
 };
 
-/// About `state`, a pose in which forces balance with friction stuck. `scale` per coordinate (Descent::scale): metres
-/// for radians; `length`: of the scene. Nothing where the forces cannot balance, or only in a pose far off.
+/// Searches about `state`, a pose in which forces balance with friction sticking. `scale`: length per coordinate unit, as in
+/// Descent::scale(); `length`: size of the model, m. Returns nothing if forces cannot balance, or only in a pose far away.
 [[nodiscard]] std::optional<AdmissibleRest> admissible_rest(const System& system, const State& state, const VecX& scale, double length);
 
 } // namespace steplap

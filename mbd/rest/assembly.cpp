@@ -15,17 +15,18 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_steps = 300;
-// Of the bodies' size: given poses so near to the joints are projected once, which is least to second order.
+// Share of the bodies' size: if the given poses are nearer to the joints, one projection suffices; its distance exceeds the least one only in
+// second order.
 constexpr double k_near = 1e-9;
-// What is left of the way back, against the way moved.
+// Largest distance that can still be removed along the constraints, relative to the whole distance.
 constexpr double k_stationary = 1e-12;
-// Against distances below this share of the whole, rounding decides whether they have become less.
+// Relative change of distances below which rounding decides whether they have decreased.
 constexpr double k_verifiable = 1e-6;
 
-// Least motion: of all poses on the constraints one whose distance to the given ones, Σ m Δx² + m Δy² + J Δθ²,
-// is stationary. From the first projection on, steps lead back along the constraints towards what was given,
-// each projected; their length is that of Barzilai and Borwein (IMA J. Numer. Anal. 8 (1988) 141), safeguarded
-// as by Grippo, Lampariello and Lucidi (SIAM J. Numer. Anal. 23 (1986) 707) by the largest of the last distances.
+// Finds a pose on the constraints with a stationary distance Σ m Δx² + m Δy² + J Δθ² to the given pose. From the first projection on, steps
+// lead along the constraints towards the given pose, and each is projected. Step lengths follow Barzilai and Borwein (IMA J. Numer. Anal. 8
+// (1988) 141), safeguarded as by Grippo, Lampariello and Lucidi (SIAM J. Numer. Anal. 23 (1986) 707): a distance must be below the largest
+// of the last few.
 class LeastMotion {
 public:
   LeastMotion(Dynamics& dynamics, double t, double tolerance)
@@ -34,11 +35,11 @@ public:
     for (int i = 0; i < n_; ++i) {
       const Cluster& cluster = dynamics.layout().clusters[i / 3];
       const double mass = i % 3 < 2 ? cluster.mass : cluster.inertia;
-      weight_[i] = cluster.w[i % 3] == 0.0 ? 0.0 : mass; // a locked coordinate is where its drive is
+      weight_[i] = cluster.w[i % 3] == 0.0 ? 0.0 : mass; // a locked coordinate stays at the value of its drive
     }
   }
 
-  /// From poses on the constraints; velocities are not changed.
+  /// Refines poses that satisfy the constraints. Velocities do not change.
   void refine(std::vector<double>& y, const std::vector<double>& given) {
     given_ = &given;
     std::vector<double> back = way_back(y);
@@ -52,7 +53,7 @@ public:
       back = way_back(next);
       const std::vector<double> turned = along_constraints(next, back);
       length = next_length(y, next, allowed, turned);
-      // Where distances say no more, the rest of the way back must shrink.
+      // When distances are equal up to rounding, the part of the way along the constraints must decrease instead.
       if (norm2(turned) >= norm2(allowed) && norm2(allowed) < k_verifiable * k_verifiable * last.back()) return;
       y = std::move(next);
       allowed = turned;
@@ -80,11 +81,11 @@ private:
   [[nodiscard]] double norm2(const std::vector<double>& a) const { return dot(a, a); }
   [[nodiscard]] double size2() const {
     double sum = 0.0;
-    for (int i = 2; i < n_; i += 3) sum += weight_[i]; // Σ J: all turned by one radian
+    for (int i = 2; i < n_; i += 3) sum += weight_[i]; // Σ J: all bodies turned by one radian
     return sum;
   }
 
-  // A projected step that does not lead away; halved until it does not.
+  // Makes a projected step, halved until the distance does not increase. Returns false if no length works.
   bool step(const std::vector<double>& y, const std::vector<double>& allowed, const std::deque<double>& last, double length,
             std::vector<double>& next) const {
     constexpr int k_max_halvings = 40;
@@ -123,12 +124,12 @@ private:
   const std::vector<double>* given_ = nullptr;
 };
 
-// Rows between a light part and a heavy one are nearly dependent in the masses' metric: a projection damps its steps there, and gives up
-// far from the joints. The same rows among bodies that all weigh the same, and turn as heavily, depend on each other only where the
-// joints do.
+// Returns poses that satisfy the joints, found with equal masses and radii of gyration for all bodies. With a light body between heavy
+// ones, rows are nearly dependent in the mass metric, and the projection is damped and fails far from the joints. With equal masses rows
+// are dependent only where the joints are.
 State closed_by_shape(const Model& model, const State& given, double tolerance) {
   Model even = model;
-  double square = 0.0; // of the largest radius of gyration
+  double square = 0.0; // square of the largest radius of gyration
   for (const Body& body : even.bodies)
     if (!body.fixed) square = std::max(square, body.inertia / body.mass);
   for (Body& body : even.bodies) {
@@ -147,7 +148,7 @@ State closed_by_shape(const Model& model, const State& given, double tolerance) 
   return state;
 }
 
-// Onto the joints; what fails is told as of the masses given.
+// Projects onto the joints. If this fails, the message reports the residual with the masses of the model.
 void close_joints(const Model& model, const State& state, Dynamics& dynamics, std::vector<double>& y) {
   const double tolerance = model.simulation.projection_tolerance;
   try {
@@ -162,7 +163,7 @@ void close_joints(const Model& model, const State& state, Dynamics& dynamics, st
   }
 }
 
-// Places so far apart that their squares are beyond all numbers: nothing that follows would be a number.
+// Throws if positions are so far apart that their squares overflow.
 void require_finite(const Model& model, const System& system, const State& state) {
   const auto is_finite = [](double x) { return std::isfinite(x); };
   const char* const remedy = ": distances are beyond what numbers hold; move bodies and markers nearer to each other";
@@ -187,7 +188,7 @@ State assemble(const Model& model, const System& system) {
   State state = system.initial_state();
   start_drives(system, state);
   require_finite(model, system, state);
-  // Friction does not assemble anything: what holds by friction is where it is.
+  // Friction does not move bodies during assembly: a sticking element stays at its pose.
   for (FrictionState& friction : state.friction) friction.phase = FrictionPhase::free;
   Dynamics dynamics(system);
   dynamics.set_state(state);

@@ -1,9 +1,9 @@
-// Assembly: do the poses that the file gives meet the joints, up to a least motion?
+// Assembly: moves the given poses onto the joints with the least motion.
 //
-// A model may give its poses roughly: a run begins at the poses on the joints that are nearest to the given
-// ones, and at the velocities there that are nearest to the given ones, both weighted by mass and moment of
-// inertia. Nearest means stationary: that no small motion along the joints leads nearer. With poses so rough
-// that several such places exist it is the one reached from the first projection. Joints that no motion can meet are an error of the model, found before anything runs.
+// A model may give its poses roughly. A run starts from the poses on the joints that are nearest to the given ones, and from the velocities
+// that are nearest to the given ones there, both weighted by mass and moment of inertia. Nearest means stationary: no small motion along
+// the joints comes nearer. If the poses are so rough that several such poses exist, the one reached from the first projection is used.
+// Joints that no pose can satisfy are an error of the model, reported before the run.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -11,21 +11,21 @@
 
 namespace steplap {
 
-/// The initial state moved onto the constraints with the least motion, drives begun there.
-/// Throws ModelError at the element that stays unmet most; `model` is what `system` was compiled from.
+/// Returns the initial state moved onto the constraints, with drives at their initial values. `model` is the source of `system`. Throws
+/// ModelError at the element with the largest remaining error.
 [[nodiscard]] State assemble(const Model& model, const System& system);
 
-/// Where a run begins: the initial state with the poses and velocities of `assembled`.
+/// Returns the initial state of a run, with poses and velocities of `assembled`.
 [[nodiscard]] State assembled_start(const System& system, const State& assembled);
 
-/// How far a body was moved to meet the joints: position, angle, velocity, angular velocity.
+/// Change of a body's pose and velocity by the assembly.
 struct AssemblyMove {
   int body = 0;
   double shift = 0.0, turn = 0.0;                ///< m, rad
   double velocity = 0.0, angular_velocity = 0.0; ///< m/s, rad/s
 };
 
-/// Bodies of which anything changed by more than `threshold` between two states, the one shifted most first.
+/// Returns the bodies of which some number changed by more than `threshold`, the largest shift first.
 [[nodiscard]] std::vector<AssemblyMove> assembly_moves(const State& given, const State& assembled, double threshold = 1e-9);
 
 } // namespace steplap

@@ -7,8 +7,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_delta = 1e-10; // against the rows' squared length
-constexpr double k_rho = 1.0;     // against the largest entries of A
+constexpr double k_delta = 1e-10; // relative to the squared length of rows
+constexpr double k_rho = 1.0;     // relative to the largest entries of A
 constexpr int k_most_refinements = 8;
 constexpr double k_refined = 1e-13, k_solved = 1e-6;
 
@@ -21,7 +21,7 @@ VecX pull_of(const std::vector<SparseRow>& rows, const VecX& y, Eigen::Index n) 
   return pull;
 }
 
-// Bodies by approximate least degree in the graph of those that act on each other.
+// Determines the order of bodies by approximate least degree in the graph of bodies that act on each other.
 void BorderedSystem::find_order(const Sparse& a, const std::vector<SparseRow>& rows) {
   const long bodies = n_ / 3;
   std::vector<long> pairs;
@@ -62,7 +62,7 @@ void BorderedSystem::find_order(const Sparse& a, const std::vector<SparseRow>& r
     if (place < 0) place = next++; // a row between the ground and itself
 }
 
-// f(place, place, value) of each entry of the upper triangle, in an order that hangs on the pattern alone.
+// Calls f(i, j, value) for each entry of the upper triangle. The order of calls depends on the pattern alone.
 template <class F> void BorderedSystem::for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const {
   const auto put = [&](int i, int j, double value) {
     const int p = place_[i], q = place_[j];
@@ -94,7 +94,7 @@ void BorderedSystem::find_slots(const Sparse& a, const std::vector<SparseRow>& r
     const int* const column = inner + outer[entry.col()];
     entry_slot_.push_back(static_cast<int>(std::lower_bound(column, inner + outer[entry.col() + 1], entry.row()) - inner));
   }
-  // In an upper triangle by columns the diagonal is what a column ends with.
+  // In an upper triangle stored by columns, the diagonal entry is the last one of a column.
   slot_.resize(static_cast<std::size_t>(n_ + m_));
   for (std::size_t i = 0; i < slot_.size(); ++i) slot_[i] = outer[place_[i] + 1] - 1;
   diagonal_.resize(slot_.size());
@@ -136,7 +136,7 @@ bool BorderedSystem::solve(const VecX& f, VecX& x, VecX* y, const VecX* off) con
   VecX right = VecX::Zero(n_ + m_);
   for (Eigen::Index i = 0; i < n_; ++i) right[place_[i]] = f[i];
   for (Eigen::Index r = 0; off && r < m_; ++r) right[place_[n_ + r]] = (*off)[r];
-  // ρ Jᵀ(J x − r) is in the equations, too: nothing where rows are met.
+  // The equations also contain ρ Jᵀ(J x − r), which vanishes if J x = r.
   if (off) {
     VecX pull = VecX::Zero(n_ + m_);
     for (Eigen::Index r = 0; r < m_; ++r) pull[place_[n_ + r]] = k_rho * (*off)[r];
@@ -152,7 +152,7 @@ bool BorderedSystem::solve(const VecX& f, VecX& x, VecX* y, const VecX* off) con
     for (Eigen::Index r = n_; r < n_ + m_; ++r) residual[place_[r]] -= delta_ * z[place_[r]];
     const double now = residual.cwiseAbs().maxCoeff();
     if (now <= k_refined * size || i == k_most_refinements || (i > 0 && now > 0.5 * before)) {
-      if (!off && !(now <= k_solved * size)) return false; // what rows want may contradict by rounding
+      if (!off && !(now <= k_solved * size)) return false; // with given r, dependent rows may contradict each other by rounding
       break;
     }
     before = now;

@@ -1,13 +1,13 @@
-// Sparse equations with constraint rows: forces f against a symmetric A along rows J that are met.
+// Solver for sparse symmetric equations with constraint rows: response x of a matrix A to forces f, subject to J x = r, with multipliers y.
 //
 //   [ A + σ D   Jᵀ ] [x]   [f]
 //   [ J         0  ] [y] = [r]
 //
-// Factored as L Δ Lᵀ without pivoting, in an order that stays sparse: bodies in the order of least degree, each row after
-// the first body it acts on, so that no pivot is made of a row alone. So that pivots are there at all, A is given ρ JᵀJ
-// (which changes nothing where rows are met) and rows that depend on others −δ in place of 0; solutions are refined
-// until δ is gone from them. By Sylvester's law the signs of Δ count: as many negative ones beyond the rows' as A + σ D
-// has negative directions along J x = 0. A body with many joints costs no more than its number of joints.
+// The matrix is factorised as L Δ Lᵀ without pivoting, in a sparse order: bodies by least degree, each row after the first body on which it
+// acts, so that no pivot consists of a row alone. To ensure non-zero pivots, ρ JᵀJ is added to A (no effect if J x = r) and the zero of
+// dependent rows is replaced by −δ; iterative refinement removes the effect of δ. By Sylvester's law, the number of negative pivots minus
+// the number of rows is the number of negative directions of A + σ D within J x = 0. The cost of a body is proportional to the number of
+// its joints.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -21,7 +21,7 @@
 
 namespace steplap {
 
-/// A constraint row over the coordinates of its bodies, three each and in their order. Room for two bodies, as most have.
+/// Constraint row: coefficients at coordinates of bodies, three for each body, in their order. Initial space for two bodies.
 struct SparseRow {
   int count = 0;
   std::vector<int> at = std::vector<int>(6, 0);
@@ -35,7 +35,7 @@ struct SparseRow {
     at[count] = coordinate;
     j[count++] = value;
   }
-  /// Of a body that several parts of the row act on: to what is there of it.
+  /// Adds to a coefficient that may exist, for a body on which several parts of the row act.
   void merge(int coordinate, double value) {
     const auto end = at.begin() + count, known = std::find(at.begin(), end, coordinate);
     if (known == end) add(coordinate, value);
@@ -48,20 +48,20 @@ struct SparseRow {
     return sum;
   }
 };
-/// Jᵀ y
+/// Returns Jᵀ y.
 [[nodiscard]] VecX pull_of(const std::vector<SparseRow>& rows, const VecX& y, Eigen::Index n);
 
 class BorderedSystem {
 public:
   using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-  /// A with its largest entries of order 1, both triangles; rows of length 1; D by its diagonal.
+  /// Sets the matrices. A: largest entries of order 1, both triangles; rows: unit length; D: as its diagonal.
   void set(const Sparse& a, const std::vector<SparseRow>& rows, const VecX& diagonal);
-  /// A + σ D; false where a pivot vanishes.
+  /// Factorises the system with A + σ D. Returns false if a pivot vanishes.
   bool factor(double sigma);
-  /// Directions along the rows in which A + σ D is negative.
+  /// Returns the number of directions within J x = 0 in which A + σ D is negative.
   [[nodiscard]] int negative() const { return negative_; }
-  /// x, and y if asked for; false where refinement does not get there. `off`: r, zero without.
+  /// Solves for x, and for y unless null. `off`: r, zero if null. Returns false if the refinement does not converge.
   bool solve(const VecX& f, VecX& x, VecX* y = nullptr, const VecX* off = nullptr) const;
 
 private:
@@ -70,12 +70,12 @@ private:
   template <class F> void for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const;
 
   Eigen::Index n_ = 0, m_ = 0;
-  std::vector<int> place_;       ///< of each coordinate, then of each row
-  Sparse whole_;                 ///< upper triangle, in that order
-  std::vector<double> diagonal_; ///< of coordinates, without σ D
-  std::vector<int> slot_;        ///< of each diagonal entry in whole_
-  std::vector<int> pattern_;     ///< of A and the rows that the order was made for
-  std::vector<int> entry_slot_;  ///< in whole_, of each entry in turn
+  std::vector<int> place_;       ///< position in the order, of each coordinate and then of each row
+  Sparse whole_;                 ///< upper triangle of the matrix in that order
+  std::vector<double> diagonal_; ///< diagonal at coordinates, without σ D
+  std::vector<int> slot_;        ///< index of each diagonal entry in whole_
+  std::vector<int> pattern_;     ///< non-zero pattern of A and rows for which the order was determined
+  std::vector<int> entry_slot_;  ///< index in whole_ of each entry in turn
   VecX shift_by_;
   double delta_ = 0.0;
   int negative_ = 0;

@@ -1,8 +1,8 @@
-// How far bodies may be moved at once without passing through each other.
+// Largest displacement of bodies in one step that cannot take them through each other unnoticed.
 //
-// Conservative advancement (B. V. Mirtich, PhD thesis, Berkeley 1996): a gap falls by no more than the way that the touching
-// parts go (gap_source.h), so that up to there nothing can have closed. Where a gap is small against what the parts are thick, a
-// quarter of the way through is gone instead: what closes is then seen while its force still pushes out.
+// Conservative advancement (B. V. Mirtich, PhD thesis, Berkeley 1996): a gap decreases by no more than the path of the parts that may touch
+// (gap_source.h), so no contact can close before. If a gap is small compared with the thickness of the parts, a step may go a quarter of
+// that thickness deep: the penetration is then noticed while the contact force still pushes outwards.
 #pragma once
 
 #include "mbd/system/gap_source.h"
@@ -12,20 +12,20 @@ namespace steplap {
 
 class Clearance {
 public:
-  /// `touch`, m: gaps below it are rounding.
+  /// `touch`: gaps below it are rounding, m.
   Clearance(const System& system, double touch);
 
   [[nodiscard]] bool is_endless() const { return sources_.empty(); }
-  /// Measures the gaps with bodies at the poses `q`, three numbers each, the ground's first. The look before is kept, or the one
-  /// before that, if this one takes the place of the last.
+  /// Measures the gaps with bodies at the poses `q`, three numbers each, the ground first. The previous measurement is kept; if
+  /// `is_instead`, this one replaces the last and the one before is kept.
   void look(const std::vector<double>& q, bool is_instead = false);
-  /// The share of a displacement (three numbers per body, the ground left out) from the poses looked at that may be gone at
-  /// once; above 1 where all of it may. What presses already is left to keeps_sides().
+  /// Returns the share of a displacement (three numbers per body without the ground) from the measured poses that is safe in one step;
+  /// above 1 if all of it is. Contacts already pressed are checked by keeps_sides().
   [[nodiscard]] double share(const VecX& displacement) const;
-  /// Between the last two looks, which lie this displacement apart: no contact can have closed and opened again, and what
-  /// pressed at both is on the same side.
+  /// Returns true if between the last two measurements, which are this displacement apart, no contact can have closed and opened again, and
+  /// contacts pressed at both are pressed on the same side.
   [[nodiscard]] bool keeps_sides(const VecX& displacement) const;
-  /// Since the look before a contact has closed, or gone more than half the way through a part, and deeper.
+  /// Returns true if since the measurement before a contact has closed, or has become deeper than half the thickness of a part.
   [[nodiscard]] bool has_met() const;
 
 private:

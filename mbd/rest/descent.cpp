@@ -13,24 +13,25 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_no_share = 1e-6; // of the work: what acts on a body itself and is rounding beside it
+constexpr double k_no_share = 1e-6; // of the work; a smaller direct force on a body is rounding
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // of the trust region: of the scene's length; rad
-// rad: poses half a turn apart are not to be taken for each other
+constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // initial trust region: share of the size of the model; rad
+// rad: larger rotations could confuse poses that are half a turn apart
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
-constexpr double k_balanced = 1e-11; // Newton steps below this share of the length are the pose's rounding
+constexpr double k_balanced = 1e-11; // of the size of the model; smaller Newton steps are rounding of the pose
 constexpr double k_nearly_balanced = 1e-8;
-constexpr double k_nudge = 1e-3;         // of the length, rad
-constexpr double k_turned_against = 0.5; // of the work along the tangent
-constexpr double k_far = 1e4;            // lengths of the scene
+constexpr double k_nudge = 1e-3;         // displacement out of an unstable equilibrium: share of the size of the model, rad
+constexpr double k_turned_against = 0.5; // of the work along the tangent at the start; a step with more opposing work at its end has gone
+                                         // too far
+constexpr double k_far = 1e4;            // in sizes of the model; beyond it a body counts as moving without end
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
-constexpr int k_most_looks = 1000; // along a step
+constexpr int k_most_looks = 1000; // gap measurements along one step
 constexpr int k_most_halved_looks = 40;
-constexpr double k_touch = 64.0; // roundings of the largest coordinate, by which a body that lands presses
+constexpr double k_touch = 64.0; // roundings of the largest coordinate by which a landing body penetrates
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
-constexpr int k_most_dense = 90; // coordinates: beyond, sparse algebra is faster
+constexpr int k_most_dense = 90; // coordinates; with more, sparse algebra is faster
 
-// Of a sparse projection: what does not get there fast is too far, and half as far costs less than more rounds.
+// Limits for a sparse projection: a step that converges slowly is too long, and half the step is cheaper than more iterations.
 constexpr int k_most_sparse_projections = 12;
 constexpr double k_slow = 0.5;
 
@@ -80,7 +81,7 @@ double Descent::step_size(const VecX& step) const {
   return size;
 }
 
-// Onto the rows, the nearest way.
+// Projects the pose onto the rows, the shortest way. Returns false if it is too far.
 bool Descent::project() {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0;; ++i) {
@@ -91,7 +92,7 @@ bool Descent::project() {
     if (statics_.rows().empty()) return true;
     const double close = 8.0 * k_epsilon * reach_;
     if (!std::isfinite(size) || size > length_) return false;
-    // Rows that depend on others are met with them, or not at all.
+    // Dependent rows are satisfied together with the others or not at all, so check them at the end.
     if (size <= close || (size >= 0.5 * before && size <= 64.0 * close)) {
       for (int r = 0; r < statics_.bilateral_count(); ++r)
         if (!(std::abs(off[r]) <= 1e-7 * length_ * std::max(1.0, landscape_->row_size()[r]))) return false;
@@ -109,10 +110,11 @@ bool Descent::move_to(const std::vector<double>& from, const VecX& step) {
   return project();
 }
 
-// Work against the step's tangent at its end.
+// Returns the slope of the potential along the step's tangent at its end; negative if the forces still do work in its direction.
 double Descent::slope_along(const VecX& step) const { return -landscape_->along_rows(step).dot(scale_.cwiseProduct(statics_.force())); }
 
-// A step that bends away from a stiff contact's or spring's way is brought back to it; the slope there.
+// A straight step may leave the curved path of a stiff contact or spring. Corrects the stiff directions, if that brings the step closer to
+// balance. Returns the slope there.
 double Descent::correct(const VecX& step, const std::vector<double>& from, double slope) {
   const std::vector<double> first = state_.q;
   VecX moved = step;
@@ -141,7 +143,8 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
   return slope;
 }
 
-// Quarters of a body's size, and tenths of a radian, that a step passes over: contacts may close and open between them.
+// Returns the number of gap measurements along a step: one per quarter of a body's size and per tenth of a radian, because contacts may
+// close and open in between.
 int Descent::looks_along(const VecX& step) const {
   double parts = 0.0;
   for (int k = 0; k < n_; ++k) {
@@ -151,7 +154,7 @@ int Descent::looks_along(const VecX& step) const {
   return static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1.0 * k_most_looks));
 }
 
-// In a large scene what lands does so at once, each body where it touches. False if nothing lands.
+// In a large model: cuts the step of each body at its first contact, so that many bodies land in one step. Returns false if none lands.
 bool Descent::land(const std::vector<double>& from, VecX& step) {
   if (!is_sparse_ || system_.contact_count == 0) return false;
   std::vector<double> looks(system_.bodies.size(), 0.0);
@@ -179,8 +182,8 @@ VecX Descent::way_from(const std::vector<double>& from) const {
   return way;
 }
 
-// To `share` of a step on the rows, or so much less that the way from `before`, looked at last, has no room for a contact that
-// closes and opens again.
+// Moves to `share` of a step, projected onto the rows. Reduces `share` until no contact can have closed and opened again since the share
+// `before`, at which gaps were measured last.
 void Descent::look_on(const std::vector<double>& from, const VecX& step, double before, double& share) {
   const std::vector<double> last = state_.q;
   const bool is_on_rows = !is_sparse_ && !statics_.rows().empty();
@@ -193,7 +196,7 @@ void Descent::look_on(const std::vector<double>& from, const VecX& step, double 
   }
 }
 
-// The share of a step at which a contact first closes that its end may have passed through.
+// Returns the share of a step at which a contact first closes; 1 if none does.
 double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
   if (clearance_->is_endless()) return 1.0;
   const double look = 1.0 / looks_along(step);
@@ -218,8 +221,8 @@ bool Descent::loads_friction() const {
   return false;
 }
 
-// Friction holds a contact where it touched, not as deep as the step went: the share of the step at which the first one
-// gets its load.
+// Returns the share of a step at which the first friction element gains its load. Friction holds a contact at the pose of first touch, not
+// at the depth that the step reached.
 double Descent::first_load(const std::vector<double>& from, const VecX& step, double low, double high) {
   if (!loads_friction()) return high;
   const std::vector<double> reached = state_.q;
@@ -239,7 +242,7 @@ double Descent::first_load(const std::vector<double>& from, const VecX& step, do
   return taken;
 }
 
-// After a step that was taken at `factor` of what was planned.
+// Adapts the trust region after a step that was taken at `factor` of its planned length.
 void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
   double moved = 0.0, turned = 0.0;
   for (int k = 0; k < n_; ++k) {
@@ -274,14 +277,14 @@ bool Descent::advance(VecX step) {
     bool is_too_far = !move_to(from, factor * step);
     if (!is_too_far) {
       slope = slope_along(step);
-      // What lands stays where it touches: there friction is to hold it.
+      // Landed bodies stay where they touch, because friction will hold them there.
       if (!has_landed && (slope > -k_turned_against * start || state_.mode != modes)) slope = correct(factor * step, from, slope);
       is_too_far = !(slope <= -k_turned_against * start);
       is_taken = !is_too_far && (factor == whole || slope >= k_turned_against * start);
     }
     if (is_taken) break;
     (is_too_far ? high : low) = factor;
-    // A large scene goes on from here: to search for how far it gets in this direction costs as much as many steps.
+    // In a large model the step is accepted here: finding its best length would cost as much as many steps.
     if (is_sparse_ && low > 0.0 && slope < 0.0 && high < whole) break;
     if (trial > 12 && low > 0.0 && high - low < 1e-3 * high) break;
     factor = 0.5 * (low + high);
@@ -301,7 +304,7 @@ bool Descent::advance(VecX step) {
   return true;
 }
 
-// Friction that gets its load holds where it is, friction that is turned back, too; without load there is none.
+// Updates friction: an element that gains its load, or whose motion reverses, sticks at the present pose; an unloaded one is released.
 void Descent::follow_friction(const std::vector<double>& from) {
   statics_.evaluate(state_);
   bool is_changed = false, is_moved = false;
@@ -339,9 +342,9 @@ void Descent::follow_friction(const std::vector<double>& from) {
   statics_.collect_rows(state_, left_out_);
 }
 
-// Feet of one body pair hold it once: the rows that the equations of motion leave out for that, where they begin to hold, stay out
-// here too. Together they would hold it against tilting, too, since the distance of two feet on the ground is another then,
-// however little.
+// Finds dependent friction rows, as the equations of motion do at the start of sticking, and leaves them out. Several feet of one body hold
+// it in one direction only once. With all rows, they would also hold it against tilting, because tilting changes the distance of two feet
+// on the ground slightly.
 void Descent::find_dependent_friction() {
   left_out_.assign(static_cast<std::size_t>(system_.friction_row_count) + 1, 0);
   const auto is_bounded = [this](std::size_t f) {
@@ -372,8 +375,8 @@ bool Descent::has_run_away() {
   runaway_ = largest_part(moved);
   const int driven = 3 * runaway_.body - 3 + runaway_.coordinate;
   driving_force_ = std::abs(statics_.force()[driven]);
-  // Where next to nothing acts on it itself, what moves along with it drives it (a pinion that its own weight turns on its rack): by the
-  // work for its share of the way.
+  // If almost no force acts on the moving body itself, another body that moves with it drives it (a pinion turned on its rack by its own
+  // weight). The driving force is then the total work divided by its displacement.
   double work = 0.0;
   for (int k = 0; k < n_; ++k) work += statics_.force()[k] * (state_.q[k + 3] - start_[k + 3]);
   const double way = std::abs(state_.q[driven + 3] - start_[driven + 3]);
@@ -381,7 +384,7 @@ bool Descent::has_run_away() {
   return true;
 }
 
-// Newton's steps to where rounding ends them.
+// Newton steps until rounding stops the improvement.
 bool Descent::polish() {
   bool is_better = false;
   for (int i = 0; i < k_most_polishing; ++i) {
@@ -431,7 +434,7 @@ void Descent::finish() {
   yielding_ = landscape_->count_yielding();
   residual_ = landscape_->acceleration().cwiseProduct(scale_).cwiseAbs().maxCoeff();
   indifferent_ = landscape_->indifferent(more_indifferent_);
-  // What was not asked for holds where it is.
+  // Rows left out are anchored at the present pose.
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
     if (const int row = system_.frictions[f].row; state_.friction[f].phase == FrictionPhase::stick && left_out_[row] != 0)
       anchor_friction(system_, state_, static_cast<int>(f), statics_.motion().data());

@@ -1,15 +1,14 @@
-// The way downhill to a pose of rest: forces give way along the constraints until they balance.
+// Descent to static equilibrium: bodies move along the constraints in the direction of the forces until these balance.
 //
-// Newton's method for Q + Jᵀλ = 0 on the constraint manifold: along the motions wᵢ that the rows allow, orthonormal in
-// the masses' metric, the stiffness is symmetric for all conservative forces, and its eigenvalues λᵢ (1/s²) and the
-// shares gᵢ of the force give the step Σ wᵢ gᵢ/(λᵢ + σ) (landscape.h; in large scenes without asking for each of them). σ keeps it within a trust
-// region and downhill where λᵢ ≤ 0; for large σ it is the way of the masses under the forces, that which a strongly
-// damped machine takes. A step is projected onto the rows; it is taken as long as the work along its tangent has not
-// turned against it; what projection or a contact does not let through is tried at half its length. On its way no gap may close
-// unseen (clearance.h): a thin plank is not stepped through.
+// Newton's method for Q + Jᵀλ = 0 on the constraint manifold. Let wᵢ be the motions that the rows allow, orthonormal in the mass metric.
+// For conservative forces the stiffness along them is symmetric; its eigenvalues λᵢ (1/s²) and the components gᵢ of the force give the step
+// Σ wᵢ gᵢ/(λᵢ + σ) (landscape.h; large models avoid computing all λᵢ). The shift σ keeps the step within a trust region and downhill if λᵢ
+// ≤ 0. For large σ the step follows the accelerations, like a strongly damped machine. A step is projected onto the rows. It is accepted if
+// the work along its tangent is still positive or nearly zero at its end, and halved otherwise, or if projection or a contact stops it. No
+// gap may close unnoticed on the way (clearance.h), so that no thin plank is passed through.
 //
-// Nothing absolute is in it: lengths are measured by the scene (its extent, and for an angle the radius at which a
-// body's rows and its mass lie), forces by what rounding of poses, stiffness and reactions leaves of them.
+// There are no absolute tolerances. Lengths are relative to the size of the model (its extent; for an angle, the radius at which a body's
+// rows and mass lie), forces to the rounding of poses, stiffness and reactions.
 #pragma once
 
 #include "mbd/rest/clearance.h"
@@ -18,37 +17,38 @@
 namespace steplap {
 
 enum class DescentEnd {
-  rest,      ///< forces balance, and nothing runs away at a nudge
-  runs_away, ///< some body moves on without end
-  no_way     ///< no step leads further, though forces do not balance
+  rest,      ///< forces balance, and the equilibrium is stable
+  runs_away, ///< a body moves without end
+  no_way     ///< forces do not balance, but no step makes progress
 };
 
 class Descent {
 public:
-  /// `state` moves: its poses, modes and friction phases. Friction that gets loaded sticks where it is then, what loses
-  /// its load is let go, what slips does so until it is turned back.
+  /// Moves `state`: its poses, modes and friction phases. A friction element that gains its load sticks at that pose, one that loses it is
+  /// released, and one that slips continues until its motion reverses.
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
 
   [[nodiscard]] int iterations() const { return iterations_; }
-  [[nodiscard]] double length() const { return length_; } ///< m: of the scene
-  /// Per coordinate: 1 for metres, for radians one over the radius at which they are measured.
+  [[nodiscard]] double length() const { return length_; } ///< size of the model, m
+  /// Returns the displacement per scaled coordinate: 1 for lengths, 1/radius for angles, with the radius at which the body's rows and mass
+  /// lie.
   [[nodiscard]] const VecX& scale() const { return scale_; }
-  /// Largest acceleration that is left, m/s² or rad/s².
+  /// Returns the largest remaining acceleration, m/s² or rad/s².
   [[nodiscard]] double residual() const { return residual_; }
-  /// Multipliers of statics().rows(); of rows that depend on others one choice of many.
+  /// Returns the multipliers of statics().rows(). Those of dependent rows are one choice of many.
   [[nodiscard]] const VecX& multipliers() const { return landscape_->multipliers(); }
   [[nodiscard]] const Statics& statics() const { return statics_; }
-  /// At rest: directions along which nothing holds it, by their largest parts.
+  /// Returns directions without resistance at the equilibrium, each by its largest component.
   [[nodiscard]] const std::vector<MotionPart>& indifferent() const { return indifferent_; }
-  [[nodiscard]] int more_indifferent() const { return more_indifferent_; } ///< directions beside those
-  /// Poses that balanced but that a nudge would leave, and were left.
+  [[nodiscard]] int more_indifferent() const { return more_indifferent_; } ///< number of further such directions
+  /// Returns unstable equilibria on the way that were left.
   [[nodiscard]] const std::vector<MotionPart>& left() const { return left_; }
-  /// Number of directions in which a small motion meets no resistance, where the way began and where it ended.
+  /// Return the number of directions without resistance to a small motion, at the start and at the end.
   [[nodiscard]] int yielding_at_start() const { return yielding_at_start_; }
   [[nodiscard]] int yielding() const { return yielding_; }
-  /// What moves on without end, and the force or couple that moves it.
+  /// Return the body that moves without end, and the force or torque that drives it.
   [[nodiscard]] const MotionPart& runaway() const { return runaway_; }
   [[nodiscard]] double driving_force() const { return driving_force_; }
 
@@ -82,16 +82,16 @@ private:
   Statics statics_;
   int n_ = 0, iterations_ = 0, yielding_at_start_ = 0, yielding_ = 0, more_indifferent_ = 0;
   bool is_sparse_ = false;
-  double length_ = 1.0, reach_ = 1.0; ///< of the scene, and the largest coordinate
-  double radius_ = 0.0, turn_ = 0.0;  ///< trust region: m, rad
-  VecX scale_;                        ///< per coordinate: 1, or one over the body's radius
-  VecX mass_;                         ///< of the scaled coordinates
+  double length_ = 1.0, reach_ = 1.0; ///< size of the model and its largest coordinate, m
+  double radius_ = 0.0, turn_ = 0.0;  ///< trust region for displacements, m, and rotations, rad
+  VecX scale_;                        ///< per coordinate: 1 for lengths, 1/radius of the body for angles
+  VecX mass_;                         ///< masses of the scaled coordinates
   std::unique_ptr<Landscape> landscape_;
   std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
   double residual_ = 0.0;
   std::vector<Hold> hold_;     ///< per friction element
-  std::vector<char> left_out_; ///< per row of friction: it depends on others that hold, and is not asked for
+  std::vector<char> left_out_; ///< per friction row: dependent on other sticking rows and left out
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;
   double driving_force_ = 0.0;

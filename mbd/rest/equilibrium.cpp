@@ -19,18 +19,19 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
-constexpr double k_least_used = 1e-9;       // less is rounding
-constexpr double k_flowed = 1e-12;          // of the scene's length: what an elastic joint has slid in the search is rounding
+constexpr double k_admissible = 1.0 + 1e-9; // largest utilisation; the excess is rounding at stiff contacts
+constexpr double k_least_used = 1e-9;       // smaller utilisations are rounding
+constexpr double k_flowed = 1e-12;          // of the size of the model; smaller slides of elastic joints are rounding
 constexpr int k_most_flows = 200;
-constexpr double k_pushes = 1e3;               // tensions of a rope that are rounding: forces of a rest are known to some 1e-9 m/s²
+constexpr double k_pushes = 1e3;               // factor on the rounding of a rope's tension; accelerations at an equilibrium are known to
+                                               // about 1e-9 m/s²
 constexpr double k_on_rows = 1e-12;            // m, rad
-constexpr std::size_t k_most_rope_changes = 8; // for each rope
+constexpr std::size_t k_most_rope_changes = 8; // per rope
 constexpr double k_short = 0.999;
-constexpr int k_most_slips = 12;   // of one friction element, on the way to where it holds
-constexpr double k_tipped = 0.75;  // rad
-constexpr int k_most_shared = 150; // coordinates up to which it is asked for all ways in which friction could share a load
-// Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
+constexpr int k_most_slips = 12;   // of one friction element before the search fails
+constexpr double k_tipped = 0.75;  // rad of rotation from which a body counts as tipped over
+constexpr int k_most_shared = 150; // coordinates of the largest model for which all distributions of friction are examined
+// Share of the size of the model: contacts that slid further, resisted by friction alone, did not stand.
 constexpr double k_stands = 1e-2;
 
 std::string rounded(double value) {
@@ -39,24 +40,24 @@ std::string rounded(double value) {
   return text;
 }
 
-// What friction gives way on the search, and by how much.
+// Friction element that slid during the search.
 struct Slip {
   int friction = 0;
-  double used = 0.0; ///< when it first gave way
-  double from = 0.0; ///< its row's value then
+  double used = 0.0; ///< utilisation when it first slid
+  double from = 0.0; ///< value of its row at that time
   int times = 0;
-  bool is_least = false;  ///< `used` is the least of all ways to share the load
-  bool is_new = true;     ///< it has just begun
-  bool gives_way = false; ///< nothing but its friction resisted it
+  bool is_least = false;  ///< `used` is the least over all distributions of the load
+  bool is_new = true;     ///< slides since the last descent
+  bool gives_way = false; ///< nothing but its friction resisted the motion
 };
 
-// Friction that held contacts gave way.
+// Failure: friction between touching bodies gave way.
 class SlidAway : public ElementFailure {
 public:
   SlidAway(const std::string& message, std::vector<std::string> names, const Slip& slip)
       : ElementFailure(message, std::move(names)), friction_(slip.friction), from_(slip.from) {}
   [[nodiscard]] int friction() const { return friction_; }
-  [[nodiscard]] double from() const { return from_; } ///< its row's value when it first gave way
+  [[nodiscard]] double from() const { return from_; } ///< value of its row when it first gave way
 
 private:
   int friction_ = 0;
@@ -91,7 +92,7 @@ public:
   }
 
 private:
-  // From what the damped machine comes to; `none`: what the search from the start found.
+  // Repeats the search from the final pose of the damped machine. `none`: failure of the first search.
   Equilibrium settled(const ElementFailure& none) {
     state_ = start_;
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
@@ -106,7 +107,7 @@ private:
     State rest = *settling.rest;
     rest.memory = held_memory(rest);
     state_ = rest;
-    // What slid away from where it stood does not stand, wherever it comes to lie.
+    // A body that slid away did not stand, whatever its final pose.
     if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
         slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
       throw ElementFailure(none.what(), none.elements());
@@ -121,7 +122,7 @@ private:
       throw ElementFailure(tried, none.elements());
     }
   }
-  // Drives are no longer held: their rows are as they were, those of friction as it came to hold.
+  // Returns the memory with the drives' original values and the friction anchors of `rest`.
   [[nodiscard]] std::vector<double> held_memory(const State& rest) const {
     std::vector<double> memory = rest.memory;
     for (const RowSpec& row : system_.rows)
@@ -150,7 +151,7 @@ private:
       find_margins(descent);
       if (change_ropes()) continue;
       if (overloads_.empty()) break;
-      if (result_.is_settled || !share_anew(descent)) let_go(); // what settled has shared its load on the way
+      if (result_.is_settled || !share_anew(descent)) let_go(); // a settled machine has distributed its load on the way
     }
     check_slides();
     return at_rest();
@@ -158,7 +159,7 @@ private:
 
   Equilibrium at_rest() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
-      if (state_.friction[f].phase != FrictionPhase::slip || system_.frictions[f].friction->never_slips()) continue; // nor what is slack
+      if (state_.friction[f].phase != FrictionPhase::slip || system_.frictions[f].friction->never_slips()) continue; // excludes slack ropes
       state_.friction[f].phase = FrictionPhase::stick;
       anchor_friction(system_, state_, f);
     }
@@ -173,7 +174,7 @@ private:
     return std::move(result_);
   }
 
-  // Elastic joints beyond their bound slide back onto it; then the machine rests elsewhere. True if one did.
+  // Lets elastic joints beyond their bound slide back onto it, which changes the equilibrium. Returns true if one did.
   bool let_flow() {
     if (system_.inner_groups.empty()) return false;
     Statics statics(system_);
@@ -188,8 +189,8 @@ private:
       if (i < last_flow_.size()) along += flow[i] * last_flow_[i], square += last_flow_[i] * last_flow_[i];
     }
     if (most <= k_flowed * length_) return false;
-    // What a joint lets go it gets back but for the share of what stands beside it: flows fall off like a geometric series,
-    // whose sum is taken at every second one, short of it by a little.
+    // A joint that yields gets back a part of its load, depending on the stiffness parallel to it. So successive slides form a geometric
+    // series; its sum is extrapolated at every second slide, slightly too short on purpose.
     const double ratio = square > 0.0 ? along / square : 0.0;
     const double rest = ratio > 0.0 && ratio < 1.0 ? k_short * ratio / (1.0 - ratio) : 0.0;
     if (++flows_ > k_most_flows || ratio >= 1.0 || rest * most > length_)
@@ -200,7 +201,7 @@ private:
     return true;
   }
 
-  // Rates of the drives are taken away, their values stay: the equations of motion are to see a machine at rest.
+  // Returns the state with zero rates of drives and unchanged values, so that the equations of motion see a machine at rest.
   [[nodiscard]] State with_drives_held() const {
     State held = state_;
     for (const RowSpec& row : system_.rows) {
@@ -253,8 +254,8 @@ private:
     }
   }
 
-  // Inextensible ropes are taut where the search found them taut, and slack else: at rest none may push, and none may be
-  // longer than it is. True if one changes.
+  // Changes the state of one rope: a taut rope that would push becomes slack, a slack one beyond its length becomes taut. Returns true if
+  // one changed.
   bool change_ropes() {
     const auto worst =
         std::max_element(pushing_.begin(), pushing_.end(), [](const Overload& a, const Overload& b) { return a.wrench[0] < b.wrench[0]; });
@@ -270,7 +271,7 @@ private:
       state_.friction[f].phase = FrictionPhase::stick;
       try {
         put_on_rows();
-      } catch (const ConstraintFailure&) { // what slid beyond it rubs where it lies now: that has to give way
+      } catch (const ConstraintFailure&) { // an element that slid now sticks elsewhere and conflicts with the rope: release it
         free_contacts();
         put_on_rows();
       }
@@ -283,7 +284,8 @@ private:
     throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided",
                          {name_of(f)});
   }
-  // What runs away may hang on ropes that were slack where it began: once more with those taut that it has run beyond.
+  // A body without end may be held by ropes that were slack at the start. Sets those taut that it has stretched, and returns to the start.
+  // Returns true if the search must be repeated.
   bool tighten_long() {
     std::vector<Motion<double>> motion;
     place_bodies(state_.q, state_.v, motion);
@@ -304,7 +306,7 @@ private:
     }
     return count_rope(changed);
   }
-  // Friction that holds contacts gets its load anew.
+  // Releases sticking friction of contacts, which then gains its load again.
   void free_contacts() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
       if (state_.friction[f].phase == FrictionPhase::stick && !one_sided_row(*system_.frictions[f].friction) && is_of_contacts(f))
@@ -328,7 +330,8 @@ private:
     return used < k_least_used ? 0.0 : used;
   }
 
-  // Does its bound come from contacts: does it bear nothing where all of them are open? (Of three dimensions are joints.)
+  // Returns true if the bound of the friction comes from contacts, that is, if it has no load with all contacts open. Friction of three
+  // dimensions belongs to joints.
   [[nodiscard]] bool is_of_contacts(int f) const {
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (friction.dimension() > 1) return false;
@@ -346,10 +349,10 @@ private:
     return evaluate_row<false>(*system_.frictions[f].friction->rows(state_.friction[f]), motion.data()).value;
   }
 
-  // Friction bears what it got when it got its load: another admissible set of forces may hold the machine.
+  // Sticking forces depend on the history of loading. Looks for another admissible distribution of forces that holds the machine, and returns true if there is one.
   bool share_anew(const Descent& descent) {
     if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
-    // All ways to share a load are dense algebra: hours in large scenes. There friction slides to where it holds.
+    // The search over all distributions uses dense algebra, which takes hours in large models. There friction slides until it sticks.
     if (3 * (system_.body_count() - 1) > k_most_shared) {
       is_too_large_ = true;
       return false;
@@ -364,7 +367,7 @@ private:
     return true;
   }
 
-  // What is overloaded most slides, with what shares its load.
+  // Lets the most overloaded elements slide, with those that share their load.
   void let_go() {
     const auto worst =
         std::max_element(overloads_.begin(), overloads_.end(), [](const Overload& a, const Overload& b) { return a.used < b.used; });
@@ -414,7 +417,7 @@ private:
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
     const std::string unit = part.coordinate == 2 ? " N m" : " N";
-    // An unstable rest is one: what there is none of is a rest that stays.
+    // An unstable equilibrium exists; the message says that there is no stable one.
     std::string text = "no static equilibrium: ";
     if (!result_.left.empty()) text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
     if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
@@ -431,7 +434,7 @@ private:
     throw ElementFailure(text, std::move(names));
   }
 
-  // Those that joints lead to the ground.
+  // Marks the bodies that joints connect to the ground.
   [[nodiscard]] std::vector<char> led_bodies() const {
     std::vector<std::vector<int>> joined(system_.bodies.size());
     for (const RowSpec& row : system_.rows) {
@@ -450,7 +453,7 @@ private:
     return is_led;
   }
 
-  // A body that no joint leads stood on something, or tipped over.
+  // Records a body without joints to the ground that tipped over.
   void note_tipping() {
     if (system_.contact_count == 0) return;
     const std::vector<char> is_led = led_bodies();
@@ -480,15 +483,15 @@ private:
   const System& system_;
   const RestAlgebra algebra_;
   const LoadHistory history_;
-  int flows_ = 0;                 ///< of elastic joints, in the search
+  int flows_ = 0;                 ///< slides of elastic joints in this search
   std::vector<double> last_flow_; ///< per inner state
   const State& start_;
   State state_;
   double length_ = 0.0;
-  int yielding_ = 0;         ///< directions in which nothing resists at the last rest
-  double least_usage_ = 0.0; ///< of friction over all ways to share the load, where that was asked
+  int yielding_ = 0;         ///< directions without resistance at the last equilibrium
+  double least_usage_ = 0.0; ///< least utilisation of friction over all distributions, if determined
   bool was_shared_anew_ = false;
-  bool is_too_large_ = false; ///< for other ways to share a load
+  bool is_too_large_ = false; ///< too large for a search over all distributions
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
   std::vector<Overload> pushing_; ///< taut ropes that would have to push

@@ -1,14 +1,13 @@
-// Static equilibrium: the pose in which nothing accelerates, contacts, friction and preload included.
+// Static equilibrium: the pose in which nothing accelerates, with contacts, friction and preload.
 //
-// The machine gives way downhill along its constraints (descent.h) until its forces balance: what hangs swings down,
-// what lies settles, what drives hold is held. Friction that gets its load holds its rows where they are then; where it
-// would have to hold more than it can, it slides at its bound until it holds. Among several rests this is the nearest
-// downhill. A pose that balances but would run away at a nudge is left.
+// The bodies move downhill along the constraints (descent.h) until forces balance: suspended bodies swing down, resting ones settle, driven
+// coordinates stay. Friction that gains its load holds its rows at that pose. If it would have to exceed its bound, it slides at the bound
+// until it sticks again. Of several equilibria this finds the nearest one downhill. Unstable equilibria are left.
 //
-// That finds none where a body would go on without end, where friction between touching bodies gives way (a ladder that
-// slides down may come to rest somewhere, but it does not stand), or where a joint's friction is overloaded. Before it is said
-// that there is none, a machine with contacts or friction is let go and damped (settling.h): what it comes to is searched anew
-// from there. Where friction holds such a rest is one of many, and which one hangs on the way.
+// The descent fails if a body would move without end, if friction between touching bodies gives way (a ladder that slides down may come to
+// rest somewhere, but it does not stand), or if the friction of a joint is overloaded. Then a machine with contacts or friction is released
+// and simulated with strong damping (settling.h), and the search is repeated from its final pose. If friction holds that rest, it is one of
+// many and depends on the path.
 #pragma once
 
 #include "mbd/rest/descent.h"
@@ -18,40 +17,40 @@
 
 namespace steplap {
 
-/// How far a friction element that holds is from slipping.
+/// Margin of a sticking friction element.
 struct FrictionMargin {
   int friction = 0;       ///< index in System::frictions
-  double used = 0.0;      ///< share of what it could bear: the wrench over the largest one of its direction
-  bool is_shared = false; ///< the least share with which it and others can bear the load that they have in common
+  double used = 0.0;      ///< utilisation: wrench over the largest one in the same direction
+  bool is_shared = false; ///< the element shares a load; `used` is the least common utilisation with which the group can carry it
 };
 
-/// A pose of rest and how it was found.
+/// Equilibrium and how it was found.
 struct Equilibrium {
-  State state;                         ///< at rest; modes and friction phases belong to it
-  double residual = 0.0;               ///< largest acceleration left, m/s² or rad/s²
+  State state;                         ///< at rest, with its modes and friction phases
+  double residual = 0.0;               ///< largest remaining acceleration, m/s² or rad/s²
   double moved = 0.0;                  ///< largest displacement from the start, m
-  int iterations = 0;                  ///< of the search
-  bool is_settled = false;             ///< found by letting the damped machine settle in time from the start
-  int settling_steps = 0;              ///< that this took
-  bool hangs_on_way = false;           ///< settled, and friction holds it: one rest of many
-  std::vector<FrictionMargin> margins; ///< of those that hold
-  std::vector<MotionPart> indifferent; ///< directions along which nothing holds it, by their largest parts
-  int more_indifferent = 0;            ///< and how many more, where they are too many to be named
-  std::vector<MotionPart> left;        ///< poses that balanced on the way, but that a nudge would leave
-  std::vector<int> slid;               ///< friction elements that slid to where they hold
-  int turned_body = 0;                 ///< of those that no joint leads the one that turned furthest, if so far that it
-  double turned = 0.0;                 ///< did not settle but tip over; rad
-  std::vector<int> moving_drives;      ///< elements whose drives move or accelerate now; taken as held
+  int iterations = 0;                  ///< steps of the descent
+  bool is_settled = false;             ///< found by releasing the damped machine
+  int settling_steps = 0;              ///< time steps of that simulation
+  bool hangs_on_way = false;           ///< held by friction after sliding or settling: one equilibrium of many
+  std::vector<FrictionMargin> margins; ///< margins of the sticking elements
+  std::vector<MotionPart> indifferent; ///< directions without resistance, each by its largest component
+  int more_indifferent = 0;            ///< number of further such directions
+  std::vector<MotionPart> left;        ///< unstable equilibria on the way
+  std::vector<int> slid;               ///< friction elements that slid before they stuck
+  int turned_body = 0;                 ///< body without joints to the ground that turned furthest, if it tipped over; else 0
+  double turned = 0.0;                 ///< its rotation, rad
+  std::vector<int> moving_drives;      ///< elements whose drives have a velocity or acceleration; they are held in statics
 };
 
-/// From `start`'s pose. Throws NumericalFailure if there is no equilibrium, saying what would move where and why.
-/// `algebra`: for tests that hold one against the other.
+/// Returns the equilibrium found from the pose of `start`. Throws NumericalFailure with the reason and the body that would move if there is
+/// none. `algebra`: for tests that compare the two.
 [[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra = RestAlgebra::by_size);
 
-/// "'bob' along -x", "'bob' turning clockwise".
+/// Returns the direction as text: "'bob' along -x", "'bob' turning clockwise".
 [[nodiscard]] std::string part_text(const System& system, const MotionPart& part);
-/// What is to be known beside the pose, a sentence each: rests that were left, what is indifferent, what slid, drives
-/// that move.
+/// Returns notes on an equilibrium, one sentence each: unstable equilibria that were left, directions without resistance, elements that
+/// slid, moving drives.
 [[nodiscard]] std::vector<std::string> remarks_on(const System& system, const Equilibrium& found);
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// Poses in which a force has no direction: the ends of a rope, a rod or a spring meet. Nothing that follows from such
-// forces is a number, and a decomposition of what is none may go on for ever.
+// Error for poses in which a force has no direction, because the two ends of a rope, rod or spring coincide. Forces are then not-a-number,
+// and matrix decompositions may not terminate.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -10,9 +10,9 @@
 
 namespace steplap {
 
-/// A failure that names the body on which a force is no number, or the change of one with the pose.
+/// Returns the failure that names the body on which a force or its derivative is not a number.
 [[nodiscard]] inline ElementFailure no_direction(const System& system, const Statics& statics) {
-  // What a body does to others is no number either: its own share tells.
+  // The forces that this body exerts on others are not numbers either, so look for its own diagonal entry.
   const MatX stiffness = statics.stiffness(VecX::Zero(static_cast<Eigen::Index>(statics.rows().size())));
   Eigen::Index worst = 0;
   while (worst + 1 < stiffness.rows() && std::isfinite(statics.force()[worst]) && std::isfinite(stiffness(worst, worst))) ++worst;

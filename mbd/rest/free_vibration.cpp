@@ -14,15 +14,15 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_rounded_terms = 64.0;
-// Up to so many free coordinates eigenvalues are refined one by one, which costs a factorisation each.
+// Largest number of free coordinates for which eigenvalues are refined; each refinement costs a factorisation.
 constexpr Eigen::Index k_refined = 60;
-constexpr double k_near = 1e-3; // a refinement that moves an eigenvalue further, as a share of it, has lost its way
+constexpr double k_near = 1e-3; // relative change; a refinement that changes an eigenvalue by more has converged to another one
 
 using Complex = std::complex<double>;
 using ComplexMatrix = Eigen::MatrixXcd;
 using ComplexVector = Eigen::VectorXcd;
 
-// Singular values of A with their right vectors; of a symmetric one by its eigenvectors.
+// Returns the singular values of A with right vectors; for symmetric A from its eigenvectors.
 std::pair<VecX, MatX> singular_vectors(const MatX& a) {
   if ((a - a.transpose()).cwiseAbs().sum() <= 1e-9 * a.cwiseAbs().sum()) {
     const auto [values, vectors] = symmetric_eigen(0.5 * (a + a.transpose()));
@@ -32,14 +32,14 @@ std::pair<VecX, MatX> singular_vectors(const MatX& a) {
   return {values, v};
 }
 
-// Orthonormal complement of the columns' span.
+// Returns an orthonormal basis of the complement of the columns' span.
 MatX complement(const MatX& columns) {
   const Eigen::Index n = columns.rows();
   if (columns.cols() == 0) return MatX::Identity(n, n);
   return orthonormal(columns, n).rightCols(n - columns.cols());
 }
 
-// Motions at constant velocity that damping does not resist either: (β, η') with Vᵀη' = 0, A V β + B η' = 0.
+// Returns motions at constant velocity without damping: (β, η') with Vᵀη' = 0 and A V β + B η' = 0.
 MatX steady_motions(const FreeVibration& v) {
   const Eigen::Index r = v.a.cols(), k = v.held.cols();
   if (v.loose.cols() == 0) return MatX(k + r, 0);
@@ -64,8 +64,8 @@ MatX steady_motions(const FreeVibration& v) {
   return motions;
 }
 
-// D⁻¹ M D with powers of two, so that rows and columns are of one size (B. N. Parlett, C. Reinsch, Numer. Math. 13 (1969)
-// 293): slow modes keep their digits beside fast ones. Returns D.
+// Balances m by D⁻¹ m D with powers of two, so that rows and columns have similar size (B. N. Parlett, C. Reinsch, Numer. Math. 13 (1969)
+// 293) and slow modes stay accurate next to fast ones. Returns D.
 VecX balance(MatX& m) {
   const Eigen::Index n = m.rows();
   VecX d = VecX::Ones(n);
@@ -88,8 +88,8 @@ VecX balance(MatX& m) {
   return d;
 }
 
-// Newton's method for (λ² − λ B − A) x = 0, inverse iteration with the eigenvalue moving along: rounding is then that of
-// the mode's own terms.
+// Refines an eigenvalue by Newton's method for (λ² − λ B − A) x = 0, that is, inverse iteration with a moving shift. The remaining rounding
+// is that of the mode's own terms.
 void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
   const Eigen::Index r = v.a.cols();
   Complex at = value;
@@ -99,7 +99,7 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
     ComplexMatrix q = -at * v.b.cast<Complex>() - v.a.cast<Complex>();
     q.diagonal().array() += at * at;
     ComplexVector right = Complex(2.0) * at * shape - v.b.cast<Complex>() * shape;
-    for (Eigen::Index k = 0; k < r; ++k) { // rows of one size: pivots are not chosen by the units of stiff ones
+    for (Eigen::Index k = 0; k < r; ++k) { // scales rows to equal size, so that pivots do not depend on the stiffest rows
       double size = 0.0;
       for (Eigen::Index j = 0; j < r; ++j) size = std::max(size, std::abs(q(k, j).real()) + std::abs(q(k, j).imag()));
       if (!(size > 0.0)) return;
@@ -108,7 +108,7 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
     }
     const ComplexVector next = solve_complex(q, right);
     const Complex ratio = shape.dot(next);
-    if (!next.allFinite() || size_of(ratio) == 0.0) break; // on the eigenvalue
+    if (!next.allFinite() || size_of(ratio) == 0.0) break; // the shift is an eigenvalue
     const Complex change = Complex(shape.squaredNorm()) / ratio;
     const double moved = size_of(change) / size_of(at);
     if (!(moved < last)) break;
@@ -124,8 +124,8 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
 } // namespace
 
 void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of) {
-  // What nothing holds: singular vectors of A that rounding of the stiffness could make. Found beside the others with
-  // their own rounding, not with that of the stiffest.
+  // Motions without stiffness: singular vectors of A whose singular value is rounding of the stiffness. Each is compared with its own
+  // rounding, not with that of the stiffest motion.
   const auto [sizes, vectors] = singular_vectors(a);
   const MatX shapes = basis * vectors;
   const MatX size = sizes_of(shapes);
@@ -135,7 +135,7 @@ void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of)
     const double rounding = k_epsilon * (k_rounded_terms * terms + 4.0 * sizes.maxCoeff());
     (sizes[i] <= rounding ? free : firm).push_back(i);
   }
-  const auto columns = [this, &all = vectors](const std::vector<Eigen::Index>& which) { // clang 14 takes no binding along unnamed
+  const auto columns = [this, &all = vectors](const std::vector<Eigen::Index>& which) { // clang 14 accepts no binding here without a name
     MatX out(a.cols(), static_cast<Eigen::Index>(which.size()));
     for (std::size_t i = 0; i < which.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = all.col(which[i]);
     return out;
@@ -147,8 +147,8 @@ void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of)
 std::vector<FreeMode> modes_of(const FreeVibration& v) {
   std::vector<FreeMode> found;
   const Eigen::Index r = v.a.cols(), k = v.held.cols();
-  // (β, η'): positions along what nothing holds do not count, nor do velocities that nothing resists: no eigenvalue
-  // that is left is zero.
+  // State (β, η') without positions along motions that have no stiffness and without velocities that nothing resists, so that no eigenvalue
+  // is zero.
   MatX whole = MatX::Zero(k + r, k + r);
   whole.topRightCorner(k, r) = v.held.transpose();
   whole.bottomLeftCorner(r, k) = v.a * v.held;

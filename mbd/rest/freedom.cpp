@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-// A row has part in a dependency if its coefficient there, rows at length 1, is above this: rounding leaves less.
+// Least coefficient, for rows of unit length, with which a row takes part in a dependency; rounding is smaller.
 constexpr double k_part = 1e-6;
 
 class Rows {
@@ -66,8 +66,8 @@ public:
     return list;
   }
 
-  // Rows that others could replace: those with a part in some dependency J_dᵀ = Σ c J_rᵀ. All dependencies are solved for
-  // at once, each times a factor of its own: parts that cancel in one such sum do not in the other.
+  // Returns the rows with a coefficient in some dependency J_dᵀ = Σ c J_rᵀ. All dependencies are added up with random factors and solved
+  // together. Terms that cancel in one such sum do not cancel in a second one.
   [[nodiscard]] std::vector<char> find_shared(const std::vector<int>& dependent) const {
     std::vector<char> is_shared(rows_.size(), 0);
     for (const int d : dependent) is_shared[d] = 1;
@@ -94,7 +94,7 @@ private:
       for (int c = 0; c < 3; ++c) sum += rows_[r].wj[side][c] * rows_[r].j[side][c];
     auto part = std::lower_bound(parts_.begin(), parts_.end(), r, [](const SchurPart& p, int row) { return p.of < row; });
     if (part == parts_.end() || part->of != r) return std::sqrt(sum);
-    std::map<int, double> wj, j; // of a body that several parts act on their sum counts
+    std::map<int, double> wj, j; // a body on which several parts act gets their sum
     const auto add = [&](const SchurRow& row) {
       for (int side = 0; side < 2; ++side)
         for (int c = 0; c < 3 && row.body[side] >= 0; ++c) {
@@ -108,7 +108,7 @@ private:
     return std::sqrt(sum);
   }
 
-  // J W Jᵀ x
+  // Returns J W Jᵀ x.
   [[nodiscard]] std::vector<double> gram(const std::vector<double>& x) const {
     std::vector<double> response(3 * system_.bodies.size(), 0.0), result(rows_.size(), 0.0);
     const auto for_entries = [this](const auto& f) {
@@ -126,13 +126,13 @@ private:
   const System& system_;
   std::vector<Motion<double>> motion_;
   std::vector<SchurRow> rows_;
-  std::vector<std::pair<const RowSpec*, int>> further_; // parts of rows beyond the first, and of which row
-  std::vector<SchurRow> whole_;                         // rows, then those
+  std::vector<std::pair<const RowSpec*, int>> further_; // further parts of rows, with the index of the row
+  std::vector<SchurRow> whole_;                         // rows, then their further parts
   std::vector<SchurPart> parts_;
   SchurSolver solver_;
 };
 
-// By element; of joints and drives, the first `joint_rows`, also which rows.
+// Returns the shared reactions by element; for joints and drives (the first `joint_rows`) with the quantities.
 std::vector<SharedReaction> reactions_of(const System& system, const std::vector<char>& is_shared, const std::vector<int>& elements) {
   std::map<int, std::vector<std::string>> found;
   for (std::size_t i = 0; i < is_shared.size(); ++i) {

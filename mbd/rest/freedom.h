@@ -1,10 +1,9 @@
-// Counts degrees of freedom of a compiled system in its reference pose: coordinates, independent
-// constraint rows, and what friction takes away while it sticks.
+// Counts the degrees of freedom of a compiled system in its reference pose: coordinates, independent constraint rows, and those that
+// friction removes while it sticks.
 //
-// A row counts as dependent where the equations of motion take it for that: if, in the metric of the masses, what is left of
-// it beyond the others is below 3e-7 of its length (the root of SchurSolver::k_pivot_tolerance). A mechanism in a singular
-// pose has more freedom there than elsewhere: the count is that of the pose. Linear in the size of scenes without many
-// loops through each other.
+// A row counts as dependent by the rule of the equations of motion: in the mass metric, its part independent of other rows is below 3e-7 of
+// its length (the square root of SchurSolver::k_pivot_tolerance). In a singular pose a mechanism has more freedom than elsewhere, and the
+// count is that of the pose. The cost is linear in the size of models without many interlinked loops.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -14,19 +13,19 @@
 
 namespace steplap {
 
-/// Of an element, the rows whose multipliers are not unique; what they hold, by RowSpec::quantity.
+/// Element with rows whose multipliers are not unique, and the quantities that these rows hold (RowSpec::quantity).
 struct SharedReaction {
   int element = 0;
-  std::vector<std::string> quantities; ///< of joints and drives; empty for friction
+  std::vector<std::string> quantities; ///< for joints and drives; empty for friction
 };
 
 struct Freedom {
-  int coordinates = 0;             ///< three for each body that moves
+  int coordinates = 0;             ///< three for each movable body
   int rows = 0;                    ///< constraint rows of joints and drives
-  int rank = 0;                    ///< independent ones among them
-  int rank_sticking = 0;           ///< the same with every friction joint sticking
-  std::vector<int> dependent_rows; ///< rows that others imply: which of a set is arbitrary
-  /// Reactions that are not unique: of joints and drives alone, and with all friction sticking.
+  int rank = 0;                    ///< number of independent rows
+  int rank_sticking = 0;           ///< the same with all friction sticking
+  std::vector<int> dependent_rows; ///< rows that follow from others; which one of a set is listed is arbitrary
+  /// Reactions that are not unique, for joints and drives alone, and with all friction sticking.
   std::vector<SharedReaction> shared, shared_sticking;
 
   [[nodiscard]] int degrees() const { return coordinates - rank; }

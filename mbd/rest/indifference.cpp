@@ -6,9 +6,9 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_named = 6; // more are counted
+constexpr std::size_t k_named = 6; // with more names, the rest is counted
 
-// "'ball 1', 'ball 2' and 'ball 3'"
+// Returns names as text: "'ball 1', 'ball 2' and 'ball 3'".
 std::string names_text(const System& system, const std::vector<int>& bodies) {
   const std::size_t named = bodies.size() > k_named ? k_named - 1 : bodies.size();
   std::string text;

@@ -1,11 +1,11 @@
-// What nothing holds at rest, in words.
+// Text about directions without resistance at an equilibrium.
 #pragma once
 
 #include "mbd/rest/equilibrium.h"
 
 namespace steplap {
 
-/// A sentence for one direction, and one for all bodies that are free along the same coordinate.
+/// Returns one sentence for each direction; bodies free along the same coordinate share one.
 [[nodiscard]] std::vector<std::string> indifference_texts(const System& system, const std::vector<MotionPart>& parts);
 
 } // namespace steplap

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double k_same_share = 1e-12;
 constexpr int k_most_halvings = 60;
-constexpr double k_least_look = 1e-3; // of a step: a thousand looks at most, as along a small scene's
+constexpr double k_least_look = 1e-3; // of a step: least distance of measurements, so at most a thousand, as in a small model
 
 } // namespace
 
@@ -38,7 +38,7 @@ void Landing::join_bodies() {
     else if (part.contact >= 0) open_.push_back({part.a, part.b, part.contact});
   }
   for (const StaticRow& row : statics_.rows()) {
-    int last = k_ground; // of a row over several bodies
+    int last = k_ground; // for a row over several bodies
     for (const RowSpec* part = row.spec; part; part = part->next) {
       join(part->a, part->b);
       const int any = part->a != k_ground ? part->a : part->b;
@@ -57,7 +57,7 @@ VecX Landing::cut_step(const VecX& step, const std::vector<double>& shares) {
   return cut;
 }
 
-// The island that lands where a contact closes: one that nothing carries, of two the one that goes further. −1: none.
+// Returns the island that lands when the contact closes: the unsupported one, or of two the one that moves further; −1 if none.
 int Landing::lander(const Pair& pair, const VecX& step) {
   const int a = island(pair.a), b = island(pair.b);
   if (a == b || (is_carried_[a] != 0 && is_carried_[b] != 0)) return -1;
@@ -68,7 +68,7 @@ int Landing::lander(const Pair& pair, const VecX& step) {
 
 bool Landing::has_stopped(int island, double share) const { return !landed_[island].empty() && high_[island] < share; }
 
-// From a look at `share` on: as far as what still moves has been given looks, and has room.
+// Returns the next share of the step for a measurement, by the number of measurements and the safe share of the islands that still move.
 double Landing::next_share(const VecX& step, const std::vector<double>& looks, const Look& look, double share) {
   double most = 1.0;
   std::vector<double> moving(parent_.size(), 0.0);
@@ -81,7 +81,7 @@ double Landing::next_share(const VecX& step, const std::vector<double>& looks, c
   return std::min(1.0, share + std::min(1.0 / most, room));
 }
 
-// Look by look, as many as what still moves takes. False if a contact closes at which nothing lands, or none at all.
+// Finds the first contact of each island, measurement by measurement. Returns false if no contact closes, or one at which nothing lands.
 bool Landing::find_first(const VecX& step, const std::vector<double>& looks, const Look& look) {
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> shares(parent_.size());
@@ -96,7 +96,7 @@ bool Landing::find_first(const VecX& step, const std::vector<double>& looks, con
       is_known[p] = 1;
       int landing = lander(open_[p], step);
       if (landing < 0) return false;
-      if (has_stopped(landing, share)) { // the other one runs into it
+      if (has_stopped(landing, share)) { // the other island hits this one, which has landed already
         landing = island(open_[p].a) == landing ? island(open_[p].b) : island(open_[p].a);
         if (is_carried_[landing] != 0 || has_stopped(landing, share)) return false;
       }
@@ -109,7 +109,7 @@ bool Landing::find_first(const VecX& step, const std::vector<double>& looks, con
   return is_any;
 }
 
-// All of them at once by bisection.
+// Locates the first contacts of all islands at once by bisection.
 void Landing::close_in(const VecX& step, const Look& look) {
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> shares(parent_.size());

@@ -1,8 +1,8 @@
-// Steps downhill on which many bodies land, each on its own.
+// Cuts a step of the descent so that many bodies land in it, each at its own first contact.
 //
-// Bodies that rows, springs or closed contacts join are an island. Along a step no island knows of another until a contact
-// between them closes; so each that nothing carries yet goes as far as to its own first one, and all land in one step. To cut the
-// whole step at the first contact that closes, as a small scene's is, takes as many steps as bodies land.
+// An island is a set of bodies connected by rows, springs or closed contacts. Islands do not affect each other before a contact between
+// them closes. So each island that nothing supports moves up to its own first contact, and all land in one step. Cutting the whole step at
+// the first contact, as in a small model, would take one step for each landing body.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -14,17 +14,17 @@ namespace steplap {
 
 class Landing {
 public:
-  /// At the last evaluation of `statics`.
+  /// Uses the last evaluation of `statics`.
   Landing(const System& system, const Statics& statics);
 
   struct Look {
-    std::function<void(const VecX& step)> at;     ///< evaluates the statics a step away from where it begins
-    std::function<double(const VecX& step)> room; ///< the share of a step from there that may be gone before the next look
+    std::function<void(const VecX& step)> at;     ///< evaluates the statics at a displacement from the start of the step
+    std::function<double(const VecX& step)> room; ///< share of a step that is safe from there before the next measurement of gaps
   };
-  /// Cuts the islands' parts of `step` where their first contact has just closed. `looks`: of each body (0 of the ground), how
-  /// often the way it goes is to be looked at; `touch`, m: how far beyond the first contact an island goes, so that rounding does
-  /// not open it again. False, and the step is as it was, if none closes or some within an island or between two that are carried
-  /// already. The statics is left anywhere.
+  /// Cuts the part of `step` of each island where its first contact has just closed. `looks`: number of measurements along each body's
+  /// path, 0 for the ground. `touch`: penetration after closing, m, so that rounding does not open the contact again. Returns false and
+  /// leaves the step unchanged if no contact closes, or one within an island or between two supported ones. The statics is left at an
+  /// arbitrary pose.
   bool cut(VecX& step, const std::vector<double>& looks, double touch, const Look& look);
 
 private:
@@ -42,10 +42,10 @@ private:
 
   const System& system_;
   const Statics& statics_;
-  std::vector<int> parent_;      ///< of bodies, by union and find; 0 is the ground, which joins nothing
+  std::vector<int> parent_;      ///< union-find over bodies; 0 is the ground, which connects nothing
   std::vector<Pair> open_;       ///< contacts that may close
   std::vector<char> is_carried_; ///< islands with a closed contact
-  // Of each island: between which shares of the step its first contact closes, and the contacts that do.
+  // Per island: shares of the step between which its first contact closes, and the contacts that close.
   std::vector<double> low_, high_;
   std::vector<std::vector<int>> landed_;
 };

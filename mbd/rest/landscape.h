@@ -1,9 +1,9 @@
-// Forces and stiffness of a scene about a pose, along the motions that its rows allow: what the way downhill asks of them.
+// Forces and stiffness about a pose, along the motions that the rows allow: the data for descent.h.
 //
-// Scaled coordinates (SceneScale). Two kinds of algebra answer: dense, with an orthonormal basis of the motions and all
-// eigenvalues λᵢ (1/s²) of the stiffness in the masses' metric, and sparse, for scenes beyond some tens of bodies, where
-// equations bordered by the rows (bordered_system.h) take the place of the basis, the signs of their pivots that of the
-// eigenvalues, and filters λ/(λ + σ), a solution each, that of looking at each of them.
+// Coordinates are scaled (SceneScale). There are two implementations. Dense: an orthonormal basis of the motions and all eigenvalues λᵢ
+// (1/s²) of the stiffness in the mass metric. Sparse, for models beyond some tens of bodies: equations bordered by the rows
+// (bordered_system.h) replace the basis, the signs of pivots replace the signs of eigenvalues, and filters λ/(λ + σ), one solution each,
+// replace the eigenvalues.
 #pragma once
 
 #include "mbd/rest/tangent.h"
@@ -15,7 +15,7 @@
 
 namespace steplap {
 
-/// Largest part of a motion: coordinate 0, 1, 2 (x, y, θ) of a body, and which way.
+/// Largest component of a motion: coordinate 0, 1, 2 (x, y, θ) of a body, and its sign.
 struct MotionPart {
   int body = 0, coordinate = 0;
   double sign = 1.0;
@@ -30,12 +30,12 @@ public:
     const System& system;
     const Statics& statics;
     const VecX& scale;
-    const VecX& mass; ///< of the scaled coordinates
+    const VecX& mass; ///< masses of the scaled coordinates
     double length = 1.0;
   };
-  /// Of a step: 1 at the border of the region in which the linear equations are trusted.
+  /// Size of a step: 1 at the border of the trust region.
   using StepSize = std::function<double(const VecX&)>;
-  /// A direction in which a nudge is not resisted, and the force along it.
+  /// Direction without resistance to a small displacement, and the force along it with its rounding.
   struct Unstable {
     VecX direction;
     double force = 0.0, rounding = 0.0;
@@ -46,42 +46,43 @@ public:
   Landscape(const Landscape&) = delete;
   Landscape& operator=(const Landscape&) = delete;
 
-  /// At the last evaluation of the statics and its rows.
+  /// Linearises at the last evaluation of the statics and its rows.
   virtual void linearise(const State& state) = 0;
-  // From there on, about that pose:
-  [[nodiscard]] const VecX& force() const { return force_; }        ///< along the rows
-  [[nodiscard]] const VecX& multipliers() const { return lambda_; } ///< of all rows
-  /// To where forces balance; along what nothing holds there is none.
+  // The following refer to the pose of the last linearise().
+  [[nodiscard]] const VecX& force() const { return force_; }        ///< force along the motions that the rows allow
+  [[nodiscard]] const VecX& multipliers() const { return lambda_; } ///< multipliers of all rows
+  /// Returns the step to the balance of forces, without components along directions that have no stiffness.
   [[nodiscard]] virtual VecX newton_step() = 0;
-  /// Forces push along what nothing holds.
+  /// Returns true if forces act along directions without stiffness.
   [[nodiscard]] virtual bool is_pushed() = 0;
-  /// Loads that turn with a body and friction that slides have no potential.
+  /// Returns true if the stiffness is not symmetric: follower loads and sliding friction have no potential.
   [[nodiscard]] virtual bool is_skew() const = 0;
-  /// What is out of balance, in the masses' metric.
+  /// Returns the norm of the remaining force in the mass metric.
   [[nodiscard]] virtual double imbalance() const = 0;
-  /// Downhill, to the border of the region at most.
+  /// Returns a downhill step within the trust region.
   [[nodiscard]] virtual VecX trust_step(const StepSize& size) = 0;
+  /// Returns the most unstable direction, if there is one.
   [[nodiscard]] virtual std::optional<Unstable> most_unstable() = 0;
-  /// Directions in which the forces do not hold it back.
+  /// Returns the number of directions without resistance.
   [[nodiscard]] virtual int count_yielding() = 0;
-  /// Of the scaled coordinates.
+  /// Returns the acceleration of the scaled coordinates.
   [[nodiscard]] virtual VecX acceleration() = 0;
-  /// What nothing holds, by largest parts; `unnamed`: how many more directions there are.
+  /// Returns directions without stiffness, each by its largest component; `unnamed`: number of further ones.
   [[nodiscard]] virtual std::vector<MotionPart> indifferent(int& unnamed) = 0;
 
-  // At the present evaluation of the statics, which may be another pose with the same rows:
-  /// The least motion that meets the rows, and how far off they are.
+  // The following refer to the present evaluation of the statics, which may be at another pose with the same rows.
+  /// Determines the least displacement `way` that satisfies the rows, with errors `off`. Returns its size.
   virtual double way_to_rows(const VecX& off, VecX& way) = 0;
-  /// Lengths of the rows' scaled gradients, as of the last way_to_rows().
+  /// Returns the lengths of the rows' scaled gradients at the last way_to_rows().
   [[nodiscard]] virtual const VecX& row_size() const = 0;
-  /// The part of a vector that the rows allow, as of the last way_to_rows().
+  /// Returns the part of a vector that the rows allow, as of the last way_to_rows().
   [[nodiscard]] virtual VecX along_rows(const VecX& vector) const = 0;
-  /// Displacements that would restore the balance there in the stiff directions; their largest in `size`.
+  /// Returns the displacement that restores the balance in the stiff directions; its largest component is returned in `size`.
   [[nodiscard]] virtual VecX stiff_imbalance(double& size) = 0;
 
 protected:
   [[nodiscard]] VecX scaled_force() const { return scene_.scale.cwiseProduct(scene_.statics.force()); }
-  /// What rounding of poses, stiffness and reactions leaves of forces of these sizes.
+  /// Returns the rounding errors of forces of these sizes, from rounding of poses, stiffness and reactions.
   [[nodiscard]] VecX rounding_of(const State& state, const VecX& sizes, const std::function<VecX(const VecX&)>& stiffness) const;
 
   Scene scene_;

@@ -33,7 +33,7 @@ public:
     share_rounding_ = shape_.cwiseAbs().transpose() * rounding;
   }
 
-  // With the whole stiffness, which is not always symmetric.
+  // Uses the whole stiffness, which need not be symmetric.
   VecX newton_step() override {
     std::vector<Eigen::Index> firm;
     for (Eigen::Index i = 0; i < value_.size(); ++i)
@@ -60,7 +60,7 @@ public:
 
   double imbalance() const override { return share_.size() > 0 ? share_.cwiseAbs().maxCoeff() : 0.0; }
 
-  // The σ at which the step ends at the border of the trust region; none where Newton's own step is inside.
+  // Finds σ so that the step ends at the border of the trust region. Returns Newton's step if it lies inside.
   VecX trust_step(const StepSize& size) override {
     double least = std::numeric_limits<double>::infinity(), largest = 0.0;
     for (Eigen::Index i = 0; i < value_.size(); ++i) {
@@ -89,13 +89,13 @@ public:
   std::optional<Unstable> most_unstable() override {
     Eigen::Index worst = 0;
     if (value_.size() == 0 || !(value_.minCoeff(&worst) < -value_rounding_[worst])) return std::nullopt;
-    // Friction that slides answers to normal forces, and those do not answer to it: its stiffness k μ beside the diagonal makes
-    // the symmetric part indefinite although nothing runs away. What does has an eigenvalue of the whole in that half plane.
+    // Sliding friction depends on normal forces, but these do not depend on friction. This adds an off-diagonal stiffness k μ, which makes
+    // the symmetric part indefinite without any instability. So a real instability must also show in the eigenvalues of the whole matrix.
     if (is_skew() && (eigenvalues(reduced_).real().array() >= -value_rounding_.maxCoeff()).all()) return std::nullopt;
     return Unstable{shape_.col(worst), share_[worst], share_rounding_[worst]};
   }
 
-  // With what friction that slides takes part in that.
+  // Includes the effect of sliding friction.
   int count_yielding() override {
     if (value_.size() == 0) return 0;
     const double rounding = value_rounding_.maxCoeff();
@@ -127,7 +127,7 @@ public:
 
   VecX along_rows(const VecX& vector) const override { return vector - end_.held * (end_.held.transpose() * vector); }
 
-  // With the stiffness of the step's start.
+  // Uses the stiffness at the start of the step.
   VecX stiff_imbalance(double& size) override {
     VecX gradient = scaled_force();
     gradient -= end_.held * (end_.held.transpose() * gradient);
@@ -142,7 +142,7 @@ public:
   }
 
 private:
-  // Mass-orthonormal shapes that the stiffness leaves apart.
+  // Determines mass-orthonormal eigenvectors of the stiffness.
   void find_modes() {
     const Eigen::Index r = shape_.cols();
     value_ = share_ = value_rounding_ = VecX::Zero(r);
@@ -171,10 +171,10 @@ private:
     return shape_ * share;
   }
 
-  MatX stiffness_, shape_, reduced_;                     ///< scaled; w_i; −wᵀKw
-  VecX value_, value_rounding_, share_, share_rounding_; ///< λᵢ, gᵢ and what is rounding of them
+  MatX stiffness_, shape_, reduced_;                     ///< scaled stiffness; wᵢ; −wᵀKw
+  VecX value_, value_rounding_, share_, share_rounding_; ///< λᵢ, gᵢ and their rounding errors
   double used_sigma_ = 0.0;
-  std::vector<int> kept_; ///< independent rows at the last linearisation
+  std::vector<int> kept_; ///< independent rows at the last linearise()
   Tangent end_;
 };
 

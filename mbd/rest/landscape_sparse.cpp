@@ -18,14 +18,14 @@ using Sparse = BorderedSystem::Sparse;
 using Entry = Statics::Entry;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-// Of the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
+// Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
-constexpr double k_small = 1e-11; // of the scene's length: steps that are the pose's rounding
+constexpr double k_small = 1e-11; // of the size of the model; smaller steps are rounding of the pose
 constexpr int k_most_filters = 8;
-constexpr double k_well_inside = 0.5; // of the trust region's radius: a step that is long enough
-constexpr double k_close = 1.2;       // ratio of two σ that is not worth a factorisation
+constexpr double k_well_inside = 0.5; // of the trust region's radius; longer steps are accepted
+constexpr double k_close = 1.2;       // ratio of two σ below which another factorisation is not worth its cost
 constexpr int k_most_shifts = 60;
-constexpr int k_named = 24; // directions
+constexpr int k_named = 24; // most directions that are named
 constexpr double k_skew = 1e-9;
 
 double largest(const VecX& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
@@ -68,8 +68,8 @@ public:
   bool is_skew() const override { return is_skew_; }
   double imbalance() const override { return std::sqrt(force_.cwiseAbs2().cwiseQuotient(scene_.mass).sum()); }
 
-  // σ between those that are too small (or leave the stiffness negative somewhere) and one at which the step is well
-  // inside: for large σ the step is as 1/σ.
+  // Finds σ by bisection between values that are too small (step too long, or stiffness not positive) and values at which the step is too
+  // short. For large σ the step is proportional to 1/σ.
   VecX trust_step(const StepSize& size) override {
     used_sigma_ = loose_;
     if (!is_skew_) {
@@ -101,7 +101,7 @@ public:
     return best;
   }
 
-  // The least eigenvalue between two σ, its direction by inverse iteration.
+  // Brackets the least eigenvalue between two σ; its direction follows by inverse iteration.
   std::optional<Unstable> most_unstable() override {
     if (is_definite(loose_)) return std::nullopt;
     double low = loose_, high = 8.0 * loose_;
@@ -119,7 +119,8 @@ public:
     return Unstable{x, x.dot(force_), x.cwiseAbs().dot(rounding_)};
   }
 
-  // By the symmetric stiffness without what sliding friction answers to normal forces: what yields but for friction.
+  // Uses the symmetric stiffness without the dependence of sliding friction on normal forces: counts directions that only friction would
+  // resist.
   int count_yielding() override { return negative_at(-loose_); }
 
   VecX acceleration() override {
@@ -182,8 +183,8 @@ public:
   }
 
 private:
-  // Where forces hardly push along the direction of the least eigenvalue, the step goes along it to the border of the
-  // region: downhill on either side.
+  // If forces hardly act along the eigenvector of the least eigenvalue, adds that direction up to the border of the trust region; both
+  // signs lead downhill.
   void add_soft_direction(const StepSize& size, VecX& step) {
     VecX soft = Spread().vector(n_), next;
     if (!factor(used_sigma_)) return;
@@ -191,14 +192,14 @@ private:
       if (!steps_.solve(inertia_.cwiseProduct(soft), next)) return;
       soft = next / std::sqrt(next.cwiseAbs2().dot(scene_.mass));
     }
-    // By Rayleigh's quotient: only if it is negative.
+    // Only if its Rayleigh quotient is negative.
     if (!(soft.dot(VecX(hat_ * soft)) < 0.0)) return;
     if (soft.dot(force_) < 0.0) soft = -soft;
     const double whole = size(soft);
     if (whole > 0.0) step += (1.0 - size(step)) / whole * soft;
   }
 
-  // What the rows allow is then known, too.
+  // Factorises the rows, which also gives the projection onto the motions that they allow.
   void factor_rows() {
     if (rows().empty()) return;
     onto_rows_.set(identity_, rows(), VecX::Zero(n_));
@@ -252,14 +253,14 @@ private:
     return true;
   }
   bool is_definite(double sigma) { return factor(sigma) && steps_.negative() == 0; }
-  // A pivot that vanishes is passed by.
+  // Returns the number of eigenvalues below −σ; σ is increased slightly if a pivot vanishes.
   int negative_at(double sigma) {
     for (int i = 0; i < 4; ++i, sigma *= 1.1)
       if (factor(sigma)) return steps_.negative();
     return 0;
   }
 
-  // λ/(λ + σ) of what is there in each direction.
+  // Multiplies the component of x along each eigenvector by λ/(λ + σ). Returns false if the solution fails.
   bool keep_firm(double sigma, VecX& x) const {
     VecX loose;
     if (!apply(sigma * inertia_.cwiseProduct(x), loose)) return false;
@@ -281,7 +282,7 @@ private:
     const int n = static_cast<int>(n_), m = static_cast<int>(rows().size());
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, loose_ * inertia_[i]);
     for (int r = 0; r < m; ++r) {
-      entries.emplace_back(n + r, n + r, -1e-12); // rows that depend on others
+      entries.emplace_back(n + r, n + r, -1e-12); // keeps pivots of dependent rows non-zero
       for (int k = 0; k < rows()[r].count; ++k) {
         entries.emplace_back(n + r, rows()[r].at[k], rows()[r].j[k]);
         entries.emplace_back(rows()[r].at[k], n + r, rows()[r].j[k]);
@@ -300,7 +301,7 @@ private:
     is_newton_downhill_ = is_definite(loose_);
     const bool is_factored = is_skew_ ? factor_skew() : factor(loose_);
     if (!is_factored || !apply(force_ / size_, newton_)) {
-      newton_ = VecX::Constant(n_, 1e6 * scene_.length); // no step
+      newton_ = VecX::Constant(n_, 1e6 * scene_.length); // no usable step
       is_newton_downhill_ = false;
       return;
     }
@@ -321,7 +322,7 @@ private:
     is_pushed_ = size > 0.0 && std::abs(loose.dot(force_)) > loose.cwiseAbs().dot(rounding_);
   }
 
-  // Without stiffness or rows.
+  // Marks coordinates without stiffness or rows.
   [[nodiscard]] std::vector<char> bare_coordinates() const {
     std::vector<char> is_bare(static_cast<std::size_t>(n_), 1);
     for (int c = 0; c < hat_.outerSize(); ++c)
@@ -333,7 +334,8 @@ private:
     return is_bare;
   }
 
-  // Some of the directions that nothing holds, by subspace iteration; each by a coordinate that tells it from the others.
+  // Names some of the directions without stiffness, found by subspace iteration; each by a coordinate that distinguishes it from the
+  // others.
   void name_directions(int count, const std::vector<char>& is_bare, std::vector<MotionPart>& parts) {
     if (!factor(loose_)) return;
     const VecX root = scene_.mass.cwiseSqrt();
@@ -367,10 +369,10 @@ private:
   Sparse identity_;
   SparseRows held_;
   BorderedSystem onto_rows_, steps_;
-  Sparse hat_, whole_hat_;          ///< −K over size_: its symmetric part without sliding, and the whole
-  double size_ = 1.0, loose_ = 0.0; ///< eigenvalues below loose_ (1/s²) are none
-  VecX inertia_;                    ///< masses over size_
-  VecX rounding_;                   ///< of the forces
+  Sparse hat_, whole_hat_;          ///< −K/size_: symmetric part without sliding friction, and the whole
+  double size_ = 1.0, loose_ = 0.0; ///< eigenvalues below loose_ (1/s²) count as zero
+  VecX inertia_;                    ///< masses/size_
+  VecX rounding_;                   ///< rounding errors of the forces
   bool is_skew_ = false;
   Eigen::SparseLU<Sparse> skew_factors_;
   double factored_ = 0.0, used_sigma_ = 0.0, last_sigma_ = 0.0;

@@ -47,7 +47,7 @@ FreeVibration free_vibration(const System& system, State state) {
   return v;
 }
 
-// Complex displacements of all bodies.
+// Returns the complex displacements of all bodies.
 std::vector<Complex> shape_of(const System& system, const ComplexVector& q) {
   std::vector<Complex> shape(3 * system.bodies.size(), 0.0);
   Complex largest = 0.0;
@@ -73,7 +73,7 @@ double VibrationMode::damping_ratio() const { return -eigenvalue.real() / size_o
 
 namespace {
 
-// What is out of balance in a mode, in the masses' metric and against its own acceleration.
+// Returns VibrationMode::residual of a mode.
 double residual_of(const FreeVibration& v, const FreeMode& mode) {
   const Complex square = mode.eigenvalue * mode.eigenvalue;
   const ComplexVector left = square * mode.x - mode.eigenvalue * (v.b * mode.x) - v.a * mode.x;
@@ -81,7 +81,7 @@ double residual_of(const FreeVibration& v, const FreeMode& mode) {
   return left.norm() / (size * size * mode.x.norm());
 }
 
-// The nearest `count`, by ascending natural frequency.
+// Keeps the `count` modes nearest to the wanted ones, by ascending natural frequency.
 void keep_wanted(const WantedModes& wanted, VibrationModes& found) {
   const auto count = static_cast<std::size_t>(wanted.count);
   if (wanted.count > 0 && count < found.modes.size()) {

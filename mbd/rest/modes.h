@@ -1,12 +1,11 @@
-// Small vibrations about a state of rest: natural frequencies, damping ratios, mode shapes.
+// Small vibrations about an equilibrium: natural frequencies, damping ratios, mode shapes.
 //
-// The equations of statics (statics.h), linearised and reduced to the motions that constraints, drives and sticking
-// friction leave free, δq = Z η with J Z = 0 and Zᵀ M Z = 1, are
+// The equations of statics (statics.h) are linearised and reduced to the motions that constraints, drives and sticking friction leave free:
+// δq = Z η with J Z = 0 and Zᵀ M Z = 1. Then
 //   η'' = A η + B η',   A = Zᵀ K Z,   B = Zᵀ ∂Q/∂v Z   (free_vibration.h).
-// Dense algebra finds all modes, of scenes of up to some hundred bodies; of larger ones some are found in a small space of
-// motions that sparse algebra makes (sparse_modes.h): the slowest, or those near a frequency.
-// Drives hold their coordinates where they are: a base that moves or accelerates is taken as held (Equilibrium says so).
-// Contacts that are closed and joints that stick stay so: amplitudes are as small as that asks for.
+// Dense algebra finds all modes of models with up to some hundred bodies. For larger ones, sparse algebra finds the slowest modes or those
+// near a frequency in a small subspace (sparse_modes.h). Drives hold their coordinates; a base that moves or accelerates is taken as held
+// (Equilibrium reports it). Closed contacts stay closed and sticking joints stick: amplitudes are assumed small enough for that.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -19,50 +18,50 @@
 
 namespace steplap {
 
-/// |z|, where std::abs would call the C library.
+/// Returns |z| portably; std::abs would call the C library, whose rounding depends on the platform.
 [[nodiscard]] inline double size_of(const std::complex<double>& z) { return portable::hypot(z.real(), z.imag()); }
 
 /// One mode of small vibrations.
 struct VibrationMode {
-  std::complex<double> eigenvalue; ///< 1/s; of a pair the one with the positive imaginary part
-  /// Per body (x, y, θ) of its centre of gravity, in m and rad; the largest of displacements and of
+  std::complex<double> eigenvalue; ///< 1/s; of a conjugate pair the one with positive imaginary part
+  /// Displacements (x, y, θ) of the centre of gravity of each body, in m and rad. Scaled so that the largest of the displacements and of
   /// radius of gyration times θ is real and 1 m. Body 0 is the ground.
   std::vector<std::complex<double>> shape;
-  /// Acceleration that the mode's forces leave over, in the masses' metric and along what is free, against its own: where
-  /// nothing damps, the square of the frequency is not further off than by this share.
+  /// Remaining acceleration of the mode over its own, in the mass metric and along free motions. Without damping this bounds the relative
+  /// error of the squared frequency.
   double residual = 0.0;
 
-  /// False: it decays or grows without swinging.
+  /// Returns false if the mode decays or grows without oscillation.
   [[nodiscard]] bool oscillates() const { return eigenvalue.imag() != 0.0; }
-  [[nodiscard]] double frequency() const;         ///< Hz, of the damped vibration; 0 if it does not oscillate
+  [[nodiscard]] double frequency() const;         ///< frequency of the damped vibration, Hz; 0 if it does not oscillate
   [[nodiscard]] double natural_frequency() const; ///< Hz, |eigenvalue|/2π
-  [[nodiscard]] double damping_ratio() const;     ///< −Re/|eigenvalue|; negative: it grows
+  [[nodiscard]] double damping_ratio() const;     ///< −Re/|eigenvalue|; negative if the mode grows
 };
 
-/// Which of a scene's modes are looked for.
+/// Selection of modes.
 struct WantedModes {
-  int count = 0;              ///< 0: all; of a scene too large for that, k_usual_modes
-  std::optional<double> near; ///< Hz: those whose eigenvalues are nearest to 2π i times this; none: the slowest
-  /// What the choice is made by, 1/s.
+  int count = 0;              ///< 0: all modes, or k_usual_modes of a large model
+  std::optional<double> near; ///< Hz: modes whose eigenvalues are nearest to 2π i times this; empty: the slowest
+  /// Returns the distance by which modes are selected, 1/s.
   [[nodiscard]] double distance(const std::complex<double>& eigenvalue) const;
 };
 
 /// The modes found.
 struct VibrationModes {
-  std::vector<VibrationMode> modes; ///< ascending natural frequency; rigid motions are not among them
-  int rigid_motions = 0;            ///< coordinates along which nothing holds it, though dampers may resist
-  bool is_all = true;               ///< there are no others
-  bool is_counted = true;           ///< that none of those wanted is missing was checked (sparse_modes.h), or all are there
+  std::vector<VibrationMode> modes; ///< by ascending natural frequency, without rigid motions
+  int rigid_motions = 0;            ///< number of coordinates without stiffness, damped or not
+  bool is_all = true;               ///< the model has no further modes
+  bool is_counted = true;           ///< completeness was checked: none of the selected modes is missing (sparse_modes.h), or all were found
 };
 
-/// Largest number of coordinates of bodies of which all modes are found, by dense algebra.
+/// Largest number of coordinates for which dense algebra finds all modes.
 inline constexpr int k_max_modal_coordinates = 1500;
-inline constexpr int k_usual_modes = 20; ///< of larger scenes
+inline constexpr int k_usual_modes = 20; ///< default number of modes of larger models
 
-enum class ModesAlgebra { by_size, dense, sparse }; ///< How modes are found; by_size: dense for small scenes, sparse for large ones.
+enum class ModesAlgebra { by_size, dense, sparse }; ///< Algebra for the modes; by_size: dense for small models, sparse for large ones.
 
-/// About `state`, which must be at rest. Throws NumericalFailure where they do not converge. `algebra`: for tests that hold one
-/// against the other.
+/// Returns the modes about `state`, which must be an equilibrium. Throws NumericalFailure if they do not converge. `algebra`: for tests
+/// that compare the two.
 [[nodiscard]] VibrationModes vibration_modes(const System& system, const State& state, WantedModes wanted = {},
                                              ModesAlgebra algebra = ModesAlgebra::by_size);
 

@@ -1,9 +1,7 @@
-// Static equilibrium of a machine whose loads have grown slowly from those that it rested under.
-//
-// find_equilibrium (equilibrium.h) asks whether a machine can rest: friction between bodies may then share the load in any way that
-// it can bear. A load that grows slowly leaves no such choice: friction that holds keeps holding where it is, and slides at its bound
-// as soon as that is reached. So this search neither shares a load anew nor lets a damped machine settle: it fails where the
-// machine would leave its rest.
+// Static equilibrium of a machine at rest whose loads have increased slowly. find_equilibrium (equilibrium.h) asks whether a machine can
+// rest with any admissible distribution of friction forces. Under a slowly growing load the distribution is determined: sticking friction
+// holds its position and slides at its bound once that is reached. So this search neither redistributes forces nor releases a damped
+// machine. It fails if the machine would leave its equilibrium.
 #pragma once
 
 #include "mbd/rest/equilibrium.h"
@@ -11,13 +9,14 @@
 
 namespace steplap {
 
-/// The search for a rest came to no end: whether there is one is not known.
+/// Error: the search did not converge, so it is unknown whether an equilibrium exists.
 class RestNotFound : public ElementFailure {
 public:
   using ElementFailure::ElementFailure;
 };
 
-/// From `start`, a rest under other loads. Throws NumericalFailure where none is found without leaving it.
+/// Returns the equilibrium reached from `start`, an equilibrium under other loads. Throws NumericalFailure if the machine would leave it,
+/// RestNotFound if the search does not converge.
 [[nodiscard]] Equilibrium find_ramped_rest(const System& system, const State& start);
 
 } // namespace steplap

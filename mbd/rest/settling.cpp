@@ -14,13 +14,14 @@ namespace steplap {
 namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_first = 1e-4;              // of the scene's length: what the first step moves
-constexpr double k_move = 0.05, k_turn = 0.1; // of the length, rad: what a step moves at most
-constexpr double k_balanced = 1e-9;           // of the accelerations at the start: what is left is for Newton's method
-constexpr double k_shortest = 1e-5;           // of the longest step: time stepping takes less than a tenth of that for rounding
-constexpr double k_touch = 64.0;              // roundings of the largest coordinate
+constexpr double k_first = 1e-4;              // displacement of the first step, relative to the size of the model
+constexpr double k_move = 0.05, k_turn = 0.1; // largest displacement of a step, relative to the size of the model, and largest rotation,
+                                              // rad
+constexpr double k_balanced = 1e-9;           // of the initial accelerations; the remaining imbalance is left to Newton's method
+constexpr double k_shortest = 1e-5;           // of the longest step; time stepping takes steps below a tenth of it for rounding
+constexpr double k_touch = 64.0;              // in roundings of the largest coordinate
 constexpr double k_on_rows = 1e-12;           // m, rad
-// Steps: each costs equations of all coordinates, and rows of friction squared.
+// Limits of steps. A step costs a solution for all coordinates, and the square of the number of friction rows.
 constexpr int k_most_steps = 4000, k_least_steps = 100;
 constexpr double k_most_work = 4e8;
 
@@ -98,7 +99,7 @@ private:
       way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];
     return way;
   }
-  // 1: as far as a step may move at most.
+  // Returns the size of a displacement; 1 is the largest one permitted in a step.
   [[nodiscard]] double size_of(const VecX& way) const {
     double size = 0.0;
     for (Eigen::Index k = 0; k < way.size(); ++k) size = std::max(size, std::abs(way[k]) / (k % 3 < 2 ? k_move * scene_.length : k_turn));
@@ -108,8 +109,8 @@ private:
     return way.cwiseQuotient(scene_.scale).cwiseAbs().maxCoeff() / (h * h);
   }
 
-  // What the forces on a body would give it by itself, m/s², angles at their radius: what joints and friction hold is not seen
-  // in accelerations.
+  // Returns the largest acceleration, m/s², that the forces on a body would cause without joints and friction; angles count at their
+  // radius. Constrained accelerations would hide forces that joints and friction resist.
   [[nodiscard]] double largest_at_start() {
     Statics statics(system_);
     State state = state_;

@@ -1,12 +1,10 @@
-// Where a machine comes to rest that is let go and damped until it creeps.
+// Releases a machine with such strong damping that it creeps, and finds where it comes to rest.
 //
-// Implicit time steps (time_stepping.h), each begun with nothing moving:
-//   M Δq = h² (Q(q₁) + Jᵀλ + Hᵀw),   w in the friction's sets and at their borders where it slides.
-// So the machine gives way along its forces as a strongly damped one does, contacts close and open, and friction holds or
-// slides as the load comes. Time stands still: loads, drives and clamping pressures are those of the state. Steps grow as long as they move bodies
-// a little, and become Newton's towards the end. A step passes no gap unseen (clearance.h).
-//
-// Where friction holds at the end, other ways there would have ended in other rests.
+// Implicit time steps (time_stepping.h), each starting from zero velocity:
+//   M Δq = h² (Q(q₁) + Jᵀλ + Hᵀw),   w in the admissible sets of friction, at the boundary if it slides.
+// The machine follows its forces like a strongly damped one. Contacts close and open, and friction sticks or slides as the load requires.
+// Time is constant: loads, drives and clamping pressures are those of the state. Steps grow while bodies move little, and become Newton
+// steps at the end. Gaps are monitored (clearance.h). If friction holds the final rest, another path would have led to another rest.
 #pragma once
 
 #include "mbd/rest/tangent.h"
@@ -17,12 +15,12 @@
 namespace steplap {
 
 struct Settling {
-  std::optional<State> rest; ///< nothing where the machine goes on, or the work was too much
+  std::optional<State> rest; ///< final state; empty if the machine does not come to rest, or not within the limit of work
   int steps = 0;
-  bool is_tried = true; ///< false: too large a scene
+  bool is_tried = true; ///< false: the model is too large
 };
 
-/// From `start`, in which drives are held and nothing moves. The work is bounded by counted steps.
+/// Runs from `start`, with drives held and zero velocities. The limit of work is a number of steps.
 [[nodiscard]] Settling settle_in_time(const System& system, const State& start);
 
 } // namespace steplap

@@ -14,7 +14,7 @@ using Sparse = SparseVibration::Sparse;
 using Entry = Statics::Entry;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-// Of the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
+// Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
 constexpr double k_skew = 1e-9;
 
@@ -30,7 +30,7 @@ Sparse diagonal(const VecX& values) {
   return sparse(entries, values.size());
 }
 
-// Of the largest row sum of |a|, in the masses' metric.
+// Returns an upper bound of eigenvalues: the largest row sum of |a| in the mass metric.
 double bound_of(const Sparse& a, const VecX& mass) {
   VecX sum = VecX::Zero(mass.size());
   for (int c = 0; c < a.outerSize(); ++c)
@@ -119,7 +119,7 @@ int SparseVibration::free_count() const {
 }
 
 int SparseVibration::count_below(double s) {
-  for (int i = 0; i < 4; ++i, s *= 1.0 + 1e-9) // a pivot that vanishes is passed by
+  for (int i = 0; i < 4; ++i, s *= 1.0 + 1e-9) // a slightly larger s avoids a vanishing pivot
     if (counting_.factor(-s)) return counting_.negative() - bare_count_;
   throw NumericalFailure("the motions that are softer than others cannot be counted: a pivot vanishes");
 }
@@ -136,7 +136,7 @@ bool ShiftedResponse::factor(const SparseVibration& scene, std::complex<double> 
   is_complex_ = sigma.imag() != 0.0;
   const int parts = is_complex_ ? 2 : 1;
   std::vector<Entry> entries;
-  // Real and imaginary part of an unknown stand beside each other.
+  // The real and imaginary part of an unknown are adjacent.
   const auto put = [&](int row, int column, std::complex<double> value) {
     entries.emplace_back(parts * row, parts * column, value.real());
     if (!is_complex_) return;
@@ -153,7 +153,7 @@ bool ShiftedResponse::factor(const SparseVibration& scene, std::complex<double> 
   const int n = static_cast<int>(n_);
   for (int r = 0; r < static_cast<int>(m_); ++r) {
     const SparseRow& row = scene.rows()[static_cast<std::size_t>(r)];
-    if (row.count == 0) put(n + r, n + r, 1.0); // it depends on others
+    if (row.count == 0) put(n + r, n + r, 1.0); // the row is dependent
     for (int k = 0; k < row.count; ++k) {
       put(n + r, row.at[k], row.j[k]);
       put(row.at[k], n + r, row.j[k]);
@@ -164,7 +164,7 @@ bool ShiftedResponse::factor(const SparseVibration& scene, std::complex<double> 
   return factors_.info() == Eigen::Success;
 }
 
-// With one refinement: pivots are chosen by size alone.
+// Solves with one refinement, because pivots are chosen for sparsity rather than size.
 VecX ShiftedResponse::solve_real(const VecX& right) const {
   VecX x = factors_.solve(right);
   x += factors_.solve(VecX(right - matrix_ * x));

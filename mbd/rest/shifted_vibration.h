@@ -1,4 +1,4 @@
-// The forces of small vibrations of a large scene, and their response at one point of the complex plane.
+// Matrices of small vibrations of a large model, and solutions of the shifted equations at one point σ of the complex plane.
 #pragma once
 
 #include "mbd/rest/bordered_system.h"
@@ -12,34 +12,36 @@
 
 namespace steplap {
 
-/// λ² M + λ D̂ + K̂ along the rows, of scaled coordinates (tangent.h), all over one size so that entries of K̂ are of order 1.
+/// Matrices of λ² M + λ D̂ + K̂ along the rows, in scaled coordinates (tangent.h), divided by a common size so that entries of K̂ are of
+/// order 1.
 class SparseVibration {
 public:
   using Sparse = BorderedSystem::Sparse;
 
-  /// At the poses of `state`, which are at rest.
+  /// Linearises at the poses of `state`, an equilibrium.
   SparseVibration(const System& system, State& state);
 
   [[nodiscard]] Eigen::Index coordinates() const { return n_; }
   [[nodiscard]] const VecX& scale() const { return scale_; }
-  [[nodiscard]] const VecX& mass() const { return mass_; }             ///< kg over the size
+  [[nodiscard]] const VecX& mass() const { return mass_; }             ///< kg/size
   [[nodiscard]] const Sparse& stiffness() const { return stiffness_; } ///< K̂
   [[nodiscard]] const Sparse& damping() const { return damping_; }     ///< D̂
   [[nodiscard]] const std::vector<SparseRow>& rows() const { return rows_.rows(); }
-  [[nodiscard]] bool is_symmetric() const { return is_symmetric_; } ///< K̂
+  [[nodiscard]] bool is_symmetric() const { return is_symmetric_; } ///< K̂ is symmetric
   [[nodiscard]] bool is_damped() const { return is_damped_; }
-  /// Coordinates that no force and no row has to do with.
+  /// Marks coordinates on which no force and no row acts.
   [[nodiscard]] const std::vector<char>& bare() const { return bare_; }
   [[nodiscard]] int bare_count() const { return bare_count_; }
-  [[nodiscard]] int free_count() const; ///< coordinates less independent rows
-  /// Squares of frequencies, 1/s²: below the first what is found may be rounding; the last is beyond all.
+  [[nodiscard]] int free_count() const; ///< coordinates minus independent rows
+  /// Bounds of squared frequencies, 1/s²: smaller ones than loose() may be rounding, none exceeds stiffest().
   [[nodiscard]] double loose() const { return loose_; }
   [[nodiscard]] double stiffest() const { return stiffest_; }
-  [[nodiscard]] double fastest_decay() const { return fastest_decay_; } ///< 1/s, beyond all that damping alone makes
+  [[nodiscard]] double fastest_decay() const { return fastest_decay_; } ///< upper bound of decay rates by damping alone, 1/s
 
-  /// Directions along the rows in which the symmetric part of K̂ − s M is negative, s > 0, bare ones left out.
+  /// Returns the number of directions within the rows in which the symmetric part of K̂ − s M is negative, without bare coordinates.
+  /// Precondition: s > 0.
   [[nodiscard]] int count_below(double s);
-  /// M⁻¹ f along the rows.
+  /// Returns M⁻¹ f along the rows.
   [[nodiscard]] VecX acceleration(const VecX& f) const;
 
 private:
@@ -58,12 +60,12 @@ private:
   BorderedSystem by_mass_, counting_;
 };
 
-/// Factors of σ² M + σ D̂ + K̂ bordered by the rows; of a complex σ as real equations of real and imaginary parts.
+/// Factors of σ² M + σ D̂ + K̂, bordered by the rows. For complex σ real and imaginary parts are separate unknowns.
 class ShiftedResponse {
 public:
-  /// False where they are singular.
+  /// Factorises. Returns false if the matrix is singular.
   bool factor(const SparseVibration& scene, std::complex<double> sigma);
-  /// a of (σ² M + σ D̂ + K̂) a + Jᵀ y = f, J a = 0.
+  /// Returns a with (σ² M + σ D̂ + K̂) a + Jᵀ y = f and J a = 0.
   [[nodiscard]] Eigen::VectorXcd solve(const Eigen::VectorXcd& f) const;
 
 private:

@@ -20,17 +20,17 @@ using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_new = 1e-9;              // of its length: what a vector has beyond those before, to be a direction of its own
-constexpr double k_residual = 1e-9;         // of a mode's own acceleration
-constexpr double k_out_of_balance = 1e-4;   // the same, of modes of a whole scene, which dense algebra has to find
-constexpr double k_rounding = 32.0;         // epsilons of the terms that a residual is the sum of
-constexpr double k_same = 1e-6;             // squares of frequencies that are not told apart
-constexpr double k_well_below = 1.0 / 64.0; // σ² of the square of the first frequency
-constexpr int k_starts = 3;                 // vectors that the space begins with, beside one for each rigid motion
-constexpr int k_beyond = 2;                 // modes after the last one wanted that have to be known, too
+constexpr double k_new = 1e-9;              // of a vector's length: least part outside the basis for a new direction
+constexpr double k_residual = 1e-9;         // largest residual, relative to the mode's own acceleration
+constexpr double k_out_of_balance = 1e-4;   // the same for models of which the space is the whole, left to dense algebra
+constexpr double k_rounding = 32.0;         // epsilons of the terms in a residual
+constexpr double k_same = 1e-6;             // relative difference of squared frequencies that count as equal
+constexpr double k_well_below = 1.0 / 64.0; // ratio of σ² to the square of the first frequency
+constexpr int k_starts = 3;                 // starting vectors, in addition to one for each rigid motion
+constexpr int k_beyond = 2;                 // modes after the last wanted one that must be known too
 constexpr int k_most_rigid = 200;
 
-// W, and the Krylov vectors in it.
+// The basis W with the Krylov vectors in it.
 class MotionSpace {
 public:
   MotionSpace(const SparseVibration& scene, Complex sigma, double rate, int most)
@@ -41,8 +41,8 @@ public:
   [[nodiscard]] auto directions() const { return w_.leftCols(size_); }
   [[nodiscard]] int size() const { return size_; }
 
-  // Displacements that forces cause which hang on nothing and do no work on W: else what is known would hide what is not. False if
-  // there are no more directions.
+  // Adds a starting vector: the response to pseudo-random forces that do no work on W, since otherwise known modes would hide unknown ones.
+  // Returns false if no direction is left.
   bool add_start() {
     VecX x = spread_.vector(scene_.coordinates()).cwiseQuotient(scene_.mass().cwiseSqrt());
     for (Eigen::Index i = 0; i < x.size(); ++i)
@@ -59,7 +59,7 @@ public:
     return true;
   }
 
-  // To so many directions; false if the vectors give no more.
+  // Expands the space to `wanted` directions. Returns false if the vectors give no more.
   bool grow(int wanted) {
     while (size_ < wanted && next_ < vectors_.size()) expand(vectors_[next_++]);
     return size_ >= wanted;
@@ -79,7 +79,7 @@ private:
     push(next);
   }
 
-  // A displacement's parts along W, which gets what it has beyond.
+  // Adds the components of a displacement along W to `at`, and extends W by the rest.
   void take(const ComplexVector& a, ComplexVector& at) {
     take_part(a.real(), Complex(1.0), at);
     if (sigma_.imag() != 0.0 || a.imag().cwiseAbs().maxCoeff() > 0.0) take_part(a.imag(), Complex(0.0, 1.0), at);
@@ -111,11 +111,11 @@ private:
 
   const SparseVibration& scene_;
   const Complex sigma_;
-  double rate_; ///< 1/s: velocities over it count as displacements
+  double rate_; ///< 1/s: velocities are divided by it to count as displacements
   const int most_;
   int size_ = 0;
   MatX w_;
-  std::vector<ComplexVector> vectors_; ///< q = W head, v = rate W tail
+  std::vector<ComplexVector> vectors_; ///< q = W · head, v = rate · W · tail
   std::size_t next_ = 0;
   ShiftedResponse response_;
   Spread spread_;
@@ -124,7 +124,7 @@ private:
 class Search {
 public:
   Search(const System& system, State& state, const WantedModes& wanted) : scene_(system, state), wanted_(wanted) {
-    // Bare coordinates apart, which are rigid motions.
+    // Bare coordinates are rigid motions and are counted separately.
     directions_ = scene_.free_count() - scene_.bare_count();
   }
 
@@ -149,7 +149,7 @@ public:
       const bool is_whole = space.size() == directions_, is_found = look(space);
       if (is_found || (is_whole && worst_ < k_out_of_balance)) return finished(is_whole);
       if (is_whole || space.size() < wanted || space.size() >= most) fail();
-      for (int i = 0; i < k_starts && space.add_start(); ++i) { // of one frequency there may be more than starts
+      for (int i = 0; i < k_starts && space.add_start(); ++i) { // a frequency may have more modes than there are starting vectors
       }
     }
   }
@@ -165,7 +165,7 @@ private:
     return std::move(found_);
   }
 
-  // None where nothing moves but at constant velocity.
+  // Returns σ; nothing if the model has only motions at constant velocity.
   std::optional<Complex> expansion_point() {
     if (wanted_.near && *wanted_.near > 0.0) return Complex(0.0, 2.0 * std::numbers::pi * *wanted_.near);
     if (rigid_ == 0) return Complex(0.0);
@@ -176,7 +176,7 @@ private:
     return std::nullopt;
   }
 
-  // The modes along W; true if those wanted are the scene's, and none is missing.
+  // Determines the modes along W. Returns true if the wanted ones are accurate and none is missing.
   bool look(const MotionSpace& space) {
     FreeVibration v;
     v.basis = space.directions();
@@ -206,7 +206,7 @@ private:
     return is_complete(v);
   }
 
-  // Onto the rows, then what its forces leave over. False where that is more than its share or rounding.
+  // Projects a mode onto the rows and determines its residual. Returns false if that is too large.
   bool measure(SparseModes::Mode& mode) const {
     const Complex i(0.0, 1.0), l = mode.eigenvalue;
     const auto along_rows = [this, i](const ComplexVector& f) -> ComplexVector {
@@ -238,7 +238,7 @@ private:
     return found_.is_counted = are_all_within();
   }
 
-  // Has W as many directions softer than s as the scene?
+  // Returns true if W has as many directions softer than s as the model.
   bool is_full_below(const FreeVibration& v, double s) {
     if (s <= scene_.loose()) return true;
     MatX less = -0.5 * (v.a + v.a.transpose());
@@ -247,7 +247,8 @@ private:
     return (values.array() < 0.0).count() == scene_.count_below(s);
   }
 
-  // Of an undamped scene: as many as there are between the farthest mode found and its mirror image about the frequency.
+  // Undamped model: returns true if the number of modes found equals the number between the farthest one and its mirror image about the
+  // frequency.
   bool are_all_within() {
     const double middle = 2.0 * std::numbers::pi * *wanted_.near;
     double reach = 0.0;
@@ -272,11 +273,11 @@ private:
 
   SparseVibration scene_;
   const WantedModes& wanted_;
-  int directions_ = 0;    ///< that are neither bare nor held by rows
-  int rigid_ = 0;         ///< of them those that nothing holds
-  int unsure_ = 0;        ///< modes that are not known well enough
-  double worst_ = 0.0;    ///< residual
-  bool has_more_ = false; ///< than are wanted
+  int directions_ = 0;    ///< number of directions that are neither bare nor held by rows
+  int rigid_ = 0;         ///< number of rigid motions among them
+  int unsure_ = 0;        ///< modes that are not accurate enough
+  double worst_ = 0.0;    ///< largest residual
+  bool has_more_ = false; ///< more modes exist than are wanted
   SparseModes found_;
 };
 

@@ -1,5 +1,4 @@
-// The rows of a scene at rest for sparse equations: over scaled coordinates, of unit length, each with those that others imply told
-// from the rest.
+// Rows of a model at rest for sparse equations: in scaled coordinates, with unit length, and with dependent rows marked.
 #pragma once
 
 #include "mbd/dynamics/schur.h"
@@ -12,10 +11,10 @@ namespace steplap {
 
 class SparseRows {
 public:
-  /// At the present evaluation of `statics`; rows that are known to depend on others are left empty.
+  /// Measures the rows at the present evaluation of `statics`. Rows known to be dependent are left empty.
   void measure(const Statics& statics, const VecX& scale);
-  /// The same, and asks anew which rows depend on others, by the rule of the equations of motion (schur.h): what is next to
-  /// nothing beyond the others would hold what nothing holds.
+  /// Measures the rows and determines again which are dependent, by the rule of the equations of motion (schur.h). A nearly dependent row
+  /// would otherwise hold motions that no row holds.
   void measure_and_rank(const Statics& statics, const VecX& scale);
 
   [[nodiscard]] const std::vector<SparseRow>& rows() const { return rows_; }
@@ -30,7 +29,7 @@ private:
   std::vector<SparseRow> rows_;
   VecX size_;
   std::vector<char> is_dependent_;
-  std::vector<int> bodies_; ///< that rank_ was analysed for
+  std::vector<int> bodies_; ///< bodies of the rows for which rank_ was analysed
   SchurSolver rank_;
 };
 

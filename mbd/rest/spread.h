@@ -1,4 +1,4 @@
-// Numbers that hang on nothing: where a search for directions begins.
+// Pseudo-random vectors from which a search for directions starts.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -7,7 +7,7 @@ namespace steplap {
 
 class Spread {
 public:
-  /// Between −½ and ½, the same in every run.
+  /// Returns a vector with components between −½ and ½, the same in every run.
   VecX vector(Eigen::Index n) {
     VecX x(n);
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,4 +1,4 @@
-// Where the run of a model begins: on its joints, and at rest under its loads if it asks for that.
+// Initial state of a run: on the joints, and in equilibrium if the model asks for it.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -6,14 +6,14 @@
 
 namespace steplap {
 
-/// The state a run of `model` begins at; `system` is compiled from it. Throws ModelError if its joints cannot be met,
-/// NumericalFailure if it is to begin at an equilibrium and has none.
+/// Returns the initial state of a run of `model`, from which `system` was compiled. Throws ModelError if the joints cannot be satisfied,
+/// NumericalFailure if the model asks for an equilibrium and there is none.
 [[nodiscard]] State start_of(const Model& model, const System& system);
-/// The same for whoever has called assemble() already.
+/// Returns the same from the result of assemble().
 [[nodiscard]] State start_of(const Model& model, const System& system, const State& assembled);
 
-/// Where the bodies rest, found from the assembled poses without the initial velocities, which are given back with the
-/// pose. Throws NumericalFailure if there is no equilibrium.
+/// Returns the equilibrium found from the assembled poses with zero velocity. The initial velocities are then restored in it. Throws
+/// NumericalFailure if there is no equilibrium.
 [[nodiscard]] Equilibrium equilibrium_at_start(const System& system, const State& assembled);
 
 } // namespace steplap

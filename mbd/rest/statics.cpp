@@ -12,16 +12,17 @@ namespace {
 
 using D12 = Dual<12>;
 
-// What friction that slides is short of its bound when it comes to rest, as a share: it is to hold then.
+// Reduction of sliding friction below its bound, relative. When the element comes to rest it must stick with this force, so the force has
+// to lie inside the bound by more than rounding.
 constexpr double k_short_of_bound = 1e-6;
 
-// Where coordinate k of the pair (a, b) stands among those of all bodies; −1: of the ground.
+// Returns the index of coordinate k of the row's pair (a, b) in the vector of all coordinates; −1 for the ground.
 int place_of(const RowSpec& row, int k) {
   const int body = k < 3 ? row.a : row.b;
   return body == k_ground ? -1 : 3 * (body - 1) + k % 3;
 }
 
-// k += w ∂²(measure)/∂q², of one part.
+// Adds w ∂²(measure)/∂q² of one part of a row to k.
 void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::Entry>& k) {
   const RowGradient<D12> g = row_gradient(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3));
   for (int i = 0; i < 6; ++i)
@@ -182,7 +183,8 @@ void Statics::damping(std::vector<Entry>& d) const {
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.damping, d);
 }
 
-// Force w(N) along the row: w ∂²(measure) and what the normal forces change. w is linear in them.
+// Adds the stiffness of a sliding force w(N) along its row: w ∂²(measure)/∂q², and the change of w by the normal forces N, in which w is
+// linear.
 void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<Entry>& k) const {
   const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
   double wrench[3], more[3];

@@ -1,9 +1,8 @@
-// Forces, constraint rows and their exact derivatives with everything at rest: what statics asks of a scene.
+// Forces, constraint rows and their exact derivatives at rest.
 //
-// In the bodies' own coordinates (x, y, θ of every body but the ground), so that nothing hangs on how a run would
-// merge or lock them: welds and drives are rows like others. Velocities are zero, and so are those of the drives: they
-// hold their coordinates where the time of the state asks for them. Contacts and tables are in the modes that the
-// pose gives. Friction that sticks is rows, friction that slips is a force at its bound against the slip.
+// Coordinates are x, y, θ of every body except the ground, independent of how a run would merge or lock bodies: welds and drives are
+// ordinary rows. All velocities are zero. Drives hold their coordinates at the values for the time of the state. Contacts and tables have
+// the modes of the pose. Sticking friction contributes rows, slipping friction a force at its bound opposed to the slip.
 //   Q + Jᵀλ = 0,   K = ∂(Q + Jᵀλ)/∂q at constant λ
 #pragma once
 
@@ -16,7 +15,7 @@
 
 namespace steplap {
 
-/// A row that holds: bilateral, or of friction that sticks.
+/// Active row: of a joint or drive, or of sticking friction.
 struct StaticRow {
   const RowSpec* spec = nullptr;
   int row = -1;         ///< bilateral row, or −1
@@ -28,32 +27,32 @@ class Statics {
 public:
   explicit Statics(const System& system);
 
-  /// Forces at `state`: poses, time, friction and memory are read; modes are set in it from the poses.
+  /// Evaluates forces at `state`. Reads poses, time, friction and memory; sets modes from the poses.
   void evaluate(State& state);
-  /// The rows that hold in `state`, as of the last collect_rows(); bilateral ones first. `left_out`: per slot of
-  /// Snapshot::friction_force, a row of friction that stays out, since it depends on others; empty: none.
+  /// Collects the rows active in `state`, those of joints and drives first. `left_out`: flags per slot of Snapshot::friction_force for
+  /// dependent friction rows to omit; empty: none.
   void collect_rows(const State& state, const std::vector<char>& left_out = {});
   [[nodiscard]] const std::vector<StaticRow>& rows() const { return rows_; }
   [[nodiscard]] int bilateral_count() const { return bilateral_count_; }
 
-  // At the last evaluation; n = 3 (bodies − 1).
+  // The following refer to the last evaluation; n = 3 (bodies − 1).
   [[nodiscard]] int coordinates() const { return n_; }
   [[nodiscard]] const VecX& force() const { return force_; } ///< Q
   [[nodiscard]] MatX gradient() const;                       ///< J
-  [[nodiscard]] VecX off() const;                            ///< of each row from its target, m or rad
+  [[nodiscard]] VecX off() const;                            ///< error of each row from its target, m or rad
   [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
   [[nodiscard]] MatX damping() const;                        ///< ∂Q/∂v
-  // The same entry by entry; duplicates add up.
+  // Sparse forms of these matrices: functions that append entries; duplicates add up.
   using Entry = Eigen::Triplet<double, int>;
   void gradient(std::vector<Entry>& entries) const;
-  /// Of K; without what a normal force changes of the friction that slides on it, if asked for.
+  /// Adds the entries of K. `with_sliding`: include the dependence of sliding friction on normal forces.
   void stiffness(const VecX& lambda, std::vector<Entry>& entries, bool with_sliding = true) const;
   void damping(std::vector<Entry>& entries) const;
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
-  /// Normal force of a contact, for whoever asks what friction would do with another.
+  /// Returns the normal force of a contact, which may be changed to test its effect on friction.
   [[nodiscard]] double& contact_force(int contact) { return arrays_.contact_force[contact]; }
-  /// Wrench of friction element f while it slips, along its rows.
+  /// Returns the wrench of friction element f while it slips, along its rows.
   void slip_wrench(int f, double* wrench) const;
 
 private:
@@ -67,12 +66,12 @@ private:
   Evaluation evaluation_;
   FrictionScratches scratch_;
   std::vector<Motion<double>> motion_;
-  mutable EvaluationArrays arrays_; ///< nobody asks for rates of inner states: at rest nothing flows
+  mutable EvaluationArrays arrays_; ///< rates of inner states are not used at rest
   std::vector<StaticRow> rows_;
   VecX force_;
 };
 
-/// Value of the target of `row` at rest at the time of `state`.
+/// Returns the target value of `row` at rest, at the time of `state`.
 [[nodiscard]] double static_target(const RowSpec& row, const State& state);
 /// Anchors the rows of friction element f at the pose of `state`.
 void anchor_friction(const System& system, State& state, int f);

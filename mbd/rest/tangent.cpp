@@ -10,12 +10,12 @@ namespace steplap {
 
 namespace {
 
-// Rows of joints below this share of their length beyond others depend on them; rows of friction below the second one,
-// as in the equations of motion (theory.md).
+// Least independent part of a row, relative to its length; rows with less are dependent. The first value is for joints, the second for
+// friction, as in the equations of motion (theory.md).
 constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
-constexpr double k_least_radius = 1e-3; // of the scene's length
+constexpr double k_least_radius = 1e-3; // of the size of the model
 
-// Which rows do not depend on others: of the joints' first, then of friction's. `rows`: unit columns.
+// Returns the indices of independent rows, those of joints first, then friction. `rows`: unit columns.
 std::vector<int> independent(const MatX& rows, Eigen::Index joints) {
   std::vector<int> kept;
   const Eigen::Index n = rows.rows(), frictions = rows.cols() - joints;

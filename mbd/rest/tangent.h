@@ -1,4 +1,4 @@
-// The motions that the rows of a scene at rest leave free, in coordinates of comparable size.
+// Motions that the rows of a model at rest leave free, in coordinates of comparable size.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -9,8 +9,8 @@
 
 namespace steplap {
 
-/// While it lives, dense products are made by this thread alone: threads are not worth their while
-/// in products of this size, and where they wait they take the time of others.
+/// Restricts dense products to this thread while it exists. At this size threads gain nothing, and waiting threads take processor time from
+/// others.
 class OneThread {
 public:
   OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
@@ -22,24 +22,24 @@ private:
   int before_;
 };
 
-/// Lengths of a scene: of the whole, and for each body the radius at which its angle counts as a displacement.
+/// Sizes of a model: the whole, and for each body the radius by which its angle is converted into a length.
 struct SceneScale {
-  double length = 1.0; ///< m: extent of its bodies, or the farthest place of a joint on one
-  double reach = 1.0;  ///< m: the largest coordinate, or the length
-  VecX scale;          ///< per coordinate: 1 for metres, for radians one over the radius
+  double length = 1.0; ///< m: extent of its bodies, or largest distance of a joint from the centre of its body
+  double reach = 1.0;  ///< m: largest coordinate, at least `length`
+  VecX scale;          ///< per coordinate: 1 for lengths, 1/radius for angles
 };
 [[nodiscard]] SceneScale scale_of(const System& system, const State& state);
 
 struct Tangent {
-  MatX held;             ///< orthonormal: what the independent rows hold, scaled coordinates
-  MatX free;             ///< and its complement
-  std::vector<int> kept; ///< the independent rows
+  MatX held;             ///< orthonormal basis of the motions held by independent rows, scaled coordinates
+  MatX free;             ///< orthonormal complement of `held`: the free motions
+  std::vector<int> kept; ///< indices of independent rows
   MatX triangle;         ///< held · triangle = gradients of the kept rows
-  VecX row_size;         ///< of each row's scaled gradient
+  VecX row_size;         ///< length of each row's scaled gradient
 };
-/// At the last evaluation of `statics`. `kept`: the independent rows, if they are known; then `free` is not filled in.
+/// Returns the tangent at the last evaluation of `statics`. `kept`: the independent rows, if known; then `free` is left empty.
 [[nodiscard]] Tangent tangent_of(const Statics& statics, const VecX& scale, const std::vector<int>* kept = nullptr);
-/// Multipliers of all rows that balance the forces; zero for those that depend on others.
+/// Returns the multipliers that balance the forces; zero for dependent rows.
 [[nodiscard]] VecX multipliers_of(const Statics& statics, const VecX& scale, const Tangent& tangent);
 
 } // namespace steplap
