@@ -21,7 +21,7 @@ namespace {
   throw FileError(path, "cannot write '" + path + "': " + std::strerror(code) + advice);
 }
 
-// The temporary file: closed and removed unless it was renamed.
+// Temporary file; closed and removed unless it was renamed.
 class TemporaryFile {
 public:
   explicit TemporaryFile(const std::string& target) : target_(target), name_(target + ".XXXXXX") {
@@ -48,7 +48,7 @@ public:
     }
   }
 
-  // Brings the content to disk and closes the file; a full disk may show only now.
+  // Flushes the content to disk and closes the file; a full disk may be reported only here.
   void finish() {
     const ::mode_t mask = ::umask(0);
     ::umask(mask);
@@ -58,7 +58,7 @@ public:
     if (::close(descriptor) != 0) fail(target_, errno);
   }
 
-  // A hard link fails if the target exists, so that two runs at once cannot overwrite each other.
+  // A hard link fails if the target exists, so two simultaneous runs cannot overwrite each other's file.
   void become_target(IfExists if_exists) {
     if (if_exists == IfExists::refuse && ::link(name_.c_str(), target_.c_str()) == 0) return;
     if (if_exists == IfExists::refuse && errno == EEXIST) refuse(target_);
@@ -86,7 +86,7 @@ void write_file(const std::string& path, const std::string& content, IfExists if
 void write_file(const std::string& path, const FileContent& content, IfExists if_exists) {
   if (if_exists == IfExists::refuse && std::filesystem::exists(path)) TemporaryFile::refuse(path);
   std::error_code ignored;
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path, ignored)) // a device would become a file
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path, ignored)) // renaming would replace a device by a file
     throw FileError(path, "cannot write '" + path + "': it is there, but is no file");
   TemporaryFile file(path);
   content([&file](std::string_view part) { file.write(part); });

@@ -30,7 +30,7 @@ std::string_view unquoted(std::string_view text) {
   return text;
 }
 
-// Splits at the delimiter outside quotes.
+// Splits a line at the delimiter outside quotes.
 void split(std::string_view line, char delimiter, std::vector<std::string_view>& fields) {
   fields.clear();
   std::size_t start = 0;
@@ -64,16 +64,17 @@ std::optional<double> number_of(std::string_view field, bool has_decimal_comma) 
 }
 
 bool begins_like_number(std::string_view field) {
-  if (number_of(field, true)) return true; // "inf", too
+  if (number_of(field, true)) return true; // also for "inf"
   if (!field.empty() && (field.front() == '+' || field.front() == '-')) field.remove_prefix(1);
   if (!field.empty() && (field.front() == '.' || field.front() == ',')) field.remove_prefix(1);
   return !field.empty() && field.front() >= '0' && field.front() <= '9';
 }
 
-// What a field of the first row is taken for.
+// Interpretation of a field of the first row.
 enum class FirstField { name, number, nothing };
 
-// Bytes of `text` that a damaged number may have and a name has not: dashes, blanks and digits beyond ASCII.
+// Returns the number of bytes of a character at the start of `text` that occurs in damaged numbers but not in names: dashes, blanks and
+// digits beyond ASCII; 0 if there is none.
 std::size_t strange_bytes_of_number(std::string_view text) {
   for (const std::string_view such :
        {"\xE2\x88\x92", "\xE2\x80", "\xEF\xBC", "\xC2\xA0", "\xD9"}) // −, dashes and thin blanks, full-width, blank, Arabic
@@ -81,8 +82,8 @@ std::size_t strange_bytes_of_number(std::string_view text) {
   return 0;
 }
 
-// A name has a letter. An exponent is none, and where digits are as many as letters and a point stands among them ("O.25", "x0.1"),
-// a mistyped number is as likely: `is_doubtful`.
+// Returns whether a field is a name: it contains a letter other than an exponent. `is_doubtful` is set if it could be a mistyped number: at
+// least as many digits as letters, and a point ("O.25", "x0.1").
 FirstField first_field(std::string_view field, bool& is_doubtful) {
   std::size_t letters = 0, digits = 0, points = 0, strange = 0;
   bool has_exponent = false;
@@ -100,7 +101,7 @@ FirstField first_field(std::string_view field, bool& is_doubtful) {
   return digits + strange > 0 ? FirstField::number : FirstField::nothing;
 }
 
-// "time [s]" → "time"
+// Returns the name without unit: "time [s]" → "time".
 std::string column_name(std::string_view field) {
   const auto bracket = field.find('[');
   if (bracket != std::string_view::npos && bracket > 0) field = trimmed(field.substr(0, bracket));
@@ -135,17 +136,17 @@ private:
     table_.lines.push_back(line_);
   }
 
-  // The first row: true if it holds names. A row whose first field begins like a number, or that has no name, is data, so that a
-  // mistyped number in it is refused by its column instead of being taken for the name of one, and the row lost.
+  // Reads the first row. Returns true if it contains names. A row whose first field begins like a number, or without any name, is data. So
+  // a mistyped number is reported with its column, instead of being taken for a column name and the row lost.
   bool read_header() {
     table_.columns.resize(fields_.size());
     if (begins_like_number(fields_.front())) return false;
     const std::string_view *name = nullptr, *number = nullptr;
-    bool is_certain = false; // that one of them is a name
+    bool is_certain = false; // one of the fields is certainly a name
     for (const std::string_view& field : fields_) {
       bool is_doubtful = false;
       const FirstField kind = first_field(field, is_doubtful);
-      const bool is_number = kind == FirstField::number || number_of(field, delimiter_ != ',').has_value(); // "inf", too
+      const bool is_number = kind == FirstField::number || number_of(field, delimiter_ != ',').has_value(); // also for "inf"
       if (is_number && !number) number = &field;
       if (!is_number && kind == FirstField::name && !name) name = &field;
       is_certain = is_certain || (!is_number && kind == FirstField::name && !is_doubtful);
@@ -171,7 +172,7 @@ private:
     return *number;
   }
 
-  // "1,000" beside "0.5" may be a thousand.
+  // Checks for mixed decimal marks: "1,000" next to "0.5" may mean one thousand.
   void note_decimals(std::string_view field, const std::string& place) {
     if (delimiter_ == ',') return;
     const char mark = field.find(',') != std::string_view::npos ? ',' : field.find('.') != std::string_view::npos ? '.' : '\0';
@@ -225,7 +226,7 @@ std::string csv_field(const std::string& text) {
 
 namespace {
 
-constexpr std::size_t k_most = 25; // bytes of a number and its comma: -1.2345678901234567e-308,
+constexpr std::size_t k_most = 25; // bytes of the longest number with its comma: -1.2345678901234567e-308,
 
 } // namespace
 
@@ -236,8 +237,8 @@ CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
   text_ += '\n';
 }
 
-// Of a hundred thousand numbers each copy counts. Those that are what they were in the row before are copied from
-// there: a mode, an area, a body that is at rest.
+// Adds a row. Numbers equal to those in the previous row are copied from its text, which is faster than formatting: modes, areas, bodies at
+// rest.
 void CsvText::add_row(std::span<const double> values) {
   const std::size_t before = text_.size();
   row_.resize(values.size() * k_most + k_number_room);

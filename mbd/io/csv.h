@@ -1,9 +1,8 @@
-// Tables of numbers as CSV: records read in, histories written out.
+// Tables of numbers as CSV: reads records, writes histories.
 //
-// Reading: the delimiter is a tab, a semicolon or a comma (the first of them that the first row
-// holds); with a semicolon or a tab a decimal comma is understood. Lines that are empty or start
-// with # are skipped; a first row that does not begin with a number holds the names of the columns (with or
-// without quotes, a unit in brackets after the name is not part of it: "time [s]").
+// The delimiter is a tab, a semicolon or a comma: the first of these in this order that occurs in the first row. With tab or semicolon, a
+// decimal comma is accepted. Empty lines and lines that start with # are skipped. A first row that does not begin with a number contains
+// the column names, with or without quotes. A unit in brackets is not part of a name: "time [s]".
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -19,28 +18,28 @@ namespace steplap {
 struct CsvTable {
   std::string file;
   std::vector<std::string> names;           ///< of the columns, empty without a header row
-  std::vector<std::vector<double>> columns; ///< all of one length
-  std::vector<int> lines;                   ///< line of the file for each row
+  std::vector<std::vector<double>> columns; ///< equal lengths
+  std::vector<int> lines;                   ///< line number in the file, for each row
 
-  /// Index of a column given by name or by number (from 1). Throws ModelError at `where`.
+  /// Returns the index of a column given by its name or number (from 1). Throws ModelError at `where` if there is none.
   [[nodiscard]] std::size_t column(const std::string& name_or_number, const Location& where) const;
 };
 
-/// Throws ModelError with file:line: for a file that cannot be read (at `where`), rows of unequal
-/// length, fields that are no finite number, a first row that mixes words and numbers, and a file without rows; and, if
-/// `wanted` is not empty, for a file with another SHA-256.
+/// Reads a file. Throws ModelError at `where` if it cannot be read or, with `wanted` not empty, if its SHA-256 differs from it. Throws
+/// ModelError with file:line for rows of unequal length, fields that are not finite numbers, a first row that mixes words and numbers, and
+/// a file without rows.
 [[nodiscard]] CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted = "");
 [[nodiscard]] CsvTable parse_csv(const std::string& text, const std::string& file_name);
 
-/// Comma-separated text, shortest digits that read back as the same numbers, "\n" after each row.
+/// CSV text with comma delimiter and "\n" after each row. Numbers have the fewest digits that read back exactly.
 class CsvText {
 public:
-  /// `rows`: how many will come, if known: room is made for them at once.
+  /// `rows`: expected number of rows, for which memory is reserved; 0 if unknown.
   explicit CsvText(std::span<const std::string> names, std::size_t rows = 0);
   void add_row(std::span<const double> values);
-  /// A line that readers skip; begins with #.
+  /// Adds a line that readers skip; it must begin with #.
   void add_comment(const std::string& line) { text_ += line + "\n"; }
-  /// After what there is has been written: more rows follow.
+  /// Clears the text after it has been written; further rows may follow.
   void clear() {
     text_.clear();
     last_.clear();
@@ -49,16 +48,16 @@ public:
   [[nodiscard]] std::string text() && { return std::move(text_); }
 
 private:
-  struct Field { ///< of the row before
+  struct Field { ///< field of the previous row
     std::uint64_t bits = 0;
-    std::size_t start = 0, length = 0; ///< in the text, with what follows it
+    std::size_t start = 0, length = 0; ///< position in the text, including the delimiter
   };
   std::string text_;
-  std::vector<char> row_;   ///< the one being written
-  std::vector<Field> last_; ///< none at first
+  std::vector<char> row_;   ///< row being written
+  std::vector<Field> last_; ///< fields of the previous row; empty before the first
 };
 
-/// A field as CSV wants it: quoted if it holds a comma, a quote or a line break.
+/// Returns the text as a CSV field: in quotes if it contains a comma, a quote or a line break.
 [[nodiscard]] std::string csv_field(const std::string& text);
 
 } // namespace steplap

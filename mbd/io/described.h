@@ -1,5 +1,4 @@
-// Everything in a model file that has a field table, with its default values: what the reference
-// and the schema are generated from.
+// All parts of a model file that have a field table, with their default values. The reference and the schema are generated from them.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,20 +6,20 @@
 namespace steplap {
 
 struct Described {
-  std::string role; ///< "element", "signal", "table" ([[name]]), "settings" ([name]), "model" (top level) or
-                    ///< "common" (what every element has)
+  std::string role; ///< "element", "signal", "table" ([[name]]), "settings" ([name]), "model" (top level) or "common" (fields of all
+                    ///< elements)
   std::string name;
   std::string doc;
   const FieldTable* fields = nullptr;
-  std::shared_ptr<const void> defaults; ///< an object as created
+  std::shared_ptr<const void> defaults; ///< object with default values
 
-  /// The default of a field as TOML, "" if it has none.
+  /// Returns the default value of a field as TOML text, "" if it has none.
   [[nodiscard]] std::string default_text(const Field& field) const;
 };
 
 [[nodiscard]] Described describe_common_fields();
 [[nodiscard]] std::vector<Described> describe(const Catalogue& catalogue);
-/// "number", "[x, y]", "marker", ...
+/// Returns the type of a field as text: "number", "[x, y]", "marker", ...
 [[nodiscard]] std::string type_text(const Field& field);
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// OpenSSL's function itself, not by way of EVP_Digest…: that reads the configuration of the machine and gathers tables of all
-// algorithms before the first byte, which takes as many instructions as a digest of 170 kB and serves nobody here.
+// Calls OpenSSL's SHA-256 functions directly instead of EVP_Digest…. EVP reads the configuration of the machine and builds tables of all
+// algorithms first, which costs as much as the digest of 170 kB.
 #define OPENSSL_API_COMPAT 10101 // where these functions are declared without a warning
 #include "mbd/io/digest.h"
 
@@ -17,7 +17,7 @@ struct Sha256::Context {
 
 namespace {
 
-// A digest that is wrong without a word would be worse than none.
+// Throws if OpenSSL reports failure, since a wrong digest would go unnoticed.
 void require(int is_done) {
   if (is_done != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256");
 }

@@ -1,5 +1,5 @@
-// SHA-256 of what is read and written, by which a result knows its inputs and a reader knows that a file is as it was written;
-// and base64, which carries numbers into pages. The only room that knows OpenSSL.
+// SHA-256 of inputs and outputs, so that a result identifies its inputs and a reader can check a file; and base64, which carries numbers in
+// HTML pages. The only module that depends on OpenSSL.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace steplap {
 
-/// Of a content that comes part by part.
+/// SHA-256 of a content that is added part by part.
 class Sha256 {
 public:
   Sha256();
@@ -19,7 +19,7 @@ public:
   Sha256& operator=(const Sha256&) = delete;
 
   void add(std::string_view part);
-  /// 64 hexadecimal digits, as sha256sum prints them; nothing can be added afterwards.
+  /// Returns 64 hexadecimal digits as sha256sum prints them. Nothing can be added afterwards.
   [[nodiscard]] std::string hex();
 
 private:

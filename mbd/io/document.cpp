@@ -24,7 +24,7 @@ std::string read_layer(const std::string& path, const Location& where) {
   return text;
 }
 
-// Lays one file's tree over what it extends.
+// Merges a file's tree over the tree that it extends.
 class Merger {
 public:
   explicit Merger(std::vector<Diagnostic>& problems) : problems_(problems) {}
@@ -51,7 +51,7 @@ public:
     base.column = over.column;
   }
 
-  // False: it is to be removed.
+  // Returns false if the entry is to be removed.
   bool lay_over(Node& base, Node& over, const std::string& array) {
     if (take_flag(over, "remove")) return false;
     merge_table(base, over, array + " '" + entry_name(over) + "'");
@@ -59,7 +59,7 @@ public:
   }
 
 private:
-  // Names of parts with the point behind them; of repeated ones what stands before the index.
+  // Records the names of parts with a point appended; for repeated parts only the text before the index.
   void note_parts(const Node& root) {
     const Node* const parts = root.find("part");
     if (!parts || !parts->is_array_of_tables()) return;
@@ -93,7 +93,7 @@ private:
     else base.children.push_back(std::move(child));
   }
 
-  // A parameter that gets another value keeps its range and meaning.
+  // Gives a parameter another value and keeps its range and description.
   static void replace_parameter(Node& base, Node& child) {
     Node* const inherited = base.find(child.key);
     if (!inherited || !inherited->is_table() || !inherited->find("value")) return replace(base, child);
@@ -141,7 +141,7 @@ private:
     std::unordered_set<std::string> removed, seen;
     for (Node& entry : over.children) {
       const std::string name = entry_name(entry);
-      if (over.key != "part" && is_in_part(name)) { // laid over what the part brings, when that is known (parts.h)
+      if (over.key != "part" && is_in_part(name)) { // merged when the part's entries are known (parts.h)
         base.children.push_back(std::move(entry));
         continue;
       }
@@ -161,7 +161,7 @@ private:
     if (!removed.empty()) std::erase_if(base.children, [&](const Node& n) { return removed.count(entry_name(n)) > 0; });
   }
 
-  // Reads and drops the key.
+  // Returns the flag and removes its key.
   bool take_flag(Node& entry, const std::string& key) {
     const Node* given = entry.find(key);
     if (!given) return false;
@@ -182,7 +182,7 @@ private:
   }
 
   std::vector<Diagnostic>& problems_;
-  std::vector<std::string> part_names_; // of both trees
+  std::vector<std::string> part_names_; // names of both trees
 };
 
 class Loader {
@@ -218,7 +218,7 @@ private:
     return base;
   }
 
-  // `format` is a property of the file, not of the model: a file and the file that it extends may be of different formats.
+  // `format` is a property of the file, not of the model: a file and the one that it extends may have different formats.
   void take_format(Node& root, const std::string& file) {
     if (const Node* format = root.find("format")) check_format(*format);
     else add_once(document_.files_without_format, file);
@@ -263,14 +263,14 @@ private:
     }
   }
 
-  // The same for a file, whatever it is called; of a pipe its name.
+  // Returns the same text for the same file under any of its names; for a pipe its name.
   static std::string identity_of(const std::string& file) {
     std::error_code error;
     const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
     return error ? file : path.string();
   }
 
-  // Far beyond what a person keeps apart, far below what the stack holds.
+  // Larger than any sensible chain, and small enough for the stack.
   static constexpr std::size_t k_longest_chain = 100;
 
   static std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }

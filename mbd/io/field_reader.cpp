@@ -31,7 +31,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
-// What is wrong with a value, "" if that has been told elsewhere; thrown and caught within this file only.
+// Error of a value; an empty message if it was already reported. Thrown and caught within this file only.
 struct BadValue {
   const Node* node;
   std::string message;
@@ -89,7 +89,7 @@ private:
     if (node.type == Node::Type::integer) return std::get<long>(node.scalar);
     const bool is_given = is_formula(node);
     if (node.type != Node::Type::number && !is_given) unexpected(node);
-    const double value = is_given ? formula(node, "") : std::get<double>(node.scalar); // 1e5 is an integer too
+    const double value = is_given ? formula(node, "") : std::get<double>(node.scalar); // 1e5 counts as an integer
     if (is_given && std::nearbyint(value) != value)
       throw BadValue{&node, "the formula gives " + number_text(value) + ", but an integer is needed"};
     if (std::nearbyint(value) != value || std::abs(value) > 9e15) unexpected(node);
@@ -106,7 +106,7 @@ private:
     return node.text();
   }
 
-  // "" is what a field holds that is not given; given, it would hide what was meant.
+  // "" marks a field that is not given, so it is refused as a value.
   std::string choice(const Node& node) const {
     std::string chosen = text(node);
     if (chosen.empty() && !field_.is_required)
@@ -115,7 +115,7 @@ private:
   }
 
   std::string quantity(const Node& node) const {
-    const double value = number(node, "*"); // what is no quantity in any unit is an error here and now
+    const double value = number(node, "*"); // report text that is not a quantity in any unit now
     if (is_formula(node)) return reading_.parameters->text_of(node);
     return node.type == Node::Type::text ? node.text() : number_text(value);
   }
@@ -162,7 +162,7 @@ private:
   const TableReading& reading_;
 };
 
-// Returns the known key that was probably meant, "" if none.
+// Reports an unknown key. Returns the known key that was probably meant, "" if there is none.
 std::string report_unknown(const Node& child, const FieldTable& fields, const TableReading& reading, std::vector<Diagnostic>& problems) {
   std::vector<std::string> known = reading.known_keys;
   for (const std::string& name : fields.names())
@@ -173,7 +173,7 @@ std::string report_unknown(const Node& child, const FieldTable& fields, const Ta
   return nearest_name(child.key, known);
 }
 
-// With the unit that the fields read before give it.
+// Reads a value; its unit may depend on fields read before.
 FieldValue read_value(const Node& child, const FieldTable& fields, const Field& field, const void* object, const TableReading& reading) {
   if (!hangs_on_others(field)) return ValueReader(field, reading).read(child);
   Field own = field;
@@ -192,7 +192,8 @@ GivenField read_field(const Node& child, const FieldTable& fields, const Field& 
   return {&field, &child, true};
 }
 
-// The field that had the key's name earlier; nullptr if there is none, or if its present name is given as well, which is an error.
+// Returns the field that had the key's name in earlier versions; nullptr if there is none. If its present name is given too, this is
+// reported as an error.
 const Field* renamed_field(const Node& table, const Node& child, const FieldTable& fields, const TableReading& reading,
                            std::vector<Diagnostic>& problems) {
   const Field* const field = fields.find_earlier(child.key);
@@ -206,7 +207,7 @@ const Field* renamed_field(const Node& table, const Node& child, const FieldTabl
   return field;
 }
 
-// A key that stands there misspelt is not reported a second time as missing.
+// Reports missing required fields, except those present with a misspelt key, which were reported before.
 void report_missing(const Node& table, const FieldTable& fields, const TableReading& reading, const std::vector<std::string>& misspelt,
                     std::vector<GivenField>& given, std::vector<Diagnostic>& problems) {
   for (const Field& field : fields.fields()) {
@@ -249,7 +250,7 @@ std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields,
                                     std::vector<Diagnostic>& problems) {
   std::vector<GivenField> given;
   std::vector<std::string> misspelt;
-  std::vector<std::pair<const Node*, const Field*>> later; // whose units others give
+  std::vector<std::pair<const Node*, const Field*>> later; // fields whose units depend on other fields
   for (const Node& child : table.children) {
     const Field* field = fields.find(child.key);
     if (!field) field = renamed_field(table, child, fields, reading, problems);

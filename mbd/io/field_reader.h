@@ -1,5 +1,5 @@
-// One table of a model file read into one object through its field table: types, units, unknown and
-// missing keys. Ranges and references are left to validate().
+// Reads one table of a model file into one object through its field table: types, units, unknown and missing keys. Ranges and references
+// are checked by validate().
 #pragma once
 
 #include "mbd/io/toml_text.h"
@@ -12,28 +12,28 @@ namespace steplap {
 class ParametersReader;
 struct RenamedKey;
 
-/// A field as a file gives it; without a node it is required, but missing.
+/// Field as given in a file; a required field that is missing has no node.
 struct GivenField {
   const Field* field = nullptr;
   const Node* node = nullptr;
-  bool is_usable = true; ///< false: its error is reported already
+  bool is_usable = true; ///< false: an error was already reported
 };
 
 struct TableReading {
-  std::string subject;                          ///< what messages call the object: "body 'tank'"
-  std::vector<std::string> known_keys;          ///< read by the caller: "name", "kind"
-  std::function<bool(const Field&)> is_excused; ///< required fields that may be missing all the same
-  /// Makes a marker of an inline table { body, point | at, angle } and returns its name.
+  std::string subject;                          ///< name of the object in messages: "body 'tank'"
+  std::vector<std::string> known_keys;          ///< keys that the caller reads: "name", "kind"
+  std::function<bool(const Field&)> is_excused; ///< returns true for required fields that may be missing here
+  /// Creates a marker from an inline table { body, point | at, angle } and returns its name.
   std::function<std::string(const Node& table, const Field& field)> add_marker;
-  ParametersReader* parameters = nullptr;     ///< gives formulas their values; null where there are none
-  std::vector<RenamedKey>* renamed = nullptr; ///< takes keys with earlier names; null: such keys are read without a word
+  ParametersReader* parameters = nullptr;     ///< evaluates formulas; null if formulas are not allowed
+  std::vector<RenamedKey>* renamed = nullptr; ///< collects keys that have an earlier name; if null, such keys are read silently
 };
 
-/// Sets the members of `object` that `table` gives; returns what it found. Problems are appended.
+/// Sets the members of `object` that `table` gives. Returns the fields found. Appends problems.
 std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object, const TableReading& reading,
                                     std::vector<Diagnostic>& problems);
 
-/// What a value of the field looks like: "a number or a string with a unit like 'kg'".
+/// Returns the expected form of a value as text: "a number or a string with a unit like 'kg'".
 [[nodiscard]] std::string expected_text(const Field& field);
 
 } // namespace steplap

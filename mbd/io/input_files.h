@@ -1,4 +1,4 @@
-// Which files were read, and what they held: for results that say what they were made of.
+// Records which files were read and their checksums, so that results can identify their inputs.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 namespace steplap {
 
 struct InputFile {
-  std::string path;   ///< as it was named, relative to the folder of the process
-  std::string sha256; ///< of what it held
+  std::string path;   ///< path as given, relative to the working directory
+  std::string sha256; ///< checksum of the content
   std::size_t bytes = 0;
-  bool is_record = false; ///< a table of numbers; else a document
+  bool is_record = false; ///< true: table of numbers; false: document
 
   bool operator==(const InputFile&) const = default;
 };
 
-/// While it lives it notes every document and every record that is read on this thread. One within another takes what
-/// is read during its own life, until it hands it on.
+/// Records all documents and tables read on this thread during its lifetime. If one exists within another, the inner one takes what is read
+/// and passes it on with note().
 class InputFiles {
 public:
   InputFiles();
@@ -25,7 +25,7 @@ public:
   InputFiles& operator=(const InputFiles&) = delete;
   ~InputFiles();
 
-  /// In the order in which they were read first, each once.
+  /// Returns the files in the order in which they were first read, each once.
   [[nodiscard]] const std::vector<InputFile>& files() const { return files_; }
   void note(InputFile file);
 
@@ -34,12 +34,12 @@ private:
   InputFiles* outer_;
 };
 
-/// Of readers: `text` was read from `path`.
+/// Reports that `text` was read from `path`. Called by readers.
 void note_input(const std::string& path, const std::string& text, bool is_record);
 
-/// What the file holds now; "" if it cannot be read.
+/// Returns the checksum of the file's present content; "" if it cannot be read.
 [[nodiscard]] std::string sha256_of_file(const std::string& path);
-/// Absolute, links resolved; "" of standard input.
+/// Returns the absolute path with links resolved; "" for standard input.
 [[nodiscard]] std::string absolute_path(const InputFile& file);
 
 } // namespace steplap

@@ -17,17 +17,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Limits hold for numbers and the pattern for texts, so that an editor names the one that is not met; of "anyOf" it could only say that
-// nothing fits.
+// Limits apply to numbers and the pattern to texts, so that an editor names the violated one. With "anyOf" it could only report that no
+// alternative fits.
 Json quantity(const Field& field, const std::string& unit, const char* number = "number") {
   Json schema{{"type", {number, "string"}}};
   if (std::isfinite(field.minimum)) schema[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
   if (std::isfinite(field.maximum)) schema["maximum"] = field.maximum;
-  schema["pattern"] = unit.empty() ? "^\\s*=" : "^\\s*([-+]?[0-9.]|=)"; // a formula of parameters, a number with its unit
+  schema["pattern"] = unit.empty() ? "^\\s*=" : "^\\s*([-+]?[0-9.]|=)"; // a formula, or a number with its unit
   return schema;
 }
 
-// No key but those of `properties`. An editor marks the key itself where the value it has cannot be; of "false" it marks the whole table.
+// Permits only the keys of `properties`. The impossible value makes editors mark the unknown key; with "false" they mark the whole table.
 void close(Json& schema) { schema["additionalProperties"] = {{"const", "a field that this table has"}}; }
 
 Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
@@ -83,14 +83,14 @@ const Described& common_fields() {
   return common;
 }
 
-// What files that extend another may say of a table.
+// Adds the keys by which a file changes what it extends.
 void add_merging(Json& properties) {
   properties["unset"] = list_of(text());
   properties["unset"]["description"] = "inherited keys that are dropped";
   properties["replace"] = {{"type", "boolean"}, {"description", "drops all inherited keys"}};
 }
 
-// An entry of an array of tables: what it says, its name and what merging understands.
+// Returns the schema of an entry of an array of tables: its fields, its name and the merge keys.
 Json entry_schema(const Described& kind, bool has_kind) {
   Json schema = object_schema(kind);
   Json& properties = schema["properties"];
@@ -106,7 +106,7 @@ Json entry_schema(const Described& kind, bool has_kind) {
 
 Json parameter_value() { return {{"type", {"number", "string"}}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}; }
 
-// What is written out before anything is read: parts, and entries that are repeated.
+// Adds keys that are expanded before reading: `repeat` of entries and parts.
 void add_writing_out(Json& properties, const std::string& array) {
   const auto& repeated = repeated_arrays();
   if (std::find(repeated.begin(), repeated.end(), array) == repeated.end()) return;
@@ -138,7 +138,8 @@ Json parameters_schema() {
           {"additionalProperties", std::move(full)}};
 }
 
-// What a field of several kinds means: "stiffness [N/m] (tie, bushing); stiffness, turning [N m] (gear)". Without kinds where all have it.
+// Returns the meanings of a field of several kinds: "stiffness [N/m] (tie, bushing); stiffness, turning [N m] (gear)". Kinds are omitted if
+// all of them share one meaning.
 std::string meanings(const std::vector<std::pair<std::string, std::string>>& docs, std::size_t all) {
   std::string text;
   for (std::size_t i = 0; i < docs.size(); ++i) {
@@ -154,14 +155,14 @@ std::string meanings(const std::vector<std::pair<std::string, std::string>>& doc
   return text;
 }
 
-// Entries of several kinds. Each is held to the schema of the kind that it names, so that what is wrong is said of its own line. What an
-// editor offers is under "properties": it does not look behind conditions.
+// Schema of entries of several kinds. Conditions select the schema of the entry's kind, so that errors are reported at their line. All
+// fields are also listed under "properties", because editors do not complete from conditions.
 Json entries_of_kinds(const std::string& role, const Json& definitions) {
   const std::string prefix = role + "_";
   std::vector<std::string> kinds;
-  std::vector<std::string> order;                                               // of the fields
-  std::map<std::string, std::vector<std::pair<std::string, std::string>>> docs; // field: kind and meaning
-  std::map<std::string, Json> values;                                           // field: what it may be, of any kind
+  std::vector<std::string> order;                                               // order of the fields
+  std::map<std::string, std::vector<std::pair<std::string, std::string>>> docs; // per field: kinds and meanings
+  std::map<std::string, Json> values;                                           // per field: permitted values in any kind
   for (const auto& [name, definition] : definitions.items()) {
     if (!name.starts_with(prefix)) continue;
     kinds.push_back(name.substr(prefix.size()));
@@ -181,7 +182,7 @@ Json entries_of_kinds(const std::string& role, const Json& definitions) {
     offered[field] = {{"description", meanings(docs[field], kinds.size())}};
     known[field] = values[field].size() == 1 ? values[field].front() : Json{{"anyOf", values[field]}};
   }
-  Json schema{{"properties", std::move(known)}}; // of an entry without a kind, which is laid over another file's
+  Json schema{{"properties", std::move(known)}}; // for entries without a kind, which change another file's entry
   close(schema);
   for (auto kind = kinds.rbegin(); kind != kinds.rend(); ++kind)
     schema = {{"if", {{"properties", {{"kind", {{"const", *kind}}}}}, {"required", Json::array({"kind"})}}},

@@ -38,7 +38,7 @@ peak = 1.0
 duration = 1.0
 )";
 
-// A number that the field may hold.
+// Returns a permitted value of the field.
 std::string number_for(const Field& field) {
   double value = 1.0;
   if (value < field.minimum || (value == field.minimum && field.is_minimum_excluded)) value = field.minimum + 1.0;
@@ -46,7 +46,7 @@ std::string number_for(const Field& field) {
   return number_text(value);
 }
 
-// As TOML; "" for what cannot be made up.
+// Returns a sample value as TOML; "" if none can be made up.
 std::string value_for(const Field& field, int index) {
   switch (field.type) {
   case FieldType::number: return number_for(field);
@@ -78,7 +78,7 @@ bool is_required(const ElementKind& kind, const std::string& name) {
   return field && field->is_required;
 }
 
-// Lines that choose among what a kind has: nothing, and each value of each choice and switch.
+// Returns TOML lines that select among alternatives of a kind: none, and each value of each choice and switch.
 std::vector<std::string> choices_of(const ElementKind& kind) {
   std::vector<std::string> list{""};
   for (const Field& field : kind.fields.fields()) {
@@ -89,7 +89,7 @@ std::vector<std::string> choices_of(const ElementKind& kind) {
   return list;
 }
 
-// Nothing, each number that may be given, all of them.
+// Returns TOML lines with optional numbers: none, each one, all of them.
 std::vector<std::string> extras_of(const ElementKind& kind) {
   std::vector<std::string> list{""};
   std::string all;
@@ -102,7 +102,7 @@ std::vector<std::string> extras_of(const ElementKind& kind) {
   return list;
 }
 
-// "edge_force_3" is one of many.
+// Replaces the number in a name such as "edge_force_3" by N.
 std::string general_name(std::string name) {
   for (std::size_t i = 1; i < name.size(); ++i) {
     if (std::isdigit(static_cast<unsigned char>(name[i])) == 0 || name[i - 1] != '_') continue;
@@ -122,20 +122,20 @@ void enter(const Channel& channel, const std::string& name, std::vector<KindChan
   if (std::find(known->units.begin(), known->units.end(), channel.unit) == known->units.end()) known->units.push_back(channel.unit);
 }
 
-// The channels of the system that begin with `owner` and a point.
+// Adds the channels of the system that belong to `owner`.
 void enter_all(const System& system, const std::string& owner, std::vector<KindChannel>& list) {
   for (const Channel& channel : system.channels)
     if (channel.name.starts_with(owner + ".")) enter(channel, general_name(channel.name.substr(owner.size() + 1)), list);
 }
 
-// False if there is no such model.
+// Adds the channels of a sample model. Returns false if the model is not valid.
 bool try_scene(const std::string& text, const Catalogue& catalogue, const std::string& kind, std::vector<KindChannel>& list) {
   try {
     const std::unique_ptr<System> system = compile(parse_model(text, "example.toml", catalogue));
     for (std::size_t e = 0; e < system->element_names.size(); ++e)
       if (system->element_kinds[e] == kind) enter_all(*system, system->element_names[e], list);
     return true;
-  } catch (const ModelError&) { // values that do not go together: others do
+  } catch (const ModelError&) { // incompatible values; other samples work
     return false;
   }
 }
@@ -158,7 +158,7 @@ std::vector<KindChannel> channels_of_kind(const Catalogue& catalogue, const Elem
   if (!kind.compile) return list;
   if (!kind.example.empty()) {
     const std::unique_ptr<System> system =
-        compile(parse_model(k_scene + kind.example, "example.toml", catalogue)); // it is ours: no error is borne
+        compile(parse_model(k_scene + kind.example, "example.toml", catalogue)); // built-in example: errors are not expected
     for (std::size_t e = 0; e < system->element_names.size(); ++e)
       if (system->element_kinds[e] == kind.name) enter_all(*system, system->element_names[e], list);
     return sorted(std::move(list));

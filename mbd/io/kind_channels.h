@@ -1,5 +1,5 @@
-// Which channels the elements of a kind have: found out by making some, with each choice of theirs and each field that may be
-// given or not. So the list never differs from what a run writes, and no kind can forget a channel of its own.
+// Finds the channels of each element kind by compiling sample elements, with each of their choices and each optional field. So the list
+// always agrees with the results of a run.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -7,20 +7,20 @@
 namespace steplap {
 
 struct KindChannel {
-  std::string name;               ///< behind the element's: "force"; a number at its end is written N
-  std::vector<std::string> units; ///< several where it hangs on a choice
+  std::string name;               ///< name without the element's: "force"; a number at its end is written N
+  std::vector<std::string> units; ///< several if the unit depends on a choice
   std::string meaning, sign, codes;
   bool is_on_request = false;
 };
 
-/// In the order in which elements make them, those on request last. Empty for a kind that has none.
+/// Returns the channels in the order in which elements create them, optional ones last; empty if the kind has none.
 [[nodiscard]] std::vector<KindChannel> channels_of_kind(const Catalogue& catalogue, const ElementKind& kind);
-/// Of bodies; on request of markers and of the whole.
+/// Returns the channels of bodies; below: optional channels of markers and of the whole model.
 [[nodiscard]] std::vector<KindChannel> channels_of_bodies(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_markers(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_whole(const Catalogue& catalogue);
 
-/// "N or N m"; "-" for none.
+/// Returns the units as text: "N or N m"; "-" if there are none.
 [[nodiscard]] std::string units_text(const KindChannel& channel);
 
 } // namespace steplap

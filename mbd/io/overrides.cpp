@@ -12,7 +12,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Takes the part before the next point off the path.
+// Removes the part before the next point from the path and returns it.
 std::string take_segment(std::string& path) {
   const std::size_t point = path.find('.');
   std::string segment = path.substr(0, point);
@@ -52,7 +52,7 @@ private:
     try {
       Node root = parse_toml("value = " + text, file_);
       if (root.children.size() == 1) return stripped(std::move(root.children.front()));
-    } catch (const ModelError&) { // not TOML: a bare string
+    } catch (const ModelError&) { // not TOML: taken as a string
     }
     Node node;
     node.type = Node::Type::text;
@@ -61,14 +61,14 @@ private:
     return node;
   }
 
-  // Without lines and columns, which mean nothing on a command line.
+  // Removes lines and columns, which have no meaning for a command line.
   static Node stripped(Node node) {
     node.line = node.column = node.key_line = node.key_column = 0;
     for (Node& child : node.children) child = stripped(std::move(child));
     return node;
   }
 
-  // A parameter that the model has: a new one would be used by nothing.
+  // Sets a parameter of the model. New parameters are refused, because nothing would use them.
   void set_parameter() {
     Node* const table = document_.root.find("parameters");
     Node* const parameter = table ? table->find(path_) : nullptr;
@@ -76,7 +76,7 @@ private:
       path_.clear();
       return set_below(*parameter, "value");
     }
-    if (parameter) { // its name may hold points: of a part it is "wagon 2.wall"
+    if (parameter) { // the name of a part's parameter contains points: "wagon 2.wall"
       const std::string name = std::exchange(path_, "");
       return set_below(*table, name);
     }
@@ -118,7 +118,7 @@ private:
     set_below(*best, take_segment(path_));
   }
 
-  // Sets `key` of a table, or what the rest of the path names below it.
+  // Sets `key` of a table, or the item below it that the rest of the path names.
   void set_below(Node& parent, const std::string& key) {
     Node* child = child_of(parent, key);
     if (!path_.empty()) {

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// Of a part's parameter, "wagon 2.wall", what is behind the names of the parts.
+// Checks the name of a parameter; for a part's parameter such as "wagon 2.wall" the text after the part names.
 bool is_name(const std::string& whole) {
   if (whole.find_first_of("{}[]") != std::string::npos) return false;
   const std::string text = whole.substr(whole.rfind('.') + 1);
@@ -38,8 +38,8 @@ std::string said(const std::array<double, 3>& powers) {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-// Calls `visit(node, path, likeness)` for every value of the document below a table or a named entry: path as model_path.h has it;
-// of entries of one kind the paths of one field are alike.
+// Calls `visit(node, path, likeness)` for every value below a table or a named entry. `path` is as in model_path.h. `likeness` is equal for
+// the same field of entries of the same kind.
 class Walk {
 public:
   using Visit = std::function<void(const Node&, const std::string&, const std::string&)>;
@@ -60,7 +60,7 @@ private:
       in_value(child, array + "." + name + "." + child.key, alike + child.key, array == "element" ? name + "." + child.key : "");
   }
 
-  // `marker`: what the reader calls the marker that an inline table stands for, "" where none can stand.
+  // `marker`: name of the marker for which an inline table stands, "" if none is allowed here.
   void in_value(const Node& node, const std::string& path, const std::string& alike, const std::string& marker) {
     if (node.is_table()) {
       const std::string own = entry_name(node);
@@ -104,7 +104,7 @@ ParametersReader::ParametersReader(const Node& root, std::vector<Diagnostic>& pr
   }
   for (const Node& entry : table->children) read_entry(entry);
   is_resolved_.resize(parameters_.entries.size());
-  // Names have to be known before formulas of them are read.
+  // All names must be known before formulas are read.
   for (std::size_t i = 0; i < parameters_.entries.size(); ++i) {
     Parameter& parameter = parameters_.entries[i];
     if (is_wrong_[i] || parameter.text.empty() || parameter.text.front() != '=') continue;
@@ -190,7 +190,7 @@ void ParametersReader::read_value(const Node& node, Parameter& parameter, double
     turns_.back() = Turns::radians;
 }
 
-// Ends in the unit of the value, checked when that is known: check_ranges().
+// Reads a range. Its ends have the unit of the value, which is checked later by check_ranges().
 void ParametersReader::read_range(const Node& range, Parameter& parameter) {
   const auto complain = [&](const Node& at, const std::string& message) {
     add(at.where(), "'range' of parameter '" + parameter.name + "': " + message);
@@ -237,7 +237,7 @@ std::array<double, 3> ParametersReader::powers_of(const ParameterFormula& formul
   return formula.formula.dimension(units).powers;
 }
 
-// Finds a formula's value after those that it needs. False if one of them is wrong.
+// Evaluates a formula after those that it needs. Returns false if one of them is wrong.
 bool ParametersReader::resolve(std::size_t index, std::vector<std::size_t>& chain) {
   Parameter& parameter = parameters_.entries[index];
   if (is_wrong_[index]) return false;
@@ -280,7 +280,7 @@ void ParametersReader::check_ranges() {
   }
 }
 
-// "10 rad/s" is no frequency of 10 Hz, although both are 1/s.
+// Reports a mix of turns and radians: "10 rad/s" is not a frequency of 10 Hz, although both are 1/s.
 std::string ParametersReader::turns_problem(const ParameterFormula& formula, const std::string& unit) const {
   const Turns wanted = unit == "Hz" ? Turns::turns : unit == "rad/s" ? Turns::radians : Turns::none;
   if (wanted == Turns::none) return "";
@@ -312,7 +312,7 @@ Quantity ParametersReader::value(const Node& node, const std::string& unit) {
     if (unit != "*" && wanted && wanted->powers != powers)
       return {0.0, "the formula gives " + said(powers) + ", but " +
                        (unit.empty() ? "a number without a unit" : "a unit like '" + unit + "'") + " is needed"};
-    if (unit != "*" && !wanted) { // one that formulas do not know
+    if (unit != "*" && !wanted) { // a unit that formulas do not know
       const Quantity converted = parse_quantity(number_text(found.value) + " " + found.use.unit, unit);
       if (!converted.problem.empty()) return converted;
     }
@@ -333,7 +333,8 @@ std::string ParametersReader::text_of(const Node& node) const {
 
 Parameters ParametersReader::parameters(const Node& root, const Model& model) const {
   Parameters result = parameters_;
-  std::unordered_map<std::string, bool> settable; // of paths that are alike: finding an entry by its name takes long where there are many
+  std::unordered_map<std::string, bool> settable; // results for paths that are alike, because finding an entry by its name is slow in large
+                                                  // models
   const Walk walk(root, [&](const Node& node, const std::string& path, const std::string& alike) {
     const auto found = found_.find(&node);
     if (found == found_.end()) return;

@@ -1,4 +1,4 @@
-// [parameters] of a document, and the formulas of them that stand where a field wants a number: "= 2*wall + bore".
+// Reads [parameters] of a document, and formulas of parameters in fields that need a number: "= 2*wall + bore".
 #pragma once
 
 #include "mbd/io/document.h"
@@ -11,24 +11,24 @@
 
 namespace steplap {
 
-/// Does a value begin with '=', as formulas do?
+/// Returns true if the value is a text that begins with '='.
 [[nodiscard]] bool is_formula(const Node& node);
 
-/// Reads the table, and formulas as they are met in fields.
+/// Reads the table, and evaluates formulas when fields contain them.
 class ParametersReader {
 public:
-  /// Reads [parameters] of `root`, if there is one. What is wrong is appended to `problems`.
+  /// Reads [parameters] of `root`, if there is one. Appends problems.
   ParametersReader(const Node& root, std::vector<Diagnostic>& problems);
 
-  /// What the formula in `node` gives, in a field's `unit` ("*": any). `problem` is what is wrong with it; where it needs a parameter
-  /// that is wrong itself, which has been told, value and problem say nothing: see is_excused().
+  /// Returns the value of the formula in `node` in a field's `unit` ("*": any). On error `problem` is set, except if the formula needs a
+  /// parameter that was already reported as wrong: then is_excused() is true.
   [[nodiscard]] Quantity value(const Node& node, const std::string& unit);
-  /// The same as text with its unit, for fields that take one: "0.024 m".
+  /// Returns the value as text with its unit, for fields that accept one: "0.024 m".
   [[nodiscard]] std::string text_of(const Node& node) const;
-  /// Was the last formula left without a value because a parameter that it needs is wrong?
+  /// Returns true if the last formula has no value because a parameter that it needs is wrong.
   [[nodiscard]] bool is_excused() const { return is_excused_; }
 
-  /// All parameters, and what was found with value(): `root` is the document they were found in, `model` what was made of it.
+  /// Returns all parameters and the formulas evaluated by value(). `root` is their document, `model` the model made from it.
   [[nodiscard]] Parameters parameters(const Node& root, const Model& model) const;
 
 private:
@@ -49,9 +49,9 @@ private:
 
   std::vector<Diagnostic>& problems_;
   Parameters parameters_;
-  std::unordered_map<std::string, std::size_t> by_name_; ///< of the entries
+  std::unordered_map<std::string, std::size_t> by_name_; ///< index in entries, by name
   enum class Turns { none, turns, radians };
-  std::vector<Turns> turns_; ///< what an entry in 1/s counts, as its unit is written
+  std::vector<Turns> turns_; ///< per entry in 1/s: turns or radians, as its unit is written
   std::vector<bool> is_wrong_, is_resolved_;
   std::unordered_map<const Node*, Found> found_;
   bool is_excused_ = false;

@@ -26,7 +26,7 @@ void prefix_texts(Node& node, const std::string& prefix) {
   for (Node& child : node.children) prefix_texts(child, prefix);
 }
 
-// What an action does to elements, signals and actions of its own file.
+// Prefixes names in the steps of an action: elements, signals and actions of its own file.
 void prefix_steps(Node& node, const std::string& prefix) {
   for (Node& child : node.children) prefix_steps(child, prefix);
   if (node.type != Node::Type::text) return;
@@ -36,7 +36,7 @@ void prefix_steps(Node& node, const std::string& prefix) {
     step.name = prefix + step.name;
     if (step.verb == ActionVerb::set && is_name_in_step(step.value)) step.value = prefix + step.value;
     node.scalar = text_of(step);
-  } catch (const std::invalid_argument&) { // told where the action is compiled
+  } catch (const std::invalid_argument&) { // reported when the action is compiled
   }
 }
 
@@ -51,12 +51,12 @@ bool is_presentation(const std::string& array) { return array == "channel" || ar
 
 } // namespace
 
-// What is known of a kind, whatever array its entries stand in.
+// Properties of a kind, whatever array contains its entries.
 struct PartEntries::KindFacts {
   const FieldTable* fields = nullptr;
-  std::shared_ptr<Element> made;            // null of a signal
-  std::vector<const Field*> ground_markers; // that are the ground where they are not given
-  bool has_ground_axes = false;             // where `frame` does not say otherwise
+  std::shared_ptr<Element> made;            // null for signals
+  std::vector<const Field*> ground_markers; // marker fields that default to the ground
+  bool has_ground_axes = false;             // default if `frame` is not given
 };
 
 std::string with_prefixed_names(const std::string& formula, const std::string& prefix, bool (*stays)(const std::string& name)) {
@@ -128,7 +128,7 @@ Node PartEntries::made(const std::string& array, const Node& entry, const Node& 
   else if (const auto table = tables_.find(array); table != tables_.end()) put_fields(result, *table->second, part, is_whole);
   else if (const KindFacts* const facts = kind_of(array == "element" ? elements_ : signals_, entry))
     put_fields(result, *facts, part, is_whole);
-  return result; // of a kind that is not known its reader says so
+  return result; // unknown kinds are reported by the reader
 }
 
 void PartEntries::note_placing_joints(const Node& root, const PartPlacement& part) {
@@ -148,7 +148,7 @@ void PartEntries::note_placing_joints(const Node& root, const PartPlacement& par
 }
 
 bool PartEntries::is_placed_by_joint(const Node& body, const Node& root, const PartPlacement& part) const {
-  const std::string name = entry_name(body); // the long one by now
+  const std::string name = entry_name(body); // the prefixed name
   if (placed_.count(name) > 0) return true;
   const Node* const markers = root.find("marker");
   if (!markers || !markers->is_array_of_tables()) return false;
@@ -188,7 +188,7 @@ void PartEntries::put_marker(Node& marker, const PartPlacement& part, bool is_wh
   if (!has_angle && frame.is_turned()) marker.children.push_back(frame.angle_node("angle", marker));
 }
 
-// The name of a marker or body, or an inline marker.
+// Converts a reference: the name of a marker or body, or an inline marker.
 void PartEntries::put_reference(Node& node, const PartPlacement& part) const {
   if (node.is_table()) {
     if (Node* const name = node.find("name")) prefix_texts(*name, part.prefix);
@@ -249,7 +249,7 @@ void PartEntries::put_field(Node& child, const Field& field, const KindFacts& fa
                                             "give it frame = \"body\", and its marker the axes"});
 }
 
-// Formulas and patterns of channels and elements.
+// Prefixes names in formulas and patterns of channels and elements.
 void PartEntries::put_presentation(const std::string& array, Node& entry, const PartPlacement& part, bool is_whole) const {
   const auto prefixed = [&](const char* key) {
     if (Node* const node = entry.find(key)) prefix_texts(*node, part.prefix);
@@ -263,7 +263,7 @@ void PartEntries::put_presentation(const std::string& array, Node& entry, const 
   } else {
     prefixed("channel");
     prefixed("element");
-    Node* const event = entry.find("event"); // of all elements of the part, not of the model
+    Node* const event = entry.find("event"); // the pattern covers all elements of the part, not of the model
     if (!is_whole || !event || entry.find("element")) return;
     entry.children.push_back(text_at("element", *event, part.prefix + "*"));
   }

@@ -1,4 +1,4 @@
-// An entry of a part's file as the model has it: its names are the model's, and it stands where the part stands.
+// Converts an entry of a part's file into one of the model: with the model's names, at the position of the part.
 #pragma once
 
 #include "mbd/io/part_frame.h"
@@ -10,34 +10,34 @@
 
 namespace steplap {
 
-/// One part, or the model itself.
+/// Placement of one part; default: of the model itself.
 struct PartPlacement {
-  std::string prefix;                ///< of its names: "wagon 2."; "" of the model
-  PartFrame frame;                   ///< where it stands
-  const std::string* file = nullptr; ///< its file
+  std::string prefix;                ///< prefix of its names: "wagon 2."; "" for the model
+  PartFrame frame;                   ///< its coordinate frame
+  const std::string* file = nullptr; ///< name of its file
 };
 
-/// The formula with the names of a part's entries as the model has them; those for which `stays` is true stay as they are.
+/// Returns the formula with the names of a part's entries prefixed, except names for which `stays` returns true.
 [[nodiscard]] std::string with_prefixed_names(const std::string& formula, const std::string& prefix,
                                               bool (*stays)(const std::string& name) = nullptr);
-/// The same for all formulas in a node.
+/// Prefixes names in all formulas of a node.
 void prefix_formulas(Node& node, const std::string& prefix);
 
 class PartEntries {
 public:
   PartEntries(const Catalogue& catalogue, std::vector<Diagnostic>& problems);
 
-  /// Are there tables of that name, kernel's or not, whose entries a part may bring?
+  /// Returns true if a part may contain entries of tables with that name, of the kernel or of elements.
   [[nodiscard]] bool are_known(const std::string& array) const;
   [[nodiscard]] bool are_of_model_alone(const std::string& array) const;
-  /// All names for which are_known() holds.
+  /// Returns all names for which are_known() is true.
   [[nodiscard]] std::vector<std::string> arrays() const;
 
-  /// Notes what joints of the file join that say where one of their bodies is against the other: a body without a pose of its own
-  /// gets it from there, and not from its part. To be called for a file before anything in it or in its parts is made.
+  /// Records the bodies that joints of the file place relative to another body. Such a body without a pose of its own is not placed by its
+  /// part. Call it for a file before anything in it or its parts is converted.
   void note_placing_joints(const Node& root, const PartPlacement& part);
-  /// The entry of [[array]] in the file `root` as the model has it. `is_whole`: what the place of the part gives it besides its own keys
-  /// is added; else it is to be laid over another, of which it changes what it says.
+  /// Returns the entry of [[array]] in the file `root` as an entry of the model. `is_whole`: adds values that follow from the position of
+  /// the part; otherwise the entry changes another one and only its own keys are converted.
   [[nodiscard]] Node made(const std::string& array, const Node& entry, const Node& root, const PartPlacement& part, bool is_whole = true);
 
 private:
@@ -58,7 +58,7 @@ private:
   std::vector<Diagnostic>& problems_;
   Kinds elements_, signals_, tables_;
   std::vector<std::string> of_model_alone_;
-  std::unordered_set<std::string> placed_; ///< bodies and markers, by the model's names, that such joints join
+  std::unordered_set<std::string> placed_; ///< bodies and markers of such joints, by the model's names
 };
 
 } // namespace steplap

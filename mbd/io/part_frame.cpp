@@ -15,7 +15,7 @@ namespace {
 
 bool is_zero(const PlacedNumber& number) { return number.is_number() && number.value == 0.0; }
 
-// As an operand of a formula.
+// Returns the number as an operand of a formula.
 std::string operand(const PlacedNumber& number, const std::string& unit) {
   if (!number.is_number()) return "(" + number.formula + ")";
   const std::string text = number_text(number.value);
@@ -23,7 +23,7 @@ std::string operand(const PlacedNumber& number, const std::string& unit) {
   return number.value < 0.0 ? "(" + text + ")" : text;
 }
 
-// The first operand of a sum needs no brackets: sums are made from the left.
+// Returns the number as first operand of a sum, which needs no brackets since sums are evaluated from the left.
 std::string summand(const PlacedNumber& number, const std::string& unit) {
   return number.is_number() ? operand(number, unit) : number.formula;
 }
@@ -41,7 +41,7 @@ void set(Node& node, const PlacedNumber& number) {
   else node.scalar = "= " + number.formula;
 }
 
-// Of a formula that hangs on nothing: its number, if it is in the unit.
+// Returns the value of a formula without names, if it has the unit.
 std::optional<double> value_without_operands(const Node& node, const std::string& unit) {
   try {
     const Formula formula(node.text().substr(node.text().find('=') + 1), "", {});

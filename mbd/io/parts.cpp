@@ -22,22 +22,22 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_deepest = 32; // parts in parts: far beyond what a person keeps apart
+constexpr std::size_t k_deepest = 32; // nested parts; deeper nesting is an error
 
-// An entry whose name is that of something in a part: it is laid over that.
+// Entry with the name of something in a part; it is merged over that.
 struct Overlay {
   std::string array;
   Node entry;
 };
 
-// A file that is taken, or the model's, with its repetitions written out.
+// File of a part or of the model, with its repetitions expanded.
 struct PartFile {
   Node root;
   const std::string* name = nullptr;
-  std::vector<Overlay> overlays; // taken out of root
+  std::vector<Overlay> overlays; // removed from root
 };
 
-// Takes entries out of arrays of `root` that are laid over things in its parts.
+// Removes entries of `root` that change something in its parts, and returns them.
 std::vector<Overlay> taken_overlays(Node& root) {
   std::vector<Overlay> overlays;
   const Node* const parts = root.find("part");
@@ -74,7 +74,7 @@ public:
     const std::vector<Overlay> overlays = taken_overlays(document_.root);
     take_parts(taken_parts(document_.root), model);
     lay_over_parts(overlays, document_.root, model);
-    if (!problems_.empty()) return; // of the caller, with what went before
+    if (!problems_.empty()) return; // the caller reports them together with earlier ones
     for (Node& array : added_) append(std::move(array));
     document_.root.erase("part");
   }
@@ -91,7 +91,7 @@ private:
     add(at.where(), "parts and repetitions make more than " + std::to_string(k_most_entries) + " entries: a model may not have so many");
   }
 
-  // [[part]] of a file, an empty array if there is none.
+  // Returns the [[part]] array of a file, empty if there is none.
   Node taken_parts(const Node& root) {
     const Node* const parts = root.find("part");
     Node none;
@@ -102,7 +102,7 @@ private:
     return none;
   }
 
-  // The same for a file, whatever it is called.
+  // Returns the same text for the same file under any of its names.
   const std::string& identity_of(const std::string& file) {
     const auto [known, is_new] = identities_.emplace(file, file);
     if (!is_new) return known->second;
@@ -134,12 +134,12 @@ private:
   Document& document_;
   std::vector<Diagnostic>& problems_;
   PartEntries entries_;
-  std::map<std::string, std::unique_ptr<PartFile>> files_;  // by identity; null: it could not be read
-  std::unordered_map<std::string, std::string> identities_; // of files by their names: asking the system takes long
-  std::vector<std::string> files_on_the_way_;               // identities, from the model's to that of the part being written
+  std::map<std::string, std::unique_ptr<PartFile>> files_;  // by identity; null: could not be read
+  std::unordered_map<std::string, std::string> identities_; // identity by file name, because asking the file system is slow
+  std::vector<std::string> files_on_the_way_;               // identities from the model's file to that of the present part
   std::vector<Node> added_;                                 // arrays of the parts' entries, and their [parameters]
-  std::unordered_map<std::string, std::size_t> made_at_;    // "body wagon 2.box": its index in the array of added_
-  std::unordered_set<std::string> removed_;                 // of these, by upper files
+  std::unordered_map<std::string, std::size_t> made_at_;    // index in the array of added_ by name: "body wagon 2.box"
+  std::unordered_set<std::string> removed_;                 // entries among these that an including file removed
   std::unordered_set<std::string> reported_;
   std::size_t made_ = 0;
   bool is_too_many_ = false;
@@ -177,7 +177,7 @@ bool PartWriter::has_usable_name(const Node& part) {
   return name && problems_.size() == before;
 }
 
-// In the terms of the file that takes the part; nothing if it is wrong, which is then told.
+// Returns a position value in the frame of the including file; nothing if it is wrong, which is then reported.
 std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char* key, const char* unit, const PartPlacement& outer) {
   const Node* const given = part.find(key);
   if (!given) return PlacedNumber{};
@@ -194,7 +194,7 @@ std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char
   return std::nullopt;
 }
 
-// Is the file none of those that lead to it?
+// Returns true if including the file is not circular.
 bool PartWriter::is_free_to_take(const Node& file, const std::string& path) {
   const std::string id = identity_of(path);
   if (const auto again = std::find(files_on_the_way_.begin(), files_on_the_way_.end(), id); again != files_on_the_way_.end()) {
@@ -208,7 +208,7 @@ bool PartWriter::is_free_to_take(const Node& file, const std::string& path) {
   return false;
 }
 
-// The file that the part names, null if it cannot be had, which is then told.
+// Returns the file of the part; null if it cannot be read, which is then reported.
 const PartFile* PartWriter::file_of(const Node& part) {
   const Node* const file = part.find("file");
   const std::string subject = "part '" + entry_name(part) + "'";
@@ -228,7 +228,7 @@ const PartFile* PartWriter::file_of(const Node& part) {
     auto read = std::make_unique<PartFile>();
     read->root = load_into(document_, path, file->where());
     read->name = read->root.file;
-    std::size_t made = 0; // entries are counted as parts are written
+    std::size_t made = 0; // not counted here, but when parts are written
     write_out_repetitions(read->root, made, problems_);
     read->overlays = taken_overlays(read->root);
     found->second = std::move(read);
@@ -248,7 +248,7 @@ void PartWriter::take(const Node& part, const PartPlacement& outer) {
   place.frame = PartFrame(outer.frame, *x, *y, *angle);
   place.file = file->name;
   document_.parts.push_back({place.prefix, file->name, part.where()});
-  if (++made_ > k_most_entries) return add_too_many(part); // parts without entries count, too: two of two of two … are soon many
+  if (++made_ > k_most_entries) return add_too_many(part); // parts without entries count too: nested doubling grows exponentially
   write_parameters(file->root, part, outer, place);
   files_on_the_way_.push_back(identity_of(*file->name));
   write(*file, place);
@@ -336,12 +336,12 @@ Node& PartWriter::output(const Node& array) {
   return made;
 }
 
-// Behind what the model has itself.
+// Appends the array after the model's own entries.
 void PartWriter::append(Node array) {
   Node* own = document_.root.find(array.key);
   std::vector<Node> entries = std::exchange(array.children, {});
   if (!own) own = &document_.root.children.emplace_back(array);
-  if (own->type != array.type) return; // its reader says what it must be
+  if (own->type != array.type) return; // its reader reports the wrong type
   for (Node& entry : entries)
     if (removed_.empty() || removed_.count(array.key + " " + entry_name(entry)) == 0) own->children.push_back(std::move(entry));
 }
@@ -382,7 +382,7 @@ void PartWriter::write_parameters(const Node& root, const Node& part, const Part
   }
 }
 
-// A number with a unit goes where the file has one of the same dimension. What formulas give is known to their reader only.
+// Checks that a number with a unit replaces one of the same dimension. For formulas the reader checks it.
 void PartWriter::check_given(const Node& own, const Node& given, const Node& part) {
   const Node* const usual = own.is_table() ? own.find("value") : &own;
   const std::string subject = "parameter '" + own.key + "' of part '" + entry_name(part) + "'";
@@ -420,9 +420,9 @@ Node PartWriter::parameter_of(const Node& own, const Node* given, const PartPlac
   return made;
 }
 
-// What messages about repetitions and parts of one file have in common: names within their parts, no numbers.
+// Returns a message in a form common to all copies: names without part prefix, no digits.
 std::string without_instance(const std::string& whole) {
-  const std::string message = whole.substr(0, whole.find(" (did you mean")); // of many only the first get a suggestion
+  const std::string message = whole.substr(0, whole.find(" (did you mean")); // only the first of many messages has a suggestion
   std::string result;
   bool is_quoted = false;
   std::size_t begin = 0;
@@ -431,13 +431,13 @@ std::string without_instance(const std::string& whole) {
       is_quoted = !is_quoted;
       begin = result.size() + 1;
     }
-    if (c == '.' && is_quoted) result.resize(std::min(begin, result.size())); // the name of a part goes
+    if (c == '.' && is_quoted) result.resize(std::min(begin, result.size())); // removes the name of the part
     else if (std::isdigit(static_cast<unsigned char>(c)) == 0) result += c;
   }
   return result;
 }
 
-// "part 'buffer', wagon.toml:8:1, of part 'wagon 2', train.toml:12:1"
+// Returns text such as "part 'buffer', wagon.toml:8:1, of part 'wagon 2', train.toml:12:1".
 std::string chain_text(const Document& document, const Document::Part& part) {
   const Document::Part* outer = nullptr;
   for (const Document::Part& other : document.parts) {
@@ -450,7 +450,7 @@ std::string chain_text(const Document& document, const Document::Part& part) {
   return "part '" + name + "', " + place + (outer ? ", of " + chain_text(document, *outer) : "");
 }
 
-// By which parts the place of a message is reached: "" if by none.
+// Returns the chain of parts that includes the location of a message, as text; "" if there is none.
 std::string way_to(const Document& document, const Diagnostic& problem) {
   const Document::Part* found = nullptr;
   bool is_named = false;
@@ -518,7 +518,7 @@ void write_out_parts(Document& document, const Catalogue& catalogue) {
 
 void name_parts(std::vector<Diagnostic>& problems, const Document& document) {
   if (document.parts.empty() && !document.is_repeated) return;
-  std::map<std::string, std::size_t> first; // of those alike, in `kept`
+  std::map<std::string, std::size_t> first; // index in `kept` of the first of messages that are alike
   std::vector<Diagnostic> kept;
   std::vector<std::size_t> more;
   for (Diagnostic& problem : problems) {

@@ -1,20 +1,19 @@
-// Parts: `[[part]]` takes another model file as a sub-assembly, as often as it is wanted.
+// Parts: `[[part]]` includes another model file as a sub-assembly, any number of times.
 //
 //   [[part]]
 //   name = "wagon 2"
-//   file = "wagon.toml"                  # relative to the file that says so
-//   x = "-14 m"                          # where the file's origin lies, and how its axes are turned
-//   parameters = { load = "= heavy" }    # what its [parameters] get from outside
+//   file = "wagon.toml"                  # relative to this file
+//   x = "-14 m"                          # position of the file's origin, and angle of its axes
+//   parameters = { load = "= heavy" }    # values for its [parameters]
 //
-// A document with parts is written out before anything is read: each body, marker, signal, element and table of the part's file
-// becomes one of the model, called "wagon 2.buffer"; so do its [parameters], "wagon 2.load". Names within the file are names of the
-// file; others refer to what is in a part by the long name, and to its markers in the first place, which are its ports. Title,
-// gravity, [simulation] and [output] of a part's file hold where that file is run alone. The model's own entries come before those of
-// its parts, and these in the order of the file.
+// Parts are expanded before anything is read. Each body, marker, signal, element and table of the part's file becomes one of the model with
+// a prefixed name, "wagon 2.buffer"; the same holds for its [parameters], "wagon 2.load". Names within the file refer to that file. Other
+// files use the prefixed names, mainly of its markers, which serve as ports. Title, gravity, [simulation] and [output] of the part's file
+// apply only if it is run alone. The model's own entries come first, then those of its parts in the order of the file.
 //
-// What the place of a part does to a field follows from the field's table: `position`, `angle` and `velocity` of bodies, `at` of
-// markers, what a marker of the ground says, and the vectors of kinds that have a `frame` = "ground" are in ground axes, and lengths
-// among them are places. All others stand in axes of markers or bodies and go with these. "ground" is, in a part, a marker at its origin.
+// The effect of a part's position on a field follows from the field's table. In ground axes are: `position`, `angle` and `velocity` of
+// bodies, `at` of markers, values of ground markers, and vectors of kinds with `frame` = "ground"; lengths among them are positions. All
+// other fields are in axes of markers or bodies and move with these. In a part, "ground" means a marker at its origin.
 #pragma once
 
 #include "mbd/io/document.h"
@@ -22,28 +21,27 @@
 
 namespace steplap {
 
-/// [[part]]: a sub-assembly.
+/// Sub-assembly, an entry of [[part]].
 struct PartEntry {
   std::string name, file;               ///< unique name; path of the file
-  double x = 0.0, y = 0.0, angle = 0.0; ///< of its frame, m, rad
-  long repeat = 1;                      ///< how many
+  double x = 0.0, y = 0.0, angle = 0.0; ///< position and angle of its frame, m, rad
+  long repeat = 1;                      ///< number of copies
 
-  /// Its fields as a model file has them, besides `parameters`, a table.
+  /// Returns its fields in a model file, except the table `parameters`.
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// Reads the files of all parts, and writes parts and repetitions out. Throws ModelError with all that is wrong with them, and with
-/// what was found before.
+/// Reads the files of all parts, and expands parts and repetitions. Throws ModelError with all problems, including those found before.
 void write_out_parts(Document& document, const Catalogue& catalogue);
 
-/// Adds to each message about a file of a part by which parts it was reached, and says once what several parts or repetitions of one
-/// entry have in common.
+/// Adds to each message about a part's file the parts through which it was included. Messages that several parts or repetitions have in
+/// common are kept once.
 void name_parts(std::vector<Diagnostic>& problems, const Document& document);
 
-/// How the place of a part changes a field of an element, signal or table, and whether its texts are names.
+/// Effect of a part's position on a field of an element, signal or table, and whether its texts are names.
 enum class PartTreatment { none, name, place, direction, fixed_axis };
 [[nodiscard]] PartTreatment part_treatment(const FieldTable& kind, const Field& field);
-/// May a table of that kind stand in a part? If not it is about the model as a whole.
+/// Returns false for tables that concern the model as a whole and cannot be in a part.
 [[nodiscard]] bool can_stand_in_part(const TableKind& kind);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Which events elements can have: what criteria and actions that name one are held to.
+// Kinds of events that elements can have; criteria and actions that name others are refused.
 #pragma once
 
 #include "mbd/base/event_kind.h"
@@ -8,8 +8,8 @@
 
 namespace steplap {
 
-/// Every kind of event that an element which matches the pattern `element` can have in a run of `model`, completed, of which `system`
-/// is compiled: those of elements that do not act from the start, too.
+/// Returns every kind of event that an element matching the pattern `element` can have in a run of `model`, including elements that are not
+/// active from the start. Precondition: `model` is completed, and `system` is compiled from it.
 [[nodiscard]] EventKinds possible_events(const Model& model, const System& system, const std::string& element);
 
 } // namespace steplap

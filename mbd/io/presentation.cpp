@@ -16,7 +16,7 @@ namespace steplap {
 
 namespace {
 
-// Formulas and trajectory.csv have to tell it from what stands around it.
+// Checks that a channel name cannot be confused with its surroundings in formulas and in trajectory.csv.
 void check_channel_name(const DefinedChannel& channel) {
   const std::string& name = channel.name;
   const bool has_control = std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
@@ -25,7 +25,7 @@ void check_channel_name(const DefinedChannel& channel) {
                    "channel: a 'name' has letters and no line breaks, no braces, no ']' at its end (there stands the unit)");
 }
 
-// A limit of a criterion: its field, as given, as read.
+// Limit of a criterion: its field, its text, its value.
 struct Limit {
   const char* field;
   std::string Criterion::*text;
@@ -51,7 +51,7 @@ void check_criterion(const Criterion& c) {
   if (is_bounded && !c.within_text.empty()) fail("within", "'within' bounds both sides: leave out 'at_least' and 'at_most'");
 }
 
-// A bare number is in the channel's unit.
+// Reads a limit. A number without unit is in the channel's unit.
 Quantity read_limit(const std::string& text, const std::string& unit) {
   Quantity bare;
   const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), bare.value);
@@ -74,7 +74,7 @@ std::string list_of(const std::vector<std::string>& words) {
   return text;
 }
 
-// Compares patterns with the channels and events that the system has.
+// Compares patterns with the channels and events of the system.
 class PresentationCheck {
 public:
   PresentationCheck(Model& model, const System& system)
@@ -82,7 +82,7 @@ public:
 
   std::vector<std::string> run() {
     for (const Plot& plot : model_.plots) check_plot(plot);
-    // A plot of what is not written is none; that its channels exist is checked all the same.
+    // Plots of channels that are not written are removed, after the check that the channels exist.
     std::erase_if(model_.plots, [this](const Plot& plot) {
       if (!is_written(plot)) left_out_.push_back(plot.name);
       return !is_written(plot);
@@ -150,7 +150,7 @@ private:
     check_event(c);
   }
 
-  // What is wrong with an event of such elements; nothing: they may have it.
+  // Returns the problem with an event of matching elements; "" if they can have it.
   std::string no_event(const std::string& element, const std::string& event) const {
     const EventKinds kinds = possible_events(model_, system_, element.empty() ? "*" : element);
     if ((kinds & event_kinds_matching(event)).any()) return "";
@@ -164,7 +164,7 @@ private:
     if (const std::string problem = no_event(c.element, c.event); !problem.empty()) complain(c, "event", problem);
   }
 
-  // An action that waits for what cannot be would never happen.
+  // Reports an action that waits for an impossible event, since it would never happen.
   void check_action(const Action& action) {
     const auto event = event_text(action.when);
     if (!event) return;
@@ -200,7 +200,7 @@ private:
   const Trajectory written_, all_;
   const System& system_;
   std::vector<Diagnostic> problems_;
-  std::vector<std::string> left_out_; ///< plots
+  std::vector<std::string> left_out_; ///< names of removed plots
 };
 
 } // namespace
@@ -267,7 +267,7 @@ const TableKind& acceptance_kind() {
     k.apply = [](const Element& table, Model& model) {
       T criterion = static_cast<const T&>(table);
       check_criterion(criterion);
-      for (const Limit& limit : k_limits) // in SI, until the channels are known
+      for (const Limit& limit : k_limits) // kept in SI until the channels are known
         if (!(criterion.*limit.text).empty()) criterion.*limit.value = read_limit(criterion.*limit.text, "*").value;
       model.criteria.push_back(std::move(criterion));
     };

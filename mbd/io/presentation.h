@@ -1,8 +1,6 @@
-// What a model says about looking at its runs: [[channel]], [[plot]] and [[acceptance]].
-//
-// Neither changes the motion. Both name channels by patterns, which can only be compared with the
-// channels that a compiled system has: check_presentation() does that. Limits are read there too: what a
-// number with a unit means is decided by the channel.
+// Checks of [[channel]], [[plot]] and [[acceptance]] against the compiled system. These do not affect the motion. They name channels by
+// patterns, which can only be compared with the channels of a compiled system. Limits are read here too, because their unit is that of the
+// channel.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -13,10 +11,9 @@ namespace steplap {
 [[nodiscard]] const TableKind& plot_kind();
 [[nodiscard]] const TableKind& acceptance_kind();
 
-/// Reads the limits of the model's criteria in the unit of the channels that they are for. Throws ModelError for
-/// limits of another dimension, for patterns that no channel, event or element matches, for actions that wait for an event which their
-/// element cannot have, and for a plot or a criterion whose channels are of different units. Plots of channels that are not written are taken out of the model;
-/// returns their names.
+/// Reads the limits of the model's criteria in the units of their channels. Throws ModelError for limits of another dimension, patterns
+/// without any match, actions that wait for an event which their element cannot have, and plots or criteria that combine different units.
+/// Removes plots of channels that are not written from the model, and returns their names.
 std::vector<std::string> check_presentation(Model& model, const System& system);
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// A file that a user names, read as a whole: a regular file, or what comes through a pipe that the shell or the caller has
-// opened. Devices and named pipes are refused: they have no end, or none that comes by itself.
+// Reads a file named by a user as a whole: a regular file, or a pipe that the shell or the caller has opened. Devices and named pipes are
+// refused, because reading might never end.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -8,12 +8,12 @@
 
 namespace steplap {
 
-/// Content of `path`; "-" and /dev/stdin: standard input, /dev/fd/N: what is open there. `noun` is what messages call it
-/// ("the record "), or "". Throws ModelError at `where`: it cannot be read, is none of those, or is larger than 4 GB.
+/// Returns the content of `path`; "-" and /dev/stdin are standard input, /dev/fd/N an open descriptor. `noun` is prepended in messages
+/// ("the record "), or "". Throws ModelError at `where` if the file cannot be read, is of another type, or exceeds 4 GB.
 [[nodiscard]] std::string read_input(const std::string& path, const Location& where, const std::string& noun = "");
 
 [[nodiscard]] bool is_standard_input(const std::string& path);
-/// What messages call the file: "<standard input>", or the path itself.
+/// Returns the file's name in messages: "<standard input>", or the path itself.
 [[nodiscard]] std::string shown_input(const std::string& path);
 
 } // namespace steplap

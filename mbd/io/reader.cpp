@@ -30,7 +30,7 @@ TopLevelNames top_level_names(const Catalogue& catalogue) {
   return names;
 }
 
-// Lays overrides over the document, and writes parts and repetitions out: behind those that are of parts or say how often.
+// Applies overrides and expands parts and repetitions. Overrides of parts and of `repeat` come before the expansion, all others after it.
 void settle(Document& document, const std::vector<std::string>& overrides, const TopLevelNames& names, const Catalogue& catalogue) {
   const auto is_of_part = [](const std::string& change) {
     return change.starts_with("part.") || change.substr(0, change.find('=')).ends_with(".repeat");
@@ -56,7 +56,7 @@ template <class Kind> const Kind* find_kind(const std::vector<const Kind*>& kind
 
 bool is_mass(const Field& field) { return field.name == "mass" || field.name == "inertia"; }
 
-// What is known of an entry of Model::tables.
+// Data of an entry of Model::tables.
 struct TableSource {
   std::vector<GivenField> given;
   bool is_usable = true;
@@ -67,7 +67,7 @@ public:
   Reader(Document document, const Catalogue& catalogue)
       : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
 
-  /// The model as it is given, and completed; its text, if asked for.
+  /// Returns the model as given and the completed model; `text`, if not null, receives the text.
   std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
     settle(document_, overrides, names_, catalogue_);
     if (text) *text = standalone_text(document_, catalogue_);
@@ -128,8 +128,8 @@ private:
   std::optional<ParametersReader> parameters_;
   std::vector<RenamedKey> renamed_;
   std::vector<std::vector<GivenField>> given_[7]; // by section and index
-  std::vector<TableSource> tables_;               // of model_.tables
-  // Entries of unknown kind: said once, references to them are not errors of their own.
+  std::vector<TableSource> tables_;               // for model_.tables
+  // Entries of unknown kind are reported once; references to them are no further errors.
   std::unordered_set<std::string> unread_signals_, unread_elements_;
 };
 
@@ -144,7 +144,7 @@ TableReading Reader::reading(std::string subject, std::string owner) {
   return result;
 }
 
-// Before the fields that follow from them, which would only repeat it.
+// Checks positions of parts first. Otherwise the same error would be repeated for all fields that follow from them.
 void Reader::check_part_places() {
   const std::size_t before = problems_.size();
   for (const Document::PartPlace& place : document_.part_places) {
@@ -177,13 +177,13 @@ template <class T> void Reader::read_settings(const std::string& name, Section s
   given(section)[0] = read_fields(*table, fields, &target, reading("[" + name + "]"), problems_);
 }
 
-// After an error that may have cost the model its bodies, their absence is none of its own.
+// Suppresses the message about missing bodies after an error that may have caused their absence.
 void Reader::excuse_empty_scene() {
   static const Field body = named_field("body");
   given(Section::header)[0].push_back({&body, nullptr, false});
 }
 
-// The array [[name]], or null if there is none.
+// Returns the array [[name]], or null if there is none.
 const Node* Reader::array_named(const std::string& name) {
   const Node* array = document_.root.find(name);
   if (!array || array->is_array_of_tables()) return array;
@@ -203,7 +203,7 @@ void Reader::read_bodies() {
     const Node* fixed = entry.find("fixed");
     body.fixed = fixed && fixed->type == Node::Type::boolean && std::get<bool>(fixed->scalar);
     TableReading r = reading(subject_text("body", entry_name(entry)));
-    r.is_excused = [](const Field& field) { return is_mass(field); }; // tables may give it: report_missing_masses()
+    r.is_excused = [](const Field& field) { return is_mass(field); }; // tables may define the mass: see report_missing_masses()
     given(Section::body).push_back(read_fields(entry, Body::fields(), &body, r, problems_));
     for (const GivenField& field : given(Section::body).back())
       if (field.node) body.given |= std::uint32_t{1} << (field.field - Body::fields().fields().data());
@@ -312,7 +312,7 @@ void Reader::read_elements() {
     r.known_keys = Element::common_fields().names();
     r.known_keys.insert(r.known_keys.begin(), {"name", "kind"});
     const auto own = read_fields(entry, kind->fields, element.get(), r, problems_);
-    for (const Node& child : entry.children) // strangers are reported already
+    for (const Node& child : entry.children) // unknown keys are already reported
       r.known_keys.push_back(child.key);
     const auto common = read_fields(entry, Element::common_fields(), element.get(), r, problems_);
     fields.insert(fields.end(), own.begin(), own.end());
@@ -346,7 +346,7 @@ void Reader::read_tables() {
   }
 }
 
-// A pulse of "0.5 gravity" is no force, one of "20 deg" no way.
+// Checks units of signals: "0.5 gravity" is no force, "20 deg" no displacement.
 void Reader::check_signal_units() {
   SignalUnits units(*parameters_);
   for (std::size_t i = 0; i < model_.signals.size(); ++i)
@@ -385,14 +385,14 @@ void Reader::complete_model() {
   places.is_table_usable = [this](std::size_t table) { return tables_[table].is_usable; };
   const std::size_t before = problems_.size();
   if (!complete(model_, places, problems_)) excuse_empty_scene();
-  // A table that could not be applied might have given them.
-  // A table that could not be read might have given them: its own errors come first.
+  // A table that could not be read or applied might have defined the masses; its own errors are reported instead.
   const bool are_tables_usable = std::all_of(tables_.begin(), tables_.end(), [](const TableSource& t) { return t.is_usable; });
   report_missing_masses(model_.tables.empty() || (are_tables_usable && problems_.size() == before));
 }
 
 void Reader::report_missing_masses(bool is_certain) {
-  const std::size_t count = std::min(model_.bodies.size(), given(Section::body).size()); // others are made by tables, with their masses
+  const std::size_t count =
+      std::min(model_.bodies.size(), given(Section::body).size()); // further bodies are made by tables, with their masses
   for (std::size_t i = 0; i < count; ++i)
     for (const Field& field : Body::fields().fields()) {
       const Body& body = model_.bodies[i];
@@ -404,7 +404,7 @@ void Reader::report_missing_masses(bool is_certain) {
     }
 }
 
-// The place of a field; of the whole object, if the file does not give the field.
+// Returns the location of a field, or of the whole object if the file does not give the field.
 std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields, const std::string& name, const Location& object) const {
   for (const GivenField& given : fields) {
     if (given.field->name != name) continue;
@@ -439,7 +439,7 @@ std::optional<Location> Reader::locate(Section section, std::size_t index, const
   return place_of(index < objects.size() ? objects[index] : none, field, where_of(section, index));
 }
 
-// Validates and throws what was found, in the order of files, lines and columns.
+// Validates the model and throws all problems, in the order of files, lines and columns.
 void Reader::finish() {
   constexpr std::size_t k_most_reported = 50;
   const auto found =

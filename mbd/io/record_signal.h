@@ -1,8 +1,6 @@
-// The signal kind `record`: a measured history from a CSV file (csv.h), linear between its rows.
-//
-// Before its first row the signal is 0. After its last it is 0 (`after = "zero"`) or keeps the last
-// value (`after = "hold"`), so a record may be shorter than the run. The value read is
-// scale · column, in the unit that `unit` names (SI if none).
+// Signal kind `record`: a measured history from a CSV file (csv.h), linear between its rows. The value is scale · column in the unit given
+// by `unit` (default SI). Before its first row the signal is 0. After its last row it is 0 (`after = "zero"`) or constant (`after =
+// "hold"`), so a record may be shorter than the run.
 #pragma once
 
 #include "mbd/model/signal.h"

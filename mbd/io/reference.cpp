@@ -65,7 +65,7 @@ std::string markdown(const ReferenceRows& rows) {
   return text;
 }
 
-// What elements of a kind, bodies or markers write.
+// Returns the channels of elements of a kind, of bodies or of markers.
 std::vector<KindChannel> channels_of(const Catalogue& catalogue, const Described& kind) {
   if (kind.role == "table" && kind.name == "body") return channels_of_bodies(catalogue);
   if (kind.role == "table" && kind.name == "marker") return channels_of_markers(catalogue);

@@ -1,27 +1,27 @@
-// What a model file may say: generated from the field tables, so it is never out of date.
+// Reference of model files, generated from the field tables.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// Rows of a table, the first of which is its head.
+/// Rows of a table; the first is its head.
 using ReferenceRows = std::vector<std::vector<std::string>>;
 
-/// One row for each kind of element, signal and table.
+/// Returns one row for each kind of element, signal and table.
 [[nodiscard]] ReferenceRows kinds_rows(const Catalogue& catalogue);
 
-/// What a model file may say of one kind.
+/// Reference of one kind.
 struct KindReference {
   std::string heading, doc;
   ReferenceRows fields;
-  ReferenceRows channels; ///< of its elements; empty if they have none
+  ReferenceRows channels; ///< channels of its elements; empty if they have none
 };
 
-/// Of a kind, of "body", "marker", "simulation", "output" or "model" (the top-level
-/// keys). Throws ModelError for a name that there is not, with the nearest that there is.
+/// Returns the reference of a kind, or of "body", "marker", "simulation", "output" or "model" (the top-level keys). Throws ModelError for
+/// an unknown name, with the most similar known one.
 [[nodiscard]] KindReference kind_reference(const Catalogue& catalogue, const std::string& name);
-/// The whole reference in Markdown.
+/// Returns the whole reference in Markdown.
 [[nodiscard]] std::string reference_markdown(const Catalogue& catalogue);
 
 } // namespace steplap

@@ -16,7 +16,7 @@ namespace {
 
 const char* const k_index = "i";
 
-// The entry of one index.
+// Creates the entry of one index.
 class Repetition {
 public:
   Repetition(long index, std::vector<Diagnostic>& problems) : index_(index), text_(std::to_string(index)), problems_(problems) {}
@@ -49,7 +49,7 @@ private:
            });
   }
 
-  // Of a formula that is a text: numbers in names, {link {i+1}.x}; other braces hold names.
+  // Replaces the index in names of a formula, {link {i+1}.x}; other braces enclose names.
   [[nodiscard]] std::string with_numbered_names(std::string text) const {
     for (std::size_t close = text.find('}'); close != std::string::npos; close = text.find('}', close)) {
       const std::size_t open = text.rfind('{', close);
@@ -65,7 +65,7 @@ private:
     return text;
   }
 
-  // Of a formula of the index alone that comes to a whole number.
+  // Evaluates a formula that contains only the index; nothing if the result is not a whole number.
   [[nodiscard]] std::optional<std::string> index_number(const std::string& inside) const {
     try {
       const Formula formula(inside, "", {});
@@ -121,7 +121,7 @@ private:
   std::vector<Diagnostic>& problems_;
 };
 
-// How often; nothing if that is wrong.
+// Returns the number of repetitions; nothing if it is wrong.
 std::optional<long> repeats(const Node& repeat, const std::string& subject, std::vector<Diagnostic>& problems) {
   const auto fail = [&](const std::string& message) {
     problems.push_back({repeat.where(), "'repeat' of " + subject + ": " + message});

@@ -1,11 +1,11 @@
-// `repeat = 40` in an entry of a document: so many entries in its place, each with its index in its formulas and names.
+// Repetition: `repeat = 40` in an entry of a document creates 40 entries in its place, each with its index in formulas and names.
 //
 //   [[body]]
-//   name = "sleeper {i+1}"          # in texts, whole numbers made of the index stand in braces
-//   position = ["= i * '0.6 m'", 0.0] # in formulas it is a name like a parameter's, and goes before one
+//   name = "sleeper {i+1}"          # in texts, whole-number formulas of the index are in braces
+//   position = ["= i * '0.6 m'", 0.0] # in formulas the index is a name; it hides a parameter of the same name
 //   repeat = 40                     # i = 0 … 39
 //
-// A name without braces gets the index at its end: "sleeper 0". Whoever reads the document afterwards sees the entries written out.
+// If a name has no braces, the index is appended: "sleeper 0". The document is then read as if the entries had been written out.
 #pragma once
 
 #include "mbd/io/document.h"
@@ -15,14 +15,14 @@
 
 namespace steplap {
 
-/// Arrays whose entries may be repeated.
+/// Returns the names of arrays whose entries may be repeated.
 [[nodiscard]] const std::vector<std::string>& repeated_arrays();
 
-/// Entries that one model may get by repetitions and parts, all together: far beyond what is run.
+/// Largest number of entries that repetitions and parts of one model may create; far beyond what can be run.
 inline constexpr std::size_t k_most_entries = 100000;
 
-/// Writes the repetitions of `root` out. What is wrong is appended to `problems`, and that entry left out. `made` counts the entries
-/// made; beyond k_most_entries nothing more is.
+/// Expands the repetitions of `root`. Problems are appended and their entries left out. `made` counts the created entries; beyond
+/// k_most_entries no more are created.
 void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic>& problems);
 
 } // namespace steplap

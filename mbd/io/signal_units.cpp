@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_deepest = 100; // of signals made of others; what leads back to itself is said elsewhere
+constexpr int k_deepest = 100; // nesting of signals; circular references are reported elsewhere
 
 bool has_unit(const std::string& text) { return text.find_first_not_of("0123456789.+-eE \t\r\n") != std::string::npos; }
 
@@ -17,7 +17,7 @@ std::string problem_of_text(const Node& node, const std::string& text, const std
   return quantity.problem.empty() ? "" : "(line " + std::to_string(node.line) + "): " + quantity.problem;
 }
 
-// Of kinds whose values are of one unit, whatever their fields are given in; "" of others.
+// Returns the unit of kinds with a fixed unit, whatever units their fields have; "" for others.
 std::string own_unit(const std::string& kind, const std::vector<GivenField>& given) {
   if (kind == "road") return "m";
   if (kind == "recorder") return "m/s^2";
@@ -31,7 +31,7 @@ bool is_factor(const GivenField& given) { return given.field->name == "factor" |
 
 } // namespace
 
-// Of a value in any unit, or of each of a list.
+// Returns the problem with a value, or with an item of a list.
 std::string SignalUnits::problem_of(const Node& node, const std::string& unit) const {
   if (node.type == Node::Type::text) return problem_of_text(node, is_formula(node) ? parameters_.text_of(node) : node.text(), unit);
   std::string problem;
@@ -62,7 +62,7 @@ std::string SignalUnits::misfit(const std::string& signal, const std::string& un
     const Field& field = *given.field;
     std::string problem;
     if (field.unit == "*" && !is_factor(given)) problem = problem_of(*given.node, unit);
-    if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // of a record's values
+    if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // unit of a record's values
       problem = problem_of_text(*given.node, "1 " + given.node->text(), unit);
     if (!problem.empty()) return "its signal '" + signal + "' " + problem;
     if (!is_of_its_parts) continue;

@@ -1,8 +1,6 @@
-// Signals are of any unit, what elements take them for is of one: whether the units that a file writes fit.
-//
-// Known is what stands as text with a unit, "0.5 gravity"; a plain number says nothing. A sum and a scaled signal are
-// of their parts' unit where no factor may have changed it, a product is of none that is known. A formula of parameters is of the
-// unit that it gives.
+// Checks units of signals. A signal may have any unit; an element that uses it needs a certain one. The unit is known if a value is given
+// as text with a unit, "0.5 gravity"; a plain number gives no information. A sum or a scaled signal has the unit of its parts, unless a
+// factor may have changed it; the unit of a product is unknown. A formula of parameters has the unit of its result.
 #pragma once
 
 #include "mbd/io/field_reader.h"
@@ -15,11 +13,11 @@ namespace steplap {
 
 class SignalUnits {
 public:
-  /// `parameters` gives formulas their values, and has to outlive it.
+  /// `parameters` evaluates formulas and must outlive this object.
   explicit SignalUnits(const ParametersReader& parameters) : parameters_(parameters) {}
-  /// `given` has to stay as it is.
+  /// Adds a signal. `given` must not change afterwards.
   void enter(const std::string& signal, const std::string& kind, const std::vector<GivenField>& given);
-  /// What is wrong with `signal` as a value in `unit`: "its signal 's' (line 7): …"; "" if nothing is known to be.
+  /// Returns the problem with `signal` as a value in `unit`: "its signal 's' (line 7): …"; "" if none is known.
   [[nodiscard]] std::string misfit(const std::string& signal, const std::string& unit) const;
 
 private:

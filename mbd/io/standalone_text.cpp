@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Calls `visit` with every entry of [[signal]] in `root` that names a file, and with that name.
+// Calls `visit` with every [[signal]] entry in `root` that names a file, and with that name.
 template <class Root, class Visit> void visit_named_files(Root& root, const Catalogue& catalogue, const Visit& visit) {
   auto* const signals = root.find("signal");
   if (!signals || !signals->is_array_of_tables()) return;
@@ -41,7 +41,7 @@ Node text_node(const std::string& key, const std::string& text) {
   return node;
 }
 
-// The format is a property of a file, which its document does not keep (document.h).
+// The format is a property of each file, not of the document (document.h), so it is added here.
 std::string written(const Node& root) { return "format = " + std::to_string(k_file_format) + "\n" + write_toml(root); }
 
 } // namespace
@@ -55,14 +55,14 @@ std::string path_named_by(const Node& node, const std::string& name) {
 
 std::string standalone_text(const Document& document, const Catalogue& catalogue) {
   Node root = document.root;
-  std::vector<std::pair<Node*, std::string>> found; // entry and checksum: adding keys moves nodes
+  std::vector<std::pair<Node*, std::string>> found; // entries and checksums; stored because adding keys moves nodes
   visit_named_files(root, catalogue, [&found](Node& entry, Node& name) {
     const std::string path = absolute(path_named_by(name, name.text()));
     found.emplace_back(&entry, sha256_of_file(path));
     name.scalar = path;
   });
   for (const auto& [entry, checksum] : found) {
-    if (checksum.empty()) continue; // it is refused where it is needed
+    if (checksum.empty()) continue; // unreadable files are reported when they are needed
     entry->erase("sha256");
     entry->children.push_back(text_node("sha256", checksum));
   }

@@ -100,9 +100,9 @@ Node from_toml(const toml::node& source, const std::string* file) {
   return node;
 }
 
-// Tables within tables are taken apart by recursion, the parser's own and ours. It bounds brackets, but a key of thirty
-// thousand parts, "a.a.a…", makes as many tables: such keys are found before. Text in quotes and comments may hold
-// any number of points.
+// Checks for keys with too many parts before parsing. Nested tables are processed by recursion, both in the TOML library and here. The
+// library limits brackets, but a key with 30000 parts, "a.a.a…", creates as many tables and would exhaust the stack. Quoted text and
+// comments may contain any number of points.
 class DottedKeys {
 public:
   DottedKeys(const std::string& text, const std::string& file) : text_(text), file_(file) {}
@@ -123,7 +123,7 @@ public:
   }
 
 private:
-  static constexpr int k_most_parts = 256; // as many as the parser allows brackets
+  static constexpr int k_most_parts = 256; // the same limit as the library has for brackets
 
   [[nodiscard]] bool starts(const char* mark) const { return text_.compare(at_, 3, mark) == 0; }
 
@@ -144,14 +144,14 @@ private:
     at_ = found == std::string::npos ? text_.size() : found;
   }
 
-  // From an opening mark of that many quotes past the closing one.
+  // Skips from an opening mark of that many quotes to behind the closing one.
   void skip_quoted(std::size_t quotes) {
     const char quote = text_[at_];
     const std::string mark(quotes, quote);
     for (at_ += quotes; at_ < text_.size() && text_.compare(at_, quotes, mark) != 0; ++at_) {
       if (quote == '"' && text_[at_] == '\\') ++at_;
       else if (text_[at_] == '\n') {
-        if (quotes == 1) return; // not closed: the parser says so
+        if (quotes == 1) return; // not closed: the library reports it
         start_line();
       }
     }
@@ -176,7 +176,8 @@ std::string_view line_at(std::string_view text, int line) {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80; }
 
-// What TOML writes differently from people: ".5", "5.", "05", "0,5", 0.5 kg. Empty if the value about `column` (from 1) is none of them.
+// Returns a hint for numbers that TOML does not accept: ".5", "5.", "05", "0,5", 0.5 kg. Empty if the value around `column` (from 1) is
+// none of them.
 std::string number_hint(std::string_view line, int column) {
   constexpr std::string_view k_before = "=[{ \t", k_behind = " \t\r,]}#";
   const auto at = std::min(line.size(), static_cast<std::size_t>(std::max(column, 2) - 2));
