@@ -16,22 +16,22 @@ namespace steplap {
 
 namespace {
 
-// A circle that leaves a segment's side for its end is kept at the side within this dead band, m.
+// Dead band, m, within which a circle that leaves a segment's side for its end stays at the side.
 constexpr double k_end_dead_band = 1e-13;
-// Under a segment's contact: one place for each side and each end (SegmentPart).
+// Friction of a segment's contact: one contact point for each side and each end (SegmentPart).
 class SegmentFriction final : public CoulombFriction {
 public:
   SegmentMeasure segment;
 
   [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
-    return false; // its place has branches of its own
+    return false; // the contact point has branches of its own
   }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
     const Pair<double> p = segment.place(e.motion[feet[0].a], e.motion[feet[0].b]);
     const auto part = static_cast<SegmentPart>(state.foot);
     if (part == SegmentPart::from) return k_end_dead_band - p.x;
     if (part == SegmentPart::to) return k_end_dead_band + p.x - segment.length;
-    if ((part == SegmentPart::right) != (p.y < 0.0)) return -1.0; // only after it has been open
+    if ((part == SegmentPart::right) != (p.y < 0.0)) return -1.0; // switches only after the contact has been open
     return k_end_dead_band + std::min(p.x, segment.length - p.x);
   }
   void change_place(const Evaluation& e, FrictionState& state) const override {
@@ -54,7 +54,7 @@ RowSpec slide_row(const ContactGeometry& g, int memory) {
   return row;
 }
 
-// What rubs at a contact twice would hold twice.
+// Reports a contact that is in two friction elements, because its normal force would count twice.
 bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
   const auto refuse = [&builder](const std::string& contact, const std::string& where) {
     builder.error("'" + contact + "' stands in 'contacts' " + where + ": its normal force would bear friction twice");
@@ -73,7 +73,7 @@ bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
   return false;
 }
 
-// All contacts must lie between the same two bodies on one line, so that one coordinate serves them.
+// Collects the contacts. All must lie between the same two bodies on one line, so that one coordinate is sufficient.
 bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry, std::vector<ContactIndex>& contacts,
              double& damping, bool& may_pull) {
   for (const std::string& name : e.contacts) {
@@ -119,7 +119,7 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
 }
 
-// The row's value since the reference pose.
+// Adds the channel of the slid distance since the reference pose.
 void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction, std::size_t place) {
   const double start = evaluate_row<false>(friction.feet[place], &builder.reference(0)).value;
   builder.add_channel(name, "m", {doc, "along b's tangent"}, [&friction, place, start](const Snapshot& s) {
@@ -145,7 +145,7 @@ bool is_any_round(const CoulombStick& e, const SystemBuilder& builder) {
   return std::any_of(e.contacts.begin(), e.contacts.end(), [&](const std::string& name) { return is_round(builder.element(name)); });
 }
 
-// Under one contact of a circle: sticking, it rolls.
+// Compiles friction of a circle's contact; its sticking phase is rolling.
 void compile_rolling(const CoulombStick& e, SystemBuilder& builder) {
   if (e.contacts.size() > 1)
     return builder.error("a circle's contact cannot share its friction with others: give each its own coulomb_stick");
@@ -176,10 +176,11 @@ double lighter_mass(const ContactGeometry& g, const SystemBuilder& builder) {
   return mass;
 }
 
-// The angle φ = θ_A − θ_B at which both feet touch. With d from the rear to the front foot in a's frame, t and n the line's
-// tangent and normal in b's, gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, where tan β = n·d/t·d and h is by how much
-// b's line stands higher in front. The feet are told apart in the reference pose, so φ is the solution within a right angle of
-// it. Less than a hundredth is what preloads and rounded coordinates make of feet that are meant to be level.
+// Returns the angle φ = θ_A − θ_B at which both feet touch. Let d be the vector from the rear to the front foot in a's axes, t and n the
+// line's tangent and normal in b's. Then gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, with tan β = n·d/t·d, and h the height
+// of b's line at the front foot above that at the rear foot. Front and rear are distinguished in the reference pose, so φ is the solution
+// within a right angle of it. |φ| < 0.01 rad counts as zero: it results from preloads and rounded coordinates of feet that are meant to be
+// level.
 double level_angle(const ContactGeometry& rear, const ContactGeometry& front, const SystemBuilder& builder) {
   constexpr double k_meant_level = 0.01, k_whole_turn = 6.283185307179586;
   const Vec2 n = front.gap.normal, t(n.y(), -n.x()), d = front.gap.point_a - rear.gap.point_a;

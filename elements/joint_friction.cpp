@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-// Is the piece of the signal that holds t zero throughout?
+// Returns true if the signal is zero throughout the piece that contains t.
 bool is_zero_at(const Signal& signal, double t) {
   const std::vector<Signal::Piece>& pieces = signal.pieces();
   const auto next = std::upper_bound(pieces.begin(), pieces.end(), t, [](double time, const Signal::Piece& p) { return time < p.start; });
@@ -21,7 +21,8 @@ bool is_zero_at(const Signal& signal, double t) {
   return piece.is_level && piece.c[0] == 0.0 && piece.harmonics.empty() && piece.modulated.empty();
 }
 
-// Where a piece from `start` to `end` may be least: its ends and where its slope is zero; with harmonics at samples that resolve them.
+// Returns the times at which a piece from `start` to `end` may have its minimum: its ends and zeros of its slope; with harmonics, samples
+// that resolve them.
 std::vector<double> places_of_least(const Signal& signal, const Signal::Piece& piece, double start, double end) {
   constexpr double k_samples_of_a_turn = 64.0, k_whole_turn = 6.283185307179586;
   std::vector<double> places{start, end};
@@ -31,12 +32,12 @@ std::vector<double> places_of_least(const Signal& signal, const Signal::Piece& p
     return places;
   }
   const double a = 3.0 * piece.c[3], b = piece.c[2], c = piece.c[1], root = std::sqrt(std::max(0.0, b * b - a * c));
-  for (const double tau : {(-b - root) / a, (-b + root) / a, -0.5 * c / b}) // of a cubic, twice; of a square
+  for (const double tau : {(-b - root) / a, (-b + root) / a, -0.5 * c / b}) // for a cubic, two zeros; for a quadratic one
     if (const double t = piece.start + tau; t > start && t < end) places.push_back(t);
   return places;
 }
 
-// Where the signal is least up to `end`. Between two samples of harmonics its least value is closed in on.
+// Returns the time of the least value of the signal up to `end`. With harmonics the minimum is refined between two samples.
 double time_of_least(const Signal& signal, double end) {
   double best = 0.0, low = 0.0, high = 0.0;
   const std::vector<Signal::Piece>& pieces = signal.pieces();
@@ -61,7 +62,8 @@ double time_of_least(const Signal& signal, double end) {
   return signal.value(least) < signal.value(best) ? least : best;
 }
 
-// Below zero there is no pressure, and the corner where it ends would be no event.
+// Reports a signal that becomes negative. Negative pressure has no meaning, and the kink where a clipped pressure becomes zero would not be
+// located as an event.
 bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& builder) {
   constexpr double k_rounding = 1e-12;
   if (!signal) return true;
@@ -72,19 +74,19 @@ bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& bu
   return false;
 }
 
-// The sliding bound falls from what holds to what drags over some velocities v_s, as 1/(1 + (v/v_s)²) does: the law of Hess and
-// Soom, 1990. It is smooth in v and even, so that a step may look past the end of a slip.
+// Friction of one coordinate. The bound for sliding decreases from `holds` to `drags` over the Stribeck velocity v_s by the factor 1/(1 +
+// (v/v_s)²) (Hess and Soom, 1990). It is a smooth even function of v, so a step may extend beyond the end of a slip.
 class CoordinateFriction final : public FrictionElement {
 public:
   RowSpec row;
   double holds = 0.0, drags = 0.0, viscous = 0.0;
-  double per_stribeck_velocity = 0.0; ///< 1/v_s, s/m or s/rad; 0: the bound does not hang on the velocity
-  const Signal* signal = nullptr;     ///< multiplies all of them
+  double per_stribeck_velocity = 0.0; ///< 1/v_s, s/m or s/rad; 0: the bound does not depend on velocity
+  const Signal* signal = nullptr;     ///< factor on all of them, or null
 
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
-  // Asked at events. So it is free over a piece of the signal that is zero throughout, which begins and ends with one.
+  // Called at events only. The friction is free during pieces of the signal that are zero throughout, which begin and end with an event.
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override { return !signal || !is_zero_at(*signal, e.t); }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override {
     wrench[0] = sliding_force(rate[0], state, share(e.t));
@@ -92,7 +94,7 @@ public:
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return holds * share(e.t) * std::abs(rate[0]);
   }
-  // Sliding, it takes the viscous part beside the set that it can bear.
+  // While sliding, the capacity contains the viscous part in addition to the static bound.
   [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench, double* normal) const override {
     const double sliding = state.phase == FrictionPhase::slip ? viscous * std::abs(evaluate_row<false>(row, e.motion).rate) : 0.0;
     const double capacity = share(e.t) * (holds + sliding);
@@ -127,7 +129,7 @@ private:
     if (viscous == 0.0 && per_stribeck_velocity == 0.0) return 0.0;
     return std::abs(evaluate_row<false>(row, e.motion).rate);
   }
-  /// Of a rate in the direction of the slip.
+  /// Returns the bound for a rate in the direction of slip.
   template <class S> [[nodiscard]] S sliding_bound(const S& rate) const {
     S bound{drags};
     if (per_stribeck_velocity != 0.0) {

@@ -13,13 +13,13 @@ namespace steplap {
 
 namespace {
 
-// Modes: 0 between the stops; 1, 2 lower stop pressed, released; 3, 4 the upper one.
+// Modes: 0 between the stops; 1 and 2 lower stop pressed and released; 3 and 4 upper stop.
 constexpr UnitMode k_between = 0, k_lower = 1, k_upper = 3;
 
 struct StopsLaw {
   static constexpr int k_watches = 2;
   static constexpr bool k_is_contact = false;
-  KelvinVoigtContact lower, upper; ///< the upper one of the coordinate with its sign changed
+  KelvinVoigtContact lower, upper; ///< the upper stop acts on the coordinate with reversed sign
 
   static bool is_upper(UnitMode mode) { return mode >= k_upper; }
   static UnitMode contact_mode(UnitMode mode) {
@@ -45,7 +45,7 @@ struct StopsLaw {
   }
   void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     if (mode != k_between) {
-      watch_rate[1] = std::numeric_limits<double>::quiet_NaN(); // of a force, or of nothing
+      watch_rate[1] = std::numeric_limits<double>::quiet_NaN(); // rate of a force, or of nothing
       if (is_upper(mode)) upper.watch(-value, -rate, contact_mode(mode), watch, watch_rate);
       else lower.watch(value, rate, contact_mode(mode), watch, watch_rate);
       return;
@@ -73,7 +73,7 @@ struct StopsLaw {
   }
 };
 
-// `zero`: the measure where the coordinate is zero, from which the stops count.
+// `zero`: value of the measure at which the limited coordinate is zero.
 template <class Measure>
 LawGroup<Measure, StopsLaw>& add(SystemBuilder& builder, int a, int b, const Measure& measure, double zero, const StopsLaw& law,
                                  bool is_angle) {
@@ -92,10 +92,10 @@ LawGroup<Measure, StopsLaw>& add(SystemBuilder& builder, int a, int b, const Mea
   return group;
 }
 
-// Where a coordinate is given at a stop the stop lies by what closing joints and rounding may move it, and no more, on
-// this side of there (rad or m; of large coordinates a share): touched, by a force of that times its stiffness.
+// Distance, rad or m, by which a stop is moved inwards if the coordinate starts at it; k_touch_of_size is relative to large coordinates. It
+// exceeds the errors of assembly and rounding, so that the stop is in contact from the start, with a force of k_touch times the stiffness.
 constexpr double k_touch = 4e-12, k_touch_of_size = 1e-14;
-// Nearer to it than this is at it: digits of a distance or an angle that was worked out.
+// Largest distance from a stop that counts as at the stop: rounding of values computed for the model file.
 constexpr double k_at_stop = 1e-11;
 
 double stop_at(double given, double now, double inwards) {
@@ -107,7 +107,7 @@ template <class Measure>
 void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measure& measure, bool is_absolute, bool is_angle) {
   const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   const double zero = is_absolute ? 0.0 : now;
-  const double never = std::numeric_limits<double>::max(); // a stop that is not there
+  const double never = std::numeric_limits<double>::max(); // replaces a stop that is not given
   StopsLaw law;
   law.lower = {e.stiffness, e.damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
   law.upper = {e.stiffness, e.damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};

@@ -21,14 +21,14 @@ using D12 = Dual<12>;
 
 struct Outlines {
   ConvexOutline a, b;
-  double reach_a = 0.0, reach_b = 0.0; ///< of their corners from the centres of gravity
+  double reach_a = 0.0, reach_b = 0.0; ///< distance of the farthest corner from the centre of gravity
   double through = 0.0;                ///< GapBounds
-  double narrowest = 0.0;              ///< the least width of a, or of b
+  double narrowest = 0.0;              ///< the smaller of the least widths of a and b
 };
 
 template <class S, class B> struct Placed {
   PlacedOutline<S> a, b;
-  Pair<S> centre; ///< of body a, seen from body b's
+  Pair<S> centre; ///< position of body a relative to body b
 
   Placed(const Outlines& outlines, const Motion<S>& at_a, const B& at_b) : centre(offset(at_a, at_b)) {
     place_outline(outlines.a, at_a, centre, a);
@@ -118,15 +118,15 @@ public:
   void enter_turns(TurnTable& turns) const override {
     for (const Entry& entry : entries) turns.add_all({entry.a, entry.b});
   }
-  // Friction on a face of a sees b's corners from there.
+  // For friction on a face of a, corners of b are needed in the axes of a.
   void enter_links(LinkTable& links) override {
     for (Entry& entry : entries) {
       entry.link = links.add(entry.a, entry.b);
       if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
     }
   }
-  // Faces that have all of the other body before them keep it off by that much: no distance is less. A half-plane has no
-  // corners, and is reached where the other body is.
+  // Lower bound of the gap: the distance of the other body from a face that separates both. A half-plane has no corners, so its reach is
+  // that of the other body.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
     for (const Entry& entry : entries) {
       const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);
@@ -142,7 +142,8 @@ public:
       bounds.through = entry.outlines->through;
     }
   }
-  // What is swallowed is at least as deep as the narrower of the two is wide.
+  // Returns the first unit in which one outline lies within the other. Its depth is then at least the smaller width, so shallower contacts
+  // are skipped.
   [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& watch,
                                     const std::function<const Motion<double>*()>& motion) const override {
     for (const Entry& entry : entries) {
@@ -164,9 +165,9 @@ public:
 
   struct Approach {
     double gap = 0.0, rate = 0.0;
-    Pair<double> corner, normal; ///< where that is, and along which a would be pushed
+    Pair<double> corner, normal; ///< the corner with the least gap, and the direction in which a is pushed
   };
-  /// Rates are of the corner against the face.
+  /// Returns the gap with its rate, the velocity of the corner against the face.
   [[nodiscard]] Approach measured(int element, const Evaluation& e) const {
     const Entry& entry = entries[element];
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
@@ -178,10 +179,10 @@ public:
   }
 
 private:
-  // While the mode says pressed the force goes on where the law has none. Beyond the gap's zero it has its sign changed, as that of a
-  // corner would; where one outline lies wholly within the other it pushes out by the nearest way, as much as a corner so deep would be
-  // pushed. Stages of a step that is too long may be thrown out of the contact, on the far side of a thin part, too, or come to lie
-  // below the ground, and where they felt nothing the step's error would be seen as zero. No step ends there (first_swallowed()).
+  // Force in mode pressed where the contact law has none. Beyond zero gap it has the opposite sign, like the force of a single corner. If
+  // one outline lies completely within the other, it pushes outwards along the shortest way, as much as for a corner of that depth. Stages
+  // of a step that is too long may leave the contact, pass a thin part, or end below the ground. Without this force they would see no
+  // force, and the error estimate of the step would be zero. No step ends in such a state (first_swallowed()).
   static void bring_back(const Entry& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
     const Pair<double> f = (-entry.stiffness * now.gap * std::abs(now.gap)) * now.normal;
     sum.fx += f.x;
@@ -197,7 +198,8 @@ private:
   static OverlapForce<S> force(const Entry& entry, const Placed<S, B>& placed, const RelativeVelocity<S>& velocity) {
     return overlap_force(placed.a, placed.b, velocity, entry.stiffness, entry.dissipation);
   }
-  // The gap's rate is that of the corner against the face: seen from a point of b at the same place, whichever owns which.
+  // The rate of the gap is the velocity of the corner relative to the material point of the other body at the same position, whichever body
+  // has the face.
   template <class B> static Approach approach(const Placed<double, B>& placed, const RelativeVelocity<double>& velocity) {
     const Separation s = separation_of(placed.a, placed.b);
     const int faces = placed.a.edge_count;
@@ -208,7 +210,7 @@ private:
   }
 };
 
-// Where friction holds: a face, and a corner of the other body or the edge that begins there.
+// Contact point of friction: a face, and a corner of the other body or the edge that begins there.
 struct HoldingPlace {
   int face = 0, corner = 0;
   bool is_edge = false;
@@ -218,12 +220,13 @@ class PolygonFriction final : public CoulombFriction, public ApproximatePlace {
 public:
   std::shared_ptr<const Outlines> outlines;
   int a = k_ground, b = k_ground;
-  std::vector<HoldingPlace> places; ///< as `feet`
-  std::vector<int> first;           ///< of each face
+  std::vector<HoldingPlace> places; ///< in the order of `feet`
+  std::vector<int> first;           ///< index of the first contact point of each face
 
-  static constexpr double k_dead_band = 1e-13; // m, as of feet
-  static constexpr double k_same_face = 0.1;   // rad: two faces that lie on each other may be turned by less
-  static constexpr double k_most_error = 1e-6; // m/s: friction of a tenth of the weight takes that within a microsecond
+  static constexpr double k_dead_band = 1e-13; // m, as for feet
+  static constexpr double k_same_face = 0.1;   // rad: two faces that lie on each other may differ in angle by less
+  static constexpr double k_most_error = 1e-6; // m/s: largest velocity error of a contact point; friction of a tenth of the weight removes
+                                               // it within a microsecond
 
   void make_places(int memory) {
     const int of_a = outlines->a.edge_count(), of_b = outlines->b.edge_count();
@@ -242,14 +245,14 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
   [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
-    return false; // its place has branches of its own
+    return false; // the contact point has branches of its own
   }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const HoldingPlace& place = places[state.foot];
     const Heights h = heights(placed, place.face);
     const double best = separation_of(placed.a, placed.b).gap, own = h.least();
-    const double face_left = own - 2.0 * best; // both negative while pressed
+    const double face_left = own - 2.0 * best; // both terms are negative while pressed
     return k_dead_band + std::min(face_left, left_of(h, place));
   }
   void change_place(const Evaluation& e, FrictionState& state) const override {
@@ -265,10 +268,11 @@ public:
     }
     state.foot = static_cast<std::uint32_t>(first[s.face] + 2 * corner + (is_edge ? 1 : 0));
   }
-  // With w(x) the velocity of a against b: along a face both places lie within twice the depth of it, so that w along it
-  // differs by ω times that on either side, and a face of the other body is turned by φ, through which some of w across it is
-  // seen as along it. A body that turns fast while it presses deep moves by more than an error of the place: to take that at
-  // once would be a blow, of which friction has no more than it bears; it slides until friction has taken it.
+  // Returns the velocity error of the approximate contact points `from` and `to`. Let w(x) be the velocity of a relative to b. Along a face
+  // the two points are within twice the depth, so the component of w along the face differs by up to 2 depth·ω on each side. If the face
+  // belongs to the other body, it is turned by an angle φ, and φ times the component of w across the face is added. A fast rotation at
+  // large depth is a real motion: stopping it at once would be an impact, which friction cannot exert. So the error is limited to
+  // k_most_error, and above it the element slides.
   [[nodiscard]] double rate_error(const Evaluation& e, const FrictionState& from, const FrictionState& to) const override {
     const Motion<double>&ma = e.motion[a], &mb = e.motion[b];
     const Placed<double, Motion<double>> placed(*outlines, ma, mb);
@@ -289,7 +293,7 @@ public:
   }
 
 private:
-  // Of the other body's corners over a face's line.
+  // Heights of the other body's corners above the line of a face.
   struct Heights {
     int count = 0;
     std::array<double, k_most_corners> of;
@@ -306,7 +310,8 @@ private:
     for (int i = 0; i < h.count; ++i) h.of[i] = dot(own.normal[edge], other.corner[i]) - own.offset[edge];
     return h;
   }
-  // A corner holds while its neighbours are out and higher, an edge while both its corners are in and lower than the next.
+  // Returns the margin of a contact point: for a corner, its neighbours are outside and higher; for an edge, both its corners are inside
+  // and lower than the next ones.
   static double left_of(const Heights& h, const HoldingPlace& place) {
     const int i = place.corner, next = h.after(i);
     if (!place.is_edge) {
@@ -334,7 +339,8 @@ private:
   }
 };
 
-// The body's own frame: a marker that says no more than the body is at its centre of gravity, its outline is not.
+// Returns the frame of the body's own coordinates, in which its outline is given. The marker with the body's name is at the centre of
+// gravity instead.
 CompiledMarker frame_of_body(const std::string& body, const SystemBuilder& builder) {
   CompiledMarker frame = builder.marker(body);
   const std::vector<Body>& bodies = builder.model().bodies;
@@ -343,7 +349,7 @@ CompiledMarker frame_of_body(const std::string& body, const SystemBuilder& build
   return frame;
 }
 
-// Its own corners, or those of its body.
+// Returns the given corners, or those of the marker's body.
 std::optional<ConvexOutline> outline_of(const std::vector<Vec2>& given, const std::string& marker, const char* field,
                                         SystemBuilder& builder) {
   const std::string body = body_of(marker, builder);

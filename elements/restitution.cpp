@@ -13,7 +13,8 @@ namespace {
 
 constexpr double k_natural_log_of_ten = 2.302585092994045684;
 
-// −ln e. It grows with ζ: 2ζ·arccos ζ/√(1 − ζ²) goes on over ζ = 1 as 2ζ·arcosh ζ/√(ζ² − 1), with the value 2 between them.
+// Returns −ln e, which increases with ζ. The expression 2ζ·arccos ζ/√(1 − ζ²) continues for ζ > 1 as 2ζ·arcosh ζ/√(ζ² − 1); at ζ = 1 both
+// have the value 2.
 double log_loss(double ratio) {
   const double square = (1.0 - ratio) * (1.0 + ratio), root = std::sqrt(std::abs(square));
   if (root == 0.0) return 2.0;
@@ -21,14 +22,14 @@ double log_loss(double ratio) {
   return 2.0 * ratio * angle / root;
 }
 
-// Coordinates of joined bodies beyond which dense algebra takes more than a tenth of a second.
+// Number of coordinates of joined bodies above which dense algebra takes more than a tenth of a second.
 constexpr std::size_t k_most_coordinates = 600;
-// What is left of a row's gradient when others span it, relative: rounding.
+// Relative length of a row's gradient outside the span of the others that counts as rounding.
 constexpr double k_dependent = 1e-8;
-// What is left of J M⁻¹ Jᵀ where joints let nothing move along the gap, relative.
+// Relative value of J P Jᵀ that counts as zero: joints prevent any motion along the gap.
 constexpr double k_held = 1e-14;
 
-// Bodies that joints and drives connect with some given ones, and the rows between them. The ground connects nothing.
+// Bodies that joints and drives connect with given ones, and the rows between them. The ground does not connect.
 class JoinedBodies {
 public:
   JoinedBodies(const System& system, int a, int b) : system_(system), place_(system.bodies.size(), -1) {
@@ -45,14 +46,14 @@ public:
       }
     }
   }
-  /// Does a row act on one of them?
+  /// Returns true if the row acts on one of the bodies.
   [[nodiscard]] bool moves(const RowSpec& row) const {
     for (const RowSpec* part = &row; part; part = part->next)
       if (is_in(part->a) || is_in(part->b)) return true;
     return false;
   }
   [[nodiscard]] std::size_t coordinates() const { return 3 * bodies_.size(); }
-  /// Adds M^(−1/2) Jᵀ of a row, or a part of one, of bodies a and b.
+  /// Adds M^(−1/2) Jᵀ of a row, or of a part of one, between bodies a and b.
   void add_weighed(const RowGradient<double>& gradient, int a, int b, VecX& result) const {
     for (int i = 0; i < 6; ++i) {
       const int body = i < 3 ? a : b;
@@ -79,7 +80,7 @@ double inverse_mass(int index, const double* j, const System& system) {
   return (j[0] * j[0] + j[1] * j[1]) / body.mass + j[2] * j[2] / body.inertia;
 }
 
-// Takes from v what lies in the span of an orthonormal basis; twice, against rounding.
+// Subtracts from v its component in the span of an orthonormal basis; two passes remove rounding.
 void remove_span(const std::vector<VecX>& basis, VecX& v) {
   for (int pass = 0; pass < 2; ++pass)
     for (const VecX& q : basis) v -= q.dot(v) * q;
@@ -92,7 +93,7 @@ double restitution_of(double damping_ratio) { return portable::pow(10.0, -log_lo
 double damping_for_restitution(double restitution, double stiffness, double mass) {
   if (restitution == 1.0) return 0.0;
   const double wanted = -k_natural_log_of_ten * portable::log10(restitution);
-  // For large ζ e tends to 1/(4ζ²), from below: so ζ is less than 1/√e.
+  // Upper bound of ζ: for large ζ, e approaches 1/(4ζ²) from below, so ζ < 1/√e.
   double low = 0.0, high = 1.0 / std::sqrt(restitution);
   while (true) {
     const double middle = 0.5 * (low + high);

@@ -32,7 +32,7 @@ GivenDamper damper_of(const UnilateralContact& e) {
   return {n * e.damping, n * e.stiffness, e.restitution};
 }
 
-// Of the contact that has just been added to `group`.
+// Sets the damping of the contact that was just added to `group`.
 template <class Group> void damp(Group& group, const UnilateralContact& e, const ContactGeometry& g, SystemBuilder& builder) {
   const auto put = [](KelvinVoigtContact& law, double c) { law.c = c; };
   damp_after_joints(group, damper_of(e), g.a, g.b, g.gap, builder, put);
@@ -100,7 +100,7 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
-  const double c = n * e.damping; // a restitution gives it when the joints are known
+  const double c = n * e.damping; // a restitution sets it when the joints are known
   const KelvinVoigtContact kelvin_voigt{k, c, offset};
   if (e.ends) {
     if (e.law == "literal") add_ended(g, *e.ends, LiteralContact{k, c, offset}, builder);
@@ -111,7 +111,7 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   if (e.law == "literal") add(g, g.gap, LiteralContact{k, c, offset}, builder);
   else if (e.law == "hunt_crossley") add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
   else if (g.gap.is_axis_in_a) damp(add(g, g.gap, kelvin_voigt, builder), e, g, builder);
-  else // n through p_A and n through the tip act along the same line
+  else // forces along n through p_A and through the tip have the same line of action
     with_cheapest(AxisMeasure{g.gap.point_a, g.gap.point_b, g.gap.normal},
                   [&](const auto& measure) { damp(add(g, measure, kelvin_voigt, builder), e, g, builder); });
 }

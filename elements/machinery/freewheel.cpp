@@ -13,13 +13,13 @@ namespace steplap {
 
 namespace {
 
-// Along λ, the couple on a counter-clockwise: between `low` and `high`.
+// Friction of a one-way clutch. λ, the torque on a (counter-clockwise positive), lies between `low` and `high`.
 class OneWayClutch final : public OneWayLock {
 public:
   RowSpec row;
   double low = 0.0, high = 0.0;
-  double rest = 0.0; ///< N m: less is rounding
-  std::string name;  ///< of the element
+  double rest = 0.0; ///< N m: smaller torques are rounding
+  std::string name;  ///< name of the element
 
   [[nodiscard]] int refuses() const override { return low <= -k_without_bound ? 1 : high >= k_without_bound ? -1 : 0; }
   [[nodiscard]] double drag() const override { return std::min(-low, high); }
@@ -53,7 +53,7 @@ public:
     watch[2] = 1.0;
     return true;
   }
-  // At the bound that is nearer: the other one is far away.
+  // Slips at the nearer bound; the other one is far away.
   void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
     state.sign = wrench[0] > 0.5 * (low + high) ? -1 : 1;
   }
@@ -71,7 +71,8 @@ private:
   [[nodiscard]] double least() const { return low * (1.0 + k_friction_bound_slack) - rest; }
   [[nodiscard]] double most() const { return high * (1.0 + k_friction_bound_slack) + rest; }
   [[nodiscard]] double sliding(const FrictionState& state) const { return state.sign > 0 ? low : high; }
-  // Bodies that turn against a lock without bound are joined by a blow, but those that drives turn so.
+  // Returns the sliding torque. If it is unbounded, an impact has joined the bodies, unless drives turn them against the lock, which is an
+  // error.
   [[nodiscard]] double bound(const FrictionState& state) const {
     const double couple = sliding(state);
     if (std::abs(couple) < k_without_bound) return couple;
@@ -87,7 +88,7 @@ private:
 };
 
 void compile_freewheel(const Element& element, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11; // rad/s²: a couple that gives less to the lighter body is rounding
+  constexpr double k_least_acceleration = 1e-11; // rad/s²: a torque that gives the lighter body less acceleration is rounding
   const auto& e = static_cast<const Freewheel&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("locks a body against itself: name markers on two different bodies");

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// Pressed by a contact whose mode may say more than that it presses.
+// Friction loaded by one contact. For a tyre, the mode contains more than the state of contact.
 class RollingFriction final : public CoulombFriction {
 public:
   bool is_tyre = false;
@@ -23,7 +23,7 @@ public:
   }
 };
 
-// Markers a and b of what rolls.
+// Returns markers a and b of the contact of the rolling body.
 std::optional<std::pair<std::string, std::string>> ends_of(const Element& contact) {
   if (const auto* tyre = dynamic_cast<const Tyre*>(&contact)) return std::pair{tyre->a, tyre->b};
   if (const auto* round = dynamic_cast<const RoundContact*>(&contact)) return std::pair{round->a, round->b};

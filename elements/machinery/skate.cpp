@@ -11,7 +11,7 @@ namespace steplap {
 
 namespace {
 
-// Friction across the skate, between two bounds that are the same for ever.
+// Friction across the direction of motion, with constant bounds.
 class SidewaysGrip final : public FrictionElement {
 public:
   RowSpec row;

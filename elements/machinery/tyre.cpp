@@ -28,7 +28,7 @@ bool check(const Tyre& e, SystemBuilder& builder) {
   return true;
 }
 
-// Where the wheel would touch the road in two places.
+// Returns true if the wheel touches the road at one point everywhere; reports an error otherwise.
 bool fits(const Road& road, double radius, SystemBuilder& builder) {
   if (!(road.hollowest() * radius >= 1.0)) return true;
   builder.error("the smooth curve through 'road' has a hollow at x = " + rounded_text(road.hollowest_at()) + " m with a radius of " +

@@ -14,17 +14,17 @@ namespace {
 
 using D12 = Dual<12>;
 
-constexpr int k_direction = 3, k_lost = 6; // from Entry::inner on: where these are
-constexpr int k_most_returns = 5;          // each leaves the square of what the overlap changes by
-constexpr double k_on_surface = 1e-15;     // of u
-// To p as its direction of slip has it: the first leaves the share of the strain in the overlap's width.
+constexpr int k_direction = 3, k_lost = 6; // positions of these states, relative to Entry::inner
+constexpr int k_most_returns = 5;          // iterations; each reduces the error to the square of the relative change of the overlap
+constexpr double k_on_surface = 1e-15;     // tolerance of u
+// Limits of the iteration for p at a given direction of slip. The first step leaves an error of strain over width of the overlap.
 constexpr int k_most_followed = 20;
-constexpr double k_followed = 1e-14; // of the strain
-// Length of the state that is a direction, m: of displacements near zero a thousandth of the tolerance is known
-// (Integrator::update_weights), of the direction so the tolerance.
+constexpr double k_followed = 1e-14; // tolerance relative to the strain
+// Length, m, by which the direction is scaled as a state. Displacements near zero have an error of a thousandth of the tolerance
+// (Integrator::update_weights), so the direction has an error of the tolerance.
 constexpr double k_direction_length = 1e-3;
-// Roundness (StepLapFriction) below which the direction is a state, and above which it is no longer one: by the wrench it is known to
-// the tolerance over the roundness, and smoother than by itself wherever that suffices.
+// Limits of roundness (StepLapFriction) below which the direction becomes a state, and above which it ceases to be one. By the wrench the
+// direction is known to tolerance/roundness; where that is sufficient it is the smoother choice.
 constexpr double k_sharp = 1e-3, k_blunt = 1e-2;
 constexpr double k_strain_step = 1e-5; // of the strain, for differences of the flow
 constexpr double k_least_step = 1e-12; // m
@@ -35,7 +35,7 @@ bool is_apart(UnitMode mode) { return elastic_state(mode) == k_elastic_apart; }
 bool is_yielding(UnitMode mode) { return elastic_state(mode) == k_elastic_yields; }
 bool is_following(UnitMode mode) { return elastic_state(mode) == k_elastic_follows; }
 
-/// s − p.
+/// Returns the strain s − p.
 Vec3 strain(const Pose& now, const double* slid) { return {now.x - slid[0], now.y - slid[1], now.theta - slid[2]}; }
 
 double stored(const ElasticGripGroup::Entry& entry, const Motion<double>* motion, const double* inner) {
@@ -46,7 +46,7 @@ double stored(const ElasticGripGroup::Entry& entry, const Motion<double>* motion
 
 Vec3 direction(const double* slid) { return Vec3::Map(slid + k_direction) / k_direction_length; }
 
-/// The joint's three measures, with their derivatives by the motion of both bodies.
+/// The three measures of the joint with their derivatives by the motions of both bodies.
 struct Measures {
   MeasureValue<D12> m[3];
   Measures(const ElasticGripGroup::Entry& entry, const Evaluation& e) {
@@ -55,13 +55,13 @@ struct Measures {
     for (int r = 0; r < 2; ++r) m[r] = AxisMeasure{hold[r].point_a, hold[r].point_b, hold[r].direction}.at<false, D12>(a, b);
     m[2] = AngleMeasure{}.at<false, D12>(a, b);
   }
-  /// Force on a, force on b of a unit wrench along measure r.
+  /// Returns the force on a, then that on b, for a unit wrench along measure r.
   void gradient(int r, D12* j) const {
     const D12 rows[6] = {m[r].direction.x,  m[r].direction.y,  cross(m[r].lever_a, m[r].direction) + m[r].couple,
                          -m[r].direction.x, -m[r].direction.y, -(cross(m[r].lever_b, m[r].direction) + m[r].couple)};
     std::copy(rows, rows + 6, j);
   }
-  /// Of all three by the poses, which is that of their rates by the velocities.
+  /// Returns the gradient of all three by the poses, equal to that of their rates by the velocities.
   [[nodiscard]] Eigen::Matrix<double, 3, 6> gradient() const {
     Eigen::Matrix<double, 3, 6> by_pose;
     for (int r = 0; r < 3; ++r) {
@@ -80,17 +80,18 @@ struct Measures {
   }
 };
 
-/// The direction of slip that the wrench tells.
+/// Returns the direction of slip that follows from the wrench.
 Vec3 told_direction(const ElasticGripGroup::Entry& entry, const Evaluation& e, const double* p) {
   return entry.friction->direction_of(e, slid_at(p), entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p));
 }
 
-/// How one begins to slide: at a corner of the limit surface by its direction, elsewhere as its wrench tells.
+/// Returns the mode at the start of yielding: the direction is a state at a corner of the limit surface; elsewhere it follows from the
+/// wrench.
 UnitMode sliding_mode(const ElasticGripGroup::Entry& entry, const Evaluation& e, const double* p) {
   return entry.friction->roundness(e, slid_at(p), told_direction(entry, e, p)) < k_sharp ? k_elastic_follows : k_elastic_yields;
 }
 
-/// Of one that yields as its wrench tells, or is at rest beyond its bound: p moves along the strain until it is there.
+/// Moves p along the strain until the wrench lies on the limit surface (u = 1). Returns the dissipated energy.
 double return_to_surface(const ElasticGripGroup::Entry& entry, const Evaluation& e, double* p) {
   const Pose now = entry.friction->pose_of(e.motion);
   double dissipated = 0.0;
@@ -100,15 +101,15 @@ double return_to_surface(const ElasticGripGroup::Entry& entry, const Evaluation&
     if (!std::isfinite(u) || u <= 0.0 || std::abs(u - 1.0) <= k_on_surface) break;
     const Vec3 moved = d - d / u;
     Vec3::Map(p) += moved;
-    dissipated += (force * (0.5 + 0.5 / u)).dot(moved); // the energy that it had stored
+    dissipated += (force * (0.5 + 0.5 / u)).dot(moved); // from the stored elastic energy
   }
   return dissipated;
 }
 
-/// Of one that slides: where the direction of its slip has its wrench. At a corner of the limit surface the wrench hardly tells the
-/// direction, but the direction always tells the wrench.
+/// Moves p until the wrench is that of the direction of slip. At a corner of the limit surface the wrench hardly determines the direction,
+/// but the direction always determines the wrench. Returns the dissipated energy.
 double follow_direction(const ElasticGripGroup::Entry& entry, const Evaluation& e, double* p) {
-  if (direction(p).isZero(0.0) || entry.friction->grip_beyond_last(e, slid_at(p)) <= 0.0) return 0.0; // beyond where it comes apart
+  if (direction(p).isZero(0.0) || entry.friction->grip_beyond_last(e, slid_at(p)) <= 0.0) return 0.0; // already past separation
   const Vec3 along = direction(p).normalized();
   Vec3::Map(p + k_direction) = k_direction_length * along;
   const Pose now = entry.friction->pose_of(e.motion);
@@ -119,10 +120,10 @@ double follow_direction(const ElasticGripGroup::Entry& entry, const Evaluation& 
     const Vec3 d = strain(now, p), force = entry.friction->stiffness() * d;
     const Vec3 over = force - entry.friction->bound_along(e, slid_at(p), along), moved = compliance * over;
     const double left = over.dot(moved);
-    if (!(left > k_followed * k_followed * force.dot(d)) || !(left < before)) break; // by then rounding of places
+    if (!(left > k_followed * k_followed * force.dot(d)) || !(left < before)) break; // converged to rounding of positions
     before = left;
     Vec3::Map(p) += moved;
-    dissipated += (force - 0.5 * over).dot(moved); // the energy that it had stored
+    dissipated += (force - 0.5 * over).dot(moved); // from the stored elastic energy
   }
   return dissipated;
 }
@@ -201,7 +202,7 @@ void ElasticGripGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobia
   }
 }
 
-// The flow depends on the strain, on p by the strain and the overlap, and, linearly, on the rate.
+// The flow depends on the strain, on p by the strain and the overlap, and linearly on the rate.
 void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const {
   for (const Entry& entry : entries) {
     if (is_apart(e.mode[entry.unit]) || is_following(e.mode[entry.unit])) continue;
@@ -247,7 +248,7 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
   }
 }
 
-// The flow depends on p by the overlap, on the direction of slip and, linearly, on the rate; not on the strain.
+// In this mode the flow depends on p by the overlap, on the direction of slip and linearly on the rate, but not on the strain.
 void ElasticGripGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) const {
   for (const Entry& entry : entries) {
     if (!is_following(e.mode[entry.unit])) continue;
@@ -306,7 +307,7 @@ void ElasticGripGroup::enter_links(LinkTable& links) {
 UnitMode ElasticGripGroup::initial_mode(int element, const Evaluation& e) const {
   const Entry& entry = entries[element];
   const double* const p = e.inner + entry.inner;
-  if (p[k_lost] != 0.0) return k_elastic_apart; // it came apart before an action set it
+  if (p[k_lost] != 0.0) return k_elastic_apart; // it came apart before an action deactivated it
   const Vec3 force = entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p);
   return entry.friction->spare(e, slid_at(p), force) < 0.0 ? sliding_mode(entry, e, p) : k_elastic_holds;
 }
@@ -316,7 +317,7 @@ UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const
   const double* const p = e.inner + entry.inner;
   const UnitMode parts = mode & ~UnitMode{3};
   if (slot == 0) return parts | (elastic_state(mode) == k_elastic_holds ? sliding_mode(entry, e, p) : k_elastic_holds);
-  if (slot == 2 && !is_yielding(mode) && !is_following(mode)) return mode; // what fired at the same instant has ended the slip
+  if (slot == 2 && !is_yielding(mode) && !is_following(mode)) return mode; // another event at the same instant has ended the slip
   if (slot == 2) return parts | (is_following(mode) ? k_elastic_yields : k_elastic_follows);
   bool is_any_left = false;
   const UnitMode parted = entry.friction->parted_at(slid_at(p), is_any_left);
@@ -332,7 +333,7 @@ EventKind ElasticGripGroup::transition(UnitMode from, UnitMode to) const {
   return elastic_state(from) == k_elastic_holds ? EventKind::slips : EventKind::none;
 }
 
-// --- what StepLapFriction knows of it ---------------------------------------------------------------------
+// --- elastic part of StepLapFriction
 
 void StepLapFriction::make_elastic(const Mat3& stiffness, int inner, int unit) {
   stiffness_ = stiffness;

@@ -1,6 +1,6 @@
-// How an elastic step-lap joint yields: the rate at which it slides, in the direction that its wrench tells or, at a corner of the
-// limit surface, in one that is a state; how that turns, and what both change by, for implicit methods. Along a direction twists are
-// scaled(), and wrenches go with them: about the joint's centre, the moment over the gyration radius.
+// Yielding of an elastic step-lap joint: slip rate, its direction, and their derivatives for implicit methods. The direction follows from
+// the wrench or, at a corner of the limit surface, is a state of its own. Twists along a direction are scaled(); wrenches are scaled
+// accordingly, about the joint's centre with the moment divided by the radius of gyration.
 #include "elements/step_lap/step_lap_fit.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/number_text.h"
@@ -15,15 +15,15 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_trial = 1.01;     // u beyond which a yielding joint is at a stage of a step, not at its end
-constexpr double k_tilt_step = 1e-3; // m/s²: of pressures that are linear in it
-constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre, of differences of the overlap
-constexpr double k_turn_step = 1e-4; // of the direction, for differences of the flow: smooth wherever no edge passes the centre
-// Of differences of the flow by the overlap, of how far it has slid: edges that lay along each other in the reference pose cross within
-// some part of that, and no difference must look beyond; at least and at most, m.
+constexpr double k_trial = 1.01;     // largest u at the end of a step; beyond it, the evaluation belongs to a stage of a rejected step
+constexpr double k_tilt_step = 1e-3; // m/s²: step of differences by the acceleration across the sheets; pressures are linear in it
+constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre: step of differences by the overlap
+constexpr double k_turn_step = 1e-4; // change of direction for differences of the flow, which is smooth unless an edge passes the centre
+// Step for differences of the flow by the overlap: share of the distance slid, with limits, m. Edges that were aligned in the reference
+// pose cross within that distance, and a difference must not extend beyond the crossing.
 constexpr double k_overlap_step = 1e-4, k_least_overlap_step = 1e-9, k_most_overlap_step = 1e-7;
 
-/// Beyond the event at which the joint comes apart: the strain stays.
+/// Flow after the joint has come apart: the strain stays constant.
 StepLapFriction::Flow flow_of_gone(const Vec3& rate) {
   StepLapFriction::Flow flow;
   flow.rate = rate;
@@ -33,7 +33,8 @@ StepLapFriction::Flow flow_of_gone(const Vec3& rate) {
 
 Pose moved_by(const Pose& pose, double way, const Vec3& n) { return {pose.x + way * n[0], pose.y + way * n[1], pose.theta + way * n[2]}; }
 
-/// Of the two across a twist: that twist is in the null space, and these two follow from their sum and their product.
+/// Returns the smaller of the two curvatures across a twist. The twist itself is in the null space of c, so both follow from their sum
+/// (trace) and product (sum of principal minors).
 double lesser_curvature(const Mat3& c) {
   const auto minor = [&c](int i, int j) { return c(i, i) * c(j, j) - c(i, j) * c(j, i); };
   const double sum = c.trace(), product = std::max(0.0, minor(0, 1) + minor(1, 2) + minor(2, 0));
@@ -49,8 +50,8 @@ void StepLapFriction::refuse_snap(double t) const {
                          "tangential stiffness, or leave it rigid");
 }
 
-// ∂h/∂p along n, and what h changes by as the pressures do: central differences, whose share in the balance is that of
-// the strain at the bound to the overlap's width.
+// Computes ∂h/∂p along n and the change of h with the pressures by central differences. Their share in the balance is small: strain at the
+// bound over width of the overlap.
 StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
   Flow flow;
   const PressureState now = pressure_at(e.t);
@@ -60,7 +61,7 @@ StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pos
   const RequiredPressure need = required(f.patch, force / now.factor, e.t);
   const Vec3 n = need.direction, pull = stiffness_ * n;
   auto& own = static_cast<Scratch&>(*e.scratch[index_]);
-  Fit& moved = own.fits[1]; // free: an elastic joint has one law
+  Fit& moved = own.fits[1]; // unused: an elastic joint has equal friction coefficients
   const double step = k_slid_step * std::min(1.0, gyration_);
   const auto power = [&](double way, double tilt) {
     build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace, own.region,
@@ -70,13 +71,13 @@ StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pos
   moved.is_valid = false;
   const double change = now.factor * (power(step, now.tilt) - power(-step, now.tilt)) / (2.0 * step);
   double tightening =
-      now.factor_rate == 0.0 ? 0.0 : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
+      now.factor_rate == 0.0 ? 0.0 : now.factor_rate * evaluate_gradient(f.patch, n).h; // rate of change of h at a slip of 1 m/s, W/s
   if (now.tilt_rate != 0.0)
     tightening +=
         now.factor * now.tilt_rate * (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
   flow.direction = n;
   flow.resistance = n.dot(pull) + need.u * change;
-  if (!(flow.resistance > 0.0) && need.u > k_trial) { // of a step that goes too far: it will be made again
+  if (!(flow.resistance > 0.0) && need.u > k_trial) { // stage of a step that is too long and will be rejected
     flow.rate = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     return flow;
   }
@@ -92,7 +93,7 @@ Vec3 StepLapFriction::unscaled(const Vec3& y) const {
   return {y[0] + omega * arm_.y(), y[1] - omega * arm_.x(), omega};
 }
 
-/// h of a patch with its derivatives by scaled twists; the second ones only if asked for.
+/// Returns h of a patch with first derivatives by scaled twists; second derivatives if requested.
 Dissipation StepLapFriction::friction_along(const Patch& patch, const Vec3& y, bool with_curvature) const {
   const Vec2 centre = patch.reference() + arm_;
   const Vec3 twist(y[0], y[1], y[2] / gyration_);
@@ -121,8 +122,8 @@ Vec3 StepLapFriction::bound_along(const Evaluation& e, const Pose& slid, const V
   return now.factor * evaluate_gradient(f.patch, unscaled(direction)).gradient;
 }
 
-// What friction takes changes along the way with the overlap, and in time with the pressures: central differences, whose share in
-// the balance is that of the strain at the bound to the overlap's width.
+// The friction force changes along the slip with the overlap, and in time with the pressures. Both derivatives are central differences;
+// their share in the balance is small: strain at the bound over width of the overlap.
 StepLapFriction::Flow StepLapFriction::flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
                                                   const Vec3& rate) const {
   const PressureState now = pressure_at(e.t);
@@ -145,7 +146,7 @@ StepLapFriction::Flow StepLapFriction::find_flow_along(const Evaluation& e, cons
   flow.direction = n;
   const Dissipation d = friction_along(f.patch, y, true);
   auto& own = static_cast<Scratch&>(*e.scratch[index_]);
-  Fit& moved = own.fits[1]; // free: an elastic joint has one law
+  Fit& moved = own.fits[1]; // unused: an elastic joint has equal friction coefficients
   moved.is_valid = false;
   const double step = k_slid_step * std::min(1.0, gyration_);
   const auto bound = [&](double way, double tilt) {
@@ -160,14 +161,14 @@ StepLapFriction::Flow StepLapFriction::find_flow_along(const Evaluation& e, cons
 
   const Vec3 pull = scaled_stiffness_ * y;
   flow.resistance = y.dot(pull + loosening);
-  if (!(flow.resistance > 0.0) && !(force.dot(n) <= k_trial * now.factor * d.h)) { // of a step that goes too far: it will be made again
+  if (!(flow.resistance > 0.0) && !(force.dot(n) <= k_trial * now.factor * d.h)) { // stage of a step that is too long and will be rejected
     flow.rate = flow.turning = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     return flow;
   }
   if (!(flow.resistance > 0.0)) refuse_snap(e.t);
   flow.speed = (pull.dot(moving) - y.dot(tightening)) / flow.resistance;
   flow.rate = flow.speed * n;
-  // Orthogonal to y, as the curvature's range is: what is added along y changes nothing but that there is an inverse.
+  // The range of the curvature is orthogonal to y. The added term along y makes the matrix invertible and does not change the result.
   flow.roundness = lesser_curvature(d.hessian) / f.patch.force();
   const double size = now.factor * f.patch.force();
   flow.turn = (now.factor * d.hessian + size * y * y.transpose()).ldlt().solve(Mat3::Identity());
@@ -196,13 +197,13 @@ StepLapFriction::FlowSlopes StepLapFriction::flow_slopes(const Evaluation& e, co
     slopes.by_slid.col(c) =
         (at(moved_by(slid, way, moved), direction) - at(moved_by(slid, -way, moved), direction)) / (2.0 * way * moved[c]);
   }
-  // Across y by differences; along y the length alone changes, which comes back by itself.
+  // Derivatives across y are differences. Along y only the length changes, which relaxes to 1.
   slopes.by_direction.bottomRows<3>() = -here.relaxation * y * y.transpose();
   const Vec3 side = y.unitOrthogonal();
   for (const Vec3& across : {side, Vec3(y.cross(side))})
     slopes.by_direction += (at(slid, direction + turn * across) - at(slid, direction - turn * across)) / (2.0 * turn) * across.transpose();
   const Vec3 pull = scaled_stiffness_ * y;
-  Mat3 scale; // of twists
+  Mat3 scale; // converts twists to scaled ones
   for (int c = 0; c < 3; ++c) scale.col(c) = scaled(Vec3::Unit(c));
   const Eigen::RowVector3d speed = pull.transpose() * scale / here.resistance;
   slopes.by_rate.topRows<3>() = unscaled(y) * speed;

@@ -18,18 +18,18 @@ namespace steplap {
 
 namespace {
 
-// u may pass 1 by rounding: below what a load can resolve.
+// Excess of u over 1 that counts as rounding, below the resolution of a load.
 constexpr double k_bound_slack = 1e-13;
-// Outside this band the certified bounds tell on which side of 1 a wrench is.
+// Outside this range of u the cheap certified bounds decide whether the joint sticks.
 constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
-// Share of its overlaps' capacity below which an elastic joint has come apart. The direction of flow follows the strain
-// within F/(K |ν|), which goes to zero with the overlap: to follow it to the end would take for ever.
+// Share of the overlaps' capacity below which an elastic joint counts as separated. The direction of flow relaxes within a displacement
+// F/(K |ν|), which tends to zero with the overlap, so that steps would become ever shorter.
 constexpr double k_last_grip = 1e-2;
-constexpr double k_surely_overlap = 0.25; // of the depth in the reference pose: above it a bound of the depth does
+constexpr double k_surely_overlap = 0.25; // relative to the depth in the reference pose; above it a lower bound of the depth is sufficient
 
-// What an iteration may leave, in shares of the capacity. u is then good to 1e-14, its square: what is decided by u is
-// not touched. The direction in which a slip begins is good to 1e-7, and forgotten as soon as it has begun. A wrench of
-// the mode problem is off by as much as the blocks of other joints that it is shared with may jitter.
+// Largest residuals of iterations, relative to the capacity. The error of u is the square, 1e-14, so decisions by u are not affected. The
+// direction in which a slip begins has an error of 1e-7, which has no effect once the slip has started. A wrench of the mode problem may
+// differ by the fluctuation of blocks of other joints.
 constexpr double k_usage_residual = 1e-7, k_block_residual = 1e-9;
 
 void insist(double residual, double bound, const std::string& name, double t, const char* what) {
@@ -47,7 +47,7 @@ StepLapFriction::StepLapFriction(std::string name, int index, int row, std::vect
                                  bool stops_when_apart)
     : name_(std::move(name)), index_(index), row_(row), sheets_(std::move(sheets)), is_monitor_(is_monitor),
       stops_when_apart_(stops_when_apart) {
-  constexpr double k_same_ratio = 4e-16; // quotients of the same coefficients, rounded
+  constexpr double k_same_ratio = 4e-16; // relative difference of quotients of equal coefficients: rounding
   bool is_first = true;
   for (const SheetPair& s : sheets_) {
     if (s.kinetic_traction != s.static_traction) is_one_law_ = false;
@@ -68,7 +68,7 @@ std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
 
 void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part) {
   if (at_reference.empty()) return;
-  auto fit = std::make_shared<Fit>(); // of no acceleration across the sheets
+  auto fit = std::make_shared<Fit>(); // without acceleration across the sheets
   fit->patch = std::move(at_reference);
   const Patch& patch = fit->patch;
   fit->pose = reference;
@@ -90,7 +90,7 @@ void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, cons
   };
   take(limb, limb_mobility_);
   take(active_part, part_mobility_);
-  // Of the limb, the lighter one: whether the active part is free, driven, or held by joints is not known here.
+  // Based on the limb, the lighter body; whether the active part is free, driven or held by joints is not known here.
   const double of_limb = mobility(limb, arm_);
   grip_acceleration_ = patch.force() * (of_limb > 0.0 ? of_limb : mobility(active_part, patch.centroid()));
 }
@@ -103,7 +103,7 @@ Pose StepLapFriction::pose_of(const Motion<double>* motion) const {
   return {p.c * x + p.s * y, p.c * y - p.s * x, l.theta - p.theta};
 }
 
-// While it sticks the rows' bases are the pose, free of the rounding of positions.
+// While the joint sticks, the anchors of its rows are its pose, without rounding of positions.
 Pose StepLapFriction::anchor(const double* memory) const {
   return {memory[hold[0].memory], memory[hold[1].memory], memory[hold[2].memory]};
 }
@@ -155,7 +155,7 @@ void StepLapFriction::set_pressure(const Signal* factor, double loss, const Sign
   acceleration_ = acceleration;
 }
 
-// The tractions are n μ (p f + c a) = n μ p f (1 + (c/p) a/f).
+// Tractions are n μ (p f + c a) = n μ p f (1 + (c/p) a/f), with pressure p, factor f, and change of pressure c by the acceleration a.
 PressureState StepLapFriction::pressure_at(double t) const {
   PressureState now;
   now.factor = kept_;
@@ -190,7 +190,7 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   if (is_same) return f;
   const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
                             reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
-  if (is_reference) return f = *reference_; // as at the start, whatever has been looked at in between
+  if (is_reference) return f = *reference_; // equal to the start, whatever other poses were evaluated since
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
   f.tilt = tilt;
@@ -201,12 +201,12 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
 
 RequiredPressure StepLapFriction::required(const Patch& patch, const Vec3& wrench, double t) const {
   const RequiredPressure found = required_pressure(patch, wrench);
-  if (!wrench.allFinite()) return found; // of a step that goes too far, and will be made again
+  if (!wrench.allFinite()) return found; // stage of a step that is too long and will be rejected
   insist(found.residual, k_usage_residual, name_, t, "the share of its capacity in use");
   return found;
 }
 
-// --- holding ----------------------------------------------------------------------------------------------
+// --- sticking
 
 void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const {
   watch[0] = watch[1] = 1.0;
@@ -239,7 +239,7 @@ double StepLapFriction::support(const Evaluation& e, const FrictionState&, const
   return now.factor * evaluate_gradient(f.tabulated(), Vec3(rate[0], rate[1], rate[2])).h;
 }
 
-// u = W·ν/h(ν) with its maximiser ν: its gradient is ν/h.
+// u = W·ν/h(ν) at the maximiser ν; its gradient by W is ν/h.
 double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const double* wrench, double* normal) const {
   const PressureState now = pressure_at(e.t);
   const Patch& patch = fit(e.scratch, anchor(e.memory), GripLaw::holding, now.tilt).tabulated();
@@ -255,7 +255,7 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
-  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // the pose stays, so a table pays off
   const bool is_known = knows_usage(s, w);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y && own.asked_at.theta == pose.theta &&
                        own.pressed.factor == now.factor && own.pressed.tilt == now.tilt && own.was_stuck == is_stuck &&
@@ -306,7 +306,7 @@ FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
   const PressureState now = pressure_at(e.t);
   Fit& f = fit(e.scratch, anchor(e.memory), law, now.tilt);
-  // Wrenches in units of the factor: ½ f² wᵀA w + f bᵀw over the set at a factor of 1.
+  // Wrenches in units of the factor f: ½ f² wᵀA w + f bᵀw over the admissible set for factor 1.
   const Mat3 mobility = now.factor * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w = admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
   insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
@@ -317,14 +317,14 @@ FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
   return block;
 }
 
-// --- coming apart -------------------------------------------------------------------------------------------
+// --- separation
 
 double StepLapFriction::watch_place(const Evaluation& e, const FrictionState& state) const {
   return state.phase == FrictionPhase::slip ? parting(e, pose_of(e.motion), state.foot) : 1.0;
 }
 
-// As long as a bound from the reference pose leaves a good part of the depth there, it stands for the depth: far from zero its
-// value decides nothing.
+// Returns the depth of an interface's overlap, or a lower bound from the reference pose if that is a large part of the reference depth. Far
+// from zero the exact value has no effect.
 double StepLapFriction::depth_of(std::size_t i, const Pose& pose, OverlapWorkspace& workspace) const {
   const double at_least = depth_[i].at_least(pose);
   if (at_least > k_surely_overlap * depth_[i].depth) return at_least;

@@ -1,4 +1,4 @@
-// How a step-lap joint slides: its law from the onset of a slip to its end, and what methods learn of it.
+// Slip law of a step-lap joint from the onset to the end of a slip, and the scales that integrators need.
 #include "elements/step_lap/step_lap_fit.h"
 #include "mbd/base/portable_math.h"
 
@@ -9,23 +9,24 @@ namespace steplap {
 
 namespace {
 
-// Onsets are followed down to k_onset_time or to this times the cube root of the tolerance, s: by the third power of that time
-// positions are off (docs/explanation/limit_surface.md, section 7).
+// Duration of an onset that is resolved, s: k_onset_time or k_onset_share times the cube root of the tolerance. Positions have an error
+// proportional to the third power of that time (docs/explanation/limit_surface.md, section 7).
 constexpr double k_onset_share = 2.5e-4, k_most_onset_time = 2.5e-6;
-constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer counts as starting
-// |ν|/δ from which on it moves: up to there, backward motion is an error of the first steps unless it is this share
-// of δ, four times what a step's velocities are known to beside |ν| (Integrator). A slip that never gets that far, in a dip of the
+constexpr double k_start_reach = 4.0; // |ν|/δ from which a slip no longer counts as starting
+// k_moving: |ν|/δ from which a starting slip counts as moving. Below it, backward motion is an error of the first steps unless it exceeds
+// k_backward δ, four times the error of velocities in a step (Integrator). A slip that never gets that far, as in a short dip of the
 // clamping pressure, ends there.
 constexpr double k_moving = 0.2, k_backward = 2e-3;
-constexpr double k_cone = 0.5; // cosine of the cone about the direction last looked at
-// |ν| over grip acceleration from which on a slip ends, s: k_end_time, or this times the tolerance, at most the other. What that
-// misses is this time, times what the direction had still to turn by.
+constexpr double k_cone = 0.5; // cosine of the angle about the stored direction within which ν may turn before the direction is updated
+// Time |ν|/(grip acceleration) below which a slip ends, s: k_end_time, or k_end_share times the tolerance, at most k_most_end_time. The
+// error of the position is this time multiplied by the remaining change of direction.
 constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
-constexpr double k_no_end = 2.0; // times that |ν|: it has not come to rest after all
-// |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
+constexpr double k_no_end = 2.0; // factor on that |ν|: beyond it the joint has not come to rest
+// Rounding limits: |ν| relative to velocities at which its direction is lost, and that time relative to t at which steps are still well
+// above rounding.
 constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
 
-// FrictionState::stage, 0 at first: of a slip that starts, and of one that ends.
+// Values of FrictionState::stage, initially 0: for a starting slip, and for an ending slip.
 constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
 
 template <class Look> void for_each_corner(const Polygon& polygon, Look look) {
@@ -44,7 +45,7 @@ void StepLapFriction::Scratch::follow(double tolerance) {
   end_time = std::clamp(k_end_share * tolerance, k_end_time, k_most_end_time);
 }
 
-/// ∇h of the sliding law for the twist ν, as that of a Patch made by build(), which nobody else asks for anything.
+/// Returns ∇h of the sliding law for the twist ν, equal to that of a Patch made by build(), without storing the patch.
 Vec3 StepLapFriction::gradient_at(const Pose& pose, double tilt, const Vec3& nu, Scratch& own) const {
   Vec3 sum = Vec3::Zero();
   for (const SheetPair& s : sheets_) {
@@ -62,7 +63,7 @@ Vec3 StepLapFriction::gradient_at(const Pose& pose, double tilt, const Vec3& nu,
   return sum;
 }
 
-/// Velocity of the joint's centre, and ω as a velocity at the gyration radius.
+/// Returns the velocity of the joint's centre, and ω times the radius of gyration.
 Vec3 StepLapFriction::scaled(const Vec3& nu) const { return {nu[0] - nu[2] * arm_.y(), nu[1] + nu[2] * arm_.x(), gyration_ * nu[2]}; }
 
 void StepLapFriction::set_direction(FrictionState& state, const Vec3& nu) const {
@@ -93,7 +94,8 @@ void StepLapFriction::aim(FrictionState& state, const double* rate) const {
   set_direction(state, Vec3(rate[0], rate[1], rate[2]));
 }
 
-/// The twist whose wrench is the slip law's: ν but for the first and the last of a slip.
+/// Returns the twist for which the slip law is evaluated: ν, with an added part in the stored direction at the start and end of a slip,
+/// where ∇h would be undefined.
 Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const {
   const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
   const Vec3 y = scaled(nu);
@@ -134,9 +136,9 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
   }
 }
 
-// Where a small turn of ν turns the wrench by much (narrow sheets; a centre of rotation near a corner), ν has to be known so
-// much better. Measured by |ν| tr ∇²h in scaled twists, which is 1.5 F where a round overlap is translated: F across the
-// slip and F/2 from turning (∬ w x² dA is half of F gyration²). Beyond that, ν is asked for as much finer.
+// Returns the accuracy to which ν must be known. A small change of direction of ν may change the wrench strongly (narrow sheets; centre of
+// rotation near a corner). The measure is |ν| tr ∇²h in scaled twists. For translation of a round overlap it is 1.5 F: F across the slip
+// and F/2 from rotation (∬ w x² dA is half of F gyration²). If it is larger, the scale of ν is reduced in proportion.
 SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
   constexpr double k_round = 1.5;
   SlipScale scale;
@@ -145,21 +147,21 @@ SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& 
   const double speed = scaled(nu).norm();
   const Patch& patch = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, pressure_at(e.t).tilt).patch;
   const Mat3 curvature = evaluate(patch, nu).hessian;
-  const Vec3 turn(arm_.y() / gyration_, -arm_.x() / gyration_, 1.0 / gyration_); // ν of a scaled turn
+  const Vec3 turn(arm_.y() / gyration_, -arm_.x() / gyration_, 1.0 / gyration_); // ν of a scaled rotation
   const double trace = curvature(0, 0) + curvature(1, 1) + turn.dot(curvature * turn);
   const double sharpness = speed * trace / (k_round * patch.force());
-  // Below the speed of rest there is nothing left to be known.
+  // Velocities below the speed of rest need no accuracy.
   scale.speed = std::max(speed / std::max(1.0, sharpness), end_speed(e));
   return scale;
 }
 
-// The trace of A ∇²h is the sum of the rates, none of which is negative.
+// Returns an upper bound of the damping rates: the trace of A ∇²h is their sum, and none is negative.
 double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
   const Pose pose = pose_of(e.motion);
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, pose, GripLaw::sliding, now.tilt);
   const Mat3 curvature = now.factor * evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
-  const Vec3 turned(pose.y, -pose.x, -1.0); // of ν as the active part turns
+  const Vec3 turned(pose.y, -pose.x, -1.0); // change of ν by rotation of the active part
   return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) + limb_mobility_[1] * curvature(2, 2) +
          part_mobility_[1] * turned.dot(curvature * turned);
 }
@@ -184,7 +186,7 @@ bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state
     if (speed <= k_no_end * end) return true;
   } else if (slot == 0 || speed < end) {
     if (slot == 0) aim(state, rate);
-    else if (along <= 0.0) return rests(); // through ν = 0 within a step, as along a line
+    else if (along <= 0.0) return rests(); // passed through ν = 0 within a step, along a line
     return goes_on(k_ending_stage);
   }
   state.is_starting = false;
@@ -192,8 +194,8 @@ bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state
   return true;
 }
 
-// What slides bears the slip law's wrench, which is on the bound of the sliding law: its share of that of the holding one and
-// its maximiser need no search.
+// Returns true if the utilisation needs no iteration: a sliding joint has the wrench of the slip law, on the boundary of the sliding law.
+// Its ratio to the static boundary and the maximising twist are known.
 bool StepLapFriction::knows_usage(const Snapshot& s, const Vec3& wrench) const {
   return !is_elastic() && s.evaluation->friction[index_].phase == FrictionPhase::slip && slip_usage_ == slip_usage_ &&
          !wrench.isZero(0.0) && wrench.allFinite();

@@ -9,17 +9,17 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_stays_out = 2.0; // a row that was out, of k_dependent
+constexpr double k_stays_out = 2.0; // factor on k_dependent for a row that was left out before (hysteresis)
 
-// Orthonormal vectors, each a row's part beyond those before.
+// Orthonormal basis of the rows kept so far: each vector is a row's part independent of those before.
 class Taken {
 public:
   Taken(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
   void remove_from(VecX& row) const {
     const auto taken = basis_.leftCols(count_);
-    for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second takes what rounding left
+    for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second pass removes rounding of the first
   }
-  // `row` is orthogonal to those taken. False if nothing can be beyond them any more.
+  // Adds a row orthogonal to the basis. Returns false if the basis already spans the space.
   bool take(const VecX& row) {
     if (count_ == basis_.cols()) return false;
     basis_.col(count_++) = row.normalized();
@@ -33,7 +33,7 @@ private:
 
 struct Candidate {
   std::size_t row;
-  double length, allowed; // allowed: of the length
+  double length, allowed; // allowed: share of the length
   VecX beyond;
 };
 

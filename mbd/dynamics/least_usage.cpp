@@ -10,20 +10,21 @@ namespace steplap {
 
 namespace {
 
-// Bounds from both sides closer than this: rounding of sums of a few shares.
+// Relative gap between upper and lower bound that counts as zero: rounding of sums of a few terms.
 constexpr double k_gap = 4e-15;
-// Cutting planes of curved sets gain a constant factor each; intervals need a few for each unknown.
+// Limits of simplex iterations. For curved sets each cutting plane reduces the error by a constant factor; intervals need a few iterations
+// per unknown.
 constexpr int k_max_pivots_per_unknown = 60, k_max_pivots = 200;
-// A capacity of nothing counts as this share of the largest.
+// Share of the largest capacity that replaces a capacity of zero.
 constexpr double k_least_capacity = 1e-13;
-// What holds whatever it takes counts as so much more than the strongest that does not.
+// Elements without bound have a capacity above k_unlimited; it is replaced by k_most_capacity times the largest bounded one.
 constexpr double k_unlimited = 1e20, k_most_capacity = 1e6;
 constexpr double k_tiny = 1e-30;
-// Weights of normals below this are none: the basis is degenerate there.
+// Weights of normals below this count as zero: the simplex basis is degenerate there.
 constexpr double k_no_weight = 1e-12;
 
-// What a row bears on the side on which `wrench` lies, for a freewheel holds one way only. `capacity` has three blocks: of each row the larger one, that
-// of negative wrenches, that of positive ones.
+// Returns the capacity of a row in the direction of `wrench`; a freewheel has one for one sign only. `capacity` consists of three blocks:
+// the larger capacity of each row, that of negative wrenches, that of positive ones.
 double side_of(const VecX& capacity, Eigen::Index row, double wrench) {
   const Eigen::Index count = capacity.size() / 3;
   return capacity[(wrench < 0.0 ? 1 : 2) * count + row];
@@ -57,14 +58,14 @@ double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& norma
   return inverse * std::abs(wrench[row]);
 }
 
-// Of the part's rates.
+// Returns the support function of a part at its present rates.
 double LeastUsage::support(const Gauges& gauges, std::size_t part) const {
   const int row = first_[part];
   if (dimension_[part] > 1) return gauges.support(static_cast<int>(part), rates_.data() + row);
   return side_of(capacity_, row, -rates_[row]) / length_[row] * std::abs(rates_[row]);
 }
 
-// The largest gauge, and its normal.
+// Returns the largest gauge of all parts, with its normal.
 double LeastUsage::largest(const Gauges& gauges, const VecX& wrench, Normal& normal) const {
   double worst = -1.0;
   for (std::size_t p = 0; p < dimension_.size(); ++p) {
@@ -78,8 +79,8 @@ double LeastUsage::largest(const Gauges& gauges, const VecX& wrench, Normal& nor
   return worst;
 }
 
-// min Σ λ_r²/(c_r l_r) over z. Its gradient in λ is a mechanism: where all parts move as one rigid piece, the
-// one that limits it.
+// Distributes the load by min Σ λ_r²/(c_r l_r) over z, with capacities c_r and lengths l_r. The gradient by λ is a mechanism; if all parts
+// move as one rigid body, it is the one that limits the load.
 void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
   for (std::size_t p = 0; p < dimension_.size(); ++p)
     for (int r = 0; r < dimension_[p]; ++r) {
@@ -105,7 +106,7 @@ void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
   trial_ = wrench + basis_ * settled_;
 }
 
-// Kinematic bound: what the load does on the mechanism, over what friction can take from it.
+// Returns the kinematic lower bound of u: power of the load in the mechanism over the largest power of friction.
 double LeastUsage::bound_of_mechanism(const Gauges& gauges, const VecX& wrench) {
   rates_ = trial_.cwiseQuotient(capacity_.head(trial_.size()));
   VecX taken(static_cast<Eigen::Index>(dimension_.size()));
@@ -125,7 +126,8 @@ void LeastUsage::put_column(const Normal& normal, double* column) const {
   column[k] = 1.0;
 }
 
-// Two opposite normals of the first pivot row, one of each other: feasible, with all weight on the first two.
+// Start of the simplex: two opposite normals of the first pivot row and one normal of each other pivot row. This basis is feasible with all
+// weight on the first pair.
 void LeastUsage::start_basis(const VecX& wrench) {
   const auto k = static_cast<std::size_t>(basis_.cols());
   for (std::size_t i = 0; i <= k; ++i) {
@@ -212,7 +214,7 @@ void LeastUsage::solve(const Gauges& gauges, const VecX& wrench) {
   start_basis(trial_);
   improve(gauges, wrench);
   if (shared <= 1.0) return;
-  // Gauges are convex: so far along the way the larger of the two shares has come down to 1.
+  // Gauges are convex, so at this fraction of the way the largest gauge is at most 1.
   const double excess = shared - usage_, wanted = shared - 1.0;
   const double part = excess > wanted ? wanted / excess : 1.0;
   settled_ += part * (z_ - settled_);

@@ -14,23 +14,24 @@ namespace steplap {
 
 namespace {
 
-// Joints depend on each other if what one is beyond the others is below this share of its length. Of friction the equations
-// decide (SchurSolver::k_dependent): rows that they keep are independent but where merged joints stand beside bilateral ones,
-// and depend on those exactly.
+// Least independent part of a row, relative to its length, at which it counts as independent. k_dependent is for joints. The equations
+// decide about friction (SchurSolver::k_dependent): a friction row that they keep depends on others only if it is parallel to bilateral
+// rows of a rigid joint, and then exactly.
 constexpr double k_dependent = 1e-6, k_exactly_dependent = 1e-9;
-constexpr double k_out_of_balance = 1e-6; // of its terms: more than this a null vector does not move
-// Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion; or are held
-// at places that are apart, m: less than what projection is content with (IntegratorSettings).
+constexpr double k_out_of_balance = 1e-6; // largest residual of Jᵀ n relative to its terms, for a null vector n
+// Rounding errors of the relative motion of a group's rows: absolute, m/s and m/s², and relative to its terms (k_discord). k_least_gap, m:
+// error of positions that projection accepts (IntegratorSettings).
 constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10, k_least_gap = 3e-13;
-constexpr double k_place_rounding = 8.0 * std::numeric_limits<double>::epsilon(); // of coordinates
+constexpr double k_place_rounding = 8.0 * std::numeric_limits<double>::epsilon(); // rounding of positions, relative to coordinates
 constexpr double k_discord = 1e-9;
-constexpr double k_open = 1e-6; // of a capacity: bounds of a usage that differ by more have not met
-// Parts of a null vector below this are rounding.
+constexpr double k_open = 1e-6; // relative to the capacity: bounds of u that differ by more have not converged
+// Components of a null vector below this are rounding.
 constexpr double k_no_part = 1e-11;
-// Dense algebra: joints of larger parts than this without friction keep what the solver of the equations gives them.
+// Largest number of connected bodies without friction that is analysed, because the algebra is dense. Larger ones keep the multipliers of
+// the solver.
 constexpr int k_most_bodies = 200;
 
-// f(body, 3 numbers) for either side of every part of a row that is not the ground's.
+// Calls f(body, 3 gradient components) for both sides of every part of a row, except for the ground.
 template <class F> void for_sides(const RowSpec& row, const std::vector<Motion<double>>& motion, const F& f) {
   for (const RowSpec* part = &row; part; part = part->next) {
     const RowGradient<double> g = row_gradient(*part, motion[part->a], motion[part->b]);
@@ -49,7 +50,8 @@ int first_body(const RowSpec& row) { return row.a != k_ground ? row.a : row.b; }
 
 using NullSpace = PivotedQr::NullSpace;
 
-// Null vectors of `matrix` of which the columns in `left_out` depend on the others, as nearly as that may be.
+// Returns the null vectors of `matrix`: exact ones of the kept columns, and one for each column in `left_out`, which depends on the kept
+// ones exactly or nearly.
 NullSpace null_space_of(const MatX& matrix, const std::vector<char>& left_out) {
   std::vector<Eigen::Index> kept, out;
   for (Eigen::Index c = 0; c < matrix.cols(); ++c) (left_out[c] != 0 ? out : kept).push_back(c);
@@ -79,7 +81,7 @@ int find_root(std::vector<int>& parent, int i) {
 
 } // namespace
 
-// Bounded rows last.
+// Returns all active rows, those with bounds (friction) last.
 std::vector<LoadSharing::HeldRow> LoadSharing::held_rows(const State& state) const {
   std::vector<HeldRow> rows, bounded;
   for (int r = 0; r < static_cast<int>(system_.rows.size()); ++r) rows.push_back({&system_.rows[r], -1, r});
@@ -96,7 +98,7 @@ std::vector<LoadSharing::HeldRow> LoadSharing::held_rows(const State& state) con
 
 LoadSharing::LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion, std::vector<char> left_out)
     : system_(system), group_of_(system.frictions.size(), -1), left_out_(std::move(left_out)) {
-  // Parts: bodies connected by rows; the ground connects nothing.
+  // A part consists of bodies connected by rows; the ground does not connect.
   const std::vector<HeldRow> rows = held_rows(state);
   std::vector<int> parent(system.bodies.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -145,7 +147,7 @@ void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>
     for_sides(*part.rows[r].spec, motion, [&](int body, const double* side) {
       const BodyData& data = system_.bodies[body];
       for (int c = 0; c < 3; ++c) {
-        // Of a body that several parts act on: their sum squared.
+        // Several parts of the row may act on the same body; mobility needs the square of their sum.
         double& sum = gradient(3 * body_index[body] + c, r);
         const double before = sum;
         sum += side[c];
@@ -159,7 +161,7 @@ void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>
   gradient = gradient * inverse_norm.asDiagonal();
   const Eigen::Index free = part.free_count, bounded = count - free;
 
-  // Joints alone; then what motions they leave, and which sticking wrenches do nothing on those.
+  // First the joints alone; then the sticking wrenches that do no work on the motions which the joints leave free.
   const PivotedQr joints(gradient.leftCols(free), k_dependent);
   const NullSpace idle = joints.null_space(k_no_part);
   NullSpace shared;
@@ -185,7 +187,7 @@ void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>
   if (k > 0) make_groups(part, shared.pivots, shared.vectors);
 }
 
-// Elements that a vector loads belong together.
+// Elements with components in the same null vector belong to one group.
 void LoadSharing::make_groups(ConnectedRows& part, const std::vector<int>& pivots, const MatX& basis) {
   const auto element_of = [&](Eigen::Index row) { return part.rows[part.free_count + row].friction; };
   std::vector<int> parent(system_.frictions.size());
@@ -233,7 +235,7 @@ void LoadSharing::make_groups(ConnectedRows& part, const std::vector<int>& pivot
   }
 }
 
-// Per null vector: what it moves, of the size of its terms.
+// Returns for each null vector n the residual of Jᵀ n, relative to its terms.
 VecX LoadSharing::off_balance(const ConnectedRows& part, const std::vector<Motion<double>>& motion) const {
   const Eigen::Index vectors = part.null.cols();
   MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
@@ -251,7 +253,7 @@ VecX LoadSharing::off_balance(const ConnectedRows& part, const std::vector<Motio
   return size;
 }
 
-// Rows that were found to depend nearly were out of balance from the first.
+// Null vectors of nearly dependent rows had a residual from the start (`off`), so only its change counts.
 bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const {
   if (left_out != left_out_) return false;
   return std::all_of(parts_.begin(), parts_.end(),
@@ -283,15 +285,15 @@ private:
 
 namespace {
 
-// What moves by the vector c makes of a row whose gradient is j, whichever way it points: the direction of a row is known no
-// better than k_discord of a radian, and rows that differ by less hold what moves across them alike.
+// Returns an upper bound of the motion c along a row with gradient j if the row had any direction. The direction of a row is known to
+// k_discord rad only, so k_discord times this motion is rounding.
 double across(const double* j, const double* c) {
   return (std::abs(j[0]) + std::abs(j[1])) * (std::abs(c[0]) + std::abs(c[1])) + std::abs(j[2] * c[2]);
 }
 
-// Sums over the rows of a null vector, each with that of the terms it is made of.
+// Sums over the rows of a null vector, with the sums of their terms for rounding.
 struct Discord {
-  double gap = 0.0, rate = 0.0, second = 0.0; ///< of what the rows are held at, m, m/s, m/s²
+  double gap = 0.0, rate = 0.0, second = 0.0; ///< incompatibility of position, m, velocity, m/s, and acceleration, m/s²
   double moved = 0.0, rate_terms = 0.0, second_terms = 0.0;
   double length = 0.0, farthest = 0.0;
 
@@ -302,8 +304,8 @@ struct Discord {
   }
 };
 
-// Of one row, which the null vector has n times. `is_led`: joints or drives are among the rows that depend on each other, and
-// hold along the way that the bodies have come.
+// Adds a row, which the null vector contains with factor n. `is_led`: the null vector contains joints or drives, whose rows are also
+// affected by rounding of the displacement since the start.
 void add_row(const System& system, const RowSpec& spec, double n, bool is_led, const Evaluation& e, const double* acceleration,
              Discord& sum) {
   const auto m = evaluate_row<true>(spec, e.motion);
@@ -361,7 +363,7 @@ void LoadSharing::solve(const Evaluation& evaluation, const double* friction_for
     VecX wrench(group.slot.size());
     for (std::size_t r = 0; r < group.slot.size(); ++r) wrench[static_cast<Eigen::Index>(r)] = friction_force[group.slot[r]];
     group.least.solve(FrictionGauges(system_, evaluation, group.frictions), wrench);
-    // Pivots that run out leave bounds from both sides: only between them is it open whether the group holds.
+    // If the iterations were exhausted, it is unknown between the two bounds whether the group sticks.
     if (group.least.usage() > 1.0 && group.least.lower() < 1.0 - k_open)
       throw ElementFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
                                "' and what shares its load hold cannot be told at t = " + rounded_text(evaluation.t, 12) + " s: between " +

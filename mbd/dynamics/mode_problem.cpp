@@ -1,5 +1,5 @@
-// The matrices of the problem that decides which friction sticks: how the candidates' rows answer forces
-// along one another, everything else as it is in the present modes.
+// Matrices of the mode problem: the relative accelerations of the candidates' rows by unit forces along each other, with all other elements
+// in their present modes.
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
@@ -10,11 +10,11 @@ namespace steplap {
 
 namespace {
 
-// What is not known of a relative acceleration: absolute, m/s² or rad/s², and of its terms.
+// Rounding errors of a relative acceleration: absolute, m/s² or rad/s², and relative to its terms.
 constexpr double k_least_acceleration = 1e-11;
 constexpr double k_rounded_share = 1e-12;
 
-// Relative acceleration along a row with accelerations `a` of the clusters, and the size of its terms.
+// Relative acceleration along a row for accelerations `a` of the clusters, and the size of its terms.
 struct AlongRow {
   double acceleration = 0.0, terms = 0.0;
 };
@@ -53,8 +53,8 @@ void Dynamics::slip_motion(int f, const double* dy, double* rate, double* accele
   }
 }
 
-// A candidate's row in the coordinates of a layout: by clusters, or where a side is in a mechanism, by its coordinates.
-// A row between two clusters of one mechanism is all in the first side's.
+// Row of a candidate in the coordinates of a layout: by clusters or, for a side in a mechanism, by the mechanism's coordinates. A row
+// between two clusters of one mechanism is stored completely in its first side.
 struct Dynamics::CandidateRow {
   SchurRow row;
   const Mechanism* mechanism[2] = {nullptr, nullptr};
@@ -66,7 +66,7 @@ struct Dynamics::CandidateRow {
       if (row.body[side] < layout.absolute_count) continue;
       mechanism[side] = &layout.mechanism_of_cluster(row.body[side]);
       SchurRow half = row;
-      if (side == 1 && mechanism[0] == mechanism[1]) { // with the first
+      if (side == 1 && mechanism[0] == mechanism[1]) { // contained in the first side
         mechanism[1] = nullptr;
         row.body[1] = -1;
         continue;
@@ -109,7 +109,7 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
   candidates.acceleration.assign(n, 0.0);
   candidates.rounding.assign(n, 0.0);
   kinematics_.complete();
-  std::vector<std::vector<CandidateRow>> rows(n); // each the sum of its parts
+  std::vector<std::vector<CandidateRow>> rows(n); // each row is the sum of its parts
   std::vector<double> response(coordinate_count());
   const double* const a = cluster_accelerations(dy);
   for (std::size_t c = 0; c < n; ++c) {

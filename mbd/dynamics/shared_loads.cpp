@@ -1,5 +1,5 @@
-// Dynamics of constraints that depend on each other: the watch of sticking groups, and which of many
-// sharings is reported (load_sharing.h).
+// Dynamics with dependent constraints: event functions of sticking groups, and the choice of the reported load distribution
+// (load_sharing.h).
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-// Anew at the present pose, if the null vectors known are not those of it.
+// Determines the null vectors at the present pose, unless those known are still valid.
 void Dynamics::find_sharing() {
   Layout& layout = *layout_;
   const std::vector<Motion<double>>& all = motion();
@@ -20,7 +20,7 @@ void Dynamics::find_sharing() {
 
 const LoadSharing* Dynamics::sharing_now() const {
   const Layout& layout = *layout_;
-  // Code holds where no rows depend on each other.
+  // While byproducts are pending, compiled code computed the evaluation; it is used only if no rows depend on each other.
   return !pending_.is_pending() && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
@@ -29,7 +29,7 @@ bool Dynamics::is_shared(int friction) const {
   return shared && shared->group_of(friction) >= 0;
 }
 
-// A reported sharing may have taken the place of the one that was solved for.
+// Restores the friction forces of the solution; the array may contain a reported distribution instead.
 void Dynamics::take_solved_friction() {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const ActiveRow& row = layout_->active[r];
@@ -37,8 +37,9 @@ void Dynamics::take_solved_friction() {
   }
 }
 
-// A group's watch values stand in the slots of all its elements: the first one, they give way together, or rather the
-// mode problem tells which of them do; the second one, their rows begin to move against each other. To be called with the wrenches of merged joints up to date.
+// Sets the event functions of each group in the slots of all its elements. First: 1 minus the least utilisation; the group gives way when
+// it becomes negative, and the mode problem decides which elements slip. Second: 1 minus the incompatible motion of its rows
+// (LoadSharing::discord). Returns true if one of them is near zero. Precondition: wrenches of rigid joints inside clusters are up to date.
 bool Dynamics::watch_groups() {
   bool is_near = false;
   if (!sharing()) return is_near;

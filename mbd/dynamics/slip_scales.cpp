@@ -1,5 +1,4 @@
-// What slip laws that turn with the direction of slip ask of a method: how fine velocities have to be known, and how
-// short steps have to be.
+// Requirements of friction laws that depend on the direction of slip: the accuracy of velocities, and the length of steps.
 #include "mbd/base/portable_math.h"
 #include "mbd/dynamics/dynamics.h"
 
@@ -11,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Coordinates that move a cluster of a mechanism: by how much each at most moves the place of slip.
+// Reduces the scales of the coordinates that move a cluster of a mechanism. `found.speed` divided by the largest velocity of the contact
+// point per unit rate of a coordinate is the scale of that rate.
 void narrow_scales(const Layout& layout, int cluster, const SlipScale& found, double lever, double* scale, double* speed) {
   const Mechanism& m = layout.mechanism_of_cluster(cluster);
   for (int i = 0; i < m.size(); ++i) {

@@ -17,7 +17,7 @@ struct PatchAccess {
 
 namespace {
 
-/// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬w|r−c|, with u = ±ẑ×(r−c)/|r−c|.
+/// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬ w|r−c| dA; the friction direction is u = ±ẑ×(r−c)/|r−c|.
 template <bool WithCurvature>
 PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece, const Vec2& v, double omega) {
   const Vec2 c(-v.y() / omega, v.x() / omega);
@@ -72,7 +72,7 @@ template <bool WithCurvature> void add_piece(Dissipation& out, const Patch& patc
   add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, nu[2]), arm);
 }
 
-/// Adds overlapping pieces together, if the centre of rotation is far from all of them.
+/// Adds overlapping pieces as one, if the centre of rotation is far from all of them.
 template <bool WithCurvature> void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const Vec3& nu) {
   for (const auto& group : PatchAccess::groups(patch)) {
     const Vec2 arm = group.centre - point;
@@ -202,7 +202,7 @@ void Patch::prepare() {
   are_groups_known_ = true;
 }
 
-// Forms groups around the largest piece that has none, until all pieces are in a group.
+// Forms groups: repeatedly takes the largest piece without a group and adds the pieces within nearly the same circle.
 void Patch::group_pieces() {
   // Relative to the largest piece: its circle should serve the others as well, and smaller pieces should not lose accuracy.
   constexpr double k_wider = 1.05, k_smaller = 0.8;
