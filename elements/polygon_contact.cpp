@@ -225,8 +225,8 @@ public:
 
   static constexpr double k_dead_band = 1e-13; // m, as for feet
   static constexpr double k_same_face = 0.1;   // rad: two faces that lie on each other may differ in angle by less
-  static constexpr double k_most_error = 1e-6; // m/s: largest velocity error of a contact point; friction of a tenth of the weight removes
-                                               // it within a microsecond
+  // Largest velocity error of a contact point, m/s; friction of a tenth of the weight removes it within a microsecond.
+  static constexpr double k_most_error = 1e-6;
 
   void make_places(int memory) {
     const int of_a = outlines->a.edge_count(), of_b = outlines->b.edge_count();

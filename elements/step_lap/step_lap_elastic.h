@@ -34,8 +34,8 @@ public:
   struct Entry {
     int a = k_ground, b = k_ground;            ///< limb and active part
     const StepLapFriction* friction = nullptr; ///< belongs to the system, which owns both
-    int inner = 0;                             ///< index of the first of seven numbers: p (3), direction of slip (3), and 1 after it has
-                                               ///< come apart
+    /// Index of the first of seven numbers: p (3), direction of slip (3), and 1 after it has come apart.
+    int inner = 0;
     int link = 0, unit = 0, watch = 0;
   };
   static constexpr int k_watches = 3; ///< bound or flow; separation of interfaces; sharpness of the corner

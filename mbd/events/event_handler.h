@@ -44,7 +44,8 @@ public:
 
   /// Determines modes and phases at the start: contacts by their gaps, friction by the mode problem.
   void start(State& state);
-  /// Behind start(): notes what slides from there, if it could hold at all (friction of zero never does).
+  /// Appends events for contacts and friction elements that slide from the start. Precondition: start(). Friction elements without capacity
+  /// are not reported.
   void note_start(const State& state, std::vector<Event>& events) const;
   /// Handles an event at `state`: changes modes, phases and anchors, and appends events. `fired`: slots of the event functions that became
   /// negative; empty at a breakpoint of a signal, where loads may jump. `watch_before`: all event functions just before a breakpoint, else

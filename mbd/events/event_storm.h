@@ -11,7 +11,7 @@ namespace steplap {
 /// Event times of each element, the last k_limit of them.
 class EventStorm {
 public:
-  /// Records an event of `element` at t, s. Returns true if it is one of more than k_limit events within `window`, s.
+  /// Records an event of `element` at t, s. Returns true if the last k_limit events of the element lie within `window`, s.
   bool note(double t, const std::string& element, double window) {
     std::vector<double>& times = times_[element];
     if (times.size() < k_limit) times.push_back(t);

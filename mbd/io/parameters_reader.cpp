@@ -333,8 +333,8 @@ std::string ParametersReader::text_of(const Node& node) const {
 
 Parameters ParametersReader::parameters(const Node& root, const Model& model) const {
   Parameters result = parameters_;
-  std::unordered_map<std::string, bool> settable; // results for paths that are alike, because finding an entry by its name is slow in large
-                                                  // models
+  // Results for paths that are alike, because finding an entry by its name is slow in large models.
+  std::unordered_map<std::string, bool> settable;
   const Walk walk(root, [&](const Node& node, const std::string& path, const std::string& alike) {
     const auto found = found_.find(&node);
     if (found == found_.end()) return;

@@ -20,10 +20,10 @@ constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // initial trust regi
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
 constexpr double k_balanced = 1e-11; // of the size of the model; smaller Newton steps are rounding of the pose
 constexpr double k_nearly_balanced = 1e-8;
-constexpr double k_nudge = 1e-3;         // displacement out of an unstable equilibrium: share of the size of the model, rad
-constexpr double k_turned_against = 0.5; // of the work along the tangent at the start; a step with more opposing work at its end has gone
-                                         // too far
-constexpr double k_far = 1e4;            // in sizes of the model; beyond it a body counts as moving without end
+constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: share of the size of the model, rad
+// Share of the work along the tangent at the start; a step with more opposing work at its end has gone too far.
+constexpr double k_turned_against = 0.5;
+constexpr double k_far = 1e4; // in sizes of the model; beyond it a body counts as moving without end
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_looks = 1000; // gap measurements along one step
 constexpr int k_most_halved_looks = 40;

@@ -23,8 +23,8 @@ constexpr double k_admissible = 1.0 + 1e-9; // largest utilisation; the excess i
 constexpr double k_least_used = 1e-9;       // smaller utilisations are rounding
 constexpr double k_flowed = 1e-12;          // of the size of the model; smaller slides of elastic joints are rounding
 constexpr int k_most_flows = 200;
-constexpr double k_pushes = 1e3;               // factor on the rounding of a rope's tension; accelerations at an equilibrium are known to
-                                               // about 1e-9 m/s²
+// Factor on the rounding of a rope's tension; accelerations at an equilibrium are known to about 1e-9 m/s².
+constexpr double k_pushes = 1e3;
 constexpr double k_on_rows = 1e-12;            // m, rad
 constexpr std::size_t k_most_rope_changes = 8; // per rope
 constexpr double k_short = 0.999;

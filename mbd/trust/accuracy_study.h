@@ -36,12 +36,12 @@ struct MethodSetting {
 struct AccuracyOptions {
   std::vector<MethodSetting> ladder;
   MethodSetting first_reference{"dop853", 1e-13}, second_reference{"tsit5", 1e-13};
-  int repeats = 3;                                         ///< most repetitions of a run for its time; long runs are repeated less often
-  double cpu_limit = 60.0;                                 ///< CPU time of one run, s; a longer run is stopped and reported as failed
-  double budget = std::numeric_limits<double>::infinity(); ///< CPU time for the whole list, s; the references are run first and are not
-                                                           ///< counted
-  EventFilter is_event_counted;                            ///< empty: all events
-  std::function<void(const std::string& text)> progress;   ///< called with a text before each run, if set
+  int repeats = 3;         ///< most repetitions of a run for its time; long runs are repeated less often
+  double cpu_limit = 60.0; ///< CPU time of one run, s; a longer run is stopped and reported as failed
+  /// CPU time for the whole list, s; the references are run first and are not counted.
+  double budget = std::numeric_limits<double>::infinity();
+  EventFilter is_event_counted;                          ///< empty: all events
+  std::function<void(const std::string& text)> progress; ///< called with a text before each run, if set
 };
 
 struct AccuracyEntry {

@@ -85,9 +85,8 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   const bool is_bearing = std::any_of(wrench, wrench + n, [](double w) { return w != 0.0; });
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
-  double normal[3],
-      against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0}; // in one dimension: direction opposed to the force, so that
-                                                                       // one-way elements use the bound of the loaded side
+  // In one dimension `against` is opposed to the force, so that one-way elements use the bound of the loaded side.
+  double normal[3], against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0};
   // No bound: the force must be rounding.
   if (!(unit.friction->support(*s.evaluation, state, against) > 0.0))
     return n == 1 ? std::abs(wrench[0]) / slight_force(system, *unit.friction->rows(state)) - 1.0 : 0.0;

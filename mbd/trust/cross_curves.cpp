@@ -14,13 +14,13 @@ namespace {
 
 constexpr double k_least_part = 1e-3; // of the largest range of its kind, which is the scale of channels with smaller ranges
 constexpr double k_wide_part = 0.1;
-constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9;         // limits of the ratio of differences of three settings
-constexpr double k_doubtful_event = 0.02;                         // of the run: near an event that is uncertain by more, reactions are not
-                                                                  // compared
-constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1; // of the largest estimate in the body or mechanism, as lower bounds of
-                                                                  // the others
-constexpr double k_lacking = 0.1;                                 // of the residual of energy, as an error of dissipated energy and work
-constexpr double k_still = 1e-3;                                  // of the bodies' size; smaller motions count as none
+constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // limits of the ratio of differences of three settings
+// Share of the duration: near an event that is uncertain by more, reactions are not compared.
+constexpr double k_doubtful_event = 0.02;
+// Shares of the largest estimate in a body or mechanism: lower bounds of its other estimates.
+constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1;
+constexpr double k_lacking = 0.1; // of the residual of energy, as an error of dissipated energy and work
+constexpr double k_still = 1e-3;  // of the bodies' size; smaller motions count as none
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;
@@ -204,8 +204,8 @@ double extrapolated_error(const std::vector<double>& differences) {
   if (differences.size() < 2 || last == 0.0) return last;
   const double before = differences[differences.size() - 2];
   const double ratio = std::clamp(before > 0.0 ? last / before : k_most_ratio, k_least_ratio, k_most_ratio);
-  return std::max(last * ratio / (1.0 - ratio), k_least_ratio * before); // the last difference may be small by chance, so half of the one
-                                                                         // before is the least estimate
+  // The last difference may be small by chance, so half of the one before is the least estimate.
+  return std::max(last * ratio / (1.0 - ratio), k_least_ratio * before);
 }
 
 MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels, double step,

@@ -25,12 +25,12 @@ constexpr double k_skew = 1e-9;                // of A; smaller asymmetry is rou
 constexpr double k_real = 1e-6;                // imaginary part over modulus of an eigenvalue; below it the growth has no oscillation
 constexpr Eigen::Index k_most_companion = 120; // directions; their dense eigenvalue problem has twice the size
 constexpr int k_bisections = 30;
-constexpr double k_rank = 1e-6;    // rows whose independent part is below this share of their length are dependent, friction rows included
-                                   // (theory.md)
-constexpr double k_within = 0.995; // cosine of 6°; a curved path leaves the span of its recorded chords by less than that before another
-                                   // chord is recorded
-constexpr double k_even = 1e-3;    // of the speed; motion is even if velocities change by less, since the equations change as little
-constexpr double k_idle = 1e-9;    // of the largest force; a smaller reaction is rounding
+// Rows whose independent part is below this share of their length are dependent, friction rows included (theory.md).
+constexpr double k_rank = 1e-6;
+// Cosine of 6°; a curved path leaves the span of its recorded chords by less than that before another chord is recorded.
+constexpr double k_within = 0.995;
+constexpr double k_even = 1e-3; // of the speed; motion is even if velocities change by less, since the equations change as little
+constexpr double k_idle = 1e-9; // of the largest force; a smaller reaction is rounding
 // Displacement by which the touching rows are found: far above rounding of gaps given as zero, far below the compression by loads.
 constexpr double k_trial = 1e-9; // of a body's size
 constexpr std::uint64_t k_trials = 2;

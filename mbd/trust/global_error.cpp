@@ -24,8 +24,8 @@ constexpr double k_finer_cost = 3.0;  // cost of a hundredth of the tolerance; a
 constexpr double k_rounding = 1e-14;  // of a channel's largest value, and of times
 constexpr double k_first_order = 0.5; // share of the error left by half the step
 constexpr double k_safety = 1.5;
-constexpr double k_most_left = 0.9;       // share of the error left by a finer run; beyond it the difference is less than a tenth of the
-                                          // error, and the estimate is useless
+// Share of the error left by a finer run; beyond it the difference is less than a tenth of the error, and the estimate is useless.
+constexpr double k_most_left = 0.9;
 constexpr double k_stepping_safety = 3.0; // for time stepping, which locates no events
 constexpr double k_little = 1e7;          // evaluations times parts that references may take even if the run was short
 // Extremes near a singular position (within 1e-5 rad) are not known: a force proportional to 1/distance is k_grown times its usual size
