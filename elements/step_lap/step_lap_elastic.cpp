@@ -26,7 +26,7 @@ constexpr double k_direction_length = 1e-3;
 // Limits of roundness (StepLapFriction) below which the direction becomes a state, and above which it ceases to be one. By the wrench the
 // direction is known to tolerance/roundness; where that is sufficient it is the smoother choice.
 constexpr double k_sharp = 1e-3, k_blunt = 1e-2;
-constexpr double k_strain_step = 1e-5; // of the strain, for differences of the flow
+constexpr double k_strain_step = 1e-5; // share of the strain, for differences of the flow
 constexpr double k_least_step = 1e-12; // m
 
 Pose slid_at(const double* inner) { return {inner[0], inner[1], inner[2]}; }

@@ -13,12 +13,12 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_no_share = 1e-6; // of the work; a smaller direct force on a body is rounding
+constexpr double k_no_share = 1e-6; // share of the work; a smaller direct force on a body is rounding
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // initial trust region: share of the size of the model; rad
 // rad: larger rotations could confuse poses that are half a turn apart
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
-constexpr double k_balanced = 1e-11; // of the size of the model; smaller Newton steps are rounding of the pose
+constexpr double k_balanced = 1e-11; // share of the size of the model; smaller Newton steps are rounding of the pose
 constexpr double k_nearly_balanced = 1e-8;
 constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: share of the size of the model, rad
 // Share of the work along the tangent at the start; a step with more opposing work at its end has gone too far.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // largest utilisation; the excess is rounding at stiff contacts
 constexpr double k_least_used = 1e-9;       // smaller utilisations are rounding
-constexpr double k_flowed = 1e-12;          // of the size of the model; smaller slides of elastic joints are rounding
+constexpr double k_flowed = 1e-12;          // share of the size of the model; smaller slides of elastic joints are rounding
 constexpr int k_most_flows = 200;
 // Factor on the rounding of a rope's tension; accelerations at an equilibrium are known to about 1e-9 m/s².
 constexpr double k_pushes = 1e3;

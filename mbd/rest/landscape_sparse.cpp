@@ -20,9 +20,9 @@ using Entry = Statics::Entry;
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
-constexpr double k_small = 1e-11; // of the size of the model; smaller steps are rounding of the pose
+constexpr double k_small = 1e-11; // share of the size of the model; smaller steps are rounding of the pose
 constexpr int k_most_filters = 8;
-constexpr double k_well_inside = 0.5; // of the trust region's radius; longer steps are accepted
+constexpr double k_well_inside = 0.5; // share of the trust region's radius; longer steps are accepted
 constexpr double k_close = 1.2;       // ratio of two σ below which another factorisation is not worth its cost
 constexpr int k_most_shifts = 60;
 constexpr int k_named = 24; // most directions that are named

@@ -17,8 +17,8 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first = 1e-4; // displacement of the first step, relative to the size of the model
 // Largest displacement of a step, relative to the size of the model, and largest rotation, rad.
 constexpr double k_move = 0.05, k_turn = 0.1;
-constexpr double k_balanced = 1e-9; // of the initial accelerations; the remaining imbalance is left to Newton's method
-constexpr double k_shortest = 1e-5; // of the longest step; time stepping takes steps below a tenth of it for rounding
+constexpr double k_balanced = 1e-9; // share of the initial accelerations; the remaining imbalance is left to Newton's method
+constexpr double k_shortest = 1e-5; // share of the longest step; time stepping takes steps below a tenth of it for rounding
 constexpr double k_touch = 64.0;    // in roundings of the largest coordinate
 constexpr double k_on_rows = 1e-12; // m, rad
 // Limits of steps. A step costs a solution for all coordinates, and the square of the number of friction rows.

@@ -20,7 +20,7 @@ using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_new = 1e-9;              // of a vector's length: least part outside the basis for a new direction
+constexpr double k_new = 1e-9;              // share of a vector's length: least part outside the basis for a new direction
 constexpr double k_residual = 1e-9;         // largest residual, relative to the mode's own acceleration
 constexpr double k_out_of_balance = 1e-4;   // the same if W is the whole space of the model and cannot grow any more
 constexpr double k_rounding = 32.0;         // epsilons of the terms in a residual

@@ -13,7 +13,7 @@ namespace {
 // Least independent part of a row, relative to its length; rows with less are dependent. The first value is for joints, the second for
 // friction, as in the equations of motion (theory.md).
 constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
-constexpr double k_least_radius = 1e-3; // of the size of the model
+constexpr double k_least_radius = 1e-3; // share of the size of the model
 
 // Returns the indices of independent rows, those of joints first, then friction. `rows`: unit columns.
 std::vector<int> independent(const MatX& rows, Eigen::Index joints) {

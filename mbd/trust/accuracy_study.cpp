@@ -20,7 +20,7 @@ constexpr long k_steps_between_looks = 512;
 
 constexpr double k_cost_power = 0.2;  // number of steps ~ tolerance^(−1/5): order 5
 constexpr double k_least_cost = 1e-6; // s; replaces a measured time of zero
-constexpr double k_small_part = 0.02; // of the budget; only shorter runs are repeated to measure their time
+constexpr double k_small_part = 0.02; // share of the budget; only shorter runs are repeated to measure their time
 
 struct OutOfTime : NumericalFailure {
   using NumericalFailure::NumericalFailure;

@@ -20,11 +20,11 @@ namespace {
 
 constexpr double k_nudge = 1e-9;           // size of a nudge over that of the body
 constexpr double k_above_rounding = 1e4;   // least size of a nudge, in roundings of the body's position
-constexpr double k_least_part = 1e-3;      // of a nudge; if constraints leave less of it, they hold the body
+constexpr double k_least_part = 1e-3;      // share of a nudge; if constraints leave less of it, they hold the body
 constexpr double k_least_fastest = 0.3;    // least part of the nudge along the fastest growing direction
-constexpr double k_least_share = 0.5;      // of the mean rate that counts; slower growth at an instant counts as 0
+constexpr double k_least_share = 0.5;      // share of the mean rate that counts; slower growth at an instant counts as 0
 constexpr double k_visible_exponent = 0.2; // growth by 22 %, far above the rounding of a nudge; smaller exponents are not confirmed by runs
-constexpr double k_confirmed = 0.5;        // of the exponent that two runs must confirm: instants are few, and the growing direction turns
+constexpr double k_confirmed = 0.5; // share of the exponent that two runs must confirm: instants are few, and the growing direction turns
 // Test for exponential growth in one run. An exponential takes about as long from 1 to 100 as from 100 to 1e4. A body that falls or slides
 // off takes ten times as long, one that drifts evenly a hundred times. So the second time may be at most k_slower times the first.
 constexpr double k_begun = 2.0, k_half_way = 100.0;

@@ -20,9 +20,10 @@ namespace {
 // follow the tolerance (location of the end of a slip, projection).
 constexpr double k_floor = 1e-7, k_reaction_floor = 1e-6, k_time_floor = 1e-6;
 constexpr double k_integral_floor = 1e-6;
-constexpr double k_energy_allowed = 1e-5;                        // largest residual of energy over the energy exchanged, adaptive runs
-constexpr double k_stepped_energy_allowed = 0.2;                 // the same for fixed steps, which damp
-constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2; // of the run's own powers and forces, for adaptive and for fixed steps
+constexpr double k_energy_allowed = 1e-5;        // largest residual of energy over the energy exchanged, adaptive runs
+constexpr double k_stepped_energy_allowed = 0.2; // the same for fixed steps, which damp
+// Shares of the run's own powers and forces that a violation may reach, for adaptive and for fixed steps.
+constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2;
 // Share of the residual or violation at twice the step; below it the violation shrinks with the step.
 constexpr double k_shrinking = 0.8;
 // Number of consecutive samples: forces of time stepping are averages over a step, so single samples do not count.
@@ -30,7 +31,7 @@ constexpr int k_persistent = 4;
 constexpr double k_brief_steps = 20.0; // a change that is reversed within so many fixed steps is not missed
 constexpr double k_own_doubt = 1e-3;   // own error of an adaptive method above which it is questioned
 constexpr double k_momentum_allowed = 1e-6;
-constexpr double k_rest_share = 1e-9; // of the bodies' size: smaller position errors count as rest (run_comparison.cpp)
+constexpr double k_rest_share = 1e-9; // share of the bodies' size: smaller position errors count as rest (run_comparison.cpp)
 // Rest limit over tolerance · size of the bodies: 100 · 1e-3, because errors are absolute to 1e-3 of the size (Integrator).
 constexpr double k_rest_errors = 0.1;
 constexpr long k_steps_between_looks = 8; // limits are checked every so many steps, since a step of time stepping may take milliseconds

@@ -12,15 +12,15 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_least_part = 1e-3; // of the largest range of its kind, which is the scale of channels with smaller ranges
+constexpr double k_least_part = 1e-3; // share of the largest range of its kind, which is the scale of channels with smaller ranges
 constexpr double k_wide_part = 0.1;
 constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // limits of the ratio of differences of three settings
 // Share of the duration: near an event that is uncertain by more, reactions are not compared.
 constexpr double k_doubtful_event = 0.02;
 // Shares of the largest estimate in a body or mechanism: lower bounds of its other estimates.
 constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1;
-constexpr double k_lacking = 0.1; // of the residual of energy, as an error of dissipated energy and work
-constexpr double k_still = 1e-3;  // of the bodies' size; smaller motions count as none
+constexpr double k_lacking = 0.1; // share of the residual of energy, as an error of dissipated energy and work
+constexpr double k_still = 1e-3;  // share of the bodies' size; smaller motions count as none
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;

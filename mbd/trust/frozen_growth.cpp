@@ -20,8 +20,8 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_rounded_terms = 64.0;
-constexpr double k_part_of_motion = 1e-3;      // of a direction of motion; a smaller part along the free directions is rounding
-constexpr double k_skew = 1e-9;                // of A; smaller asymmetry is rounding
+constexpr double k_part_of_motion = 1e-3;      // share of a direction of motion; a smaller part along the free directions is rounding
+constexpr double k_skew = 1e-9;                // share of A; smaller asymmetry is rounding
 constexpr double k_real = 1e-6;                // imaginary part over modulus of an eigenvalue; below it the growth has no oscillation
 constexpr Eigen::Index k_most_companion = 120; // directions; their dense eigenvalue problem has twice the size
 constexpr int k_bisections = 30;
@@ -29,10 +29,10 @@ constexpr int k_bisections = 30;
 constexpr double k_rank = 1e-6;
 // Cosine of 6°; a curved path leaves the span of its recorded chords by less than that before another chord is recorded.
 constexpr double k_within = 0.995;
-constexpr double k_even = 1e-3; // of the speed; motion is even if velocities change by less, since the equations change as little
-constexpr double k_idle = 1e-9; // of the largest force; a smaller reaction is rounding
+constexpr double k_even = 1e-3; // share of the speed; motion is even if velocities change by less, since the equations change as little
+constexpr double k_idle = 1e-9; // share of the largest force; a smaller reaction is rounding
 // Displacement by which the touching rows are found: far above rounding of gaps given as zero, far below the compression by loads.
-constexpr double k_trial = 1e-9; // of a body's size
+constexpr double k_trial = 1e-9; // share of a body's size
 constexpr std::uint64_t k_trials = 2;
 
 bool is_positive_definite(MatX p) {

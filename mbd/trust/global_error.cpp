@@ -21,7 +21,7 @@ constexpr double k_least_tolerance = 1e-14; // smaller tolerances are dominated 
 constexpr int k_division = 2;
 constexpr double k_finer_step = 1.0 / k_division;
 constexpr double k_finer_cost = 3.0;  // cost of a hundredth of the tolerance; a method of order 5 takes 2.5 times the steps
-constexpr double k_rounding = 1e-14;  // of a channel's largest value, and of times
+constexpr double k_rounding = 1e-14;  // share of a channel's largest value, and of times
 constexpr double k_first_order = 0.5; // share of the error left by half the step
 constexpr double k_safety = 1.5;
 // Share of the error left by a finer run; beyond it the difference is less than a tenth of the error, and the estimate is useless.
@@ -62,7 +62,8 @@ double difference(const std::optional<double>& a, const std::optional<double>& b
   return a ? difference(*a, *b) : 0.0;
 }
 
-// Near a pole, a number without unit (such as the margin of an unloaded element, which is infinite) is determined by rounding only.
+// Returns the difference of two values of a channel. A number without unit may have a pole, such as the margin of an unloaded element, which
+// is infinite. There it consists of rounding, so a difference counts as unknown.
 double difference(const Channel& channel, double a, double b) {
   const bool is_at_pole = channel.unit.empty() && std::max(std::abs(a), std::abs(b)) > ExtremeFinder::k_at_pole;
   return is_at_pole && a != b ? k_unknown_error : difference(a, b);

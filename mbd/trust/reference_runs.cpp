@@ -17,9 +17,9 @@ constexpr const char* k_method = "auto";
 constexpr double k_first_tolerance = 1e-9, k_tightening = 0.01;
 constexpr double k_most_tolerance_of_last = 1e-12;
 constexpr int k_division = 2;
-constexpr double k_most_own_error = 1.0 / 3.0; // of the run's difference from the reference
+constexpr double k_most_own_error = 1.0 / 3.0; // share of the run's difference from the reference
 constexpr double k_safety = 1.5;               // because no error is exactly proportional to the tolerance
-constexpr double k_parted = 0.01;              // of a range; more than a million times the larger tolerance
+constexpr double k_parted = 0.01;              // share of a range; more than a million times the larger tolerance
 constexpr double k_fewest_rows = 100.0;        // least number of samples of the coarse run, so that the relevant oscillations are resolved
 constexpr long k_steps_between_looks = 64;     // checks of the cost, every so many steps
 

@@ -12,10 +12,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_least_range = 1e-3; // of the largest range of channels of one kind
-constexpr double k_is_constant = 1e-9; // of the value; a smaller range is rounding
-// Share of the bodies' size L, m: smaller motions count as none. Errors of positions are absolute to 1e-3 L (Integrator); hundreds of steps at
-// the usual tolerance leave 1e-9 L. A tenth of k_no_motion is that error.
+constexpr double k_least_range = 1e-3; // share of the largest range of channels of one kind
+constexpr double k_is_constant = 1e-9; // share of the value; a smaller range is rounding
+// Share of the bodies' size L, m: smaller motions count as none. Errors of positions are absolute to 1e-3 L (Integrator); hundreds of steps
+// at the usual tolerance leave 1e-9 L, a tenth of k_no_motion.
 constexpr double k_no_motion = 1e-8;
 // Share of the largest value of its kind, as in mbd/simulation/extremes.h: a channel with a smaller range shows only rounding.
 constexpr double k_rounding = 1e-12;

@@ -25,7 +25,7 @@ std::optional<double> event_error(const std::string& element, double t, const Ru
 namespace {
 
 constexpr const char* k_smaller_step = "try a smaller step, or the integrator auto";
-constexpr double k_most_trusted_error = 0.1; // of the range of positions, and of a slid distance
+constexpr double k_most_trusted_error = 0.1; // share of the range of positions, and of a slid distance
 // Slid distances at or below the tolerance: share of the largest range of displacements, and of the bodies' size (errors are absolute to
 // 1e-3 of it, Integrator).
 constexpr double k_slide_share = 1e-6, k_size_share = 1e-9;
