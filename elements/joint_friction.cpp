@@ -74,8 +74,8 @@ bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& bu
   return false;
 }
 
-// Friction of one coordinate. The bound for sliding at rate v is drags + (holds − drags)/(1 + (v/v_s)²), with Stribeck velocity v_s (Hess and
-// Soom, 1990), plus a viscous part. It is a smooth even function of v, so a step may extend beyond the end of a slip.
+// Friction of one coordinate. The bound for sliding at rate v is drags + (holds − drags)/(1 + (v/v_s)²), with Stribeck velocity v_s (Hess
+// and Soom, 1990), plus a viscous part. It is a smooth even function of v, so a step may extend beyond the end of a slip.
 class CoordinateFriction final : public FrictionElement {
 public:
   RowSpec row;

@@ -15,8 +15,8 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_steps = 300;
-// Share of the bodies' size: if the given poses are nearer to the joints, one projection suffices; its distance exceeds the least one only in
-// second order.
+// Share of the bodies' size: if the given poses are nearer to the joints, one projection suffices; its distance exceeds the least one only
+// in second order.
 constexpr double k_near = 1e-9;
 // Largest distance that can still be removed along the constraints, relative to the whole distance.
 constexpr double k_stationary = 1e-12;

@@ -3,9 +3,9 @@
 // Newton's method for Q + Jᵀλ = 0 on the constraint manifold. Let wᵢ be the motions that the rows allow, orthonormal in the mass metric.
 // For conservative forces the stiffness along them is symmetric; its eigenvalues λᵢ (1/s²) and the components gᵢ of the force give the step
 // Σ wᵢ gᵢ/(λᵢ + σ) (landscape.h; large models avoid computing all λᵢ). The shift σ keeps the step within a trust region and downhill if λᵢ
-// ≤ 0. For large σ the step follows the accelerations, like a strongly damped machine. A step is projected onto the rows. It is accepted if
-// the work along its tangent is still positive or nearly zero at its end, and halved otherwise, or if projection or a contact stops it. No
-// gap may close unnoticed on the way (clearance.h), so that no thin plank is passed through.
+// ≤ 0. For large σ the step follows the accelerations, like a strongly damped machine. A step is projected onto the rows. It is accepted
+// unless the forces at its end oppose it by more than half of what they push at its start. Otherwise, or if projection or a contact stops
+// it, it is halved. No gap may close unnoticed on the way (clearance.h), so that no thin plank is passed through.
 //
 // There are no absolute tolerances. Lengths are relative to the size of the model (its extent; for an angle, the radius at which a body's
 // rows and mass lie), forces to the rounding of poses, stiffness and reactions.

@@ -349,7 +349,8 @@ private:
     return evaluate_row<false>(*system_.frictions[f].friction->rows(state_.friction[f]), motion.data()).value;
   }
 
-  // Sticking forces depend on the history of loading. Looks for another admissible distribution of forces that holds the machine, and returns true if there is one.
+  // Sticking forces depend on the history of loading. Looks for another admissible distribution of forces that holds the machine, and
+  // returns true if there is one.
   bool share_anew(const Descent& descent) {
     if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
     // The search over all distributions uses dense algebra, which takes hours in large models. There friction slides until it sticks.

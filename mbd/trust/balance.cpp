@@ -37,8 +37,8 @@ constexpr int k_parts_of_step = 8;
 constexpr double k_least_steps = 100.0; // in the leg, so that doublings are resolved
 constexpr double k_swing_step = 0.5;    // rad of phase per step; methods of fourth order or more have errors of 1e-4 then
 constexpr int k_least_samples = 6;      // in the last two doublings
-// A direction may move late in a leg because rounding grew along it. Constraints are met to about 1e-9 of a body's size; at an exponent of 6
-// or more, growth by rounding is visible (k_moved). Motion earlier than the share k_early of the leg is part of the model.
+// A direction may move late in a leg because rounding grew along it. Constraints are met to about 1e-9 of a body's size; at an exponent of
+// 6 or more, growth by rounding is visible (k_moved). Motion earlier than the share k_early of the leg is part of the model.
 constexpr double k_by_rounding = 6.0, k_early = 0.05;
 // Least number of instants with growth in a leg in motion; a single one may lie within an impact.
 constexpr int k_least_instants = 3;

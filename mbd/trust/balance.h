@@ -2,8 +2,8 @@
 //
 // A rod that stands on its end, or a column above its buckling load, stays straight to the last bit in an exactly symmetric model. This
 // happens with every method and tolerance, so finer runs agree and energies balance. No real machine is that exact. For each leg of a run
-// (the part in which the same elements are active) the directions in which it did not move (leg_motion.h) are examined: does a small displacement along them
-// grow?
+// (the part in which the same elements are active) the directions in which it did not move (leg_motion.h) are examined: does a small
+// displacement along them grow?
 //
 // 1. Stiffness: growth rate σ of small displacements with forces and stiffness frozen at an instant (frozen_growth.h), at instants spread
 // over the leg. The exponent is ∫σ dt over the leg. If neither this nor the mean rate times one second exceeds k_exponent, there is no

@@ -62,8 +62,8 @@ double difference(const std::optional<double>& a, const std::optional<double>& b
   return a ? difference(*a, *b) : 0.0;
 }
 
-// Returns the difference of two values of a channel. A number without unit may have a pole, such as the margin of an unloaded element, which
-// is infinite. There it consists of rounding, so a difference counts as unknown.
+// Returns the difference of two values of a channel. A number without unit may have a pole, such as the margin of an unloaded element,
+// which is infinite. There it consists of rounding, so a difference counts as unknown.
 double difference(const Channel& channel, double a, double b) {
   const bool is_at_pole = channel.unit.empty() && std::max(std::abs(a), std::abs(b)) > ExtremeFinder::k_at_pole;
   return is_at_pole && a != b ? k_unknown_error : difference(a, b);
