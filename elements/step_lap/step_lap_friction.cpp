@@ -190,7 +190,7 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   if (is_same) return f;
   const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
                             reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
-  if (is_reference) return f = *reference_; // equal to the start, whatever other poses were evaluated since
+  if (is_reference) return f = *reference_; // stored data of the reference pose: the result does not depend on poses evaluated since
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
   f.tilt = tilt;

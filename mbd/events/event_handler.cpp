@@ -34,8 +34,8 @@ template <class F> void for_each_held(const System& system, const State& state, 
   }
 }
 
-// Returns true if settling changed velocities only by the order of the remaining slip rates (k_most_taken). If not, the slip has not ended:
-// the sign change of the slip rate was an error of the velocities.
+// Returns true if settle() changed velocities only by the order of the remaining slip rates (k_most_taken), so that the elements really came
+// to rest. If not, a slip goes on: its rate only seemed to change sign, because velocities have errors.
 bool is_slight(const System& system, const State& before, const State& after) {
   std::vector<Motion<double>> motion;
   double left = 0.0, taken = 0.0;

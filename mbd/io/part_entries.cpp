@@ -56,7 +56,7 @@ struct PartEntries::KindFacts {
   const FieldTable* fields = nullptr;
   std::shared_ptr<Element> made;            // null for signals
   std::vector<const Field*> ground_markers; // marker fields that default to the ground
-  bool has_ground_axes = false;             // default if `frame` is not given
+  bool has_ground_axes = false;             // vectors are in ground axes if `frame` is not given
 };
 
 std::string with_prefixed_names(const std::string& formula, const std::string& prefix, bool (*stays)(const std::string& name)) {

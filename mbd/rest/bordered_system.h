@@ -35,7 +35,7 @@ struct SparseRow {
     at[count] = coordinate;
     j[count++] = value;
   }
-  /// Adds to a coefficient that may exist, for a body on which several parts of the row act.
+  /// Adds `value` to the coefficient at `coordinate`, which exists already if several parts of the row act on the body.
   void merge(int coordinate, double value) {
     const auto end = at.begin() + count, known = std::find(at.begin(), end, coordinate);
     if (known == end) add(coordinate, value);

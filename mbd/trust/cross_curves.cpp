@@ -15,7 +15,8 @@ namespace {
 constexpr double k_least_part = 1e-3; // share of the largest range of its kind, which is the scale of channels with smaller ranges
 constexpr double k_wide_part = 0.1;
 constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // limits of the ratio of differences of three settings
-// Share of the duration: near an event that is uncertain by more, reactions are not compared.
+// Largest uncertainty of an event's time that widens the comparison of samples near it, as a share of the duration. It also applies to an
+// event that another setting lacks, whose uncertainty is infinite.
 constexpr double k_doubtful_event = 0.02;
 // Shares of the largest estimate in a body or mechanism: lower bounds of its other estimates.
 constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1;
