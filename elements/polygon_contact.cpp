@@ -125,8 +125,8 @@ public:
       if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
     }
   }
-  // Lower bound of the gap: the distance of the other body from a face that separates both. A half-plane has no corners, so its reach is
-  // that of the other body.
+  // Adds the gap, the distance of the other body from a face that separates both; no pair of points is closer. A half-plane has no corners,
+  // so its reach extends to its points near the other body.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
     for (const Entry& entry : entries) {
       const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);

@@ -19,7 +19,7 @@ constexpr double k_start_reach = 4.0; // |ν|/δ from which a slip no longer cou
 constexpr double k_moving = 0.2, k_backward = 2e-3;
 constexpr double k_cone = 0.5; // cosine of the angle about the stored direction within which ν may turn before the direction is updated
 // Time |ν|/(grip acceleration) below which a slip ends, s: k_end_time, or k_end_share times the tolerance, at most k_most_end_time. The
-// error of the position is this time multiplied by the remaining change of direction.
+// neglected rest of the slip is proportional to this time and to the remaining change of direction.
 constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
 constexpr double k_no_end = 2.0; // factor on that |ν|: beyond it the joint has not come to rest
 // Rounding limits: |ν| relative to velocities at which its direction is lost, and that time relative to t at which steps are still well
