@@ -396,12 +396,24 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   return true;
 }
 
-// Evaluates the maxima that settle() left unchecked. Channels whose polynomial is wrong there are searched further.
-void ExtremeFinder::check_tops(Integrator& integrator, Dynamics& dynamics) {
+// Evaluates the maxima that settle() left unchecked. Channels whose polynomial is wrong there are searched further. Many channels have as
+// many maxima, each with an evaluation of its own: then the first level is followed by the second, whose nodes they share, and later ones
+// are taken as they are.
+void ExtremeFinder::check_tops(int level, Integrator& integrator, Dynamics& dynamics) {
+  const bool are_many = unchecked_.size() > k_few;
   for (const Top& top : unchecked_) {
-    const double value = ranges_[top.channel].channel->value(look(top.theta, integrator, dynamics));
-    take(top.channel, t_ + top.theta * (t1_ - t_), value);
-    const bool is_exact = std::abs(value - top.value) <= tolerance(top.channel);
+    const double t = t_ + top.theta * (t1_ - t_);
+    bool is_exact = true;
+    if (!are_many) {
+      const double value = ranges_[top.channel].channel->value(look(top.theta, integrator, dynamics));
+      take(top.channel, t, value);
+      is_exact = std::abs(value - top.value) <= tolerance(top.channel);
+    } else if (level == 1) {
+      is_exact = false;
+    } else {
+      if (!sure_.empty()) note_sure(top.channel, top.value);
+      note(top.channel, top.value, t);
+    }
     if (!is_exact && std::find(open_.begin(), open_.end(), top.channel) == open_.end()) open_.push_back(top.channel);
   }
   unchecked_.clear();
@@ -478,7 +490,7 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
       for (const int node : {0, k_last}) look_at_end(node);
     if (wanted > 1 << level) continue; // oscillating loads between the nodes would be missed
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
-    check_tops(integrator, dynamics);
+    check_tops(level, integrator, dynamics);
   }
   drop_jittery(integrator, dynamics);
   for (const std::size_t c : open_) section(c, integrator, dynamics);

@@ -121,7 +121,7 @@ private:
   void search(Integrator& integrator, Dynamics& dynamics);
   void refine(int level, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool settle(std::size_t c, int level);
-  void check_tops(Integrator& integrator, Dynamics& dynamics);
+  void check_tops(int level, Integrator& integrator, Dynamics& dynamics);
   void drop_jittery(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool is_jitter(std::size_t c, double change);
   [[nodiscard]] double spread_about(std::size_t c, int middle) const;

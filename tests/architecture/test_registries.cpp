@@ -239,6 +239,7 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},
       {"mbd/system/slight_force.h", "the unit of a force"},
       {"mbd/system/turn_table.cpp", "on which angles a measure depends"},
+      {"mbd/trust/frozen_growth.cpp", "rows of rates, which leave places free"},
       {"mbd/system/motion_formula.cpp", "an angle is linear in itself"},
   };
   for (const auto& [path, text] : product_sources())

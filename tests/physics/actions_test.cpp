@@ -373,7 +373,7 @@ TEST_CASE("a rope whose length is set bears from that length on, and may not be 
 TEST_CASE("a value that makes other channels than a run began with ends it with a message") {
   const std::string text = body("sledge", "mass = 2; inertia = 1") + element("skate", "edge", "a = \"sledge\"; axis = [0, 1]") +
                            action("worn", "when = \"0.5 s\"; do = [\"set edge.grip = 1 N\"]");
-  CHECK_THROWS_WITH_AS((void)run(text, {"dop853", 1e-10, 1.0}), doctest::Contains("other channels than at the start ('edge.slip_rate')"),
+  CHECK_THROWS_WITH_AS((void)run(text, {"dop853", 1e-10, 1.0}), doctest::Contains("other channels than at the start ('edge.share')"),
                        NumericalFailure);
 }
 

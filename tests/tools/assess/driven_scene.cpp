@@ -65,6 +65,7 @@ preload = 4905.0
 kind = "coulomb_stick"
 name = "floor"
 contacts = ["rear foot", "front foot"]
+source = "chosen, so that the block holds or slides"
 )" + std::string("static_friction = ") +
          std::to_string(mu) + "\n" + more;
 }

@@ -34,6 +34,7 @@ AssessmentOptions options_of() {
   options.reading.rules.threshold = 0.1 * k_gravity;
   options.sampling.samples = 0;
   options.estimating = Estimating::never;
+  options.accepted = all_evidence(); // of the plane question alone
   options.criteria = k_planes + "only.toml";
   options.overrides = {"gravity=[0, -9.80665]"}; // the record's g
   return options;

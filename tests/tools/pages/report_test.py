@@ -257,7 +257,7 @@ class ReportTest(Page):
         titles = [h.text for h in self.all(".plot h3")]
         # Before the model's figures stand those that its criteria ask about and none of them shows.
         asked = next(i for i, title in enumerate(titles) if title.startswith("Fig. 4"))
-        self.assertEqual([t.split(" (")[0] for t in titles[:asked:2]], ["Horizontal accelerations", "Vertical accelerations"])
+        self.assertEqual([t.split(" (")[0] for t in titles[:asked:2]], ["Horizontal accelerations", "Vertical accelerations", "Shares of what friction holds"])
         figures = titles[asked:]
         for i, number in enumerate(range(4, 10)):
             for j, run in enumerate(("no_interference", "interference")):

@@ -14,7 +14,7 @@ steplap.figures = (() => {
   }
   const isFlatIn = (runs, name) => runs.every((run) => !run.channel(name) || isFlat(run, name));
 
-  const titles = { force: 'Forces', tension: 'Tensions', couple: 'Couples', reaction: 'Reactions', friction: 'Friction forces', slide: 'Slides', margin: 'Margins of the joints', p_req: 'Pressures that the joints need',
+  const titles = { force: 'Forces', tension: 'Tensions', couple: 'Couples', reaction: 'Reactions', friction: 'Friction forces', share: 'Shares of what friction holds', slide: 'Slides', margin: 'Margins of the joints', p_req: 'Pressures that the joints need',
     theta: 'Angles', x: 'Horizontal positions', y: 'Vertical positions', ax: 'Horizontal accelerations', ay: 'Vertical accelerations', gap: 'Gaps', slid_share: 'Slid shares of the overlaps' };
   // Forces are told apart by what transmits them.
   function titleOf(run, name) {
