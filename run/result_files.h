@@ -1,14 +1,15 @@
-// The files of a run, and the folder they stand in: all there or none.
+// Writes the files of a run to a folder, either all or none:
 //
-//   trajectory.csv  time histories, units in the header row: "t [s],active part.x [m]"; where errors are estimated, below
-//                   it a comment: "# error estimate," and the error of each column ("unknown" where it is)
-//   events.csv      what happened when: "t [s],element,event", and ",error of t [s]" where errors are estimated
-//   model.toml      the effective model, extended files and overrides merged, its records by absolute path and SHA-256
-//   drawing.json    what the machine looks like (drawing.h)
+//   trajectory.csv  time histories, units in the header row: "t [s],active part.x [m]"; if errors are estimated, a comment follows:
+//                   "# error estimate," and the error of each column ("unknown" where it is not known)
+//   events.csv      events: "t [s],element,event", and ",error of t [s]" if errors are estimated
+//   model.toml      effective model with extended files and overrides merged; records by absolute path and SHA-256
+//   drawing.json    geometry for drawings (drawing.h)
 //   summary.json    settings, statistics, extremes of every channel, final state; inputs and the files above with their SHA-256,
-//                   and at its end a SHA-256 of itself, so that whoever reads results knows whether they are whole
-// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes. Whether errors are estimated
-// hangs on the work that it takes, counted and not timed (estimate.h). A run that did not reach its end is saved as
+//                   and at the end a SHA-256 of the text itself, which shows readers whether the results are complete
+//
+// The contents depend neither on the clock nor on the computer: two runs of a model give identical bytes. Whether errors are estimated is
+// therefore decided by counting operations, not by time (estimate.h). The files of a run that did not reach its end are named
 // partial_trajectory.csv and so on.
 #pragma once
 
@@ -20,7 +21,7 @@
 
 namespace steplap {
 
-/// One file of a run, before it is written.
+/// A file of a run before it is written.
 struct ResultFile {
   std::string name;    ///< in the folder of the run
   std::string content; ///< all of it, unless it is given in parts
