@@ -1,5 +1,4 @@
-// Samples and findings as CSV: the same bytes for the same study, however it was run. What computing cost in seconds is
-// in the store only.
+// Exports samples and findings as CSV. The same study gives identical bytes however it was run, because computing times are not exported.
 #pragma once
 
 #include "tools/study/store.h"

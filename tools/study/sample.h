@@ -1,4 +1,4 @@
-// The kind "sample": samples drawn from the distributions, what the responses are like.
+// Study kind "sample": draws samples from the distributions and describes the responses.
 #pragma once
 
 #include "tools/study/study_kind.h"

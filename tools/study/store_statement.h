@@ -1,4 +1,4 @@
-// A prepared statement of a store's database that cannot leak; included by what implements the store only.
+// A prepared SQL statement that is finalised automatically. For the implementation of the store only.
 #pragma once
 
 #include "tools/study/store.h"
@@ -18,7 +18,7 @@ struct Store::Statement {
   void take(int i, std::vector<double>& numbers) const;
   bool step();
   void once();
-  // Of the type that was written, or nothing: SQLite would make a number of a text.
+  // Read a value of the type that was written. Throw if the type differs, because SQLite would convert a text to a number.
   [[nodiscard]] double number(int i) const;
   [[nodiscard]] long integer(int i) const;
   [[nodiscard]] std::string text(int i) const;

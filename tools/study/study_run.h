@@ -1,4 +1,4 @@
-// What a kind of study works with.
+// Objects that a study kind uses when it runs.
 #pragma once
 
 #include "tools/study/evaluator.h"
