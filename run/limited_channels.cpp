@@ -19,7 +19,7 @@ void add_stated(const Criterion& criterion, const RunResult& result, std::vector
   }
 }
 
-// An element says of its criterion which value it has come nearest to the limit with, and how far inside it is.
+// Elements report for their own criterion the value closest to the limit and its reserve.
 void add_of_element(const CriterionResult& criterion, const RunResult& result, std::vector<LimitedChannel>& limited) {
   if (!criterion.value || !criterion.limit) return;
   for (std::size_t c = 0; c < result.ranges.size(); ++c) {
@@ -37,7 +37,7 @@ double ReserveHistory::reserve(std::size_t i, double t) const {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const ExtremesSoFar& then : result_.growth) {
     if (then.t > t) break;
-    low = std::fmin(low, then.range[c].first); // of legs before, too
+    low = std::fmin(low, then.range[c].first); // including earlier legs
     high = std::fmax(high, then.range[c].second);
   }
   return limited_[i].reserve(low, high);
