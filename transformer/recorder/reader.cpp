@@ -446,7 +446,7 @@ private:
     sink_.put(t, a.data());
   }
 
-  // Returns true if the row is passed on.
+  // Returns true if a row with the time of the row before is to be used.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
       fail(place, "The time '" + shown(place.substr(0, 40)) +
