@@ -1,6 +1,6 @@
 #pragma once
 
-// What every peer reports: one row per rung of a ladder of settings.
+// Output of every peer: one row per setting.
 
 #include <cstdio>
 #include <string>

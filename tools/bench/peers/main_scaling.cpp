@@ -1,4 +1,5 @@
-// What a step costs for each body in programs other than steplap, from 10 bodies up.
+// Measures the cost of a step per body in programs other than steplap, from 10 bodies up.
+//
 //   peer_scaling [largest number of bodies, default 10000]
 #include "scaling.h"
 

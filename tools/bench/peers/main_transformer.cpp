@@ -141,7 +141,7 @@ void print_events(double tolerance) {
     }
 }
 
-// What one evaluation costs by itself, in the starting mode (stick, feet closed).
+// Prints the cost of one evaluation in the initial mode (sticking, feet closed).
 void print_evaluation_cost() {
   Transformer model(Condition::no_interference);
   State y = model.initial_state();
