@@ -446,7 +446,8 @@ private:
     sink_.put(t, a.data());
   }
 
-  // Returns true if a row with the time of the row before is to be used.
+  // Treats a row with the same time as the row before: keeps the first or the last of them, or throws. Returns false, because the row is
+  // no further sample.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
       fail(place, "The time '" + shown(place.substr(0, 40)) +

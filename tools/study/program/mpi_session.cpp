@@ -8,7 +8,7 @@ namespace steplap::study {
 
 namespace {
 
-// Set by mpirun and by srun (--mpi=pmix or pmi2) for each process they start.
+// Environment variables that mpirun and srun (--mpi=pmix or pmi2) set for each process.
 bool has_launcher() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name)) return true;
