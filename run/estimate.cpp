@@ -15,7 +15,6 @@ constexpr double k_little = 1e7; // evaluated parts
 constexpr double k_most = 3.0;   // finer runs that need more than k_most times the limit are abandoned
 // A run with many short steps may still have cheap adaptive reference runs. They are tried if at least this number of evaluations is
 // permitted, with at most the work of the run itself.
-// at least, and no more work than the run itself took.
 constexpr double k_least_references = 5000.0;
 constexpr double k_nudged = 1.5; // times the run: for a run from a perturbed pose, which a verdict requires at any cost
 

@@ -4,7 +4,6 @@
 // Uses Smallwood's ramp-invariant recursive filter (Shock and Vibration Bulletin 51, 1981), which is exact for a base acceleration that is
 // linear between samples. The maximum is taken at sample times, so frequencies end at a tenth of the sampling rate, where a peak between
 // two samples is underestimated by at most 5 %. After the last sample the base is at rest for one period.
-// two samples is missed by 5 % at most. After the last sample the base is at rest for one period.
 #pragma once
 
 #include <cstddef>
