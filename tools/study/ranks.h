@@ -2,7 +2,6 @@
 //
 // A single process does not use MPI. Programs with several processes initialise MPI (tools/study/program/mpi_session.h) and use of_world();
 // a library never does.
-// never does.
 #pragma once
 
 #include <cstddef>
