@@ -32,6 +32,7 @@ public:
 
   /// Number of criteria; 0 if the run recorded no running extremes.
   [[nodiscard]] std::size_t count() const { return result_.growth.empty() ? 0 : limited_.size(); }
+  /// Returns limit i.
   [[nodiscard]] const LimitedChannel& limited(std::size_t i) const { return limited_[i]; }
   /// Returns the reserve of criterion i at the last recorded time before t, s.
   [[nodiscard]] double reserve(std::size_t i, double t) const;

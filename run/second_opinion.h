@@ -21,7 +21,7 @@ struct SecondOpinion {
   double drawn_step = 0.0;  ///< mean of the random steps, s; 0 if the method has its own steps
   std::string none_because; ///< not empty: the reason why there is no result
   std::string disagreement; ///< not empty: a difference that exceeds both errors
-  double worst_ratio = 0.0; ///< largest ratio of a difference to the sum of both errors
+  double worst_ratio = 0.0; ///< largest ratio of a difference to the difference that both errors permit
   double known_until = 0.0; ///< time from which the second method is too coarse to compare, s
 };
 
