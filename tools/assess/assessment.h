@@ -66,6 +66,7 @@ struct Assessment {
   std::optional<VoyageSummary> by_samples; ///< result with nominal values computed by VoyageRunner, if it was run
   int halvings = 0;                        ///< number of halvings of the event threshold until the decision stayed the same
 
+  /// Returns true if the user accepts that this evidence is missing.
   [[nodiscard]] bool is_accepted(Evidence item) const;
 };
 

@@ -12,6 +12,7 @@ namespace steplap::assess {
 /// Receives the samples as read, m/s².
 class AxisWatch {
 public:
+  /// Adds a sample with `axes` values.
   void put(double t, const double* a, std::size_t axes);
   /// Must be called after the last sample.
   void finish();

@@ -24,6 +24,7 @@ struct DriveHistory {
   bool goes_on = false;           ///< the next event continues this one, without a phase of rest between
   std::vector<double> x, y;       ///< m/s²
   std::vector<double> across;     ///< out of the plane, from the front of the sheets to their back, m/s²; empty if not used
+  /// Returns the time of the last sample, s.
   [[nodiscard]] double end() const { return begin + step * static_cast<double>(x.empty() ? 0 : x.size() - 1); }
 };
 

@@ -7,6 +7,7 @@
 
 namespace steplap::assess {
 
+/// One item of evidence.
 enum class Evidence {
   clipped,   ///< peaks were cut off by the recorder's range
   gaps,      ///< samples are missing
@@ -25,6 +26,7 @@ enum class Evidence {
 };
 /// Returns the word used with --accept.
 [[nodiscard]] const char* name_of(Evidence item);
+/// Returns all items in the order of the enumeration.
 [[nodiscard]] const std::vector<Evidence>& all_evidence();
 
 /// A missing item with reason and remedy, as sentences.

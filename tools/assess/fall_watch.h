@@ -14,7 +14,9 @@ public:
   static constexpr double k_gravity_seen = 0.7 * 9.80665; ///< m/s²; smallest reading at rest of a recorder that includes gravity
   static constexpr double k_least = 0.1;                  ///< s; a fall of 5 cm
 
+  /// Must be called at each begin of a segment: a fall cannot extend across a gap.
   void begin_segment() { is_inside_ = false; }
+  /// Adds a sample with `axes` values.
   void put(double t, const double* a, std::size_t axes) {
     double size = 0.0;
     for (std::size_t i = 0; i < axes; ++i) size += a[i] * a[i];

@@ -15,6 +15,7 @@
 
 namespace steplap::assess {
 
+/// Shape of an assumed pulse.
 enum class PulseShape { half_sine, haversine, triangle };
 
 /// Assumed shape of shocks of which only the peak is known.

@@ -8,6 +8,7 @@
 
 namespace steplap::assess {
 
+/// The file with the samples of one assessment.
 class SampleStore {
 public:
   /// Opens the file named by the options, if any. A file of another assessment is replaced, because its samples belong to other models,

@@ -9,6 +9,7 @@
 
 namespace steplap::assess {
 
+/// Receives the conditioned signal.
 class SignalWatch : public SignalSink {
 public:
   /// A segment begins or ends during a shock if its first or last samples exceed `level`, m/s².
@@ -21,6 +22,7 @@ public:
     char axis = 'x';
     std::size_t count = 0; ///< number of such ends in the record; 0: none
   };
+  /// Returns the first begin or end during a shock, with their number.
   [[nodiscard]] const End& first_end() const { return end_; }
   /// Returns the largest magnitude of each axis, filtered, m/s².
   [[nodiscard]] const std::array<double, 3>& greatest() const { return greatest_; }

@@ -28,6 +28,7 @@ struct PointLoad {
   double normal = 0.0;       ///< normal force, N, ≥ 0
 };
 
+/// Integrates the motion of the point.
 class SlidingPoint {
 public:
   /// Requires `mass` > 0 and `mu_kinetic` <= `mu_static`. `largest_step` limits the integration steps, s. If `velocity` is not zero, the

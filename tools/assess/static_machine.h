@@ -18,7 +18,7 @@
 
 namespace steplap::assess {
 
-/// What can give way under a growing pull.
+/// Kinds of limits that a growing pull can reach.
 enum class LimitKind {
   slips,  ///< friction of a joint in the plane is exceeded
   slides, ///< friction along a line or about a pin is exceeded; the body may come to rest elsewhere
@@ -44,6 +44,7 @@ struct Probe {
   std::vector<double> values; ///< of System::channels
 };
 
+/// A model prepared for statics under different pulls.
 class StaticMachine {
 public:
   /// Finds the equilibrium under gravity alone. Throws NumericalFailure with the reason if there is none.

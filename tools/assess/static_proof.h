@@ -67,6 +67,7 @@ struct StaticDirection {
   bool is_unique = true; ///< true if the other ways also have an equilibrium just below the first limit
 };
 
+/// Results of a static proof for one model.
 struct StaticProof {
   std::string model, file;
   std::vector<std::string> overrides;   ///< "path=value", applied to the file
@@ -82,6 +83,7 @@ struct StaticProof {
   std::vector<std::string> unasked; ///< criteria of the model that cannot be evaluated at rest
 };
 
+/// Options of a static proof.
 struct StaticProofOptions {
   Plane plane = Plane::lengthwise;
   int directions = 72;

@@ -33,13 +33,17 @@ public:
 
   [[nodiscard]] const std::vector<UncertainValue>& values() const { return values_; }
   [[nodiscard]] bool empty() const { return values_.empty(); }
+  /// Returns the values in the models.
   [[nodiscard]] std::vector<double> nominal() const;
   /// Returns the values of sample `number` (from 1), which depend on the seed only.
   [[nodiscard]] std::vector<double> draw(std::uint64_t seed, std::uint64_t number) const;
+  /// Returns the p-quantile of a value.
   [[nodiscard]] double quantile(std::size_t value, double p) const;
+  /// Returns a description of a value's distribution.
   [[nodiscard]] std::string law_text(std::size_t value) const;
   /// Returns the paths in a model that are set, in the order of numbers().
   [[nodiscard]] std::vector<std::string> paths(std::size_t model) const;
+  /// Returns the numbers for paths(model), computed from the values of all uncertain numbers.
   [[nodiscard]] std::vector<double> numbers(std::size_t model, const std::vector<double>& values) const;
 
 private:
