@@ -13,6 +13,7 @@ public:
   CounterRandom(std::uint64_t seed, std::uint32_t stream) : seed_(seed), stream_(stream) {}
   /// Returns a number in the open interval (0, 1). `index` < 2³¹.
   [[nodiscard]] double uniform(std::uint64_t sample, std::uint32_t index) const { return counter_uniform(seed_, stream_, sample, index); }
+  /// Returns a standard normal number.
   [[nodiscard]] double normal(std::uint64_t sample, std::uint32_t index) const;
 
 private:

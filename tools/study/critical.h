@@ -5,6 +5,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "critical" study.
 struct CriticalSettings : KindSettings {
   std::string variable;
   std::string expression;  ///< the expression whose zeros are searched

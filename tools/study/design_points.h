@@ -6,6 +6,7 @@
 
 namespace steplap::study {
 
+/// A design point in standard normal space.
 struct DesignPoint {
   std::vector<double> u;
   double beta = 0.0;         ///< reliability index, signed: negative if the origin fails
@@ -18,6 +19,7 @@ struct DesignPoint {
   bool is_found = false; ///< true if u is on the surface and a point of minimum distance
 };
 
+/// Results of the search for design points.
 struct DesignPoints {
   std::vector<DesignPoint> points; ///< converged points, nearest first
   long starts = 0, failed_starts = 0;
@@ -27,6 +29,7 @@ struct DesignPoints {
   long samples = 0;
 };
 
+/// Searches design points. `is_second_order` adds the probabilities of second order.
 [[nodiscard]] DesignPoints find_design_points(LimitFunction& limit, bool is_second_order);
 
 /// Starts one more search from `start`. Returns true if it converged to a point that is not in `found`, and adds it.

@@ -12,6 +12,7 @@
 
 namespace steplap::study {
 
+/// End of a search.
 struct SearchEnd {
   std::vector<double> u;        ///< last point
   std::vector<double> gradient; ///< gradient at u
@@ -28,6 +29,7 @@ struct SearchEnd {
 /// Returns the gradient by central differences with step `h`; nothing if a run has no result.
 [[nodiscard]] std::optional<std::vector<double>> gradient_at(LimitFunction& limit, const std::vector<double>& u, double h);
 
+/// Returns the Euclidean distance.
 [[nodiscard]] double distance_between(const std::vector<double>& a, const std::vector<double>& b);
 
 } // namespace steplap::study

@@ -31,6 +31,7 @@ struct Pace {
 
 class Workers;
 
+/// Evaluates samples and keeps the store up to date.
 class Evaluator {
 public:
   Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, std::function<void(const Pace&)> progress);

@@ -7,8 +7,11 @@
 
 namespace steplap::study {
 
+/// Writes one row per sample.
 void export_samples(Store& store, std::ostream& out);
+/// Writes one row per measured value.
 void export_histories(const std::vector<Store::CurvePoint>& points, std::ostream& out);
+/// Writes one row per finding.
 void export_findings(const std::vector<Finding>& findings, std::ostream& out);
 
 } // namespace steplap::study

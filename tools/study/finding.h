@@ -23,6 +23,7 @@ struct Finding {
 enum class Standing { done, not_met, not_trusted };
 [[nodiscard]] const char* name_of(Standing standing);
 
+/// Answer of a study.
 struct Answer {
   std::vector<Finding> findings;
   std::vector<std::string> notes; ///< lines for the user

@@ -5,12 +5,14 @@
 
 namespace steplap::study {
 
+/// Unit of a finding.
 enum class UnitOf {
   none,
   subject, ///< unit of the finding's subject, which must be a column of the samples or a measured record
   quotient ///< that unit divided by the unit of the variable named in the quantity
 };
 
+/// Presentation of findings with a certain quantity.
 struct FindingPart {
   std::string role;     ///< presentation on the page
   std::string quantity; ///< text of the quantity: a prefix followed by a variable's name if it ends with a blank; a suffix if it begins

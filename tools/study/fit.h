@@ -5,6 +5,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "fit" study.
 struct FitSettings : KindSettings {
   long starts = 8;       ///< number of candidate start points; the search starts from the best of them
   long iterations = 100; ///< limit for one search

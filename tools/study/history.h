@@ -16,6 +16,7 @@ struct Sampling {
   double step = 0.0;    ///< s; 0: the model has no history
   bool is_exact = true; ///< true if every measured time is a multiple of `step`; otherwise runs are interpolated linearly
 };
+/// Returns the sampling needed for the histories of this model.
 [[nodiscard]] Sampling sampling_of(const Study& study, const StudyModel& model);
 
 /// Writes the channel's values at the measured times, from a run with this sampling. NaN after the end of the run.

@@ -11,6 +11,7 @@
 
 namespace steplap::study {
 
+/// The joint distribution of all variables of a study.
 class JointLaw {
 public:
   /// `nominal` are the values of all variables, used for those that are constant. Errors in distributions and correlations are appended to
@@ -60,6 +61,7 @@ private:
 struct Interval {
   double low = 0.0, high = 1.0;
 };
+/// Returns the interval for the given confidence, 0 to 1.
 [[nodiscard]] Interval proportion_interval(double successes, double trials, double confidence);
 /// Returns the p-quantile of Student's distribution.
 [[nodiscard]] double student_quantile(double degrees, double p);

@@ -15,6 +15,7 @@ namespace steplap::study {
 /// Computes the residuals at several points; an empty vector for a point whose run failed.
 using ResidualBatch = std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& points)>;
 
+/// A least squares problem.
 struct LeastSquaresProblem {
   ResidualBatch residuals;
   Eigen::VectorXd step; ///< difference step, as a fraction of the ranges
@@ -22,6 +23,7 @@ struct LeastSquaresProblem {
   long iterations = 100;
 };
 
+/// A minimum with its linearisation.
 struct LeastSquaresMinimum {
   Eigen::VectorXd at;
   Eigen::VectorXd residuals;

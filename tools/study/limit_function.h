@@ -14,6 +14,7 @@ struct LimitValue {
 
 struct ReliabilitySettings;
 
+/// The limit function g of a study. It counts failed runs and keeps the failing point closest to the origin.
 class LimitFunction {
 public:
   explicit LimitFunction(StudyRun& run);
@@ -21,16 +22,20 @@ public:
   [[nodiscard]] std::size_t dimension() const { return run_.law.dimension(); }
   /// Evaluates `points` of standard normal space, given one after the other. The result is valid until the next call.
   const std::vector<LimitValue>& at(const std::vector<double>& points);
+  /// Evaluates a single point.
   [[nodiscard]] LimitValue at_point(const std::vector<double>& u);
 
   [[nodiscard]] StudyRun& run() { return run_; }
   [[nodiscard]] const Study& study() const { return run_.study(); }
   [[nodiscard]] const ReliabilitySettings& settings() const { return settings_; }
+  /// Returns the number of samples requested so far, by all methods.
   [[nodiscard]] long asked() const { return run_.evaluator.asked(); }
+  /// Returns the name of the system of limit states for findings.
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] long bad() const { return bad_; } ///< number of bad samples so far
   /// Returns the smallest distance of a failing point to the origin so far; infinite if there was none.
   [[nodiscard]] double nearest_failure() const { return nearest_; }
+  /// Returns that failing point.
   [[nodiscard]] const std::vector<double>& nearest_point() const { return nearest_point_; }
 
 private:

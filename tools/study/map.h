@@ -5,6 +5,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "map" study.
 struct MapSettings : KindSettings {
   std::vector<std::string> variables; ///< two names
   std::string expression;             ///< the curve is its zero set

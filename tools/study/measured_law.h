@@ -7,6 +7,7 @@
 
 namespace steplap::study {
 
+/// A fitted distribution.
 struct MeasuredLaw {
   OT::Distribution distribution; ///< truncated if the variable has bounds
   std::string text;              ///< ", fitted to 400 values (Kolmogorov's p 0.3)"

@@ -6,6 +6,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "needs" study.
 struct NeedsSettings : KindSettings {
   double accuracy = 0.01; ///< relative changes of responses up to this value do not matter
 };

@@ -9,6 +9,7 @@
 
 namespace steplap::study {
 
+/// The processes of a study, seen from one of them.
 class Ranks {
 public:
   /// This process only.

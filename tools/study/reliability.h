@@ -7,6 +7,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "reliability" study.
 struct ReliabilitySettings : KindSettings {
   std::vector<std::string> methods{"form", "importance_sampling"};
   std::vector<std::string> limit_states; ///< all if empty

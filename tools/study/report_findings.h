@@ -13,6 +13,7 @@ struct ReportColumn {
   std::string name, unit, role; ///< role: variable, response, limit state, border, cost; history for a measured record
 };
 
+/// A finding prepared for the page.
 struct FindingView {
   std::string role;            ///< probability, beta, first order, swing, …; "estimate" for an unknown quantity
   std::string variable;        ///< variable to which the quantity refers; "" if none

@@ -22,6 +22,7 @@ struct Histogram {
   std::vector<double> low, high;
 };
 
+/// Statistics of one column of samples.
 struct Tally {
   long total = 0, missing = 0; ///< number of runs; of runs without a value
   long above = 0, below = 0;   ///< number of values +∞ and −∞

@@ -12,6 +12,7 @@
 
 namespace steplap::study {
 
+/// Options of run_study().
 struct StudyOptions {
   int threads = 1;                              ///< number of threads of this process, at least 1
   StoreMode mode = StoreMode::run;              ///< use of samples that the store already contains

@@ -5,6 +5,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "sample" study.
 struct SampleSettings : KindSettings {
   std::string design = "monte_carlo"; ///< monte_carlo, latin_hypercube, sobol, halton
   long samples = 1000;

@@ -27,6 +27,7 @@ struct Estimate {
   }
 };
 
+/// End criteria of a sampling method.
 struct SamplingTarget {
   double cov = 0.05;
   long samples = 100000;
@@ -35,6 +36,7 @@ struct SamplingTarget {
   double test_confidence = 0.99; ///< confidence of the intervals `safe_test` and `unsafe_test`
 };
 
+/// Crude Monte Carlo: the fraction of failing samples.
 [[nodiscard]] Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target);
 /// Samples around the design points; there must be at least one. Works in two stages: the first, whose samples are not counted, determines
 /// the number of samples of the second. The estimate then does not influence when sampling ends, which would bias it.

@@ -11,8 +11,10 @@ struct Share {
   double p = 0.0, deviation = std::numeric_limits<double>::infinity();
   Interval interval, test;
 };
+/// Converts a mean to a probability; `is_complement`: the mean is the probability of survival.
 [[nodiscard]] Share share_of(const WeightedMean& mean, bool is_complement, const SamplingTarget& target);
 
+/// Progress of one sampling method.
 class SamplingCourse {
 public:
   SamplingCourse(LimitFunction& limit, const SamplingTarget& target);
@@ -20,6 +22,7 @@ public:
   /// Returns true if no sample is left or the time is over.
   [[nodiscard]] bool is_over() { return is_late() || left() <= 0; }
   [[nodiscard]] bool is_late();
+  /// Returns the number of samples used so far.
   [[nodiscard]] long used() const { return limit_.asked() - before_; }
   [[nodiscard]] long left() const { return target_.samples - used(); }
   /// Returns the number of samples per batch. It depends on the study only.

@@ -12,6 +12,7 @@
 
 namespace steplap::study {
 
+/// Outcome of a sample's runs. The values are stored and must not change.
 enum class SampleStatus : int {
   ok = 0,
   stopped = 1,     ///< an element ended the run: a joint came apart
@@ -25,6 +26,7 @@ enum class SampleStatus : int {
 /// Returns the model with the values of all variables that are set in it, not completed. Throws ModelError.
 [[nodiscard]] Model model_with(const LoadedStudy& loaded, const StudyModel& model, const double* values);
 
+/// Results of one sample.
 struct Outcome {
   SampleStatus status = SampleStatus::ok;
   std::string reason;

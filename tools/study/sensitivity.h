@@ -5,6 +5,7 @@
 
 namespace steplap::study {
 
+/// Settings of a "sensitivity" study.
 struct SensitivitySettings : KindSettings {
   std::string method = "elasticity"; ///< elasticity, morris, sobol, tornado
   double difference = 1e-3;          ///< relative step for elasticities

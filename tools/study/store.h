@@ -45,12 +45,14 @@ struct StoreIdentity {
 };
 [[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
 
+/// A sample in the store.
 struct StoredSample {
   long number = 0;
   std::vector<double> values;
   Outcome outcome;
 };
 
+/// An open store.
 class Store {
 public:
   /// Opens a store for a study, or creates it. A store of another study is rejected (StoreError), depending on `mode`.
@@ -80,10 +82,13 @@ public:
     std::string history;
     double t = 0.0, measured = 0.0, fitted = 0.0; ///< s; in the unit of the channel
   };
+  /// Replaces the measured records with their fitted values.
   void set_histories(const std::vector<CurvePoint>& points);
   [[nodiscard]] std::vector<CurvePoint> histories(); ///< empty if there are none
+  /// Replaces findings, notes and standing.
   void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing);
   [[nodiscard]] std::vector<Finding> findings();
+  /// Returns the intermediate estimates.
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
   [[nodiscard]] std::string setting(const std::string& key); ///< "" if it does not exist

@@ -116,6 +116,7 @@ struct KindSettings {
   [[nodiscard]] virtual bool ends_by_clock() const { return false; }
 };
 
+/// A study file.
 struct Study {
   std::string file;
   std::string text;

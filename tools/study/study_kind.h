@@ -21,6 +21,7 @@ enum class Drawn { independently, by_design, otherwise };
 /// Settings of a study as stored for the page: the texts of each shown field; empty if a field is not a text.
 using ShownSettings = std::map<std::string, std::vector<std::string>>;
 
+/// Description and functions of one kind.
 struct StudyKind {
   std::string name; ///< also the name of its table
   std::string doc;

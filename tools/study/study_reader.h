@@ -27,6 +27,7 @@ struct ModelVariant {
   std::string gone{};                ///< name of the element that is removed, if any
 };
 
+/// A study that has been read and checked.
 struct LoadedStudy {
   Study study;
   std::vector<std::shared_ptr<const StudyModel>> models;

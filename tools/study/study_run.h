@@ -8,6 +8,7 @@
 
 namespace steplap::study {
 
+/// Objects of a running study.
 struct StudyRun {
   const LoadedStudy& loaded;
   const JointLaw& law;

@@ -13,6 +13,7 @@
 
 namespace steplap::study {
 
+/// Accumulates the values.
 class WeightedMean {
 public:
   void add(double w);
