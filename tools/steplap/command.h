@@ -15,6 +15,7 @@
 
 namespace steplap {
 
+/// Exit codes of the program.
 enum class ExitCode : int {
   done = 0,
   internal_error = 1,    ///< an error in the program itself
@@ -36,6 +37,7 @@ public:
 /// Destination of an option's value. The pointee must live as long as the Command.
 using OptionTarget = std::variant<bool*, std::string*, std::optional<std::string>*, std::vector<std::string>*>;
 
+/// An option or positional argument.
 struct Option {
   std::string names; ///< "-o,--output"; a name without dashes is a positional argument
   OptionTarget target;
@@ -50,6 +52,7 @@ struct RetiredOption {
   std::string advice; ///< replacement, shown to the user
 };
 
+/// A sub-command.
 struct Command {
   std::string name;
   std::string summary;  ///< one line

@@ -7,6 +7,7 @@ namespace steplap {
 
 enum class Verbosity { quiet, normal, verbose };
 
+/// Streams and verbosity of a command.
 struct Console {
   std::ostream& out;
   std::ostream& err;

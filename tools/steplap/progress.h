@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// Progress of one run with the end time `end`, s.
 class Progress {
 public:
   Progress(Console& console, std::string name, double end);
@@ -16,6 +17,7 @@ public:
   /// Erases the line.
   ~Progress();
 
+  /// Shows the progress at time t, s.
   void operator()(double t);
 
 private:

@@ -20,6 +20,7 @@ struct MakingOfRun {
   std::size_t rows = 0, channels = 0;     ///< of the written trajectory
 };
 
+/// A run as shown on the screen.
 struct ShownRun {
   OrderedJson summary;             ///< contents of summary.json (run/summary.h)
   std::vector<ResultEvent> events; ///< empty if only the overview is shown
@@ -29,6 +30,7 @@ struct ShownRun {
 
 /// Returns the main part of the summary of a new run, without events, for the overview.
 [[nodiscard]] ShownRun overview_of_run(const Report& report, const std::string& folder, ShownDigits digits);
+/// Returns the complete summary and the events of a new run.
 [[nodiscard]] ShownRun shown_run(const Report& report, const std::string& folder);
 /// Writes each run's folder, summary and events if the stream is a JsonScreen. Returns false, without output, if it is not.
 bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs);

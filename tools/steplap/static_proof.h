@@ -5,6 +5,7 @@
 
 namespace steplap {
 
+/// Arguments as given on the command line.
 struct StaticProofArguments {
   std::vector<std::string> models, overrides;
   std::optional<std::string> preset; ///< value of --static
