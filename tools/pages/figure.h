@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// A curve of a panel.
 struct Curve {
   std::string label;
   const std::vector<double>* times = nullptr;
@@ -16,11 +17,13 @@ struct Curve {
   double sign = 1.0;
 };
 
+/// One diagram of a figure.
 struct Panel {
   std::string title, unit;
   std::vector<Curve> curves;
 };
 
+/// A figure with several panels.
 struct Figure {
   std::vector<Panel> panels; ///< row by row
   int columns = 1;
