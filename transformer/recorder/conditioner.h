@@ -29,6 +29,7 @@ public:
   virtual void end_segment() = 0;
 };
 
+/// Parameters of the conditioning.
 struct Conditioning {
   std::array<double, 3> offset{};                     ///< m/s², subtracted from the axes
   std::optional<double> frequency_class;              ///< channel frequency class (CFC), Hz; none: no filter
@@ -44,6 +45,7 @@ struct Drift {
   std::array<double, 3> displacement{}; ///< at its end, m
 };
 
+/// Receives samples as read and passes the conditioned signal to a sink.
 class Conditioner : public SampleSink {
 public:
   Conditioner(const Conditioning& conditioning, SignalSink& sink) : conditioning_(conditioning), sink_(sink) {}
@@ -54,6 +56,7 @@ public:
   void put(double t, const double* a) override;
   void end_segment() override;
 
+  /// Returns the sampling rate of the result, Hz.
   [[nodiscard]] double rate() const { return rate_; }
   /// Returns the highest frequency that the signal represents, Hz: that of the filter, otherwise half the sampling rate.
   [[nodiscard]] double bandwidth() const { return filter_ ? filter_->bandwidth() : 0.5 * rate_; }

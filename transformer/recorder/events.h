@@ -12,6 +12,7 @@
 
 namespace steplap {
 
+/// Rules by which events are found.
 struct EventRules {
   double threshold = k_default_threshold;    ///< m/s², for the filtered signal on any axis
   double before = 0.1, after = 0.3;          ///< time kept before the first and after the last sample above the threshold, s
@@ -42,6 +43,7 @@ struct AxisEvent {
   double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 10 (up to 17 Hz), m/s²
 };
 
+/// A shock.
 struct ShockEvent {
   std::size_t number = 0, segment = 0; ///< from 1
   std::size_t line = 0;                ///< line of the file at which the segment begins

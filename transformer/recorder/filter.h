@@ -9,6 +9,7 @@
 
 namespace steplap {
 
+/// A low-pass filter of a channel frequency class.
 class ChannelFilter {
 public:
   static constexpr double k_ratio = 2.0775; ///< f0 / CFC, SAE J211-1 appendix C: at f0 the gain is 1/2
@@ -23,6 +24,7 @@ public:
   [[nodiscard]] double bandwidth() const { return bandwidth_; }
   /// Returns the number of samples after which the effect of earlier samples has decayed to 1e-12.
   [[nodiscard]] int settling() const { return settling_; }
+  /// Returns true if the sampling rate is sufficient for the frequency class.
   [[nodiscard]] static bool is_possible(double frequency_class, double rate) {
     return frequency_class > 0.0 && rate >= 10.0 * frequency_class;
   }

@@ -13,6 +13,7 @@ namespace steplap {
 /// Returns true if the line is a comment: it begins with # or *, or with ; unless ; is the delimiter.
 [[nodiscard]] bool is_comment(std::string_view line, char delimiter);
 
+/// A line before the data.
 struct HeaderLine {
   std::size_t number = 0; ///< from 1
   std::string text;
@@ -37,6 +38,7 @@ struct SaidRate {
   double hz = 0.0;
   std::size_t line = 0;
 };
+/// Returns the sampling rate given in the header; nothing if there is none.
 [[nodiscard]] std::optional<SaidRate> rate_of(const Metadata& metadata);
 
 /// Returns the family of the recorder: "Gulf Coast Data Concepts", "MSR", …; "" if unknown.
@@ -70,6 +72,7 @@ struct NamedRole {
   Role role = Role::other;
   int weight = 0;
 };
+/// Returns the most likely role of a column.
 [[nodiscard]] NamedRole role_of(std::string_view name);
 
 } // namespace steplap

@@ -31,10 +31,12 @@ struct TableShape {
   /// Splits a line. Returns false if a quote is not closed, or if the number of fields does not form pairs.
   [[nodiscard]] bool split(std::string_view line, std::vector<std::string_view>& fields) const;
 };
+/// Determines delimiter, decimal sign and names of the table. Throws RecordError if they are ambiguous.
 [[nodiscard]] TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
 /// Returns true if the fields look like a row of data, without knowledge of the columns.
 [[nodiscard]] bool looks_like_row(const std::vector<std::string_view>& fields);
 
+/// Form in which times are given.
 enum class TimeKind { none, number, stamp, date_and_clock };
 
 /// Source of the time of samples.
@@ -49,6 +51,7 @@ struct TimeBase {
   std::string text, rate_text, start;       ///< for display; start may be ""
 };
 
+/// A column with the acceleration of one axis.
 struct AxisColumn {
   char axis = 'x';
   std::size_t column = 0;
@@ -66,6 +69,7 @@ struct PeakColumns {
   std::string unit;
 };
 
+/// Layout of a recorder's file.
 struct RecordLayout {
   std::string file, encoding, family;
   TableShape shape;

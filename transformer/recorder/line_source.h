@@ -12,6 +12,7 @@
 
 namespace steplap {
 
+/// Source of lines.
 class LineSource {
 public:
   /// Opens a file, or standard input for "-". Throws RecordError if it cannot be read, or is a folder or a device.

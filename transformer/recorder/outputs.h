@@ -83,6 +83,7 @@ struct RecordResult {
 [[nodiscard]] std::string record_events_csv(const RecordResult& result);
 /// Returns CSV text with one row for each frequency of each event.
 [[nodiscard]] std::string spectra_csv(const RecordResult& result);
+/// Returns all results as JSON text.
 [[nodiscard]] std::string record_json(const RecordResult& result);
 
 } // namespace steplap

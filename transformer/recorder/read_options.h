@@ -10,6 +10,7 @@ enum class IfMissing { refuse, skip, hold };   ///< treatment of an empty or NaN
 enum class IfRepeated { refuse, first, last }; ///< treatment of a row with the same time as the row before: which of the two rows is kept
 enum class IfBackward { refuse, split, drop }; ///< treatment of a row with a time before that of the row before
 
+/// Options for reading a file. Options that are not given are determined from the file.
 struct ReadOptions {
   /// Columns by name or by number from 1; a leading "-" reverses the sign. If any is given, axes that are not given are not read.
   std::optional<std::string> x, y, z;

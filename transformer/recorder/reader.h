@@ -32,6 +32,7 @@ public:
 /// Number of occurrences with the line of the first.
 struct Counted {
   std::size_t count = 0, line = 0;
+  /// Counts an occurrence in line `at`.
   void note(std::size_t at) {
     if (count++ == 0) line = at;
   }
@@ -71,8 +72,9 @@ struct Hole {
   std::array<double, 3> before{}, after{}; ///< values of the rows before and after it, m/s²
 };
 
+/// Statistics of the whole file.
 struct ReadFacts {
-  std::size_t lines = 0, rows = 0, segments = 0; ///< `rows`: samples passed on, without repeated ones
+  std::size_t lines = 0, rows = 0, segments = 0; ///< `rows`: samples passed on, except those that ReadOptions::holds filled in
   double first = 0.0, last = 0.0;                ///< s
   double longest_gap = 0.0;                      ///< s
   Counted gaps, holes, block_gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
@@ -87,6 +89,7 @@ struct ReadFacts {
   std::array<AxisFacts, 3> axes;
 };
 
+/// Contents of a recorder's file, without its samples.
 struct Recording {
   RecordLayout layout;
   ReadFacts facts;

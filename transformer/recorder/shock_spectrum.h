@@ -12,6 +12,7 @@
 
 namespace steplap {
 
+/// A point of the spectrum.
 struct ShockPoint {
   double frequency = 0.0;    ///< Hz
   double acceleration = 0.0; ///< largest magnitude, in the unit of the samples

@@ -6,6 +6,7 @@
 
 namespace steplap {
 
+/// A kind of example record.
 struct RecordKind {
   std::string name; ///< "gcdc"
   std::string doc;
