@@ -71,7 +71,8 @@ public:
   [[nodiscard]] bool is_even() const { return is_even_; } ///< moving bodies have constant velocity
 
 private:
-  // A motion of 0.001 of its maximum is the end of a decay. Below 1e-6 SI units a body at rest creeps numerically.
+  // Includes a channel in the comparison. A motion of 0.001 of its maximum is the end of a decay. Below 1e-6 SI units a body at rest creeps
+  // numerically.
   static void add(const RangeIndex& ranges, const std::string& body, std::initializer_list<const char*> quantities, bool& holds) {
     constexpr double k_share = 1e-3, k_least = 1e-6;
     for (const char* const quantity : quantities) {
@@ -111,7 +112,7 @@ public:
 
   std::optional<Finding> never_begun(const ActingSignal& use, const std::string& signal, const Location& where) const {
     if (use.waiting.empty() || std::any_of(use.waiting.begin(), use.waiting.end(), [&](const Action* a) { return is_forbidden(*a); }))
-      return std::nullopt; // bodies that nothing holds have their own finding
+      return std::nullopt; // an element that no action can start has its own finding
     const std::string& element = model_.elements[use.element].element->name;
     const std::string what =
         signal.empty() ? "load '" + element + "' has never acted" : "signal '" + signal + "' has never acted on '" + element + "'";
@@ -122,7 +123,7 @@ public:
   }
 
 private:
-  // If a criterion forbids the action, the loads that the action would start are not expected.
+  // Returns true if a criterion forbids the action. Loads that the action would start are then not expected.
   [[nodiscard]] bool is_forbidden(const Action& action) const {
     return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& c) {
       return !c.event.empty() && matches_pattern(action.name, c.element.empty() ? "*" : c.element) &&
@@ -142,7 +143,7 @@ private:
     return !course.has_end() && has_settled(since, span);
   }
 
-  // For a signal that begins to act after its own begin: returns whether its largest value is still to come.
+  // Returns true if the largest value of the signal comes after the time `from` at which it begins to act.
   static bool is_at_full_size(double from, const LoadPart& part) {
     constexpr double k_nearly = 0.99; // fraction of the maximum; sampling may miss the peak by less
     constexpr int k_looks = 16;       // samples in each piece
@@ -179,7 +180,7 @@ private:
     return growth_->count() > 0;
   }
 
-  // An action that ends a constant load defines its intended duration.
+  // Returns true if a constant load has had its full effect. An action that ends it defines its intended duration.
   [[nodiscard]] bool has_settled(double since, const SignalSpan& span) const {
     if (!growth_ || !result_ || (span.cut.action && span.cut.verb != ActionVerb::stop)) return true;
     const Motions motions(loaded_, *result_);
@@ -191,8 +192,8 @@ private:
     return false;
   }
 
-  // Under a constant periodic load a criterion may grow without limit (resonance). The second half of the time at full size shows the rate
-  // of growth.
+  // Returns a finding if a criterion still grows under a periodic load. It may grow without limit (resonance). The second half of the time
+  // at full size shows the rate of growth.
   [[nodiscard]] std::optional<Finding> growing(const SignalSpan& span, const LoadPart& part) const {
     const double since = std::max(part.course.full, span.from), half = 0.5 * (since + span.to);
     const bool is_at_end = !span.cut.action || (span.cut.verb == ActionVerb::stop && span.cut.action->reason.empty());

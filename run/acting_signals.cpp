@@ -97,7 +97,7 @@ private:
     return found && found->type == FieldType::signal;
   }
 
-  // Formats a value as an action sets it: "[0, 0]", "0 N".
+  // Returns true for values such as "[0, 0]" and "0 N".
   static bool is_zero(const std::string& value) { return value.find_first_of("123456789=") == std::string::npos; }
 
   void end(std::size_t element, const std::string& field, double t, const SignalCut& cut) {

@@ -25,7 +25,8 @@ struct Blow {
 // Returns "rope" for "rope.tension".
 std::string owner_of(const std::string& channel) { return channel.substr(0, std::min(channel.rfind('.'), channel.size())); }
 
-// Ropes and clutches have a channel with the impulse of their last impact. For joints closed by an action the action's event reports the
+// Returns all impacts of a run. Ropes and clutches have a channel with the impulse of their last impact. For joints closed by an action the
+// action's event reports the impact.
 // impact.
 std::vector<Blow> blows_of(const Model& model, const RunResult& result) {
   std::vector<Blow> blows;

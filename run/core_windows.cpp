@@ -31,7 +31,7 @@ std::vector<Standing> limbs_of(const Body& active_part, const Model& model) {
   return limbs;
 }
 
-// Point-in-polygon test by W. R. Franklin (ray crossings).
+// Returns true if p is inside the polygon: ray crossing test by W. R. Franklin.
 bool is_inside(const Vec2& p, const std::vector<Vec2>& ring) {
   bool is = false;
   for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)

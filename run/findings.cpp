@@ -274,7 +274,7 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
                       body ? body->where : Location{}});
 }
 
-// Free ends of beams are intended.
+// Returns true if a table created the body. Free ends of such bodies (beams) are intended.
 bool is_made_by_table(const Model& model, const std::string& name) {
   return std::any_of(model.tables.begin(), model.tables.end(),
                      [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
@@ -353,7 +353,8 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
   return findings;
 }
 
-// All legs of a run have the bodies of the model in the same order.
+// Returns a note if steps were divided because a body rotated too far within one step. All legs of a run have the bodies of the
+// model in the same order.
 static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Integrator::DividedSteps& divided) {
   if (divided.count == 0) return std::nullopt;
   const auto name = [&](int body) {

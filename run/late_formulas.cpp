@@ -39,7 +39,7 @@ bool uses_time(const ElementEntry& entry) {
   return false;
 }
 
-// Returns the force of an element at another time, with the bodies in their final state.
+// Computes the force of an element at other times, with the bodies in their final state.
 class AtOtherTimes {
 public:
   AtOtherTimes(const System& system, const State& state, const std::string& element) : system_(system), state_(state), dynamics_(system) {

@@ -19,7 +19,7 @@ void add_stated(const Criterion& criterion, const RunResult& result, std::vector
   }
 }
 
-// Elements report for their own criterion the value closest to the limit and its reserve.
+// Adds the limit of an element's own criterion. It is an upper limit if the value closest to it is below.
 void add_of_element(const CriterionResult& criterion, const RunResult& result, std::vector<LimitedChannel>& limited) {
   if (!criterion.value || !criterion.limit) return;
   for (std::size_t c = 0; c < result.ranges.size(); ++c) {

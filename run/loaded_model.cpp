@@ -31,7 +31,7 @@ std::string name_of_model(const std::string& path) {
   return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
 }
 
-// A step in a wrong unit could fill the disk.
+// Throws if the trajectory would be too long: a step in a wrong unit could fill the disk.
 void refuse_endless_output(const Model& model, const System& system) {
   const double numbers = trajectory_numbers(model, system);
   if (!(numbers > model.output.most_numbers)) return;

@@ -54,7 +54,7 @@ std::string word_of(const std::string& codes, double value) {
   return "";
 }
 
-// Contacts have a gap and a force.
+// Returns the force channel if the element is a contact, which has a gap and a force; nullptr otherwise.
 const ChannelRange* force_of_contact(const RangeIndex& ranges, const std::string& element) {
   return ranges.find(element + ".gap") ? ranges.find(element + ".force") : nullptr;
 }
@@ -193,7 +193,7 @@ private:
   }
   void join(int a, int b) { parent_[static_cast<std::size_t>(root(a))] = root(b); }
 
-  // "body.x"
+  // Joins the owner of a channel, "body" of "body.x", with the ground, so that it counts as carried.
   void join_named(const std::string& channel) {
     const std::size_t point = channel.rfind('.');
     if (point != std::string::npos) join(of(channel.substr(0, point)), 0);

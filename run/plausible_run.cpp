@@ -78,7 +78,7 @@ Vec2 seen_from(const Vec3& on, const Vec3& at, const Vec2& point) {
   return rotated(place - Vec2(on.x(), on.y()), -on.z());
 }
 
-// Joints and drives determine the motion of a body, which is then intended.
+// Returns all bodies with an outline. A body with joints or drives is marked as guided, because its motion is intended.
 std::vector<Part> parts_of_run(const LoadedModel& loaded) {
   const System& system = *loaded.system;
   std::unordered_set<int> guided;

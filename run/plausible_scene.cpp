@@ -143,7 +143,8 @@ void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings)
                                where));
 }
 
-// Degrees given without a unit are round numbers; radians from degrees or formulas are not.
+// Returns true for numbers with at most three decimals. Degrees given without a unit are round numbers; radians from degrees or formulas
+// are not.
 bool is_round(double number) {
   constexpr double k_places = 1e3;
   return std::round(number * k_places) == number * k_places;

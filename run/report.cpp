@@ -54,7 +54,7 @@ void Report::write(const std::string& folder, bool is_overwriting) const { write
 
 namespace {
 
-// If an estimate failed the errors are unknown. If it was not requested the verdict is not affected.
+// Applies the error estimate to the verdict. If it failed the errors are unknown; if it was not requested the verdict is not affected.
 void weigh(Report& report) {
   const Run& run = report.run;
   if (report.estimate.errors) weigh_errors(report.judgement, run.loaded->model, *run.loaded->system, run.result, *report.estimate.errors);
@@ -66,7 +66,7 @@ void add_finding(Report& report, const Finding& finding, const RunOptions& optio
   report.findings.push_back(finding);
 }
 
-// A second opinion can only weaken a verdict of "hold".
+// Runs the second method if the verdict is "hold", the only one that it could weaken.
 void ask_second_opinion(Report& report, const RunOptions& options) {
   const bool is_stopped = options.stop && !options.stop().empty();
   if (!options.has_second_opinion || report.judgement.verdict != Verdict::hold || is_stopped) return;

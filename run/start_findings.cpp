@@ -215,8 +215,8 @@ private:
                       : length_text(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
   }
 
-  // If drives and joints to the ground determine the rotation, its inertia affects only their loads, which no criterion limits. An action
-  // may release them later.
+  // Returns true if drives and joints to the ground determine the rotation. Its inertia then affects only their loads, which no criterion
+  // limits. With actions the result is false, because they may release drives and joints.
   [[nodiscard]] bool is_driven(const Body& body) const {
     const auto named = std::find_if(system_.bodies.begin(), system_.bodies.end(), [&](const BodyData& b) { return b.name == body.name; });
     if (named == system_.bodies.end() || action_group(system_)) return false;
@@ -242,7 +242,7 @@ private:
     });
   }
 
-  // Moment of inertia of a plate with the shape of the outline, about the body's centre of gravity.
+  // Compares the moment of inertia with that of a plate with the shape of the outline, about the body's centre of gravity.
   void look_at_inertia(const Body& body) {
     double area = 0.0, moment = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < body.outline.size(); ++i) {
@@ -266,7 +266,7 @@ private:
     add("inertia_unlike_outline", body.where, text);
   }
 
-  // `reach` is the largest distance of the body's points from its centre, `extent` the size of the scene.
+  // Checks the radius of gyration. `reach` is the largest distance of the body's points from its centre, `extent` the size of the scene.
   void look_at_gyration(const Body& body, double reach, double extent) {
     const double gyration = std::sqrt(body.inertia / body.mass);
     if (!(reach > 0.0) || !(gyration > k_beyond_places * reach) || !(gyration > k_beyond_scene * extent) || is_driven(body)) return;

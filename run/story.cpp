@@ -393,7 +393,7 @@ public:
 
   static std::string times(std::size_t count) { return count == 2 ? "twice" : std::to_string(count) + " times"; }
 
-  // Chooses the verb form: "Feet slip", "Front foot slips".
+  // Returns true if the name is a plural, which determines the verb form: "Feet slip", "Front foot slips".
   static bool is_plural(const std::string& name) {
     if (name.ends_with("feet")) return true;
     return name.size() > 2 && name.back() == 's' && std::string("aisu").find(name[name.size() - 2]) == std::string::npos;

@@ -242,7 +242,7 @@ void coordinate(Sketch& s, const std::string& style, const std::string& along, c
 
 void motor(Sketch& s) { coordinate(s, "motor", "force", "couple"); }
 void drive(Sketch& s) { coordinate(s, "drive", "reaction", "reaction"); }
-// Returns the positions of the stops, measured from the reference pose, or for a distance its absolute value. A side without a stop has
+// Draws stops at their positions, measured from the reference pose, or for a distance at its absolute value. A side without a stop has
 // none.
 void limit(Sketch& s) {
   coordinate(s, "limit", "force", "couple");

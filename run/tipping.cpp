@@ -66,7 +66,8 @@ private:
     });
   }
 
-  // Rigid motions are (velocity of the point of the part at the ground's origin, angular velocity).
+  // Returns the velocity of a point. A rigid motion `twist` is (velocity of the point of the part at the ground's origin, angular
+  // velocity).
   [[nodiscard]] static Vec2 velocity(const Vec3& twist, const Vec2& at) { return Vec2(twist.head<2>()) + twist.z() * quarter_turn(at); }
   [[nodiscard]] static Vec3 turn_about(const Vec2& point, double rate) {
     const Vec2 v = -rate * quarter_turn(point);

@@ -155,7 +155,8 @@ private:
     return blocks;
   }
 
-  // If the balance requires more friction than dry contacts have, the bodies separate in another way, and no result is given.
+  // Returns true if friction up to k_most_friction suffices for the balance. Otherwise the bodies separate in another way, and no
+  // result is given.
   [[nodiscard]] bool is_held_by_friction(const Collapse& collapse, const std::vector<const Foot*>& feet) const {
     std::map<std::string, std::pair<double, double>> of_contact; // normal and tangential force
     double most = 0.0;

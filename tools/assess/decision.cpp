@@ -209,7 +209,7 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
   return judge_probability(c, a.damage, "damage in the voyage", waves_unknown(a));
 }
 
-// Friction is one vector, but each model judged only the component in its plane.
+// Judges both planes together: friction is one vector, but each model judged only the component in its plane.
 Reason judge_planes(const VoyageSummary& s) {
   const char* const name = "friction of several planes";
   const char* const source = "rules of this program";

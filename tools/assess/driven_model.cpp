@@ -127,7 +127,7 @@ void add_across(Model& model, const Recorder& recorder, std::vector<std::string>
   model.signals.emplace_back(&recorded_kind(), std::move(definition));
 }
 
-// Another drive of the same body would contradict the record.
+// Throws if another drive moves the body, because it would contradict the record.
 void refuse_other_drives(const Model& model, const Recorder& recorder, const std::string& body) {
   const auto body_of = [&](const std::string& marker) {
     for (const Marker& m : model.markers)

@@ -74,7 +74,7 @@ std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::s
   return bodies;
 }
 
-// Loads and drives hold nothing.
+// Returns true for loads and drives, which hold nothing.
 bool is_action_from_outside(const Element& element) {
   return dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element) ||
          dynamic_cast<const PrescribedMotion*>(&element);

@@ -20,7 +20,7 @@ namespace {
 constexpr double k_close = 1e-6;      // of a margin; accuracy of an equilibrium
 constexpr double k_just_below = 1e-3; // distance below the first limit of a direction, relative, at which the other ways are computed
 
-// Equilibria have positions and forces, but no velocities and accelerations.
+// Returns true for units of positions and forces. Velocities and accelerations have no meaning in an equilibrium.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
 // Returns the results of an equilibrium in the form of a run from the equilibrium without acceleration.
@@ -230,7 +230,7 @@ private:
   StaticCase case_;
 };
 
-// Computes the other ways just below the first limit of a direction.
+// Returns true if the machine also has an intact equilibrium when the pull grows from the opposite pull.
 bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
   const auto is_intact = [](const Probe& probe) {
     return probe.rest && std::all_of(probe.left.begin(), probe.left.end(), [](double left) { return left > 0.0; });

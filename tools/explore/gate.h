@@ -23,7 +23,7 @@ struct Knock {
 /// Returns 32 hexadecimal digits from the system's random source. Throws std::runtime_error if it is not available.
 [[nodiscard]] std::string random_token();
 
-/// Compares two secrets in constant time.
+/// Returns true if both secrets are equal. The time of the comparison does not depend on them.
 [[nodiscard]] bool is_same_secret(const std::string& a, const std::string& b);
 
 /// Access rules of one server.

@@ -212,7 +212,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
   }
 }
 
-// Returns FILE.svg, FILE-2.svg, … for several cores.
+// Writes the drawing of core number `index` to FILE.svg, FILE-2.svg, ….
 void write_image(const std::string& path, std::size_t index, const Core& core, const Model& model, std::ostream& out) {
   std::filesystem::path file(path);
   if (index > 0) file.replace_filename(file.stem().string() + "-" + std::to_string(index + 1) + file.extension().string());

@@ -41,7 +41,7 @@ std::vector<JointView> chosen_joints(const JointOptions& options, const LoadedMo
   return chosen;
 }
 
-// Formats "53 kN, 0, 1.2e4"; SI if there is no unit.
+// Parses a wrench such as "53 kN, 0, 1.2e4"; SI if there is no unit.
 Vec3 parse_wrench(const std::string& text) {
   static const std::array<const char*, 3> units = {"N", "N", "N m"};
   std::vector<std::string> parts;

@@ -90,7 +90,7 @@ std::string choice_text(const VibrationModes& found, const WantedModes& wanted) 
                            : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric");
 }
 
-// Returns the reason why there are no modes.
+// Prints the reason why there are no modes.
 void print_none(std::ostream& out, const VibrationModes& found) {
   out << "None: "
       << (found.rigid_motions > 0 ? "of what can move nothing is held" : "joints, drives and friction that sticks leave no motion free")

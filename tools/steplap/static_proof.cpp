@@ -97,7 +97,7 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
 }
 
-// Returns the direction with the lowest limit of this kind, or of all kinds if none is given.
+// Prints for each kind of limit the direction in which it is lowest.
 void print_weakest(std::ostream& out, const StaticProof& proof) {
   if (proof.polar.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right});

@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Asks the user only on a terminal, so that scripts and tests never wait for an answer.
+// Asks the user whether to build the program. Returns false without asking if there is no terminal, so that scripts and tests never wait
+// for an answer.
 bool is_build_wanted(const fs::path& build) {
   if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1 || !fs::exists(build / "CMakeCache.txt")) return false;
   std::cerr << "Studies need a second program, which is not built yet. Build it now? This takes some minutes. [y/N] " << std::flush;

@@ -194,7 +194,7 @@ bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
   return true;
 }
 
-// Runs one search until sample number `last`; records the reason if it ends early.
+// Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point.
 bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found) {
   ++found.starts;
   constexpr double k_near_surface = 1e-2; // relative distance; near it another search would oscillate as well

@@ -75,8 +75,8 @@ private:
     return ended("a run without result lay on the way");
   }
 
-  // The search has been on the surface for some steps without coming closer to the origin: it oscillates between gradients on both sides of
-  // an edge.
+  // Returns true if the search has been on the surface for some steps without coming closer to the origin: it then oscillates between
+  // gradients on both sides of an edge.
   bool stands_still() {
     constexpr double k_still = 1e-4;
     constexpr int k_steps = 4;

@@ -38,7 +38,7 @@ struct Stratum {
 
   [[nodiscard]] double probability() const { return tail_low - tail_high; }
 
-  // Decides from the neighbouring points only.
+  // Returns true if the stratum is to be divided. Uses the neighbouring points only.
   [[nodiscard]] bool is_to_cut() const {
     constexpr double k_fine = 0.1; // of the probability outside the stratum; rays differ by more than this
     if (is_last || probability() <= k_fine * tail_low) return false;

@@ -50,7 +50,7 @@ const char* unpack(const char* bytes, Outcome& o) {
   return bytes;
 }
 
-// Converts −0 to 0, because a store does not distinguish them.
+// Returns true if two values are the same for a store, which does not distinguish −0 and 0.
 bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 } // namespace
@@ -63,7 +63,7 @@ public:
     for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<Scene>(loaded));
   }
 
-  /// Returns the outcomes of every `stride`-th point from `first` on.
+  /// Runs every `stride`-th point from `first` on.
   void run(const double* points, std::size_t count, std::size_t first, std::size_t stride,
            const std::function<Outcome&(std::size_t)>& outcome) {
     const long mine = first < count ? static_cast<long>((count - first + stride - 1) / stride) : 0;

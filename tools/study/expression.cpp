@@ -17,7 +17,7 @@ std::vector<std::string> function_names() {
   return names;
 }
 
-// Finds a '=' that is not part of a comparison.
+// Returns true if the text contains a '=' that is not part of a comparison.
 bool has_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;

@@ -164,7 +164,7 @@ private:
     stray_.assign(u, u + n);
   }
 
-  // Starts a search at the closest stray failure. Samples drawn before do not cover the point that it finds.
+  // Starts a search at the closest stray failure. Returns true if it found a new design point, which the samples drawn before do not cover.
   bool finds_from_stray() {
     if (stray_.empty() || searches_++ >= k_most_searches) return false;
     const std::vector<double> start = std::move(stray_);
@@ -172,8 +172,8 @@ private:
     return search_again(limit_, start, design_);
   }
 
-  // A failure with a weight many times larger than usual is in a region with too few samples: near an unknown design point, or the failure
-  // itself becomes a centre.
+  // Handles a failure whose weight is many times larger than usual, which is in a region with too few samples. Searches a design point near
+  // it; if none is found, the failure itself becomes a centre. Returns true if there is a new centre.
   bool finds_from_heaviest() {
     constexpr double k_many = 15.0; // ratio; a plane at distance 5 gives 6
     const double hits = static_cast<double>(sums_.fails.hits()),
@@ -184,8 +184,8 @@ private:
     return true;
   }
 
-  // If failure is more probable than survival, the probability of survival is better known. Both must have occurred often enough to
-  // estimate their scatter.
+  // Returns true if the probability of survival is better known than that of failure. Both must have occurred often enough to estimate
+  // their scatter.
   [[nodiscard]] bool holds_better() const {
     constexpr long k_enough = 20;
     return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();

@@ -264,7 +264,7 @@ void JointLaw::values_at(const double* u, double* values) const {
 
 namespace {
 
-// Returns the correlation of two variables whose normal variables have correlation rho0, by Gauss-Legendre quadrature over ±8.5 standard
+// Computes the correlation of two variables whose normal variables have correlation rho0, by Gauss-Legendre quadrature over ±8.5 standard
 // deviations.
 class NatafIntegral {
 public:

@@ -118,7 +118,7 @@ Answer elasticities(StudyRun& run) {
 
 // --- Morris' screening --------------------------------------------------------------------------
 
-// Returns the values of the variables at a point of the unit cube.
+// Computes the values of the variables at a point of the unit cube.
 void values_at_cube(const StudyRun& run, const std::vector<double>& cube, std::vector<double>& points) {
   const std::size_t n = run.law.dimension();
   std::vector<double> u(n), values(run.law.nominal().size());

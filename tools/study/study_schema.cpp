@@ -17,7 +17,7 @@ const Json& no_other_keys() {
   return schema;
 }
 
-// Keys that accept a text or a list of texts.
+// Returns true for keys that accept a text or a list of texts.
 bool takes_one(const std::string& name) { return name == "model" || name == "path"; }
 
 Json properties_of(const FieldTable& fields) {

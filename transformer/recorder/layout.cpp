@@ -170,7 +170,7 @@ void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<
   axis.factor *= unit->factor;
 }
 
-// A file with columns named as peaks, but no axis, is a list of peaks without waveforms.
+// Returns true if columns are named as peaks and none as an axis: the file is then a list of peaks without waveforms.
 bool find_peaks(RecordLayout& layout) {
   PeakColumns& peaks = layout.peaks;
   std::string unit_text, source;

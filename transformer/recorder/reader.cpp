@@ -196,14 +196,14 @@ private:
     return !last.empty() && last.back() >= '0' && last.back() <= '9' && decimals(last) >= row_decimals_;
   }
 
-  // An integer, or a number in a file with varying numbers of decimals, may have lost digits without a visible sign.
+  // Returns true for an integer, or a number in a file with varying numbers of decimals: it may have lost digits without a visible sign.
   bool may_lack_digits() const {
     if (fields_.size() > needed_) return false;
     const std::size_t digits = decimals(fields_.back());
     return digits == 0 || !is_fixed_ || row_fields_ == 0 || digits != row_decimals_;
   }
 
-  // A title, names or units of another block of the file.
+  // Returns true for a title, names or units of another block of the file.
   bool is_text_line() const {
     const std::string_view first = fields_.front();
     if (begins_like_number(first) || first.empty() || looks_like_row(fields_)) return false;
@@ -279,7 +279,7 @@ private:
     return true;
   }
 
-  // An omitted row counts for the time if times are counted by rows.
+  // Omits a row. The row still counts for the time if times are counted by rows. Returns false.
   bool skip_row() {
     if (is_new_block_ && layout_->time.kind == TimeKind::none && !uses_index_) end_segment(), rows_in_block_ = 0, is_new_block_ = false;
     ++rows_in_block_;

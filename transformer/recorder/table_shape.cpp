@@ -228,7 +228,7 @@ std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
   return 0;
 }
 
-// A line such as the start date looks like a row, but is followed by the names of columns.
+// Returns true if a line such as the start date, which looks like a row, is followed by the names of columns.
 bool is_before_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row, const TableShape& shape) {
   Fields fields;
   const auto has_names = [&](std::size_t i) {
