@@ -144,7 +144,7 @@ private:
     return json;
   }
 
-  // All contacts with one line of a body share one half-plane.
+  // Returns the index of the half-plane of a contact. All contacts with one line of a body share one.
   std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
     std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
     const double along = Vec2(normal.y(), -normal.x()).dot(place.point);

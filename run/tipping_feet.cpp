@@ -89,7 +89,7 @@ private:
     feet_.push_back({contact.name, contact.name, a.body, b.body, a.point - contact.radius_a * normal, normal});
   }
 
-  // Corners of one side, counter-clockwise.
+  // Returns the corners of one side, counter-clockwise.
   [[nodiscard]] std::vector<Vec2> corners(const std::string& name, const std::vector<Vec2>& given) const {
     const Place place = place_of(loaded_.model, name);
     const Seen at = seen(name);
@@ -112,7 +112,7 @@ private:
       if (const Vec2& to = corners[(i + 1) % corners.size()]; to != corners[i]) faces.push_back({corners[i], to});
     return faces;
   }
-  // Outward normal.
+  // Returns the outward normal.
   static Vec2 normal_of(const Line& face) {
     const Vec2 along = (face.to - face.from).normalized();
     return {along.y(), -along.x()};

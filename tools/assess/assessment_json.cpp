@@ -116,7 +116,7 @@ Json models(const Assessment& a) {
   return all;
 }
 
-// Thins the curve. The sample furthest from zero is kept from each interval, so that peaks remain.
+// Returns the curves of an event, thinned. The sample furthest from zero is kept from each interval, so that peaks remain.
 Json figure(const RecordEvents& record, const Window& window) {
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (count + k_figure_points - 1) / k_figure_points);
   const std::string axes = record.axes();
@@ -247,7 +247,7 @@ Json shared_frictions(const Assessment& a) {
   return all;
 }
 
-// Totals of each joint after the last simulated event.
+// Returns the totals of each joint after the last simulated event.
 Json voyage(const Assessment& a) {
   Json joints = Json::array();
   for (std::size_t m = 0; m < a.models.size(); ++m) {

@@ -25,7 +25,7 @@ std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double
   return begins;
 }
 
-// Channels needed for joints, criteria and trust. Extremes of all other channels would take most of the time of a sample.
+// Returns the channels needed for joints, criteria and trust. Extremes of all other channels would take most of the time of a sample.
 std::vector<std::string> channels_wanted(const Model& whole, const System& system, const std::vector<std::string>& traced) {
   std::vector<std::string> wanted = channels_of_trust(whole);
   for (const std::string& channel : traced_channels(traced)) wanted.push_back(channel);

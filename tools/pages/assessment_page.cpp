@@ -32,7 +32,7 @@ constexpr std::size_t k_most_points = 60000; ///< total for the curves of all ev
   throw FileError(file.string(), "'" + file.string() + "': " + what + "; it is not as steplap wrote it: run steplap assess again");
 }
 
-// Decisions in ascending severity. "open" precedes "inspect", because an inspection can resolve it.
+// Returns the position of a decision in ascending severity. "open" precedes "inspect", because an inspection can resolve it.
 int gravity_of(std::string_view outcome) {
   constexpr std::array<std::string_view, 4> k_outcomes{"energise", "open", "inspect", "return"};
   const auto* const found = std::find(k_outcomes.begin(), k_outcomes.end(), outcome);

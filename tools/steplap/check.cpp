@@ -159,7 +159,7 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
     out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
 }
 
-// Values of formulas are not rounded, so six digits are shown.
+// Formats with six digits, because values of formulas are not rounded.
 std::string with_unit(double value, const std::string& unit) {
   char rounded[32];
   std::snprintf(rounded, sizeof rounded, "%.6g", value);
@@ -264,7 +264,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
     out << (finding.level == FindingLevel::warning ? "  warning: " : "  note: ") << text_with_place(finding) << "\n";
 }
 
-// Printed once for all models.
+// Prints a note once for all models.
 void note_missing_format(std::ostream& out, const std::vector<std::shared_ptr<const LoadedModel>>& models) {
   std::vector<std::string> files;
   for (const auto& loaded : models)

@@ -156,7 +156,7 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
   return ExitCode::usage;
 }
 
-// Lists the options as known to the parser, for completion scripts and man pages.
+// Returns the options as known to the parser as JSON, for completion scripts and man pages.
 OrderedJson options_json(const CLI::App& app) {
   OrderedJson options = OrderedJson::array();
   for (const CLI::Option* option : app.get_options()) {
@@ -177,7 +177,7 @@ OrderedJson options_json(const CLI::App& app) {
   return options;
 }
 
-// Prints the help of the program and of every command.
+// Returns the help of the program and of every command as JSON.
 OrderedJson help_json(const Program& program, const CLI::App& app, const std::string& exit_codes) {
   OrderedJson commands = OrderedJson::array();
   for (const Command& command : program.commands)
@@ -203,7 +203,7 @@ OrderedJson version_json(const Program& program) {
   return json;
 }
 
-// Makes "help check" equivalent to "check --help".
+// Returns the arguments with "help check" replaced by "check --help".
 std::vector<std::string> without_help_command(const Program& program, std::vector<std::string> arguments) {
   if (arguments.empty() || arguments.front() != "help" || (arguments.size() > 1 && arguments[1].starts_with('-'))) return arguments;
   arguments.erase(arguments.begin());

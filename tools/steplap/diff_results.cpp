@@ -239,7 +239,7 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
   return rows.size();
 }
 
-// Lists what exists in one of the runs only.
+// Prints what exists in one of the runs only, and returns the number of such entries.
 std::size_t print_missing(std::ostream& out, const Json& a, const Json& b) {
   std::size_t count = 0;
   for (const bool is_gone : {true, false}) {

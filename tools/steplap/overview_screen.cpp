@@ -143,7 +143,7 @@ void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_colo
     if (f.at("code") == "friction_by_source") out << wrapped("Note: " + shown(text_of(f)), 6, 3) << "\n";
 }
 
-// The level of trust refers to numerical errors only, not to effects that the model leaves out.
+// Returns the text for a level of trust. It refers to numerical errors only, not to effects that the model leaves out.
 std::string words_of_level(const std::string& level) {
   return level == "good" ? "small" : level == "limited" ? "not known to be small" : "not known";
 }

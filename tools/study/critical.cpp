@@ -97,7 +97,7 @@ void look_closer(Line& line, Look& look) {
   }
 }
 
-// The expression is zero at two neighbouring points: either everywhere between, or only at these points.
+// Decides for neighbouring points at which the expression is zero whether it is zero everywhere between or only at these points.
 void look_into_flats(Line& line, Look& look) {
   constexpr int k_parts = 4;
   std::vector<double> more;
@@ -155,7 +155,7 @@ std::vector<Crossing> crossings_of(const Look& look, const std::string& variable
   return crossings;
 }
 
-// If the points are hardly denser than the crossings, pairs of crossings between two points may be missed.
+// Adds a note if the points are hardly denser than the crossings: pairs of crossings between two points may then be missed.
 void say_if_dense(std::size_t crossings, long points, Answer& answer) {
   constexpr long k_looks = 3; // required points per crossing
   if (crossings < 3 || k_looks * static_cast<long>(crossings) < points) return;
@@ -164,7 +164,7 @@ void say_if_dense(std::size_t crossings, long points, Answer& answer) {
   answer.degrade(Standing::not_met);
 }
 
-// The evaluator treats the expression as a limit state.
+// Adds the expression as a limit state, so that the evaluator computes it.
 void add_critical_expression(LoadedStudy& loaded) {
   const auto& s = settings_of<CriticalSettings>(loaded.study);
   loaded.study.limit_states.push_back({"critical", s.expression, s.where, true});

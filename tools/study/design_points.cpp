@@ -170,7 +170,7 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
   } catch (const BadSample&) {}
 }
 
-// A search algorithm that returns a known design point, as required by OpenTURNS.
+// Returns a search algorithm that reports a known design point, as required by OpenTURNS.
 OT::AbdoRackwitz search_algorithm() {
   OT::Log::Show(OT::Log::NONE);
   OT::AbdoRackwitz search;
@@ -213,7 +213,7 @@ void sort_points(std::vector<DesignPoint>& points) {
   });
 }
 
-// Budget for all searches together: a search takes about five steps with a gradient each, and most end at known points.
+// Returns the budget for all searches together: a search takes about five steps with a gradient each, and most end at known points.
 long budget_of(const LimitFunction& limit) {
   return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
 }

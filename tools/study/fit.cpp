@@ -331,8 +331,8 @@ private:
     }
   }
 
-  // Linear interpolation between samples of a run has an error of an eighth of the second difference, which is proportional to the square
-  // of the step.
+  // Checks the sampling: linear interpolation between samples of a run has an error of an eighth of the second difference, which is
+  // proportional to the square of the step.
   void check_interpolation(const History& h, Eigen::Index place) {
     const auto model =
         std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(), [&](const auto& m) { return m->name == h.model; });

@@ -368,7 +368,7 @@ void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, An
   answer.notes.emplace_back(text);
 }
 
-// The evaluator treats the expression as a limit state.
+// Adds the expression as a limit state, so that the evaluator computes it.
 void add_border(LoadedStudy& loaded) {
   const auto& s = settings_of<MapSettings>(loaded.study);
   loaded.study.limit_states.push_back({"border", s.expression, s.where, true});

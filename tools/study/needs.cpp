@@ -73,7 +73,7 @@ struct Row {
   double change = 0.0;
 };
 
-// Lists all variants of a model as given. Findings use their names.
+// Returns all variants of a model as given. Findings use their names.
 std::vector<ModelVariant> variants_of(const Model& model) {
   std::vector<ModelVariant> variants;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {

@@ -12,7 +12,7 @@ namespace steplap::study {
 /// The processes of a study, seen from one of them.
 class Ranks {
 public:
-  /// This process only.
+  /// Represents this process only.
   Ranks() = default;
   /// Returns all processes of MPI's world. MPI must be initialised, and finalised only after the last use.
   [[nodiscard]] static Ranks of_world();

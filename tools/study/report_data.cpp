@@ -254,7 +254,7 @@ Json findings_json(const std::vector<Finding>& findings, const std::vector<Repor
   return json;
 }
 
-// Lists all subjects of findings.
+// Returns all subjects of findings.
 std::vector<ReportColumn> named_columns(const Samples& samples, const Json& about) {
   std::vector<ReportColumn> columns = samples.columns;
   for (const Json& h : about["histories"]) columns.push_back({h.value("name", ""), h.value("unit", ""), "history"});

@@ -39,7 +39,7 @@ Curve cumulative_of(const std::vector<double>& sorted, const Tally& tally, bool 
   return curve;
 }
 
-// Bin width by the rule of Freedman and Diaconis.
+// Returns a histogram with the bin width of Freedman and Diaconis.
 Histogram histogram_of(const std::vector<double>& sorted, bool is_independent) {
   constexpr double k_fewest = 8.0, k_most = 60.0;
   Histogram histogram;

@@ -166,7 +166,7 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
   }
 }
 
-// The largest, in order of time.
+// Returns the largest events, in order of time.
 std::vector<std::size_t> shown_events(const Assessment& a) {
   const std::size_t most = std::max<std::size_t>(1, k_shown_events / std::max<std::size_t>(1, a.models.size()));
   std::vector<std::size_t> order(a.events.size());
