@@ -14,7 +14,7 @@ using namespace steplap::peers;
 
 namespace {
 
-// Programs of different order agree on where the last body is: h⁴ and rounding over some 1000 steps.
+// Programs with methods of different order must agree on the position of the last body, up to h⁴ and rounding over about 1000 steps.
 constexpr double k_agreement = 1e-6;
 
 struct Table {
