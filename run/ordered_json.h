@@ -12,7 +12,7 @@ namespace steplap {
 /// A JSON object that keeps the order of its entries.
 using OrderedJson = nlohmann::ordered_json;
 
-/// Returns an empty object with capacity for `entries`. Without it the object is copied at each doubling, because the library cannot move
+/// Returns an empty object with capacity for `entries`. Without this capacity the object is copied at each doubling, because the library cannot move
 /// entries with constant names.
 [[nodiscard]] OrderedJson object_with_room(std::size_t entries);
 

@@ -122,7 +122,8 @@ private:
       if (first == tie.bodies.end() || !std::all_of(first, last, is_above)) continue;
       c.first = static_cast<std::size_t>(first - tie.bodies.begin());
       c.last = static_cast<std::size_t>(last - tie.bodies.begin()) - 1;
-      if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last) continue; // two rope falls from different points
+      if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last)
+        continue; // held by two rope parts at different points, so it does not swing
       c.at = c.first > 0 ? c.first : c.last;
       c.load.carrier = tie.bodies[c.at];
       c.load.point = tie.points[c.at];

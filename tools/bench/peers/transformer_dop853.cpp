@@ -66,7 +66,7 @@ private:
     if (model_.sticking()) w.slope[k_friction_upper] = w.slope[k_friction_lower] = 0.0;
   }
 
-  // One accepted step, or the part of it up to its first event. Returns the next size.
+  // One accepted step, or the part of it up to its first event. Returns the size of the next step, s.
   double advance(double stop, double h) {
     auto rates = [this](double t, const double* y, double* f) { model_.rates(t, y, f); };
     const bool last = t_ + 1.01 * h >= stop;
