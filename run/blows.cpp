@@ -27,7 +27,6 @@ std::string owner_of(const std::string& channel) { return channel.substr(0, std:
 
 // Returns all impacts of a run. Ropes and clutches have a channel with the impulse of their last impact. For joints closed by an action the
 // action's event reports the impact.
-// impact.
 std::vector<Blow> blows_of(const Model& model, const RunResult& result) {
   std::vector<Blow> blows;
   for (const ChannelRange& range : result.ranges) {
