@@ -20,11 +20,11 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_same_time = 1e-9; // of the run: times that were meant to be the same
+constexpr double k_same_time = 1e-9; // relative to the duration of the run; closer times are regarded as equal
 
 Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
 
-// A signal, or a part of a sum: each part of a sum has to act for itself.
+// A signal, or one part of a sum. Each part of a sum must act completely.
 struct LoadPart {
   const SignalEntry* entry = nullptr;
   const Signal* signal = nullptr;
@@ -57,7 +57,7 @@ private:
   SignalNetwork network_;
 };
 
-// Velocities and accelerations of bodies at the end, beside the largest of the run.
+// Velocities and accelerations of bodies at the end, compared with the largest of the run.
 class Motions {
 public:
   Motions(const LoadedModel& loaded, const RunResult& result) {
@@ -68,10 +68,11 @@ public:
     }
   }
   [[nodiscard]] bool rests() const { return rests_; }     ///< nothing moves any more
-  [[nodiscard]] bool is_even() const { return is_even_; } ///< what moves keeps its velocity
+  [[nodiscard]] bool is_even() const { return is_even_; } ///< moving bodies have constant velocity
 
 private:
-  // A thousandth of what there was is the rest of a decay that nobody waits for; below 1e-6 SI units a body that stands creeps.
+  // Includes a channel in the comparison. A motion of 0.001 of its maximum is the end of a decay. Below 1e-6 SI units a body at rest creeps
+  // numerically.
   static void add(const RangeIndex& ranges, const std::string& body, std::initializer_list<const char*> quantities, bool& holds) {
     constexpr double k_share = 1e-3, k_least = 1e-6;
     for (const char* const quantity : quantities) {
@@ -86,10 +87,10 @@ private:
 
 std::string seconds(double t) { return rounded_text(t) + " s"; }
 
-// Whether one signal has acted in one of its uses, and what is to be said if not.
+// Tells whether one signal has acted completely in one of its uses, and creates the finding if not.
 class Judge {
 public:
-  // `growth`, `result`: null before a run.
+  // `growth` and `result` are null before a run.
   Judge(const LoadedModel& loaded, double end, const ReserveHistory* growth, const RunResult* result)
       : loaded_(loaded), model_(loaded.model), slack_(k_same_time * end), growth_(growth), result_(result) {}
 
@@ -97,12 +98,12 @@ public:
     const SignalCourse& course = part.course;
     const bool is_steady = part.signal->is_constant();
     if (is_steady ? part.signal->value(0.0) == 0.0 : course.is_level()) return std::nullopt;
-    if (is_steady && !use.is_named_at_start) return std::nullopt; // as "off", which an action may set
+    if (is_steady && !use.is_named_at_start) return std::nullopt; // such as "off", which an action may set
     if (use.spans.empty()) return never_begun(use, part.entry->definition->name, part.entry->definition->where);
     if (is_steady) return std::nullopt;
     if (std::any_of(use.spans.begin(), use.spans.end(), [&](const SignalSpan& span) { return has_acted(span, part); }))
       return growing(use.spans.back(), part);
-    double at_full_size = 0.0; // s, of what is switched on and off again and again
+    double at_full_size = 0.0; // s, summed over all intervals if the signal is switched repeatedly
     for (const SignalSpan& span : use.spans)
       at_full_size += std::max(0.0, std::min(span.to, course.ends) - std::max(span.from, course.full));
     if (course.period > 0.0 && at_full_size >= SignalCourse::k_periods * course.period) return std::nullopt;
@@ -111,7 +112,7 @@ public:
 
   std::optional<Finding> never_begun(const ActingSignal& use, const std::string& signal, const Location& where) const {
     if (use.waiting.empty() || std::any_of(use.waiting.begin(), use.waiting.end(), [&](const Action* a) { return is_forbidden(*a); }))
-      return std::nullopt; // an element that nothing holds has a finding of its own
+      return std::nullopt; // an element that no action can start has its own finding
     const std::string& element = model_.elements[use.element].element->name;
     const std::string what =
         signal.empty() ? "load '" + element + "' has never acted" : "signal '" + signal + "' has never acted on '" + element + "'";
@@ -122,7 +123,7 @@ public:
   }
 
 private:
-  // A criterion that an action must not happen says that what it begins is not expected.
+  // Returns true if a criterion forbids the action. Loads that the action would start are then not expected.
   [[nodiscard]] bool is_forbidden(const Action& action) const {
     return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& c) {
       return !c.event.empty() && matches_pattern(action.name, c.element.empty() ? "*" : c.element) &&
@@ -133,7 +134,7 @@ private:
   [[nodiscard]] bool has_acted(const SignalSpan& span, const LoadPart& part) const {
     const SignalCourse& course = part.course;
     const double to = span.to + slack_;
-    if (span.cut.action && !span.cut.action->reason.empty()) return true; // here loads are meant to end, or not to begin any more
+    if (span.cut.action && !span.cut.action->reason.empty()) return true; // loads are intended to end here
     if (!(to > course.begins) || !(span.from < course.ends)) return false;
     if (course.has_end() && to >= course.ends && (span.from <= course.begins + slack_ || is_at_full_size(span.from, part))) return true;
     if (!(course.full < to)) return false;
@@ -142,10 +143,10 @@ private:
     return !course.has_end() && has_settled(since, span);
   }
 
-  // If a signal began to act behind its own beginning: is its largest value still to come?
+  // Returns true if the largest value of the signal comes after the time `from` at which it begins to act.
   static bool is_at_full_size(double from, const LoadPart& part) {
-    constexpr double k_nearly = 0.99; // of the largest: looks between may miss the top by less
-    constexpr int k_looks = 16;       // in each piece
+    constexpr double k_nearly = 0.99; // fraction of the maximum; sampling may miss the peak by less
+    constexpr int k_looks = 16;       // samples in each piece
     std::vector<double> times{part.course.begins, from};
     for (const double t : part.signal->breakpoints())
       if (t > part.course.begins && t <= part.course.ends) times.push_back(t);
@@ -167,10 +168,10 @@ private:
     return periods >= k_least && (!growth_ || has_stopped_growing(to - period, to));
   }
 
-  // Has the time from `before` to `to` added next to nothing to what each criterion has used? Not known where nothing is measured.
+  // Returns true if the time from `before` to `to` raised the utilisation of no criterion noticeably. False if nothing is measured.
   [[nodiscard]] bool has_stopped_growing(double before, double to) const {
-    constexpr double k_less = 0.01;  // of what it has used
-    constexpr double k_still = 1e-6; // of what it may use: extremes are located no better
+    constexpr double k_less = 0.01;  // relative to the utilisation so far
+    constexpr double k_still = 1e-6; // relative to the limit; extremes are located no more accurately
     for (std::size_t i = 0; i < growth_->count(); ++i) {
       const double left = growth_->reserve(i, to + slack_), first = growth_->first_reserve(i);
       if (!std::isfinite(left) || !std::isfinite(first)) continue;
@@ -179,7 +180,7 @@ private:
     return growth_->count() > 0;
   }
 
-  // An action that ends a level says how long the level was meant to last.
+  // Returns true if a constant load has had its full effect. An action that ends it defines its intended duration.
   [[nodiscard]] bool has_settled(double since, const SignalSpan& span) const {
     if (!growth_ || !result_ || (span.cut.action && span.cut.verb != ActionVerb::stop)) return true;
     const Motions motions(loaded_, *result_);
@@ -187,11 +188,12 @@ private:
     if (!has_stopped_growing(0.5 * (since + span.to), span.to)) return false;
     if (motions.is_even()) return true;
     for (std::size_t i = 0; i < growth_->count(); ++i)
-      if (growth_->first_reserve(i) > growth_->reserve(i, span.to + slack_)) return true; // it has done something
+      if (growth_->first_reserve(i) > growth_->reserve(i, span.to + slack_)) return true; // the load had an effect
     return false;
   }
 
-  // Under a load that goes on alike a criterion may grow for ever, as at a resonance. The second half of the time at full size tells how fast.
+  // Returns a finding if a criterion still grows under a periodic load. It may grow without limit (resonance). The second half of the time
+  // at full size shows the rate of growth.
   [[nodiscard]] std::optional<Finding> growing(const SignalSpan& span, const LoadPart& part) const {
     const double since = std::max(part.course.full, span.from), half = 0.5 * (since + span.to);
     const bool is_at_end = !span.cut.action || (span.cut.verb == ActionVerb::stop && span.cut.action->reason.empty());
@@ -271,8 +273,8 @@ private:
   const LoadedModel& loaded_;
   const Model& model_;
   double slack_;                 ///< s
-  const ReserveHistory* growth_; ///< null: nothing has been run
-  const RunResult* result_;      ///< the same
+  const ReserveHistory* growth_; ///< null before a run
+  const RunResult* result_;      ///< null before a run
 };
 
 std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vector<ActingSignal>& uses, const Judge& judge) {
@@ -302,7 +304,7 @@ std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
 }
 
 std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
-  if (!result.stop_reason.empty()) return {}; // an element that came apart ended it, which the verdict says
+  if (!result.stop_reason.empty()) return {}; // an element that came apart ended the run; the verdict reports it
   const ReserveHistory growth(result,
                               result.growth.empty() ? std::vector<LimitedChannel>{} : limited_channels(loaded.model, result, judgement));
   const Judge judge(loaded, result.final_state.t, &growth, &result);

@@ -1,13 +1,17 @@
-// Has a run seen all of its loads? Signals, forces and formulas of time that began, reached their full size and ended within it.
+// Finds loads that have not acted completely within a run. Signals, forces and formulas of time should begin, reach their full size and end
+// before the run ends.
 //
-// Counted is what acted in the legs that ran: actions release, hold and set elements, and end the run. The events of the run tell when.
-//   signal with an end     has acted if its end came while its element acted
-//   harmonics, sea, road   after SignalCourse::k_periods mean periods at full size; after two, if the last one has added less than a
-//                          hundredth to what each criterion has used
-//   ramp and hold          when nothing moves any more; or if the second half of the time at full size has added less than a hundredth to
-//                          what each criterion has used, and some has been used or bodies move evenly; or until an action ends it
-//   formula of the time    if it changes within the run, or not behind its end either
-// An action that cuts a load off ends it as it was meant if it gives a `reason`, whatever has acted by then.
+// Only the time during which an element acts counts: actions release, hold and set elements, and can end the run. The times of actions are
+// taken from the events of the run. A load has acted completely if:
+//
+//   signal with an end     its end comes while its element acts
+//   harmonics, sea, road   SignalCourse::k_periods mean periods have passed at full size; two suffice if the last one raised the
+//                          utilisation of each criterion by less than 0.01
+//   ramp and hold          nothing moves any more; or the second half of the time at full size raised the utilisation of each criterion
+//                          by less than 0.01, and some utilisation is above zero or bodies move uniformly; or an action ends it
+//   formula of time        it changes within the run, or it does not change after the end either
+//
+// An action with a `reason` that cuts off a load is intended; such a load is not reported.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -15,9 +19,9 @@
 
 namespace steplap {
 
-/// Before a run: signals that its end cuts off, as if no action happened.
+/// Returns, before a run, the signals that its end cuts off. Assumes that no action happens.
 [[nodiscard]] std::vector<Finding> loads_beyond_end(const LoadedModel& loaded);
-/// After a run that was not broken off: loads that have not acted, each once. `judgement`: of this run.
+/// Returns, after a completed run, one finding for each load that has not acted completely. `judgement` belongs to `result`.
 [[nodiscard]] std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
 
 } // namespace steplap

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// Goes through a run from its first leg to its last.
+// Follows a run from its first leg to its last.
 class Legs {
 public:
   explicit Legs(const Model& model) : model_(model) {
@@ -50,7 +50,7 @@ public:
     }
   }
 
-  // Loads that actions would have begun, had they happened.
+  // Adds loads that actions would have started if they had happened.
   void wait(const Action& action) {
     for (const std::string& text : action.steps) {
       const ActionStepText step = action_step(text);
@@ -97,14 +97,14 @@ private:
     return found && found->type == FieldType::signal;
   }
 
-  // A value as an action sets it: "[0, 0]", "0 N".
+  // Returns true for values such as "[0, 0]" and "0 N".
   static bool is_zero(const std::string& value) { return value.find_first_of("123456789=") == std::string::npos; }
 
   void end(std::size_t element, const std::string& field, double t, const SignalCut& cut) {
     const auto found = now_.find({element, field});
     if (found == now_.end() || !acts_[element] || !(t > found->second.since)) return;
     std::vector<SignalSpan>& spans = found->second.use->spans;
-    const bool goes_on = !spans.empty() && spans.back().to == found->second.since; // it was set to what it was
+    const bool goes_on = !spans.empty() && spans.back().to == found->second.since; // it was set to the value that it already had
     if (goes_on) spans.back().to = t, spans.back().cut = cut;
     else spans.push_back({found->second.since, t, cut});
   }
@@ -121,7 +121,7 @@ private:
   const Model& model_;
   std::unordered_map<std::string, std::size_t> index_; ///< of elements
   std::vector<bool> acts_;
-  std::map<std::pair<std::size_t, std::pair<std::string, std::string>>, ActingSignal> uses_; ///< by element, field and signal
+  std::map<std::pair<std::size_t, std::pair<std::string, std::string>>, ActingSignal> uses_; ///< key: element, field and signal
   std::map<Place, Now> now_;
 };
 

@@ -1,6 +1,5 @@
-// Finds which signals acted in a run, and when: each use of a signal by an element, over the legs of the run.
-//
-// The events of a run tell which actions happened, and these what they released, held and set. So nothing has to be kept by the run.
+// Computes when each signal acts on each element in a run. Actions start and end this by releasing, holding and setting elements; their
+// times are reconstructed from the events of the run, so the run need not record anything else.
 #pragma once
 
 #include "mbd/model/action.h"
@@ -11,34 +10,34 @@
 
 namespace steplap {
 
-/// The end of a stretch of time in which a signal acted.
+/// The end of an interval in which a signal acts.
 struct SignalCut {
   const Action* action = nullptr;     ///< null: the end of the run
   ActionVerb verb = ActionVerb::stop; ///< what the action did to the signal
 };
 
-/// A stretch of time in which it acted.
+/// An interval of time in which a signal acts on an element.
 struct SignalSpan {
   double from = 0.0, to = 0.0; ///< s
-  SignalCut cut;               ///< what ended it
+  SignalCut cut;               ///< reason for the end
 };
 
-/// A field of an element that names a signal.
+/// Use of a signal by a field of an element.
 struct ActingSignal {
   std::size_t element = 0;            ///< in Model::elements
-  std::string field;                  ///< its name
-  std::string signal;                 ///< its name; "": the element gives constants alone (a load)
-  bool is_named_at_start = false;     ///< by the element itself, and not by an action alone
-  std::vector<SignalSpan> spans;      ///< ascending in time; none: it never acted
-  std::vector<const Action*> waiting; ///< where it never acted: actions that would have begun it, and did not happen
+  std::string field;                  ///< name of the field
+  std::string signal;                 ///< name of the signal; "" for loads given by constants only
+  bool is_named_at_start = false;     ///< true if the element names the signal itself, false if only an action assigns it
+  std::vector<SignalSpan> spans;      ///< ascending in time; empty if the signal never acted
+  std::vector<const Action*> waiting; ///< if it never acted: actions that would have started it, but did not happen
 };
 
-/// All uses of a run from t = 0 to result.final_state.t. Signals that only an action names are among them, whether or not it happened.
+/// Returns all uses of signals from t = 0 to result.final_state.t, s, including signals assigned only by actions that did not happen.
 [[nodiscard]] std::vector<ActingSignal> acting_signals(const Model& model, const RunResult& result);
-/// Returns the signals that act in a run to `end`, s, if no action happens.
+/// Returns all uses of signals from t = 0 to `end`, s, for a run in which no action happens.
 [[nodiscard]] std::vector<ActingSignal> acting_signals_without_actions(const Model& model, double end);
 
-/// The action of that name; nullptr if there is none.
+/// Returns the action of that name, or nullptr if there is none.
 [[nodiscard]] const Action* find_action(const Model& model, const std::string& name);
 
 } // namespace steplap

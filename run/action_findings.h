@@ -1,5 +1,5 @@
-// What of [[action]] can have no effect: elements that never act, actions that are never armed or come too late, and those that have not
-// happened.
+// Finds [[action]] tables without effect: elements that never act, actions that are never armed or come too late, and actions that did not
+// happen.
 #pragma once
 
 #include "run/finding.h"
@@ -11,9 +11,9 @@
 
 namespace steplap {
 
-/// Before the run: of the model alone.
+/// Returns the findings that follow from the model alone, before a run.
 [[nodiscard]] std::vector<Finding> idle_actions(const LoadedModel& loaded);
-/// After it: which actions have not happened.
+/// Returns, after a run, one finding for each action that has not happened.
 [[nodiscard]] std::vector<Finding> actions_that_wait(const LoadedModel& loaded, const RunResult& result);
 
 } // namespace steplap

@@ -1,11 +1,11 @@
-// Tells whether anything moved in a run. Where nothing did, errors have no range to be measured by.
+// Tells whether anything moved in a run. In a run at rest errors cannot be related to the range of a channel.
 #pragma once
 
 #include "run/run.h"
 
 namespace steplap {
 
-/// Nothing moved in the run but by rounding.
+/// Returns true if nothing moved in the run, apart from rounding.
 [[nodiscard]] bool is_at_rest(const Run& run);
 
 } // namespace steplap

@@ -16,16 +16,17 @@ namespace steplap {
 
 namespace {
 
-// An element that took a blow, and the time.
+// An element that took part in an impact, with the time.
 struct Blow {
   std::string element;
   double t = 0.0; ///< s
 };
 
-// "rope" of "rope.tension"
+// Returns "rope" for "rope.tension".
 std::string owner_of(const std::string& channel) { return channel.substr(0, std::min(channel.rfind('.'), channel.size())); }
 
-// The impulse of its last blow is a channel of each rope and clutch; the event of an action says of a blow with which it closes joints.
+// Returns all impacts of a run. Ropes and clutches have a channel with the impulse of their last impact. For joints closed by an action the
+// action's event reports the impact.
 std::vector<Blow> blows_of(const Model& model, const RunResult& result) {
   std::vector<Blow> blows;
   for (const ChannelRange& range : result.ranges) {
@@ -53,7 +54,7 @@ std::vector<Blow> blows_of(const Model& model, const RunResult& result) {
   return blows;
 }
 
-// Bodies and elements that blows went through, with the time of the first.
+// All bodies and elements that took part in an impact or are connected to such bodies by constraints, with the time of their first impact.
 class Struck {
 public:
   Struck(const LoadedModel& loaded, const std::vector<Blow>& blows) : model_(loaded.model), system_(*loaded.system) {
@@ -75,7 +76,8 @@ public:
           note(elements_, system_.element_names[static_cast<std::size_t>(row.element)], struck->second);
   }
 
-  /// Gives the time of the first blow through what the channel tells of; nothing if none did, or if it tells of no force and no acceleration.
+  /// Returns the time of the first impact that affected the channel. Returns nothing if there was none or the channel is neither a force
+  /// nor an acceleration.
   [[nodiscard]] std::optional<double> first_blow(const std::string& channel, const std::string& unit) const {
     const std::string owner = owner_of(channel);
     if (unit == "N" || unit == "N m") {
@@ -102,7 +104,7 @@ private:
     if (a != k_ground && b != k_ground) parent_[static_cast<std::size_t>(root(a))] = root(b);
   }
 
-  // Lists the moving bodies that the element names.
+  // Returns the moving bodies to which the element refers.
   [[nodiscard]] std::vector<int> bodies_of(const std::string& element) const {
     std::vector<int> bodies;
     const auto add = [&](const std::string& name) {
@@ -122,13 +124,13 @@ private:
 
   const Model& model_;
   const System& system_;
-  std::vector<int> parent_;                          ///< of a forest: bodies of a tree are joined by constraints
-  std::unordered_map<std::string, int> place_;       ///< by body and marker
-  std::unordered_map<int, double> roots_;            ///< s, by tree
-  std::unordered_map<std::string, double> elements_; ///< s, by name
+  std::vector<int> parent_;                          ///< union-find forest: bodies of one tree are connected by constraints
+  std::unordered_map<std::string, int> place_;       ///< body index, by name of body or marker
+  std::unordered_map<int, double> roots_;            ///< time of the first impact, s, by root of the tree
+  std::unordered_map<std::string, double> elements_; ///< time of the first impact, s, by element name
 };
 
-// The time of the first blow through a channel, or through what its formula is made of.
+// Returns the time of the first impact that affected a channel or, for a formula, any channel in the formula.
 std::optional<double> first_blow_of(const Channel& channel, const Model& model, const System& system, const Struck& struck) {
   if (const auto t = struck.first_blow(channel.name, channel.unit)) return t;
   for (const DefinedChannel& defined : model.channels) {

@@ -1,7 +1,7 @@
-// Rigid blows: ropes without elasticity that become taut, clutches that lock, joints that an action closes on bodies that move.
+// Detects rigid impacts: an inextensible rope becomes taut, a clutch locks, or an action closes a joint between moving bodies.
 //
-// Velocities jump, and what joints the bodies has an impulse and no force: 100 kN for 1 ms are the same as 1 MN for 0.1 ms. How large forces
-// and accelerations become depends on compliance that the model does not have.
+// A rigid impact makes velocities jump. It transmits an impulse, but its force is unknown: 100 kN for 1 ms and 1 MN for 0.1 ms are the same
+// impulse. Forces and accelerations would depend on a compliance that the model does not contain.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -12,11 +12,12 @@
 
 namespace steplap {
 
-/// How doubts about such a criterion begin: they are none about numerical errors.
+/// First words of CriterionResult::doubt for such a criterion. They distinguish it from doubts about numerical errors.
 inline constexpr std::string_view k_but_for_a_blow = "met but for a rigid blow";
 
-/// Criteria of forces, couples and accelerations through which a rigid blow went, and that are met without it, are open: what was
-/// struck, and what is joined to that by constraints.
+/// Sets criteria from "hold" to "open" if a rigid impact makes their value unknown, and updates the verdict. This concerns limits on
+/// forces, couples and accelerations of the elements and bodies that take part in the impact, and of all bodies connected to them by
+/// constraint rows. Criteria that are not met remain so.
 void leave_struck_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Sizes of bodies by what a model says of them: outlines, markers, radii of elements that touch them.
+// Estimates the sizes of bodies from their outlines, their markers and the radii of the elements on them.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,10 +7,11 @@
 
 namespace steplap {
 
-/// Per body of the model, m: the largest distance of its outline, of its markers, and of rims round these, from its centre of gravity.
-/// 0: the model says nothing but the centre.
+/// Returns for each body of the model, m, the largest distance from its centre of gravity to its outline, to its markers and to circles of
+/// elements around these markers. It is 0 if the model gives the centre of gravity only.
 [[nodiscard]] std::vector<double> body_reaches(const Model& model);
-/// The diagonal of the rectangle that holds all bodies in the pose given, as far as `reaches` goes, and all markers of the ground, m.
+/// Returns the diagonal, m, of the rectangle around all bodies in their given poses, each enlarged by its value in `reaches`, and all
+/// markers of the ground.
 [[nodiscard]] double scene_extent(const Model& model, const std::vector<double>& reaches);
 
 } // namespace steplap

@@ -1,11 +1,11 @@
-// Everything a model file may use, unless a program brings a catalogue of its own: all kinds of elements and tables.
+// Catalogue of all kinds of elements and tables that a model file may use. Programs can replace it by their own.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// Made once, at first use; lives as long as the program.
+/// Returns the catalogue. It is created at first use and lives until the program ends.
 [[nodiscard]] const Catalogue& program_catalogue();
 
 } // namespace steplap

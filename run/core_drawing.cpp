@@ -14,16 +14,16 @@ namespace steplap {
 
 namespace {
 
-// Two rows of panels, in pixels.
+// Layout of the panels in two rows, pixels.
 constexpr double k_gap = 20.0, k_title = 26.0, k_width = 1020.0, k_height = 440.0;
 constexpr PanelFrame k_upper_left{k_gap, k_gap + k_title, 520.0, k_height};
 constexpr PanelFrame k_upper_right{2.0 * k_gap + 520.0, k_gap + k_title, 440.0, k_height};
 constexpr double k_lower = 2.0 * (k_gap + k_title) + k_height;
 constexpr PanelFrame k_lower_left{k_gap, k_lower, 480.0, k_height};
 constexpr PanelFrame k_lower_right{2.0 * k_gap + 480.0, k_lower, 480.0, k_height};
-constexpr long k_most_layers = 22; // drawn of a book
+constexpr long k_most_layers = 22; // layers of a book that are drawn
 
-// A dark page shows a dark image: the style knows which is asked for.
+// The style adapts to dark pages (prefers-color-scheme).
 const char* const k_style =
     "<style>svg{--paper:#fff;--back:#f6f6f4;--ink:#222;--soft:#666;--rule:#bbb;--limb:#9db8d2;--pale:#d3dfea;"
     "--yoke:#d9c39a;--lap:#c4463a}\n"
@@ -39,7 +39,7 @@ const char* const k_style =
 
 std::string millimetres(double value) { return plain_millimetres(value) + " mm"; }
 
-// The least circle around the section: its centre on the limb's axis, in the depth.
+// Smallest circle around the section: its centre, on the limb's axis, in depth direction.
 struct Round {
   double centre = 0.0, diameter = 0.0;
 };
@@ -92,7 +92,7 @@ private:
   std::ostringstream out_;
 };
 
-// Of all tables of the active part: a core of limbs of two widths has two of them.
+// Returns the limbs of all [[core]] tables with the same active part: a core with limbs of two widths has two tables.
 std::vector<Drawing::Limb> Drawing::limbs() const {
   std::vector<Limb> all;
   const Body& part = *model_.find_body(core_.active_part);
@@ -109,7 +109,7 @@ std::vector<Drawing::Limb> Drawing::limbs() const {
   return all;
 }
 
-// Packets of a stack that differ, the widest first.
+// Returns the different packets of a stack, widest first.
 std::vector<std::size_t> packets_by_width(const Stack& stack) {
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < stack.packets.size(); ++p)
@@ -150,7 +150,7 @@ void Drawing::draw_limb(SheetPanel& panel, const Limb& limb) const {
   }
 }
 
-// Yokes behind, limbs on them: every packet, the largest first. Windows stay open.
+// Draws yokes behind and limbs in front: every packet, the largest first. Windows stay open.
 void Drawing::draw_elevation() {
   const std::vector<Limb> all = limbs();
   const double h = 0.5 * geometry_.mitre(geometry_.largest(), false).core_height;
@@ -200,7 +200,7 @@ void Drawing::dimension_elevation(SheetPanel& panel, const std::vector<Limb>& al
   panel.dimension_across({own->middle.x() - half, middle + h}, {own->middle.x() + half, middle + h}, -16.0, plain_millimetres(2.0 * half));
 }
 
-// The section's layers as they are drawn: packets parted by ducts.
+// Layers of the section as drawn: packets separated by ducts.
 struct Slab {
   double width, low, high;
   std::size_t packet;
@@ -210,7 +210,7 @@ std::vector<Slab> slabs_of(const Stack& stack) {
   std::vector<Slab> slabs;
   std::vector<Duct> ducts = stack.ducts;
   std::sort(ducts.begin(), ducts.end(), [](const Duct& a, const Duct& b) { return a.place < b.place; });
-  double drawn = 0.0, steel = 0.0; // depth with and without the ducts
+  double drawn = 0.0, steel = 0.0; // depth with and without ducts
   std::size_t next = 0;
   for (std::size_t i = 0; i < stack.packets.size(); ++i) {
     const Packet& p = stack.packets[i];
@@ -227,7 +227,7 @@ std::vector<Slab> slabs_of(const Stack& stack) {
   return slabs;
 }
 
-// The largest distance to a corner is a convex function of the centre's place: its least value by thirds.
+// Finds the centre by ternary search, because the largest distance to a corner is a convex function of it.
 Round round_about(const std::vector<Slab>& slabs) {
   const auto farthest = [&](double centre) {
     double most = 0.0;
@@ -261,7 +261,7 @@ void Drawing::draw_packets(SheetPanel& panel) const {
   panel.labels_at_right(std::move(labels), panel.frame().x + panel.frame().width - 148.0);
 }
 
-// Of a limb, seen along it: packets from the front face (below) to the back, in the least circle around them.
+// Draws the section of a limb, seen along it: packets from the front face (below) to the back, in their smallest enclosing circle.
 void Drawing::draw_section() {
   const Stack& stack = geometry_.stack();
   const double depth = depth_of(stack);
@@ -286,7 +286,7 @@ void Drawing::draw_section() {
                  hundredths(area / circle) + ")");
 }
 
-// The largest packet's top corner in front of the active part, or a T-joint, with the lines of its book.
+// Draws the upper corner of the largest packet, or a T-joint, with the step-lap lines of its book.
 void Drawing::draw_corner(const PanelFrame& frame) {
   const bool is_middle = core_.limbs.empty();
   const std::size_t p = geometry_.largest();
@@ -295,12 +295,12 @@ void Drawing::draw_corner(const PanelFrame& frame) {
   SheetPanel panel(out_, frame, is_middle ? "Corner: T-joint of the largest packet" : "Corner: mitre of the largest packet",
                    {-1.35 * half, low}, {1.1 * half, top}, {34.0, 70.0, 34.0, 62.0});
   panel.rectangle(-1.35 * half, is_middle ? 1.1 * half : half, top - m.yoke_height, top, "yoke");
-  CornerFrame floor; // cuts the limb off at the lower edge
+  CornerFrame floor; // cuts off the limb at the lower edge
   floor.origin = {0.0, low};
   floor.across = {0.0, 1.0};
   panel.polygon(beyond(is_middle ? pointed_end(m, 1.0, 0.0) : limb_end(m, 1.0, 1.0, 0.0), floor, 0.0), "limb");
   const auto draw_line = [&](double q) {
-    // Where the line crosses both strips: the edge of the yoke's sheet.
+    // Points where the line crosses both strips: the edge of the yoke's sheet.
     for (const double side : {1.0, -1.0}) {
       if (!is_middle && side < 0.0) continue;
       const CornerFrame f = is_middle ? notch_frame(m, side, 1.0) : corner_frame(m, 1.0, 1.0);
@@ -340,7 +340,7 @@ void Drawing::draw_corner(const PanelFrame& frame) {
   panel.line({-1.35 * half, cross_of_axes.y()}, {1.1 * half, cross_of_axes.y()}, "axis");
 }
 
-// Across the mitre: one layer above the other, the yoke's sheets left, the limb's right, overlaps between them.
+// Draws the section across the mitre: layers above each other, sheets of the yoke on the left, of the limb on the right, overlaps between.
 void Drawing::draw_book() {
   const Stack& stack = geometry_.stack();
   const bool is_middle = core_.limbs.empty();

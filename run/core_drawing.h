@@ -1,4 +1,4 @@
-// A core as a core drawing shows it: elevation, section of the stack, the lines of a corner, the book across them.
+// Draws a core as SVG: elevation, section through the stack, the step-lap lines of one corner and the book in a section across them.
 #pragma once
 
 #include "transformer/core/core.h"
@@ -7,8 +7,8 @@
 
 namespace steplap {
 
-/// An SVG image that stands alone. The elevation shows the limbs where the model has them; the book is drawn with its
-/// layers some twenty times as thick as they are. Precondition: the model is valid.
+/// Returns a self-contained SVG image. The elevation shows the limbs that the model contains. The layers of the book are drawn about twenty
+/// times thicker than to scale. Precondition: the model is valid.
 [[nodiscard]] std::string core_svg(const Core& core, const Model& model);
 
 } // namespace steplap

@@ -1,7 +1,7 @@
-// Paper for drawings of cores: panels with a scale each, dimension lines, labels beside what is too thin to hold them.
+// Drawing primitives for core drawings: panels with their own scales, dimension lines and labels with leader lines.
 //
-// Everything is text of an SVG image, in pixels; y of a panel points upwards, in m. Colours are classes of the image's
-// style (core_drawing.cpp), which has a dark variant.
+// All output is text of an SVG image, in pixels. Coordinates within a panel are in m, y upwards. Colours are style classes of the image
+// (core_drawing.cpp), which has a dark variant.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -12,61 +12,61 @@
 
 namespace steplap {
 
-/// Text for an SVG image.
+/// Returns `text` with the special characters of SVG escaped.
 [[nodiscard]] std::string escaped_svg(const std::string& text);
-/// A pixel to a hundredth.
+/// Returns a pixel coordinate as text with two decimals.
 [[nodiscard]] std::string pixels(double value);
-/// A length in mm to a tenth, without its unit, as drawings have it.
+/// Returns a length as text in mm with one decimal and without unit.
 [[nodiscard]] std::string plain_millimetres(double metres);
 
-/// Where a panel lies in the image, pixels.
+/// Rectangle of a panel in the image, pixels.
 struct PanelFrame {
   double x = 0.0, y = 0.0, width = 0.0, height = 0.0; ///< upper left corner, size
 };
 
-/// Room that a panel keeps free around what it shows, pixels.
+/// Margins inside a panel around its contents, pixels.
 struct PanelEdges {
   double left = 34.0, right = 34.0, top = 34.0, bottom = 34.0; ///< pixels on each side
 };
 
-/// A frame of the image with a scale of its own.
+/// A rectangular part of the image with its own scale.
 class SheetPanel {
 public:
-  /// Draws frame and title. Shows at least the rectangle from `low` to `high`, in the middle of what `edges` leave.
+  /// Draws the frame and the title. The scale is chosen so that at least the rectangle from `low` to `high`, m, is visible inside `edges`.
   SheetPanel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
              const PanelEdges& edges, bool is_to_scale = true);
 
-  /// Where a place, m, is in the image, pixels.
+  /// Returns the image position, pixels, of a point p, m.
   [[nodiscard]] Vec2 at(const Vec2& p) const;
-  /// Of a length across, pixels.
+  /// Returns a horizontal length in pixels.
   [[nodiscard]] double length(double metres) const { return metres * scale_.x(); }
-  /// Where the panel lies.
+  /// Returns the panel's rectangle in the image.
   [[nodiscard]] const PanelFrame& frame() const { return frame_; }
 
-  /// A closed ring; `kind`: class of the style, here and below.
+  /// Draws a closed polygon. `kind` is a style class, here and below.
   void polygon(const std::vector<Vec2>& ring, const std::string& kind);
-  /// Upright, m.
+  /// Draws an axis-parallel rectangle, m.
   void rectangle(double x0, double x1, double y0, double y1, const std::string& kind);
-  /// Straight, m.
+  /// Draws a straight line, m.
   void line(const Vec2& a, const Vec2& b, const std::string& kind);
-  /// By its diameter, m.
+  /// Draws a circle given by its diameter, m.
   void circle(const Vec2& centre, double diameter, const std::string& kind);
-  /// `down`: pixels below the place.
+  /// Writes text at a point, shifted downwards by `down` pixels.
   void text(const Vec2& place, const std::string& words, const std::string& anchor = "middle", double down = 4.0);
-  /// Along the lower edge of the frame, under what is drawn; another one along the upper edge.
+  /// Writes one line of text along the lower edge of the frame and, if given, one along the upper edge.
   void note(const std::string& below, const std::string& above = "");
 
-  /// From a to b, both on one horizontal line, with arrows; `off`: pixels below the lower of them (negative: above).
+  /// Draws a horizontal dimension line from a to b with arrows, `off` pixels below the lower of both points (above if negative).
   void dimension_across(const Vec2& a, const Vec2& b, double off, const std::string& words);
-  /// From a (lower) to b (upper); `off`: pixels to the right of the right one (negative: to the left).
+  /// Draws a vertical dimension line from a (lower) to b (upper), `off` pixels to the right of the right one (to the left if negative).
   void dimension_upwards(const Vec2& a, const Vec2& b, double off, const std::string& words);
 
-  /// A label to be written at the right edge, with a line to its place.
+  /// Label at the right edge with a leader line to its point.
   struct Label {
     Vec2 place;        ///< m
-    std::string words; ///< what is written
+    std::string words; ///< the text
   };
-  /// Writes as many labels as there is room for, in the order of their places, none on another; of more, evenly chosen ones.
+  /// Writes the labels in the order of their points, without overlap. If there is not enough room, an evenly spaced selection is written.
   void labels_at_right(std::vector<Label> labels, double x);
 
 private:

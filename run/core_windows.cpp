@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// One limb, from the active part's centre of gravity in its axes; heights are those of the window beside it.
+// A limb relative to the active part's centre of gravity, in its axes. Heights are those of the adjacent window.
 struct Standing {
   double x, half_width, low, high;
 };
@@ -31,7 +31,7 @@ std::vector<Standing> limbs_of(const Body& active_part, const Model& model) {
   return limbs;
 }
 
-// W. R. Franklin's crossings of a ray.
+// Returns true if p is inside the polygon: ray crossing test by W. R. Franklin.
 bool is_inside(const Vec2& p, const std::vector<Vec2>& ring) {
   bool is = false;
   for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
@@ -51,7 +51,7 @@ std::vector<std::vector<Vec2>> core_windows(const Body& active_part, const Model
     const Vec2 low(a.x + a.half_width, std::max(a.low, b.low)), high(b.x - b.half_width, std::min(a.high, b.high));
     if (!(high.x() > low.x()) || !(high.y() > low.y())) continue;
     const std::vector<Vec2> ring{low, {high.x(), low.y()}, high, {low.x(), high.y()}};
-    // A part in a thousand inwards: the window's edge may be the outline's own.
+    // The corners are moved inwards by 0.001, because the window's edge may coincide with the outline.
     const Vec2 middle = 0.5 * (low + high);
     const bool is_covered = std::all_of(ring.begin(), ring.end(), [&](const Vec2& p) {
       return is_inside(middle + 0.999 * (p - middle) + active_part.cg, active_part.outline);

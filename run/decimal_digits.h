@@ -1,25 +1,26 @@
-// Decimal digits of numbers, as they are written: for texts that end at a digit which an error lets one say.
+// Decimal digits of numbers, used to end a printed value at the last digit that its error supports.
 #pragma once
 
 #include <string>
 
 namespace steplap {
 
-/// digit · 10^exponent, 1 <= digit <= 9.
+/// The number digit · 10^exponent with 1 ≤ digit ≤ 9.
 struct DecimalDigit {
-  int digit = 1, exponent = 0; ///< of a number: 3 and -2 stand for 0.03
+  int digit = 1, exponent = 0; ///< 0.03 has digit 3 and exponent −2
 };
 
-/// The first digit of |value|, not rounded. It is read off the digits that are written: a logarithm may be rounded to the wrong side of
-/// a power of ten.
+/// Returns the first digit of |value|, not rounded. It is taken from the printed digits, because a logarithm may be rounded to the wrong
+/// side of a power of ten.
 [[nodiscard]] DecimalDigit first_digit(double value);
-/// The exponent of the first digit; 0 of zero.
+/// Returns the exponent of the first digit; 0 if value is 0.
 [[nodiscard]] int exponent_of(double value);
-/// 10^exponent, correctly rounded.
+/// Returns 10^exponent, correctly rounded.
 [[nodiscard]] double power_of_ten(int exponent);
-/// An error (> 0) as one digit that is never smaller.
+/// Rounds an error (> 0) up to one digit.
 [[nodiscard]] DecimalDigit rounded_up(double error);
-/// "274.0": to the digit that stands for 10^exponent, with the zeros behind the point, without an exponent and without a minus before zero.
+/// Returns value rounded to a multiple of 10^exponent, such as "274.0": trailing zeros are kept, without exponent notation, and zero has no
+/// minus sign.
 [[nodiscard]] std::string rounded_at(double value, int exponent);
 
 } // namespace steplap

@@ -31,7 +31,7 @@ Json outline_json(const std::vector<Vec2>& outline) {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points of a line.
+// Returns the convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points if all are on a line.
 std::vector<Vec2> hull(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -49,7 +49,7 @@ std::vector<Vec2> hull(std::vector<Vec2> points) {
   return chain;
 }
 
-// A length or direction as a whole number of a billionth: what is equal but for rounding is the same plane.
+// Rounds to multiples of 1e-9, so that planes that differ by rounding are recognised as equal.
 long long coarse(double value) { return std::llround(1e9 * value); }
 
 class Drawing {
@@ -63,7 +63,7 @@ public:
     Json elements = Json::array();
     for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
     Json json = object_with_room(8);
-    append(json, "bodies") = bodies_json(); // after the elements, which tell of their geometry
+    append(json, "bodies") = bodies_json(); // after the elements, which define geometry of bodies
     append(json, "elements") = std::move(elements);
     append(json, "ground") = ground_json();
     append(json, "planes") = planes_;
@@ -87,7 +87,7 @@ private:
     return found == bodies_.end() ? nullptr : found->second;
   }
 
-  // From the ground frame of the reference pose, or from the frame of a body.
+  // Transforms from the ground frame in the reference pose, or from the frame of a body.
   [[nodiscard]] static Vec2 about_centre(const Vec2& p, bool is_in_ground, const Body* body) {
     if (!body) return p;
     if (!is_in_ground) return p - body->cg;
@@ -144,7 +144,7 @@ private:
     return json;
   }
 
-  // All that touches one line of one body shares one half-plane.
+  // Returns the index of the half-plane of a contact. All contacts with one line of a body share one.
   std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
     std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
     const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
@@ -155,7 +155,7 @@ private:
     return found->second;
   }
 
-  // Of the places where elements act those that the body's own circles do not cover, and its centre of gravity.
+  // Returns the given outline, or the convex hull of the centre of gravity and of the points of elements that no circle of the body covers.
   [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
     std::vector<Vec2> outline;
     for (const Vec2& p : body.outline) outline.push_back(p - body.cg);
@@ -212,7 +212,7 @@ private:
     return local;
   }
 
-  // Of one sheet: round holes, as the polygons that count, and cutouts.
+  // Returns the holes of one sheet as polygons (round holes included) and its cutouts.
   [[nodiscard]] Json holes_json(const StepLapInterface& face, bool is_yoke, const std::string& owner) const {
     Json json = Json::array();
     for (const Vec2& centre : sheet(is_yoke ? face.yoke_holes : face.limb_holes, face.frame, owner))
@@ -256,7 +256,7 @@ private:
   const Model& model_;
   std::map<std::string, const Body*> bodies_;
   std::map<std::string, const Marker*> markers_;
-  std::unordered_map<std::string, BodyGeometry> geometry_; ///< per body, the ground included
+  std::unordered_map<std::string, BodyGeometry> geometry_; ///< per body, including the ground
   std::map<std::pair<std::string, std::vector<long long>>, std::size_t> plane_numbers_;
   Json planes_ = Json::array();
 };

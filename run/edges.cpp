@@ -14,9 +14,9 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_beyond = 1e-3; // of the outline's width: feet may stand on an edge
+constexpr double k_beyond = 1e-3; // relative to the width of the outline; feet may stand on an edge
 
-// Of b behind the contact's line, where b has an outline.
+// Returns the thickness of the outline of body b behind the contact line; nothing if b has no outline.
 std::optional<double> thickness_below(const UnilateralContact& contact, const Model& model) {
   const Place b = place_of(model, contact.b);
   if (!b.body || b.body->outline.empty()) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<double> thickness_below(const UnilateralContact& contact, const Mo
 std::optional<double> most_depth(const Element& element, const Model& model) {
   const auto* const foot = dynamic_cast<const UnilateralContact*>(&element);
   if (!foot) return largest_depth(element, model);
-  return foot->ends ? std::nullopt : thickness_below(*foot, model); // off its end it may be anywhere
+  return foot->ends ? std::nullopt : thickness_below(*foot, model); // beyond the end of the line the depth has no meaning
 }
 
 } // namespace

@@ -10,13 +10,13 @@ namespace steplap {
 
 namespace {
 
-// A part takes some 40 to 300 ns, where much slides more.
-constexpr double k_little = 1e7; // parts evaluated
-constexpr double k_most = 3.0;   // times that: finer runs that turn out to need more are given up
-// Adaptive references of a run with many short steps may be cheap all the same. They are tried where they are granted so many evaluations
-// at least, and no more work than the run itself took.
+// One evaluated part takes about 40 to 300 ns; with much sliding more.
+constexpr double k_little = 1e7; // evaluated parts
+constexpr double k_most = 3.0;   // finer runs that need more than k_most times the limit are abandoned
+// A run with many short steps may still have cheap adaptive reference runs. They are tried if at least this number of evaluations is
+// permitted, with at most the work of the run itself.
 constexpr double k_least_references = 5000.0;
-constexpr double k_nudged = 1.5; // times the run: one from a nudged pose, which a verdict needs however dear the run was
+constexpr double k_nudged = 1.5; // times the run: for a run from a perturbed pose, which a verdict requires at any cost
 
 Estimate none(EstimateStatus status, std::string reason) { return {status, std::move(reason), {}, {}}; }
 
@@ -29,7 +29,7 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   const SimulationOptions as_run = simulation_options(loaded, options);
   const RunStatistics& statistics = run.result.statistics;
   double most_evaluations = std::numeric_limits<double>::infinity();
-  std::optional<Estimate> too_dear; // what is answered if references do not do either
+  std::optional<Estimate> too_dear; // result if reference runs do not help either
   if (options.estimating == Estimating::cheap) {
     const double times = times_of_finer_runs(*loaded.system, as_run), parts = parts_evaluated(*loaded.system, statistics);
     const double evaluations_a_part = static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
@@ -49,7 +49,7 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
     try {
       const double as_dear_as_the_run = k_nudged * static_cast<double>(statistics.evaluations);
       estimate.balance = balance_of(*loaded.system, initial, as_run, run.result, std::max(most_evaluations, as_dear_as_the_run));
-    } catch (const NumericalFailure& failure) { // the errors are known all the same
+    } catch (const NumericalFailure& failure) { // the errors remain known
       estimate.balance_unknown = failure.what();
     }
     return estimate;

@@ -1,4 +1,4 @@
-// How far the numbers of a run are known: from finer runs (mbd/trust/global_error.h), where these are worth their cost.
+// Estimates the numerical errors of a run from finer runs (mbd/trust/global_error.h), unless these are too expensive.
 #pragma once
 
 #include "mbd/trust/balance.h"
@@ -7,26 +7,26 @@
 
 namespace steplap {
 
-/// Whether the errors of a run are known.
+/// Result of the attempt to estimate the errors of a run.
 enum class EstimateStatus {
-  known,    ///< `errors` is there
-  left_out, ///< not asked for, or the run broke off
-  too_dear, ///< nobody insisted, and finer runs would take long
-  failed    ///< a finer run could not be finished
+  known,    ///< `errors` is available
+  left_out, ///< not requested, or the run did not reach its end
+  too_dear, ///< not forced, and the finer runs would take too long
+  failed    ///< a finer run could not be completed
 };
 
-/// The errors of a run, or why they are not known.
+/// The errors of a run, or the reason why they are unknown.
 struct Estimate {
-  EstimateStatus status = EstimateStatus::left_out; ///< whether they are known
-  std::string reason;                               ///< why there is none
-  std::optional<double> cost;                       ///< s of computing that it would take, where it was not begun for that
-  std::optional<GlobalErrorEstimate> errors;        ///< if known
-  std::optional<Balance> balance = {};              ///< if the machine stays where it is only as nothing disturbs it, and errors are known
-  std::string balance_unknown = {};                 ///< why it was not found out whether it does; empty: it was
+  EstimateStatus status = EstimateStatus::left_out; ///< whether `errors` is available
+  std::string reason;                               ///< reason if there is no estimate
+  std::optional<double> cost;                       ///< predicted computing time, s, if the finer runs were not started because of it
+  std::optional<GlobalErrorEstimate> errors;        ///< set if status is `known`
+  std::optional<Balance> balance = {};              ///< set if errors are known and the machine rests in an unstable equilibrium
+  std::string balance_unknown = {};                 ///< reason if stability could not be determined; empty otherwise
 };
 
-/// Cheap is counted in work, not in time: criteria are judged by the errors, and a verdict may not hang on how fast or how busy
-/// the computer is.
+/// Estimates the errors of `run`. Whether finer runs are too expensive is decided by counting operations, not by time: verdicts depend on
+/// the errors and must not depend on the speed or load of the computer.
 [[nodiscard]] Estimate estimate_errors(const Run& run, const RunOptions& options);
 
 } // namespace steplap

@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// Where a name stands: an element, a body.
+// Returns the location of an element or body in the model file.
 const Location* place_of(const Model& model, const std::string& name) {
   for (const ElementEntry& entry : model.elements)
     if (entry.element->name == name) return &entry.element->where;

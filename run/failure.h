@@ -1,4 +1,4 @@
-// Why a run, or the search for its start, ended before its end: with the elements it happened at and where these stand.
+// Describes why a run, or the search for its start, ended early, with the elements concerned and their positions in the model file.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -10,34 +10,34 @@
 
 namespace steplap {
 
-/// Somebody asked the run to stop (RunOptions::stop).
+/// Thrown if the user stops a run (RunOptions::stop).
 class RunStopped : public NumericalFailure {
 public:
-  /// The message.
+  /// Takes the message.
   using NumericalFailure::NumericalFailure;
 };
 
-/// Why a run ended before its end.
+/// Kind of failure that ended a run early.
 enum class FailureKind {
-  numerical, ///< the computation could not go on
-  stopped    ///< somebody asked it to
+  numerical, ///< the computation could not continue
+  stopped    ///< stopped by the user
 };
 
 /// An element or a body at which a run failed.
 struct FailedElement {
-  std::string name; ///< of an element or a body
-  Location where;   ///< line 0: of no file
+  std::string name; ///< name of the element or body
+  Location where;   ///< position in the model file; line 0 if unknown
 };
 
-/// What stopped a run.
+/// Reason why a run ended early.
 struct Failure {
-  FailureKind kind = FailureKind::numerical; ///< why it ended
-  std::string text;                          ///< with time and advice, and with file and line of the elements
-  double t = 0.0;                            ///< s, how far the run came
-  std::vector<FailedElement> elements;       ///< the worst first
+  FailureKind kind = FailureKind::numerical; ///< kind of failure
+  std::string text;                          ///< message with time and advice, and with file and line of the elements
+  double t = 0.0;                            ///< time at which the run ended, s
+  std::vector<FailedElement> elements;       ///< most likely cause first
 };
 
-/// `t`: how far the run came, s.
+/// Converts an exception into a Failure. `t` is the time that the run has reached, s.
 [[nodiscard]] Failure failure_of(const NumericalFailure& failure, const Model& model, const System& system, double t);
 
 } // namespace steplap

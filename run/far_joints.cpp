@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_far = 0.1; // of the radius of gyration: no rounding of poses given by hand
+constexpr double k_far = 0.1; // relative to the radius of gyration; rounding of given poses is smaller
 
 std::string rounded(double value) {
   char text[40];

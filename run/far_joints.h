@@ -1,4 +1,5 @@
-// Pins whose ends are far apart in the poses given, since 'b' names the ground and no place on it: that is the ground's origin.
+// Finds pins whose two ends lie far apart in the given poses because 'b' names the ground instead of a marker on it: the pin is then at the
+// ground's origin.
 #pragma once
 
 #include "run/finding.h"
@@ -6,7 +7,7 @@
 
 namespace steplap {
 
-/// One for each, with the place that 'b' would have to have.
+/// Returns one finding for each such pin, with the position that a marker for 'b' would need.
 [[nodiscard]] std::vector<Finding> far_joints(const LoadedModel& loaded);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Something found in a model or its run that is allowed, but hardly meant.
+// A finding: something in a model or its run that is permitted but probably not intended.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -7,23 +7,23 @@
 
 namespace steplap {
 
-/// How much a finding weighs.
+/// Severity of a finding.
 enum class FindingLevel {
-  warning, ///< hardly meant
-  note     ///< may well be meant, and is worth knowing
+  warning, ///< probably not intended
+  note     ///< possibly intended, but worth knowing
 };
 
-/// One thing found, with what programs, people and editors need to show it.
+/// A finding with everything needed to show it.
 struct Finding {
-  std::string code;                           ///< for programs: "starts_deep"; what it stands for does not change
-  FindingLevel level = FindingLevel::warning; ///< how much it weighs
-  std::string text;                           ///< one or two sentences, without the place
-  Location where;                             ///< in the model's file; line 0 if it is of no one place
+  std::string code;                           ///< identifier for programs, such as "starts_deep"; meanings never change
+  FindingLevel level = FindingLevel::warning; ///< severity
+  std::string text;                           ///< one or two sentences, without the location
+  Location where;                             ///< location in the model file; line 0 if it concerns no single place
 };
 
-/// "text (file:line)"
+/// Returns "text (file:line)".
 [[nodiscard]] std::string text_with_place(const Finding& finding);
-/// Does the finding forbid to call a run "hold"? What is unusual is no reason to open a machine, and none to sign for it.
+/// Returns true if the finding prevents the verdict "hold": the verdict is then at most "open".
 [[nodiscard]] bool caps_verdict(const Finding& finding);
 
 } // namespace steplap

@@ -42,7 +42,7 @@ namespace {
 
 using Names = std::unordered_set<std::string>;
 
-// Names that fields of elements refer to, by what they refer to.
+// Names to which fields of elements refer, by type of the field.
 struct References {
   Names signals, markers, bodies;
 };
@@ -60,7 +60,7 @@ References references_of(const Model& model) {
       if (field.type == FieldType::marker) names = &found.markers;
       if (field.type == FieldType::body) names = &found.bodies;
       if (names) names->insert(std::get<std::string>(field.get(entry.element.get())));
-      if (field.name == "over" && field.type == FieldType::texts) { // what a rope runs over
+      if (field.name == "over" && field.type == FieldType::texts) { // markers over which a rope runs
         const auto over = std::get<std::vector<std::string>>(field.get(entry.element.get()));
         found.markers.insert(over.begin(), over.end());
       }
@@ -73,7 +73,7 @@ References references_of(const Model& model) {
       found.signals.insert(name);
       if (const std::size_t point = name.rfind('.'); point != std::string::npos) found.markers.insert(name.substr(0, point));
     }
-  for (const TableEntry& entry : model.tables) // where a recorder sits
+  for (const TableEntry& entry : model.tables) // position of a recorder
     for (const Field& field : entry.kind->fields.fields())
       if (field.type == FieldType::marker) found.markers.insert(std::get<std::string>(field.get(entry.table.get())));
   for (const Marker& marker : model.markers)
@@ -89,7 +89,7 @@ void warn(Findings& findings, const char* code, std::string text, const Location
 
 constexpr std::size_t k_most_names = 8;
 
-// "'a' (force_x), 'b' and 'c'"
+// Returns "'a' (force_x), 'b' and 'c'".
 std::string list_of(const System& system, const std::vector<SharedReaction>& reactions) {
   std::string text;
   const std::size_t shown = std::min(reactions.size(), k_most_names);
@@ -106,7 +106,7 @@ std::string list_of(const System& system, const std::vector<SharedReaction>& rea
   return shown < reactions.size() ? text + " and " + std::to_string(reactions.size() - shown) + " more" : text;
 }
 
-// Between two places of one body, or of two that do not move, nothing has an effect (joints and drives refuse it).
+// Finds elements without effect, between two points of one body or of two fixed bodies. Joints and drives reject this themselves.
 void warn_of_idle_elements(const Model& model, Findings& findings) {
   std::unordered_map<std::string, std::string> body_of; // by marker and body; "" does not move
   body_of["ground"] = "";
@@ -129,10 +129,10 @@ void warn_of_idle_elements(const Model& model, Findings& findings) {
   }
 }
 
-// A parameter that nothing follows from: its value is without effect, and a name is perhaps misspelt where it should stand.
+// Finds parameters that are used nowhere. Perhaps the name is misspelt where it should be used.
 void warn_of_unused_parameters(const Model& model, Findings& findings) {
   const Parameters& parameters = model.parameters;
-  Names in_formulas; // of forces and states
+  Names in_formulas; // names in formulas of forces and states
   for (const ElementEntry& entry : model.elements)
     for (const std::string& name : names_in_formulas(entry)) in_formulas.insert(name);
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
@@ -149,7 +149,7 @@ void warn_of_unused_parameters(const Model& model, Findings& findings) {
   }
 }
 
-// Loads that constraints can share in more than one way.
+// Finds loads whose distribution among redundant constraints is not unique.
 void warn_of_shared_reactions(const System& system, Findings& findings) {
   const Freedom freedom = count_freedom(system);
   if (!freedom.shared.empty())
@@ -164,9 +164,9 @@ void warn_of_shared_reactions(const System& system, Findings& findings) {
              "admissible. Reported is one of those ways, in proportion to the capacities where that will do");
 }
 
-// Does a load or a drive that changes with time act at the start, or begin to?
+// Returns true if a load or drive that varies with time acts at the start.
 bool is_driven_at_start(const Model& model, const Names& used) {
-  SignalNetwork network(model); // some are made of others
+  SignalNetwork network(model); // signals can be composed of others
   return std::any_of(model.signals.begin(), model.signals.end(), [&](const SignalEntry& entry) {
     if (used.count(entry.definition->name) == 0) return false;
     const Signal* const signal = network.build(entry.definition->name);
@@ -174,9 +174,9 @@ bool is_driven_at_start(const Model& model, const Names& used) {
   });
 }
 
-// Accelerations with which the run begins, and what presses then.
+// Initial accelerations of the bodies, and contact forces at the start.
 struct Start {
-  std::vector<double> acceleration; ///< per body, m/s²: of its centre of gravity, or of its turning at the radius of gyration
+  std::vector<double> acceleration; ///< per body, m/s²: of its centre of gravity, or angular acceleration times radius of gyration
   std::vector<ContactAtStart> contacts;
   std::vector<PairJacobian> springs;
 };
@@ -213,12 +213,12 @@ std::string short_number(double value) {
   return text;
 }
 
-constexpr double k_near = 0.5;     // of a body's size: what falls from higher is dropped
-constexpr double k_settles = 1e-3; // of a body's size: what gives way by less only settles under its load
+constexpr double k_near = 0.5;     // of a body's size; a body at a greater height is regarded as dropped
+constexpr double k_settles = 1e-3; // of a body's size; smaller deflections are settling under load
 
-// Why a body starts, if that says anything: contacts near it that do not carry it, springs that are out of balance. What joints
-// lead is let go, what falls from higher than half its size is dropped,
-// what stands settles.
+// Explains why a body accelerates at the start, if there is a notable cause: nearby contacts that do not carry it, springs that are not
+// balanced. Bodies guided by joints are regarded as released, bodies higher than half their size as dropped, bodies on contacts as
+// settling.
 std::string cause_of(const System& system, const Start& start, int body) {
   const double size = size_of_pair(system, body, k_ground);
   const ContactAtStart* nearest = nullptr;
@@ -240,9 +240,9 @@ std::string cause_of(const System& system, const Start& start, int body) {
          "end)";
 }
 
-// At rest, and yet about to move by itself, where something near should hold it.
+// Finds bodies at rest that begin to move although something near should hold them.
 void note_restless_start(const LoadedModel& loaded, Findings& findings) {
-  constexpr double k_felt = 1e-3; // of gravity: from there on it is seen beside what drives do to a machine
+  constexpr double k_felt = 1e-3; // of gravity; larger accelerations are noticeable next to those due to drives
   if (loaded.model.simulation.initial == "equilibrium" || is_driven_at_start(loaded.model, references_of(loaded.model).signals)) return;
   const System& system = *loaded.system;
   const State initial = assembled_start(system, loaded.assembled);
@@ -251,7 +251,7 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
   try {
     start = start_of(loaded, initial);
   } catch (const NumericalFailure&) {
-    return; // the run will say what is wrong
+    return; // the run will report the error
   }
   int worst = -1;
   std::string cause;
@@ -274,7 +274,7 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
                       body ? body->where : Location{}});
 }
 
-// Ends of a beam that nothing holds are no oversight.
+// Returns true if a table created the body. Free ends of such bodies (beams) are intended.
 bool is_made_by_table(const Model& model, const std::string& name) {
   return std::any_of(model.tables.begin(), model.tables.end(),
                      [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
@@ -294,7 +294,7 @@ void warn_of_unused(const Model& model, Findings& findings) {
       warn(findings, "unused_signal", "signal '" + entry.definition->name + "' is used by nothing", entry.definition->where);
   Names body_names;
   for (const Body& body : model.bodies) body_names.insert(body.name);
-  for (const Marker& marker : model.markers) // a marker named as its body is the reader's own
+  for (const Marker& marker : model.markers) // a marker with its body's name is created by the reader
     if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground" &&
         !is_made_by_table(model, marker.name))
       warn(findings, "unused_marker", "marker '" + marker.name + "' is used by nothing", marker.where);
@@ -323,7 +323,7 @@ std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
 
 namespace {
 
-// Poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
+// Finds given poses that assembly changed noticeably. Digits lost in the file, and velocities set by drives or joints, need no mention.
 std::optional<Finding> note_of_moves(const LoadedModel& loaded) {
   constexpr double k_noticeable = 1e-5; // m, rad
   const System& system = *loaded.system;
@@ -353,7 +353,8 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
   return findings;
 }
 
-// Legs of a run have the bodies of the model, in its order.
+// Returns a note if steps were divided because a body rotated too far within one step. All legs of a run have the bodies of the
+// model in the same order.
 static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Integrator::DividedSteps& divided) {
   if (divided.count == 0) return std::nullopt;
   const auto name = [&](int body) {
@@ -394,7 +395,7 @@ bool is_judged(const Model& model) {
 } // namespace
 
 std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
-  if (result.ranges.empty() || !judgement.has_criteria) return {}; // extremes were not looked for, or nothing is judged
+  if (result.ranges.empty() || !judgement.has_criteria) return {}; // extremes were not computed, or nothing is judged
   Findings findings = loads_not_acted(loaded, result, judgement);
   append(findings, growing_criteria(loaded, result, judgement));
   append(findings, bodies_that_fall(loaded, result));

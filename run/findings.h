@@ -1,5 +1,4 @@
-// What is found in a model before it runs and in a run when it has ended: for the screen, for results, for whoever shows it
-// beside a verdict.
+// Collects all findings on a model before a run and on a run after its end.
 #pragma once
 
 #include "run/finding.h"
@@ -13,21 +12,22 @@ struct Balance;
 struct Judgement;
 struct RunResult;
 
-/// All that `steplap check` finds, in its order. Runs nothing but the start.
+/// Returns all findings that `steplap check` reports, in its order. Computes the initial state, but runs nothing.
 [[nodiscard]] std::vector<Finding> findings_of(const LoadedModel& loaded);
-/// Of these what bears on what a run can say.
+/// Returns those of findings_of() that affect the meaning of a run's results.
 [[nodiscard]] std::vector<Finding> findings_before(const LoadedModel& loaded);
-/// What a run came to: feet beyond the parts they stood on, contacts through each other, channels without a value, actions that wait.
+/// Returns findings on a run: feet beyond the edge of a part, excessive penetration, channels without a value, actions that did not happen.
 [[nodiscard]] std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result);
-/// Findings on a run that was not broken off: loads that have not acted (acted_loads.h), and what is still going on (open_end.h).
+/// Returns findings on a completed run: loads that have not acted completely (acted_loads.h) and motions that continue at the end
+/// (open_end.h).
 [[nodiscard]] std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
-/// A machine that stays where it is only because nothing disturbs it (mbd/trust/balance.h).
+/// Returns the finding that the machine is in an unstable equilibrium (mbd/trust/balance.h).
 [[nodiscard]] Finding balance_finding(const LoadedModel& loaded, const Balance& balance);
-/// That it was not found out whether it does, and why.
+/// Returns the finding that stability could not be determined, with the reason.
 [[nodiscard]] Finding balance_unknown_finding(const std::string& why);
-/// Those about where the run begins: contacts and stops that contradict the poses, inertias that contradict outlines.
+/// Returns findings on the initial state: contacts and stops that contradict the poses, inertias that contradict outlines.
 [[nodiscard]] std::vector<Finding> start_findings(const LoadedModel& loaded);
-/// Those about values unlike any: cores, loads that do nothing, sizes apart (plausible_scene.h).
+/// Returns findings on implausible values: cores, loads without effect, quantities of very different size (plausible_scene.h).
 [[nodiscard]] std::vector<Finding> implausible_findings(const LoadedModel& loaded);
 
 } // namespace steplap

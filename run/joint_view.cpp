@@ -8,7 +8,7 @@ namespace steplap {
 
 namespace {
 
-// The bodies that an element's markers sit on.
+// Returns the bodies of the element's markers.
 std::vector<std::string> bodies_of(const ElementEntry& entry, const Model& model) {
   std::vector<std::string> bodies;
   for (const Field& field : entry.kind->fields.fields()) {
@@ -55,11 +55,11 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
 
 } // namespace
 
-double JointView::sliding(int direction) const { // h of the unit twist
+double JointView::sliding(int direction) const { // support function h of the unit twist
   return interfaces.empty() ? std::numeric_limits<double>::infinity() : evaluate_gradient(patch, Vec3::Unit(direction)).h;
 }
 
-double JointView::alone(int direction) const { // the longest wrench that way inside the limit surface
+double JointView::alone(int direction) const { // largest wrench in this direction inside the limit surface
   return interfaces.empty() ? std::numeric_limits<double>::infinity() : 1.0 / required_pressure(patch, Vec3::Unit(direction)).u;
 }
 

@@ -1,6 +1,7 @@
-// What the step-lap joints of a model can bear, as they lie in the reference pose: before any run, for the screen and for programs.
-// Wrenches and twists are about the limb's centre of gravity, in the active part's axes; points are from the active part's centre of
-// gravity, in m.
+// Computes the friction capacity of the step-lap joints of a model in the reference pose, before a run.
+//
+// Wrenches and twists are about the limb's centre of gravity, in the active part's axes. Points are relative to the active part's centre of
+// gravity, m.
 #pragma once
 
 #include "elements/step_lap/patch/required_pressure.h"
@@ -10,25 +11,25 @@
 
 namespace steplap {
 
-/// One joint. It refers to the model that it is of, which has to outlive it. Without interfaces its capacities are infinite, and no wrench uses
-/// any of them.
+/// One step-lap joint. It refers to the model, which must outlive it. A joint without interfaces has infinite capacity and no utilisation.
 struct JointView {
   const StepLapJoint* joint = nullptr;             ///< never nullptr
-  std::vector<const StepLapInterface*> interfaces; ///< in the order of the model; none: it holds whatever it takes
-  Patch patch;                                     ///< by the static coefficients; reference: the limb's centre of gravity
-  std::vector<std::string> beside;                 ///< springs and ties between the same two bodies: "'tie plate' (tie)"
-  std::vector<double> areas;                       ///< of one interface of each kind, m^2
+  std::vector<const StepLapInterface*> interfaces; ///< in the order of the model; empty: the joint holds any load
+  Patch patch;                                     ///< interfaces with their static coefficients, about the limb's centre of gravity
+  std::vector<std::string> beside;                 ///< elements that connect the same two bodies in parallel: "'tie plate' (tie)"
+  std::vector<double> areas;                       ///< overlap area of each interface, m^2
 
-  /// Friction while the limb slides along x (0), along y (1) or turns (2) and moves no other way, N or N m.
+  /// Returns the friction force or couple if the limb slides purely along x (0), along y (1) or turns (2), N or N m.
   [[nodiscard]] double sliding(int direction) const;
-  /// The largest force along x or y through the limb's centre of gravity, or couple (2), that the joint holds by itself, N or N m: less
-  /// than sliding() where the friction's centre is not the limb's.
+  /// Returns the largest force along x (0) or y (1) through the limb's centre of gravity, or the largest couple (2), that the joint can
+  /// hold, N or N m. A force can hold less than sliding(), because it also exerts a couple on the joint if the centre of friction is not at
+  /// the limb's centre of gravity.
   [[nodiscard]] double alone(int direction) const;
-  /// What it takes to bear the wrench (N, N, N m) on the limb. Throws NumericalFailure where that is not found to the last digit.
+  /// Returns the pressure required to hold the wrench (N, N, N m) on the limb. Throws NumericalFailure if the solution does not converge.
   [[nodiscard]] RequiredPressure required(const Vec3& wrench) const;
 };
 
-/// All joints of the model, in its order.
+/// Returns all step-lap joints in the order of the model.
 [[nodiscard]] std::vector<JointView> joint_views(const LoadedModel& loaded);
 
 } // namespace steplap

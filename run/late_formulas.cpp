@@ -18,12 +18,12 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_looks = 200;        // over the run, and as many near behind it and in even ratios further on
-constexpr double k_near = 10.0;     // run lengths over which looks behind the end are spread evenly
-constexpr double k_larger = 1.25;   // than in the run: tops of sums of harmonics differ by less from one stretch to the next
-constexpr double k_far = 100.0;     // run lengths by which a load has come to its full size, if it has one
-constexpr double k_behind = 1e4;    // run lengths up to which there are looks
-constexpr double k_rounding = 1e-9; // of the largest value: what is alike
+constexpr int k_looks = 200;        // samples within the run; as many shortly after its end, and in a geometric sequence further on
+constexpr double k_near = 10.0;     // run lengths over which the first samples after the end are evenly spaced
+constexpr double k_larger = 1.25;   // relative to the run; peaks of sums of harmonics differ by less between intervals
+constexpr double k_far = 100.0;     // run lengths within which a load reaches its full size, if it has one
+constexpr double k_behind = 1e4;    // run lengths up to the last sample
+constexpr double k_rounding = 1e-9; // relative to the largest value; smaller differences are rounding
 
 bool uses_time(const ElementEntry& entry) {
   if (as_action(*entry.element)) return false;
@@ -33,13 +33,13 @@ bool uses_time(const ElementEntry& entry) {
       const Formula formula(std::get<std::string>(field.get(entry.element.get())), field.name, {});
       if (std::any_of(formula.tree().begin(), formula.tree().end(), [](const FormulaNode& node) { return node.op == FormulaOp::time; }))
         return true;
-    } catch (const ModelError&) { // no formula, or it is told where the element is compiled
+    } catch (const ModelError&) { // not a formula, or the error is reported when the element is compiled
     }
   }
   return false;
 }
 
-// Force of an element at other times, with bodies where the run left them.
+// Computes the force of an element at other times, with the bodies in their final state.
 class AtOtherTimes {
 public:
   AtOtherTimes(const System& system, const State& state, const std::string& element) : system_(system), state_(state), dynamics_(system) {
@@ -87,16 +87,17 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
   return true;
 }
 
-// Share of an interval, in no ratio to any period: looks at even distances meet a harmonic always at the same phase.
+// Position of the sample in each interval. It is irrational relative to any period, because evenly spaced samples would always meet a
+// harmonic at the same phase.
 double golden(int i) { return std::fmod(i * 0.6180339887498949, 1.0); }
 
-// What a formula does behind the end of a run.
+// Behaviour of a formula after the end of a run.
 struct Late {
   double t = 0.0;        ///< s
-  bool is_first = false; ///< it depends on the time there for the first time; else it is larger than it ever was
+  bool is_first = false; ///< true if the dependence on time begins there; false if its magnitude exceeds all earlier ones
 };
 
-// Largest sizes of the channels of an element.
+// Largest magnitudes of an element's channels.
 class Sizes {
 public:
   void add(const std::vector<double>& values) {
@@ -134,7 +135,7 @@ std::optional<Late> late_look(AtOtherTimes& at, double end) {
   for (int i = 1; i <= k_looks; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_looks));
   for (int i = 1; i <= k_looks; ++i)
     look(end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_looks));
-  // What grows to the last look, as c t does, has no full size that a run could reach: the end of the run is the load's.
+  // A force that grows up to the last sample, such as c t, has no full size that a run could reach. Its end is the end of the run.
   if (behind.are_exceeded_by(far_behind.largest())) return begins;
   return begins ? begins : grows;
 }
@@ -155,7 +156,7 @@ std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& r
                           "the formula of '" + entry.element->name + "' " + what + " t = " + rounded_text(late->t, 3) +
                               " s, but the run ends at " + number_text(end) + " s: what it does then is not judged",
                           entry.element->where});
-    } catch (const NumericalFailure&) { // at another time the machine cannot be
+    } catch (const NumericalFailure&) { // the formula cannot be evaluated at another time
     }
   }
   return findings;

@@ -1,14 +1,14 @@
-// Formulas of the time that do nothing within a run and would do something behind its end, or come to their full size there.
+// Finds formulas of time that have no effect within a run but would have one after its end, or would reach their full size only then.
 //
-// They are evaluated at the last state of the run with other times: over the run, and behind it up to k_behind times its length.
-// Assumed is that what a formula does with the time alone shows at that state. A pulse behind the end may fall between two looks.
+// Each formula is evaluated at the final state of the run for other times: within the run and up to k_behind times its length. A short
+// pulse after the end may fall between two sample times.
 #pragma once
 
 #include "run/findings.h"
 
 namespace steplap {
 
-/// One finding for each element with such a formula.
+/// Returns one finding for each element with such a formula.
 [[nodiscard]] std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& result);
 
 } // namespace steplap

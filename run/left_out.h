@@ -1,4 +1,4 @@
-// What no planar model of rigid bodies can know of a core, told wherever one is judged.
+// Lists the effects on a core that a planar model of rigid bodies cannot contain. They are shown with every verdict on a core.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-/// Sentences for the reader of a verdict; none of a model, given or completed, without a step-lap joint.
+/// Returns one sentence for each effect. Returns none if the model has no step-lap joint.
 [[nodiscard]] std::vector<std::string> left_out_of(const Model& model);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// The channels that criteria bound, with their limits: those of [[acceptance]] and those of elements.
+// Channels limited by criteria of [[acceptance]] or of elements, with their limits.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -13,29 +13,30 @@
 
 namespace steplap {
 
-/// A channel that has to stay between two values.
+/// A channel that must stay between two values.
 struct LimitedChannel {
-  std::string criterion;                                    ///< its name
-  std::size_t channel = 0;                                  ///< in RunResult::ranges
+  std::string criterion;                                    ///< name of the criterion
+  std::size_t channel = 0;                                  ///< index in RunResult::ranges
   double least = -std::numeric_limits<double>::infinity();  ///< in the channel's unit
   double largest = std::numeric_limits<double>::infinity(); ///< in the channel's unit
 
-  /// How far inside its limits the nearest of two extremes is; negative: beyond.
+  /// Returns the distance from the range [low, high] to the nearer limit; negative beyond it.
   [[nodiscard]] double reserve(double low, double high) const { return std::min(low - least, largest - high); }
 };
 
-/// How near criteria had come to their limits at any time of a run that kept how its extremes grew (RunResult::growth).
+/// Distance of criteria from their limits during a run, from the running extremes that the run has recorded (RunResult::growth).
 class ReserveHistory {
 public:
-  /// Refers to `result`.
+  /// Keeps a reference to `result`.
   ReserveHistory(const RunResult& result, std::vector<LimitedChannel> limited) : result_(result), limited_(std::move(limited)) {}
 
-  /// Of the criteria; 0 if nothing was kept.
+  /// Number of criteria; 0 if the run recorded no running extremes.
   [[nodiscard]] std::size_t count() const { return result_.growth.empty() ? 0 : limited_.size(); }
+  /// Returns limit i.
   [[nodiscard]] const LimitedChannel& limited(std::size_t i) const { return limited_[i]; }
-  /// Reserve of criterion i at the last time before t, s, that was kept.
+  /// Returns the reserve of criterion i at the last recorded time before t, s.
   [[nodiscard]] double reserve(std::size_t i, double t) const;
-  /// The same at the start.
+  /// Returns the reserve of criterion i at the start.
   [[nodiscard]] double first_reserve(std::size_t i) const;
 
 private:
@@ -43,7 +44,7 @@ private:
   std::vector<LimitedChannel> limited_;
 };
 
-/// All criteria that hold and have values; none for a run without extremes.
+/// Returns all limits of criteria that hold and have values; none if the run recorded no extremes.
 [[nodiscard]] std::vector<LimitedChannel> limited_channels(const Model& model, const RunResult& result, const Judgement& judgement);
 
 } // namespace steplap

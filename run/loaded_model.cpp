@@ -21,7 +21,7 @@ namespace steplap {
 
 namespace {
 
-// "wagon" of "models/wagon.toml". A name of dots alone would be another folder: it keeps its ending.
+// Returns "wagon" for "models/wagon.toml". A name that consists of dots would denote another folder; it keeps its extension.
 std::string name_of_model(const std::string& path) {
   if (has_control_character(path))
     throw FileError(path, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
@@ -31,7 +31,7 @@ std::string name_of_model(const std::string& path) {
   return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
 }
 
-// A step given in the wrong unit would fill the disk.
+// Throws if the trajectory would be too long: a step in a wrong unit could fill the disk.
 void refuse_endless_output(const Model& model, const System& system) {
   const double numbers = trajectory_numbers(model, system);
   if (!(numbers > model.output.most_numbers)) return;
@@ -53,7 +53,7 @@ double trajectory_numbers(const Model& model, const System& system) {
 
 namespace {
 
-// Joints that cannot be met are the model's error.
+// Reports joints that cannot be assembled as errors of the model.
 void put_together(LoadedModel& loaded) {
   refuse_endless_output(loaded.model, *loaded.system);
   loaded.plots_left_out = check_presentation(loaded.model, *loaded.system);
@@ -68,7 +68,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std
   loaded->path = shown_input(path);
   loaded->name = name_of_model(path);
   loaded->overrides = overrides;
-  const InputFiles read; // until its signals are built
+  const InputFiles read; // must exist until the signals are built
   loaded->model = read_model(path, catalogue, overrides, &loaded->text);
   loaded->system = compile(loaded->model);
   loaded->inputs = read.files();
@@ -124,7 +124,7 @@ std::vector<std::shared_ptr<const LoadedModel>> load_models(const std::vector<st
 
 namespace {
 
-// What finds no rest says where in the model's file, and what tips over as it is given.
+// Runs `work`. If no equilibrium is found, the error gets its location in the model file and the names of parts that tip in the given pose.
 template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
   try {
     return work();

@@ -1,12 +1,12 @@
-// A model that a program has as text.
+// Loads a model from a text in memory.
 #pragma once
 
 #include "run/loaded_model.h"
 
 namespace steplap {
 
-/// As load_model(), of text at hand. `path` is what messages call it, what paths in it are relative to, and what its results are named
-/// after; nothing is read from there. Throws as load_model() does.
+/// Works like load_model(), but reads `text`. `path` is used for messages, for relative paths inside the model and for the names of
+/// results; no file is read from it. Throws as load_model() does.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, const std::string& path,
                                                                  const std::vector<std::string>& overrides = {});
 

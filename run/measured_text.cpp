@@ -21,7 +21,7 @@ std::string digit_text(const DecimalDigit& d) {
   return std::to_string(d.digit) + "e" + std::to_string(d.exponent);
 }
 
-// With the prefix of its own where the unit takes one.
+// Formats the error with its own prefix if the unit takes one.
 std::string error_text(const DecimalDigit& d, const std::string& unit) {
   struct Step {
     int exponent;
@@ -29,7 +29,7 @@ std::string error_text(const DecimalDigit& d, const std::string& unit) {
   };
   static constexpr std::array<Step, 6> k_steps{{{6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "µ"}, {-9, "n"}}};
   if (!takes_prefix(unit)) return digit_text(d);
-  const bool is_length = unit == "m" || unit == "rad"; // nanometres are read; millinewtons are not
+  const bool is_length = unit == "m" || unit == "rad"; // nanometres are customary; millinewtons are not
   for (const Step& step : k_steps)
     if (d.exponent >= step.exponent && d.exponent < step.exponent + 3 && (is_length || step.exponent >= 0))
       return digit_text({d.digit, d.exponent - step.exponent}) + " " + step.text + unit;

@@ -77,7 +77,7 @@ private:
     changes_.push_back(std::move(change));
   }
 
-  // By name: a formula that gives the same value in both is the same.
+  // Compares formulas by name: the same formula is no change, whatever its value.
   void compare_parameters() {
     const Parameters &before = a_.parameters, &after = b_.parameters;
     for (std::size_t i = 0; i < before.entries.size(); ++i) {
@@ -118,7 +118,7 @@ private:
       change.before_text = before.kind;
       change.after_text = after.kind;
       changes_.push_back(std::move(change));
-      return; // fields of other kinds cannot be compared
+      return; // fields of other types cannot be compared
     }
     for (const FieldTable* table : {before.fields, before.common})
       if (table)
@@ -151,7 +151,7 @@ private:
     change.path = path;
     change.before = number_in(a);
     change.after = number_in(b);
-    if ((change.before || change.after) && unit != "*") change.unit = unit; // any unit: of a signal
+    if ((change.before || change.after) && unit != "*") change.unit = unit; // any unit, as for signals
     change.before_text = text_of(a);
     change.after_text = text_of(b);
     change.follows = !formula_at(a_, path).empty() && formula_at(a_, path) == formula_at(b_, path);

@@ -1,4 +1,4 @@
-// What differs between two models as their files give them: the values, by the paths that `--set` takes.
+// Lists the differences between two models as given in their files. Values are identified by the paths that `--set` uses.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -9,20 +9,20 @@
 
 namespace steplap {
 
-/// A value that is another one, or an entry that only one of the models has.
+/// A value that differs, or an entry that exists in one model only.
 struct ModelChange {
-  enum class Kind { value, added, removed }; ///< another value; an entry that only the second, or only the first, model has
+  enum class Kind { value, added, removed }; ///< a different value; an entry of the second model only; an entry of the first model only
 
-  Kind kind = Kind::value;             ///< what sort of change it is
-  std::string path;                    ///< "element.front foot.stiffness"; of an entry "element.front foot"
-  std::string unit;                    ///< SI, of the numbers
-  std::optional<double> before, after; ///< numbers; nothing where the value is no number, or not given
-  std::string before_text, after_text; ///< the values as text; "" where not given
-  bool follows = false;                ///< a formula of parameters gives it in both models, the same one
+  Kind kind = Kind::value;             ///< kind of change
+  std::string path;                    ///< "element.front foot.stiffness"; for an entry "element.front foot"
+  std::string unit;                    ///< SI unit of the numbers
+  std::optional<double> before, after; ///< numbers; empty if the value is not a number or not given
+  std::string before_text, after_text; ///< values as text; "" if not given
+  bool follows = false;                ///< true if both models compute it from the same formula of parameters
 };
 
-/// From `a` to `b`, both as given (mbd/io/reader.h): parameters first, then in the order of the files. Defaults count as values, so that a default
-/// written out is no change.
+/// Returns the changes from `a` to `b`, both as given (mbd/io/reader.h): parameters first, then in the order of the files. A default that
+/// is written out in one file is not a change.
 [[nodiscard]] std::vector<ModelChange> changes_between(const Model& a, const Model& b);
 
 } // namespace steplap

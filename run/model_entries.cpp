@@ -2,7 +2,7 @@
 
 namespace steplap {
 
-// Markers that references to bodies made are named in the fields that made them.
+// Markers created for references to bodies are named in the fields that created them.
 std::vector<ModelEntry> entries_of(const Model& model) {
   std::vector<ModelEntry> entries{{"", "", &ModelHeader::fields(), nullptr, &model.header},
                                   {"simulation", "", &SimulationSettings::fields(), nullptr, &model.simulation},

@@ -1,4 +1,4 @@
-// All that has fields in a model, with the paths that lead to them (mbd/model/model_path.h).
+// Lists all tables of a model with their fields and the paths to them (mbd/model/model_path.h).
 #pragma once
 
 #include "mbd/model/model.h"
@@ -8,16 +8,16 @@
 
 namespace steplap {
 
-/// Something with fields, and how paths begin that lead to them.
+/// A table of a model.
 struct ModelEntry {
-  std::string path;                   ///< "body.tank"; "" of the top level
-  std::string kind;                   ///< of an element or a signal; "" of others
-  const FieldTable* fields = nullptr; ///< never nullptr of an entry that entries_of() gives
-  const FieldTable* common = nullptr; ///< fields that all entries of the array have besides, or nullptr
-  const void* object = nullptr;       ///< whose fields they are: lives as long as the model
+  std::string path;                   ///< "body.tank"; "" for the top level
+  std::string kind;                   ///< kind of an element or signal; "" for others
+  const FieldTable* fields = nullptr; ///< field descriptions; never nullptr in the result of entries_of()
+  const FieldTable* common = nullptr; ///< fields shared by all entries of the array, or nullptr
+  const void* object = nullptr;       ///< the object to which the fields belong; owned by the model
 };
 
-/// In the order in which models hold them: top level, [simulation], [output], bodies, markers, signals, elements, tables.
+/// Returns the entries in model order: top level, [simulation], [output], bodies, markers, signals, elements, tables.
 [[nodiscard]] std::vector<ModelEntry> entries_of(const Model& model);
 
 } // namespace steplap

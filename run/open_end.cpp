@@ -32,7 +32,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return shown < names.size() ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
 }
 
-// Does a criterion look at what has this name, a body or an element?
+// Returns true if a criterion refers to the body or element of this name.
 bool is_asked(const Model& model, const RunResult& result, const std::string& name) {
   return std::any_of(model.criteria.begin(), model.criteria.end(), [&](const Criterion& criterion) {
     if (!criterion.event.empty()) return criterion.element.empty() || matches_pattern(name, criterion.element);
@@ -42,7 +42,7 @@ bool is_asked(const Model& model, const RunResult& result, const std::string& na
   });
 }
 
-// The word of a code, as "slips" of 2 in "0 free, 1 sticks, 2 slips".
+// Returns the word of a code: "slips" for 2 in "0 free, 1 sticks, 2 slips".
 std::string word_of(const std::string& codes, double value) {
   std::istringstream list(codes);
   for (std::string entry; std::getline(list, entry, ',');) {
@@ -54,7 +54,7 @@ std::string word_of(const std::string& codes, double value) {
   return "";
 }
 
-// A contact has a gap and a force.
+// Returns the force channel if the element is a contact, which has a gap and a force; nullptr otherwise.
 const ChannelRange* force_of_contact(const RangeIndex& ranges, const std::string& element) {
   return ranges.find(element + ".gap") ? ranges.find(element + ".force") : nullptr;
 }
@@ -75,11 +75,11 @@ Finding still_grows(const Model& model, const std::string& criterion, const std:
           where_of(model, criterion)};
 }
 
-// Time in which the worst value of criterion i reaches its limit at the rate of the last eighth of a run of length `end`, s; nothing if
-// the worst value did not grow in each eighth of its second half, or less and less.
+// Returns the time in which the worst value of criterion i reaches its limit at the rate of the last eighth of a run of length `end`, s.
+// Returns nothing if the value did not grow in each eighth of the second half, or if its growth slows down.
 std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i, double end) {
   constexpr int k_parts = 8;
-  constexpr double k_steady = 0.5; // of the growth in the eighths before
+  constexpr double k_steady = 0.5; // relative to the growth in the earlier eighths
   double before = history.reserve(i, 0.5 * end), grown = 0.0, last = 0.0;
   for (int part = k_parts / 2 + 1; part <= k_parts; ++part) {
     const double left = history.reserve(i, part == k_parts ? std::numeric_limits<double>::infinity() : end * part / k_parts);
@@ -95,7 +95,7 @@ std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i,
 } // namespace
 
 std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
-  constexpr double k_still_worst = 1e-6; // of the range: extremes are located to within that
+  constexpr double k_still_worst = 1e-6; // relative to the range; extremes are located to this accuracy
   const double length = result.final_state.t;
   std::vector<Finding> findings;
   std::unordered_set<std::string> known;
@@ -132,7 +132,7 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
 
 std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& result) {
   const Model& model = loaded.model;
-  if (model.criteria.empty()) return {}; // nothing is asked of anything
+  if (model.criteria.empty()) return {}; // there are no criteria
   const RangeIndex ranges(result.ranges);
   std::vector<std::string> slip, are_open;
   for (const ElementEntry& entry : model.elements) {
@@ -158,10 +158,10 @@ std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& res
 
 namespace {
 
-// Bodies that elements connect, and what criteria, forces and drives name.
+// Sets of bodies connected by elements, and bodies named by criteria, forces and drives.
 class Carriers {
 public:
-  // `asks`: what criteria name is carried, too. To find that out takes long, and is needed where something is not carried otherwise.
+  // `asks`: bodies named by criteria count as carried. Determining these is slow and is needed only if some body is not carried otherwise.
   Carriers(const Model& model, const RunResult& result, bool asks) : model_(model), result_(result), asks_(asks) {
     for (const Body& body : model.bodies)
       if (!body.fixed) place_[body.name] = static_cast<int>(parent_.size()), parent_.push_back(static_cast<int>(parent_.size()));
@@ -182,7 +182,7 @@ public:
   bool is_carried(const Body& body) { return body.fixed || root(of(body.name)) == root(0); }
 
 private:
-  [[nodiscard]] int of(const std::string& name) const { // 0: the ground, and what never moves
+  [[nodiscard]] int of(const std::string& name) const { // 0: the ground, and bodies that never move
     const auto found = place_.find(name);
     return found == place_.end() ? 0 : found->second;
   }
@@ -193,7 +193,7 @@ private:
   }
   void join(int a, int b) { parent_[static_cast<std::size_t>(root(a))] = root(b); }
 
-  // "body.x"
+  // Joins the owner of a channel, "body" of "body.x", with the ground, so that it counts as carried.
   void join_named(const std::string& channel) {
     const std::size_t point = channel.rfind('.');
     if (point != std::string::npos) join(of(channel.substr(0, point)), 0);
@@ -224,7 +224,7 @@ private:
   const RunResult& result_;
   bool asks_;
   std::unordered_map<std::string, int> place_; ///< by body and marker
-  std::vector<int> parent_{0};                 ///< of a forest: each tree is what hangs together
+  std::vector<int> parent_{0};                 ///< union-find forest: each tree is a set of connected bodies
 };
 
 } // namespace

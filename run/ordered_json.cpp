@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// Builds what the parser tells of, entry after entry.
+// Builds a document from the events of the parser.
 class Builder final : public nlohmann::json_sax<OrderedJson> {
 public:
   explicit Builder(OrderedJson& root) : root_(root) {}
@@ -51,7 +51,8 @@ private:
   }
 
   OrderedJson& root_;
-  std::vector<OrderedJson*> open_; ///< from the root inwards; each is the last of the one before, which does not grow meanwhile
+  std::vector<OrderedJson*> open_; ///< from the root inwards; each is the last entry of the previous one, whose size does not change
+                                   ///< meanwhile
   std::string name_;
 };
 

@@ -1,5 +1,5 @@
-// JSON whose objects keep the order of their entries, for objects of many entries: the library's own way to add or to read
-// an entry looks through all before it, which for the channels of ten thousand bodies takes seconds.
+// JSON objects that keep the order of their entries. Access through nlohmann::ordered_json compares all earlier names at each access, which
+// takes seconds for the channels of ten thousand bodies; the functions below avoid this.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,17 +9,17 @@
 
 namespace steplap {
 
-/// An object that keeps the order of its entries.
+/// A JSON object that keeps the order of its entries.
 using OrderedJson = nlohmann::ordered_json;
 
-/// An empty object with room for so many entries. One that outgrows its room is copied with all that it holds, at each doubling: entries
-/// have names that do not change, which the library cannot move.
+/// Returns an empty object with capacity for `entries`. Without this capacity the object is copied at each doubling, because the library cannot move
+/// entries with constant names.
 [[nodiscard]] OrderedJson object_with_room(std::size_t entries);
 
-/// A new entry at the end of an object that has none of that name.
+/// Appends an entry. Precondition: the object has no entry of that name.
 OrderedJson& append(OrderedJson& object, std::string name);
 
-/// Reads text in which the names of an object differ. Discarded (is_discarded()) if it is no JSON.
+/// Parses text whose objects have unique names. The result is discarded (is_discarded()) if the text is not JSON.
 [[nodiscard]] OrderedJson parse_ordered(const std::string& text);
 
 } // namespace steplap

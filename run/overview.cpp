@@ -12,10 +12,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_large_error = 0.01;       // of a channel's range: such a number is read with care
-constexpr std::size_t k_longest_quote = 160; // characters of a message that a sentence repeats
+constexpr double k_large_error = 0.01;       // of a channel's range; larger errors limit the trust in a number
+constexpr std::size_t k_longest_quote = 160; // characters of a quoted message
 
-// Its first sentence, and not all of a long one.
+// Returns the first sentence of a message, shortened if it is long.
 std::string first_sentence(const std::string& text) {
   std::string first = text.substr(0, text.find(". "));
   if (first.size() > k_longest_quote) first = first.substr(0, first.rfind(' ', k_longest_quote)) + " …";
@@ -70,7 +70,8 @@ private:
     return 1.0;
   }
 
-  // Of those that brought the verdict about: what came apart or slipped before the rest, then the one furthest beyond its limit.
+  // Returns a sentence on the criterion that explains the verdict: the joint that slipped or came apart first, otherwise the highest
+  // utilisation.
   std::string unmet(Verdict verdict) const {
     const CriterionResult* worst = nullptr;
     std::size_t count = 0;
@@ -102,13 +103,13 @@ private:
         if (entry.what == "slips" && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount) {
           const std::string slid =
               shown_quantity(entry.amount->value, "m", {.error = entry.amount->error, .scale = k_least_length_scale}, digits_);
-          if (slid.starts_with("0 ")) continue; // it turns where it is
+          if (slid.starts_with("0 ")) continue; // it rotates in place
           return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + " and slides " + slid + ".";
         }
       return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + ".";
     }
     const std::string at = c.t ? " at " + time(*c.t) : "";
-    for (const StoryEntry& entry : overview_.story) // of a tie
+    for (const StoryEntry& entry : overview_.story) // for ties
       if (entry.what == "breaks" && c.name == c.where && entry.who.front() == c.where) return sentence_name(c.where) + " breaks" + at + ".";
     if (c.value && c.limit) {
       const bool is_below = std::abs(*c.value) < *c.limit || (*c.limit <= 0.0 && *c.value < *c.limit);
@@ -122,7 +123,7 @@ private:
     return "There is an event that " + quoted(c.name) + " forbids: " + first_sentence(c.text) + " is asked, and it happens" + at + ".";
   }
 
-  // Of an element's own criterion: "front joint: displacement".
+  // Returns the name of an element's own criterion: "front joint: displacement".
   std::string aspect_name(const CriterionResult& c) const {
     for (const Utilisation& u : overview_.utilisations)
       if (u.channel == c.channel && u.limit == c.limit) return quoted(u.name);
@@ -146,7 +147,7 @@ private:
 
 // --- trust
 
-// The largest known error of channels in a unit; not-a-number: none is known.
+// Returns the largest known error of channels with this unit; NaN if none is known.
 double largest_error(const Report& report, const std::string& unit) {
   double largest = std::nan("");
   for (const ChannelRange& range : report.ranges()) {
@@ -158,7 +159,7 @@ double largest_error(const Report& report, const std::string& unit) {
   return largest;
 }
 
-// Channels with an extreme whose error is not known, as where a reaction diverges.
+// Returns channels with an extreme whose error is unknown, for example where a reaction diverges.
 std::vector<std::string> channels_without_error(const Report& report) {
   std::vector<std::string> names;
   for (const ChannelRange& range : report.ranges()) {
@@ -171,9 +172,9 @@ std::vector<std::string> channels_without_error(const Report& report) {
   return names;
 }
 
-// An error on the coarse side: "3 N", "better than 1 µm".
+// Formats an error, rounded up: "3 N", "better than 1 µm".
 std::string error_text(double error, const std::string& unit) {
-  const double floor = unit == "N" ? 1e-3 : unit == "m" ? 1e-9 : 1e-9; // mN, nm, ns: nobody asks for less
+  const double floor = unit == "N" ? 1e-3 : unit == "m" ? 1e-9 : 1e-9; // mN, nm, ns: more accuracy is never required
   if (error <= floor) return "better than " + std::string(unit == "N" ? "1 mN" : unit == "m" ? "0.001 µm" : "0.001 µs");
   return shown_quantity(error, unit, {}, {.most = 1});
 }
@@ -203,7 +204,7 @@ Trust trust_by_errors(const Report& report) {
   const double worst = estimate.error.of(ErrorKind::position).value;
   const WorstError& reaction = estimate.error.of(ErrorKind::reaction);
   const bool has_large = worst > k_large_error || reaction.value > k_large_error;
-  if (has_large && !is_at_rest(report.run)) trust.level = TrustLevel::limited; // at rest there is no range to measure errors by
+  if (has_large && !is_at_rest(report.run)) trust.level = TrustLevel::limited; // at rest there is no range to which errors could be related
   if (const std::vector<std::string> names = channels_without_error(report); !names.empty()) {
     trust.level = TrustLevel::limited;
     trust.text += names.size() == 1 ? " That of " + quoted(names.front()) + " is not known."
@@ -221,7 +222,7 @@ std::string second_method(const SecondOpinion& second) {
   return second.method.substr(0, second.method.find_first_of(" @")) + (second.drawn_step > 0.0 ? " in steps drawn at random" : "");
 }
 
-// Checks that were made, whatever they found. Those that a method makes at each step of its own are counted as one.
+// Returns the checks that were made, whatever their result. Checks made by a method at each of its steps are counted as one.
 std::vector<std::string> guards_of(const Report& report) {
   std::vector<std::string> guards = {"energy balance"};
   if (!report.run.loaded->system->rows.empty()) guards.emplace_back("joints");

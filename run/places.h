@@ -1,4 +1,4 @@
-// Where names of a model's markers and bodies are, in the pose of a state.
+// Positions of markers and bodies, by name, in a given state.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -6,20 +6,20 @@
 
 namespace steplap {
 
-/// A place on a body, from its centre of gravity in its own axes.
+/// A position and an orientation on a body, relative to its centre of gravity and in its axes.
 struct Place {
   const Body* body = nullptr; ///< null: the ground
   Vec2 point = Vec2::Zero();  ///< m
-  double angle = 0.0;         ///< rad, of its axes against the body's
+  double angle = 0.0;         ///< orientation relative to the body's axes, rad
 };
 
-/// Of a marker, or of a body's centre of gravity.
+/// Returns the position of a marker or of a body's centre of gravity.
 [[nodiscard]] Place place_of(const Model& model, const std::string& name);
-/// (x, y, θ) of a body's centre of gravity; of the ground zero.
+/// Returns (x, y, θ) of a body's centre of gravity; zero for the ground.
 [[nodiscard]] Vec3 pose_of(const System& system, const State& state, const Body* body);
-/// The body's index in the system; that of the ground for nullptr.
+/// Returns the body's index in the system; k_ground for nullptr.
 [[nodiscard]] int index_of(const System& system, const Body* body);
-/// Is a contact of this element pressed, or held past the end of its face?
+/// Returns true if a contact of this element is pressed, or held beyond the end of its face.
 [[nodiscard]] bool is_closed(const System& system, const State& state, const std::string& element);
 
 } // namespace steplap

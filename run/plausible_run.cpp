@@ -20,10 +20,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_moved_share = 0.01; // of a body's size: what settles on springs moves less
-constexpr double k_turned = 0.05;      // rad: three degrees, which a drawing shows
-constexpr double k_far_limit = 1e3;    // a limit in metres where millimetres were meant
-constexpr double k_outside = 0.01;     // of the outer part's width: what stands on an edge is not through it
+constexpr double k_moved_share = 0.01; // of a body's size; settling on springs is smaller
+constexpr double k_turned = 0.05;      // rad; three degrees are visible in a drawing
+constexpr double k_far_limit = 1e3;    // ratio between metres and millimetres
+constexpr double k_outside = 0.01;     // of the outer part's width; a body on an edge is not beyond it
 
 bool is_number(const std::string& text) {
   double value = 0.0;
@@ -32,12 +32,12 @@ bool is_number(const std::string& text) {
   return error == std::errc() && last == end;
 }
 
-double signed_distance(const Vec2& p, const Vec2& from, const Vec2& to) { // positive: on the left
+double signed_distance(const Vec2& p, const Vec2& from, const Vec2& to) { // positive to the left of the line
   const Vec2 along = to - from;
   return (along.x() * (p - from).y() - along.y() * (p - from).x()) / along.norm();
 }
 
-// A. M. Andrew's chains; counter-clockwise.
+// Computes the convex hull by A. M. Andrew's monotone chains, counter-clockwise.
 std::vector<Vec2> hull_of(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   std::vector<Vec2> hull;
@@ -51,14 +51,14 @@ std::vector<Vec2> hull_of(std::vector<Vec2> points) {
       }
       hull.push_back(*p);
     }
-    hull.pop_back(); // it begins the other chain
+    hull.pop_back(); // it is the first point of the other chain
   };
   add_chain(points.begin(), points.end());
   add_chain(points.rbegin(), points.rend());
   return hull;
 }
 
-// Distance by which p lies inside the hull's nearest edge line; negative: beyond it.
+// Returns the distance of p inside the nearest edge line of the hull; negative outside.
 double depth_in(const std::vector<Vec2>& hull, const Vec2& p) {
   double depth = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.size(); ++i) depth = std::min(depth, signed_distance(p, hull[i], hull[(i + 1) % hull.size()]));
@@ -69,7 +69,7 @@ double depth_in(const std::vector<Vec2>& hull, const Vec2& p) {
 struct Part {
   const Body* body = nullptr;
   std::vector<Vec2> corners, hull;
-  double width = 0.0; ///< m, the hull's largest diagonal of axes
+  double width = 0.0; ///< larger side of the hull's bounding box, m
   bool is_guided = false;
 };
 
@@ -78,7 +78,7 @@ Vec2 seen_from(const Vec3& on, const Vec3& at, const Vec2& point) {
   return rotated(place - Vec2(on.x(), on.y()), -on.z());
 }
 
-// Joints and drives lead a body where they are meant to.
+// Returns all bodies with an outline. A body with joints or drives is marked as guided, because its motion is intended.
 std::vector<Part> parts_of_run(const LoadedModel& loaded) {
   const System& system = *loaded.system;
   std::unordered_set<int> guided;
@@ -102,7 +102,7 @@ std::vector<Part> parts_of_run(const LoadedModel& loaded) {
   return parts;
 }
 
-// Distance by which a corner of `inner` that began inside `outer` is beyond its edge at the end, m.
+// Returns how far a corner of `inner` that began inside `outer` is beyond its edge at the end, m.
 double way_out(const Part& inner, const Part& outer, const LoadedModel& loaded, const State& end) {
   const System& system = *loaded.system;
   const Vec3 on = pose_of(system, loaded.assembled, outer.body), at = pose_of(system, loaded.assembled, inner.body);
@@ -123,7 +123,7 @@ std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result
   const std::vector<double> reaches = body_reaches(model);
   const RangeIndex ranges(result.ranges);
   const Body* worst = nullptr;
-  double most = 1.0, way = 0.0, turn = 0.0; // `most`: of what is allowed
+  double most = 1.0, way = 0.0, turn = 0.0; // `most`: largest ratio to the permitted motion
   std::size_t count = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];
@@ -170,12 +170,12 @@ std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& resu
       if (matches_pattern(range.channel->name, criterion.channel)) own = std::max(own, size_of(range));
       if (range.channel->unit == judged.unit) any = std::max(any, size_of(range));
     }
-    // The largest limit whose unit the file leaves out; a limit of "20 mm" is meant as it stands.
+    // Considers the largest limit that is given without unit. A limit such as "20 mm" is assumed to be intended.
     double limit = 0.0;
     if (criterion.within && is_number(criterion.within_text)) limit = *criterion.within;
     if (criterion.at_most && is_number(criterion.at_most_text)) limit = std::max(limit, *criterion.at_most);
     if (criterion.at_least && is_number(criterion.at_least_text)) limit = std::max(limit, -*criterion.at_least);
-    if (!(limit > k_far_limit * own) || !(limit > any) || !(any > 0.0)) continue; // where nothing acts no size is known
+    if (!(limit > k_far_limit * own) || !(limit > any) || !(any > 0.0)) continue; // without loads no comparison is possible
     findings.push_back({"limit_far_beyond", FindingLevel::note,
                         "the limit of '" + criterion.name + "', " + quantity_text(limit, judged.unit) +
                             ", is more than a thousand times what '" + judged.channel + "' reached, " + quantity_text(own, judged.unit) +

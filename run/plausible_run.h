@@ -1,5 +1,5 @@
-// Finds in a run what is hardly meant in its model: a rest far from the poses given, limits that nothing comes near, parts that have left
-// the part they began in.
+// Finds implausible results of a run: an equilibrium far from the given poses, limits far from all values, parts that have left the part in
+// which they began.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -7,12 +7,12 @@
 
 namespace steplap {
 
-/// A note if the run began at rest, and rest lies far from the poses given: a hundredth of a body's size, or 0.05 rad.
+/// Returns a note if the run began in equilibrium and a body moved there by more than 0.01 of its size or 0.05 rad.
 [[nodiscard]] std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result);
-/// A note for each criterion of the model whose limit, a number without a unit, is a thousand times beyond what its channel reached, and
-/// beyond every value of that unit in the run.
+/// Returns a note for each criterion whose limit, given without a unit, is a thousand times larger than the largest value of its channel
+/// and larger than all values of that unit in the run: its unit may be wrong.
 [[nodiscard]] std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
-/// A warning for each part that no joint guides, and that began in the outline of another and ends through its edge.
+/// Returns a warning for each part that no joint guides and that began inside the outline of another part but ended across its edge.
 [[nodiscard]] std::vector<Finding> parts_outside(const LoadedModel& loaded, const RunResult& result);
 
 } // namespace steplap

@@ -19,25 +19,25 @@ namespace steplap {
 
 namespace {
 
-// Beyond these nothing that is transported goes; positions of 1e6 m are known to 0.2 nm, which still is rounding.
+// Larger than any transport. Positions of 1e6 m have a resolution of 0.2 nm, which is still rounding.
 constexpr double k_far = 1e6;  // m
 constexpr double k_fast = 1e4; // m/s
-// Numbers of sixteen digits that differ by more leave the smaller one less than four.
+// Numbers have sixteen digits. If values differ by more than this ratio, fewer than four digits remain for the smaller one.
 constexpr double k_apart = 1e12;
 
-// Coefficients of dry friction. Machines' contacts have 0.1 to 0.8; beyond that rubber has 0.9 and more, clean metals in air up to 1.1.
+// Coefficients of dry friction. Contacts of machines have 0.1 to 0.8, rubber 0.9 and more, clean metals in air up to 1.1.
 constexpr double k_high_friction = 0.8, k_implausible_friction = 1.2;
 constexpr double k_whole_turn = 2.0 * std::numbers::pi; // rad
 
 Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
 
-// Are values and rates zero at every breakpoint, and between them?
+// Returns true if values and derivatives are zero at every breakpoint and between.
 bool is_zero(const Signal& signal, double end) {
   std::vector<double> times = {0.0, end};
   for (const double t : signal.breakpoints())
     if (t > 0.0 && t < end) times.push_back(t);
   std::sort(times.begin(), times.end());
-  constexpr int k_looks = 16; // a piece is a polynomial and some harmonics: one that is zero so often is zero
+  constexpr int k_looks = 16; // a piece is a polynomial plus a few harmonics: with so many zeros it is zero everywhere
   for (std::size_t i = 0; i + 1 < times.size(); ++i)
     for (int k = 0; k <= k_looks; ++k)
       if (signal.value(times[i] + (times[i + 1] - times[i]) * (k + 0.37) / (k_looks + 1.0)) != 0.0) return false;
@@ -61,12 +61,12 @@ bool is_part(const Model& model, const std::string& name) {
   });
 }
 
-// Of a record whose rows come evenly, and few of which are missing, where the first of them are: s, from and to. A step is missing where it is half as
-// long again as the others; these may differ by a tenth, since times are written with few digits. Where the value is the same on both sides a recorder
-// may have left out what repeats.
+// Returns the first interval, s, in which rows of a record are missing, if its rows are evenly spaced with few exceptions. A row is missing
+// if a time step is at least 1.5 times the usual one; usual steps may differ by a tenth, because times are written with few digits. Gaps
+// with equal values on both sides are ignored, because recorders may omit repeated values.
 std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
   constexpr double k_alike = 0.1, k_missing = 1.5, k_few = 0.1;
-  constexpr std::size_t k_least = 8; // steps: fewer are no custom
+  constexpr std::size_t k_least = 8; // steps; fewer do not define a usual step
   const std::vector<double>& t = signal.breakpoints();
   if (t.size() < k_least + 1) return {};
   std::vector<double> steps;
@@ -79,7 +79,8 @@ std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (std::abs(steps[i] - *middle) <= k_alike * *middle) continue;
     if (steps[i] < k_missing * *middle) return {};
-    if (i + 2 == t.size() || signal.value(t[i]) == signal.value(t[i + 1])) continue; // behind the last row the signal may be another
+    if (i + 2 == t.size() || signal.value(t[i]) == signal.value(t[i + 1]))
+      continue; // after the last row the signal may be defined differently
     ++missing;
     if (!first) first = {t[i], t[i + 1]};
   }
@@ -99,7 +100,7 @@ void find_gaps(const Model& model, SignalNetwork& network, std::vector<Finding>&
   }
 }
 
-// The two bodies that move whose values differ most, as smaller and larger.
+// Returns the two moving bodies whose values differ most, the smaller first.
 template <class Value> std::pair<const Body*, const Body*> extremes_of(const Model& model, const Value& value) {
   const Body *least = nullptr, *most = nullptr;
   for (const Body& body : model.bodies) {
@@ -110,8 +111,8 @@ template <class Value> std::pair<const Body*, const Body*> extremes_of(const Mod
   return {least, most};
 }
 
-// An element that can say where its friction comes from is asked for it. Tyres cannot, whose treads grip with more than 1, nor can the
-// sheets of cores, for which there are ranges of their own (transformer/core/plausible.h).
+// Checks elements that can give the source of their friction. Tyres are excluded, because their treads can exceed 1, and sheets of cores,
+// which have their own ranges (transformer/core/plausible.h).
 void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
   const Field* const source = entry.kind->fields.find("source");
   const Field* worst = nullptr;
@@ -142,7 +143,8 @@ void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings)
                                where));
 }
 
-// Degrees that were typed without their unit are round numbers; radians that came of degrees or of a formula are not.
+// Returns true for numbers with at most three decimals. Degrees given without a unit are round numbers; radians from degrees or formulas
+// are not.
 bool is_round(double number) {
   constexpr double k_places = 1e3;
   return std::round(number * k_places) == number * k_places;
@@ -181,7 +183,7 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   for (const SignalEntry& entry : model.signals) {
     const std::string& name = entry.definition->name;
     const Signal* const signal = is_used(model, name) ? network.build(name) : nullptr;
-    if (!signal || signal->is_constant()) continue; // a constant of zero is meant to be none
+    if (!signal || signal->is_constant()) continue; // a constant of zero is intended
     if (!is_zero(*signal, end)) {
       has_load = true;
       continue;
@@ -189,8 +191,8 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
     if (!silent) silent = &entry;
     const std::vector<double>& breaks = signal->breakpoints();
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
-    const bool begins_later = next != breaks.end() && *next >= end; // acted_loads.h tells that
-    if (!begins_later) // of no consequence if something else loads the machine, which joints tell themselves
+    const bool begins_later = next != breaks.end() && *next >= end; // reported by acted_loads.h
+    if (!begins_later) // harmless if something else loads the machine; joints report this themselves
       findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
                                  entry.definition->where));
   }

@@ -1,17 +1,19 @@
-// Is a scene one that somebody meant? Loads that are nothing throughout; places, speeds, masses
-// and inertias so far beyond each other that rounding of the large ones is the size of the small ones.
+// Finds implausible values in a model: loads that are always zero, and positions, speeds, masses or inertias of such different size that
+// rounding errors of the large ones are as large as the small ones.
 #pragma once
 
 #include "run/findings.h"
 
 namespace steplap {
 
-/// Signals that are zero throughout the run, and records with gaps, one finding each. Those that the run's end cuts off: acted_loads.h.
+/// Returns one finding for each signal that is zero throughout the run and for each record with gaps. Signals cut off by the end:
+/// acted_loads.h.
 [[nodiscard]] std::vector<Finding> implausible_loads(const LoadedModel& loaded);
-/// Friction of contacts that is higher than dry contacts have, one finding for each element. A note that names the element's `source`, if
-/// it gives one; else a warning, and beyond what any dry contact has one that caps the verdict.
+/// Returns one finding for each contact element whose coefficient of friction is unusually high for dry contacts: a note if the element
+/// gives a `source`, otherwise a warning. Above the highest value of any dry contact the warning also prevents the verdict "hold".
 [[nodiscard]] std::vector<Finding> implausible_friction(const LoadedModel& loaded);
-/// Places, speeds, masses and inertias that are too far apart for the digits of a number, and angles beyond a turn, one finding each.
+/// Returns one finding for each group of positions, speeds, masses or inertias of too different size, and for each angle beyond a full
+/// turn.
 [[nodiscard]] std::vector<Finding> implausible_sizes(const LoadedModel& loaded);
 
 } // namespace steplap

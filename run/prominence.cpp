@@ -4,7 +4,7 @@ namespace steplap {
 
 namespace {
 
-// "front foot.force" -> "force"
+// Returns "force" for "front foot.force".
 std::string last_part(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 
 } // namespace

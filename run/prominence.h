@@ -1,4 +1,4 @@
-// What of a run a reader looks for first.
+// Selects the channels and events of a run that are shown first.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -7,16 +7,15 @@
 
 namespace steplap {
 
-/// What an element has to bear, told by its unit: a force, a couple, the pressure that a joint would
-/// need. What it could bear is none.
+/// Returns true for loads on an element (force, couple or required pressure), determined from the unit. Capacities are not loads.
 [[nodiscard]] bool is_reaction(const Channel& channel);
-/// The same of a channel by its name and unit.
+/// Returns the same as above for a channel with this name and unit.
 [[nodiscard]] bool is_reaction(const std::string& name, const std::string& unit);
-/// A path slid in friction.
+/// Returns true for the slid distance of friction.
 [[nodiscard]] bool is_slide(const Channel& channel);
-/// The same of a channel by its name.
+/// Returns the same as above for a channel of this name.
 [[nodiscard]] bool is_slide(const std::string& name);
-/// Of a kind that a reader looks for first (event_kind.h).
+/// Returns true for events that are listed first (event_kind.h).
 [[nodiscard]] bool is_main_event(const Event& event);
 
 } // namespace steplap

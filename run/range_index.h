@@ -1,4 +1,4 @@
-// Ranges of a run by the names of their channels: for who asks for many of them.
+// Finds channel ranges of a run by name.
 #pragma once
 
 #include "mbd/simulation/extremes.h"
@@ -10,16 +10,16 @@
 
 namespace steplap {
 
-/// Finds ranges by name in constant time. Refers to the ranges and their channels, which have to outlive it.
+/// Hash table of ranges. It refers to the ranges and their channels, which must outlive it.
 class RangeIndex {
 public:
-  /// Of all channels of a run (RunResult::ranges).
+  /// Takes the ranges of all channels of a run (RunResult::ranges).
   explicit RangeIndex(const std::vector<ChannelRange>& ranges) {
     by_name_.reserve(ranges.size());
     for (const ChannelRange& range : ranges) by_name_.emplace(range.channel->name, &range);
   }
 
-  /// nullptr if there is no such channel, or no range of it.
+  /// Returns nullptr if the channel does not exist or has no range.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const {
     const auto found = by_name_.find(channel);
     return found == by_name_.end() ? nullptr : found->second;

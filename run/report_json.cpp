@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The last entry, which is of all text before it.
+// Appends the last entry, a checksum of the text before it.
 constexpr std::string_view k_before_checksum = ",\n  \"checksum\": \"", k_after_checksum = "\"\n}\n";
 
 Json inputs_json(const std::vector<InputFile>& inputs) {
@@ -32,7 +32,7 @@ Json inputs_json(const std::vector<InputFile>& inputs) {
   return json;
 }
 
-// What the model was made with; "given" as the file says it.
+// Returns the parameters of the model; "given" is the text in the file.
 Json parameters_json(const Parameters& parameters) {
   Json json = Json::array();
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
@@ -82,15 +82,15 @@ const char* name_of(EstimateStatus status) {
   return "";
 }
 
-// Without the CPU time, which no two runs share.
+// CPU time is omitted because it differs between runs.
 Json statistics_json(const RunStatistics& s) {
   return {{"steps", s.steps}, {"rejections", s.rejections}, {"evaluations", s.evaluations}, {"events", s.events}};
 }
 
-// Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
+// Missing numbers (no such channel, infinite margin, no extremes) are null.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-// JSON has no infinity: null stands for it, and "…_is" beside it tells which.
+// JSON has no infinity: the value is null, and "…_is" tells which one.
 void note_infinity(Json& json, const std::string& key, double value) {
   if (std::isinf(value)) json[key + "_is"] = value > 0.0 ? "∞" : "-∞";
 }
@@ -100,7 +100,7 @@ void add_number(Json& json, const std::string& key, double value) {
   note_infinity(json, key, value);
 }
 
-// Of a number whose error is estimated; null: unknown.
+// Adds the error of a number if it was estimated; null if it is unknown.
 void add_error(Json& json, const char* key, std::optional<double> error) {
   if (error) json[key] = number_json(*error);
 }
@@ -123,7 +123,7 @@ Json method_json(const SimulationOptions& options) {
   return {{"integrator", options.integrator}, {"step", options.settings.step}, {"tolerance", options.settings.tolerance}};
 }
 
-// Errors scaled as in mbd/trust/run_comparison.h.
+// Errors are scaled as in mbd/trust/run_comparison.h.
 Json global_error_json(const Report& report) {
   const GlobalErrorEstimate& estimate = *report.estimate.errors;
   Json json;
@@ -141,7 +141,7 @@ Json global_error_json(const Report& report) {
   return json;
 }
 
-// Each text once, and its place in the list for every channel: few are as many as the kinds of elements have.
+// Stores each text once and its index for every channel, because there are only few different texts.
 class Meanings {
 public:
   [[nodiscard]] std::size_t place_of(const Channel& channel) {
@@ -173,9 +173,9 @@ Json extremes_json(const Report& report, Meanings& meanings) {
     entry["t_max"] = time(range.high);
     add_number(entry, "final", range.final);
     if (range.channel->is_on_request) entry["on_request"] = true;
-    if (range.is_low_singular) entry["min_singular"] = true; // met beside a singular pose, where reactions may diverge
+    if (range.is_low_singular) entry["min_singular"] = true; // at a singular pose, near which reactions may diverge
     if (range.is_high_singular) entry["max_singular"] = true;
-    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // a formula's division by zero
+    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // division by zero in a formula
     const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
     add("error_min", &ChannelError::low);
     add("error_t_min", &ChannelError::t_low);
@@ -203,7 +203,7 @@ void add_errors(Json& entry, const JointAssessment& a, const JointErrors& e) {
   if (a.allowed_line_load) entry["error_largest_edge_share"] = number_json(e.edge_share);
 }
 
-// Of a joint whose edges can bear; the margin is infinite, null, while none does.
+// Adds the results for edges in contact, if the joint has edges. The margin is infinite (null) while no edge carries load.
 void add_edges(Json& entry, const JointAssessment& a) {
   if (!a.has_edges) return;
   entry["largest_edge_load"] = number_json(a.edge_load.value);
@@ -216,7 +216,7 @@ void add_edges(Json& entry, const JointAssessment& a) {
   entry["crushed_edges"] = std::isnan(a.edge_share.value) ? Json() : Json(a.has_crushed_edges());
 }
 
-// Of a joint with others beside it: its figures are of its own share of the load.
+// Adds the elements that carry load in parallel with the joint. The joint's values refer to its own share of the load.
 void add_shared(Json& entry, const JointAssessment& a) {
   if (a.shared_with.empty()) return;
   entry["shares_before_it_slides"] = a.is_elastic;
@@ -280,7 +280,7 @@ Json judgement_json(const Judgement& judgement) {
                         {"error_t", optional(c.t_error)},
                         {"doubt", c.doubt}});
     if (c.value) note_infinity(criteria.back(), "value", *c.value);
-    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // null without it: not estimated
+    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // without this entry null means: not estimated
     if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
   }
   return {{"verdict", name_of(judgement.verdict)},
@@ -313,7 +313,7 @@ Json story_json(const std::vector<StoryEntry>& story) {
   return json;
 }
 
-// What screen and page begin with (overview.h).
+// Returns the summary for screen and page (overview.h).
 Json overview_json(const Overview& overview, ShownDigits digits) {
   const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
   Json utilisations = Json::array();
@@ -365,7 +365,7 @@ Json state_json(const System& system, const State& state, const Report& report) 
 OrderedJson summary_head(const Report& report, ShownDigits digits) {
   const Run& run = report.run;
   const LoadedModel& loaded = *run.loaded;
-  Json json = object_with_room(32); // those of summary_document(), too
+  Json json = object_with_room(32); // includes the entries of summary_document()
   json["program"] = {{"name", "steplap"}, {"version", k_version}};
   json["model"] = {{"file", loaded.path},
                    {"name", loaded.name},
@@ -396,7 +396,7 @@ OrderedJson summary_document(const Report& report, ShownDigits digits) {
   json["accuracy"] = accuracy_json(statistics, report);
   if (report.estimate.errors) json["global_error"] = global_error_json(report);
   if (Json joints = joints_json(report); !joints.empty()) json["joints"] = std::move(joints);
-  // Without criteria there is nothing to say, unless the run itself is not to be trusted.
+  // Without criteria there is no verdict, unless the run itself cannot be trusted.
   if (report.judgement.has_criteria || !report.judgement.distrust.empty()) json["judgement"] = judgement_json(report.judgement);
   if (const std::vector<std::string> left_out = left_out_of(loaded.model); !left_out.empty()) json["left_out"] = left_out;
   if (report.second_opinion) json["second_opinion"] = second_opinion_json(*report.second_opinion);
@@ -410,9 +410,9 @@ OrderedJson summary_document(const Report& report, ShownDigits digits) {
 std::string summary_json(const Report& report, const FileRecords& files) {
   Json json = summary_document(report);
   json["files"] = files_json(files);
-  // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
+  // Invalid UTF-8 in names is replaced, because an exception after a long run would lose its results.
   std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
-  text.resize(text.size() - 2); // "\n}"
+  text.resize(text.size() - 2); // removes "\n}"
   return text + std::string(k_before_checksum) + sha256(text) + std::string(k_after_checksum);
 }
 

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// While this lives drives stay where they are at `state`.
+// Holds drives at their positions at `state` during its lifetime.
 class HeldDrives {
 public:
   HeldDrives(System& system, State& state) : system_(system) {

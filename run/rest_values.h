@@ -1,4 +1,4 @@
-// What all channels say of a machine that rests.
+// Computes the values of all channels for a machine at rest.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -7,8 +7,8 @@
 
 namespace steplap {
 
-/// In the order of System::channels, each in its unit. Drives that move or accelerate at the time of `rest` are taken as held where
-/// they are: what they take is what holding takes. `system` is changed while this works, and as before afterwards.
+/// Returns the values in the order of System::channels, each in its unit. Drives that move at the time of `rest` are taken as held at their
+/// position, so their forces are holding forces. `system` is changed during the call and restored afterwards.
 [[nodiscard]] std::vector<double> values_at_rest(System& system, State rest);
 
 } // namespace steplap

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "drawing.json", "summary.json"};
-// Made from the others later: goes with them when they are replaced.
+// Files that are later created from the others and are removed when these are replaced.
 constexpr const char* k_report = "report.html";
 constexpr const char* k_partial = "partial_";
 
@@ -39,7 +39,7 @@ std::vector<std::string> all_names() {
   throw FileError(folder, "cannot write results to '" + folder + "': " + cause);
 }
 
-// The nearest folder above that exists.
+// Returns the nearest existing parent folder.
 fs::path existing_part(fs::path path) {
   path = fs::absolute(path);
   std::error_code ignored;
@@ -47,8 +47,8 @@ fs::path existing_part(fs::path path) {
   return path;
 }
 
-// A folder beside the wanted one in which files are gathered; removed with all that is left in it.
-// So is the parent folder, if it was made for this and is still empty.
+// A temporary folder next to the target, in which files are collected. The destructor removes it with its contents.
+// The parent folder is also removed if it was created for this and is still empty.
 class Staging {
 public:
   explicit Staging(const fs::path& folder) {
@@ -58,7 +58,7 @@ public:
     if (fs::create_directories(parent, error)) made_ = parent;
     if (error) fail(folder.string(), error.message());
     path_ = parent / (".steplap-" + std::to_string(::getpid()));
-    fs::remove_all(path_, error); // of a process long gone
+    fs::remove_all(path_, error); // left by a process that has ended
     fs::create_directory(path_, error);
     if (error) fail(folder.string(), error.message());
   }
@@ -76,7 +76,7 @@ private:
   fs::path path_, made_;
 };
 
-// Messages name the place where the user looks for the file.
+// Messages name the path that the user expects.
 void write_all(const fs::path& staging, const fs::path& folder, const std::vector<ResultFile>& files) {
   for (const ResultFile& file : files) {
     const std::string path = (staging / file.name).string();
@@ -91,7 +91,7 @@ void write_all(const fs::path& staging, const fs::path& folder, const std::vecto
   }
 }
 
-// File by file into a folder that exists; what an earlier run left there goes, the summary comes last.
+// Moves the files one by one into an existing folder. Files of an earlier run are removed; the summary is moved last.
 void move_into(const fs::path& staging, const fs::path& folder, const std::vector<ResultFile>& files) {
   std::error_code error;
   std::vector<std::string> outdated = all_names();
@@ -120,7 +120,7 @@ std::vector<double> column_errors(const Report& report) {
 } // namespace
 
 void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put) {
-  constexpr std::size_t k_part = 1 << 16; // bytes, about: what a cache holds
+  constexpr std::size_t k_part = 1 << 16; // bytes, approximately the size of a cache
   std::vector<std::string> header{"t [s]"};
   for (const Channel* channel : trajectory.channels())
     header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
@@ -158,7 +158,7 @@ std::string events_csv(const std::vector<Event>& events, const std::vector<doubl
 
 namespace {
 
-// Notes what passes through it; what it noted is whole when the content has been put.
+// A sink that computes size and digest of the content passed through; they are complete after the last piece.
 ResultFile noted(std::string name, FileContent content, const std::shared_ptr<FileRecords>& records) {
   FileContent put_and_note = [name, content = std::move(content), records](const FileSink& put) {
     FileRecord record{name, 0, ""};
@@ -218,10 +218,10 @@ void write_results(const std::string& folder, const std::vector<ResultFile>& fil
   const Staging staging(folder);
   write_all(staging.path(), folder, files);
   std::error_code error;
-  fs::rename(staging.path(), folder, error); // succeeds onto nothing or an empty folder
+  fs::rename(staging.path(), folder, error); // works if the target does not exist or is an empty folder
   if (!error) return;
   if (!fs::is_directory(folder)) fail(folder, error.message());
-  check_result_folder(folder, is_overwriting); // somebody else may have been quicker
+  check_result_folder(folder, is_overwriting); // another process may have created results meanwhile
   move_into(staging.path(), folder, files);
 }
 

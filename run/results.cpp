@@ -28,7 +28,7 @@ namespace {
       "'" + file.string() + "', line " + std::to_string(line) + ": " + what + "; it is not as steplap wrote it: run the model again", line);
 }
 
-// Cells of a row of CSV, quotes undone.
+// Splits a row of CSV into cells and removes quotes.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
   bool is_quoted = false;
@@ -47,7 +47,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-// "front foot.force [N]"
+// Splits "front foot.force [N]".
 ResultChannel channel_of(const std::string& head) {
   ResultChannel channel;
   const std::size_t bracket = head.rfind(" [");
@@ -90,7 +90,7 @@ void read_events(const fs::path& file, Results& results) {
   std::istringstream lines(read_text(file.string()));
   std::string line;
   std::getline(lines, line);
-  const std::size_t columns = cells_of(line).size() > 3 ? 4 : 3; // the fourth: errors of the times
+  const std::size_t columns = cells_of(line).size() > 3 ? 4 : 3; // the fourth column contains errors of the times
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != columns) damaged(file, number, "an event has a time, an element and what happened");
@@ -113,7 +113,7 @@ std::string date_of(const fs::path& file) {
   return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc));
 }
 
-// What somebody may have taken for the folder of a run, and what to do with it; "" if it is none of these.
+// Returns a hint if the path is something that users may confuse with the folder of a run; "" otherwise.
 std::string something_else(const fs::path& path) {
   std::error_code ignored;
   const std::string name = "'" + path.string() + "'";
@@ -135,7 +135,7 @@ std::string something_else(const fs::path& path) {
   return "";
 }
 
-// "" or "partial_": what the names of the files begin with.
+// Returns "" or "partial_", the prefix of the file names.
 std::string prefix_in(const fs::path& folder) {
   std::error_code ignored;
   for (const std::string prefix : {"", "partial_"})
@@ -158,14 +158,14 @@ std::string digest_of(const fs::path& file) {
   return digest.hex();
 }
 
-// The summary tells of itself and of the other files whether they are what the run wrote.
+// Checks the summary's own digest and the digests of all other files.
 void check_files(const fs::path& file, const std::string& summary, const std::string& prefix) {
   const std::string_view content = checked_summary(summary);
   if (content.empty()) changed(file, "its checksum is not that of its text, or is missing");
   const OrderedJson json = parse_ordered(std::string(content) + "}");
   for (const char* const name : {"trajectory.csv", "events.csv", "model.toml", "drawing.json"}) {
     const fs::path path = file.parent_path() / (prefix + name);
-    const OrderedJson& wanted = json.at("files").at(prefix + name); // the checksum says that it is there
+    const OrderedJson& wanted = json.at("files").at(prefix + name); // exists, because the digest of the summary is correct
     std::error_code error;
     const auto bytes = fs::file_size(path, error);
     if (error) throw FileError(path.string(), "'" + path.string() + "' is missing: the results are not whole, run the model again");

@@ -26,8 +26,8 @@ SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions
 Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& options) {
   std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   SimulationOptions simulation_asked = simulation_options(*loaded, options);
-  simulation_asked.notes_motion = options.estimating != Estimating::never; // for whoever asks whether the machine balances
-  bool is_over = false;                                                    // the last state is sampled after a failure, too
+  simulation_asked.notes_motion = options.estimating != Estimating::never; // needed to decide whether an equilibrium is stable
+  bool is_over = false;                                                    // samples the last state also after a failure
   simulation_asked.progress = [&is_over, &options](double t) {
     if (options.progress) options.progress(t);
     if (!is_over) stop_if_asked(options, t);

@@ -1,4 +1,4 @@
-// A loaded model run to its end, or to what stopped it.
+// Runs a loaded model to its end, or until it fails.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -8,18 +8,19 @@
 
 namespace steplap {
 
-/// What a run left behind; it keeps its model and system alive, into which the result's pointers lead.
+/// Outcome of a run. It owns the model and the system to which pointers in the result lead.
 struct Run {
   std::shared_ptr<const LoadedModel> loaded; ///< never nullptr
-  RunResult result;                          ///< up to the failure, if there was one
-  std::optional<Failure> failure;            ///< what stopped the run; none: it reached its end
+  RunResult result;                          ///< results up to the failure, if there was one
+  std::optional<Failure> failure;            ///< reason for an early end; empty if the run reached its end
 };
 
-/// Options of a simulation of the model by its own settings, which those of `options` have been laid over (with_settings.h). Throws std::invalid_argument for options that are none.
+/// Returns the options of a simulation with the settings of the model. The settings of `options` must have been applied before
+/// (with_settings.h). Throws std::invalid_argument for invalid options.
 [[nodiscard]] SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options);
 
-/// Runs the model, with the settings of `options` laid over it. Throws ModelError for settings that it cannot be run with
-/// (with_settings.h), NumericalFailure only if nothing could be run.
+/// Runs the model with the settings of `options`. Throws ModelError if these settings are invalid (with_settings.h), NumericalFailure only
+/// if the run could not even start.
 [[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
 
 } // namespace steplap

@@ -14,19 +14,20 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_same = 1e-9;     // m: as points are typed
+constexpr double k_same = 1e-9;     // m; accuracy of typed coordinates
 constexpr double k_straight = 1e-9; // rad
 
 struct End {
   const SegmentContact* contact = nullptr;
-  Vec2 direction = Vec2::Zero(); ///< from the corner along the segment, of length 1
+  Vec2 direction = Vec2::Zero(); ///< unit vector from the corner along the segment
 };
 using Rounded = std::array<double, 2>;
 using Track = std::tuple<const Body*, Rounded, const Body*>; // a circle, and the body with the segments
 
 Rounded rounded(const Vec2& p) { return {std::round(p.x() / k_same), std::round(p.y() / k_same)}; }
 
-// Does the circle, from where it is given, see the corner from inside? There it touches both sides and neither end.
+// Returns true if the circle, in its given position, is on the inner side of the corner. There it touches both segments and neither end
+// point.
 bool is_inner(const Vec2& d1, const Vec2& d2, const Vec2& to_circle) {
   const double turn = cross(d1, d2);
   return std::abs(turn) > k_straight && cross(d1, to_circle) * turn > 0.0 && cross(to_circle, d2) * turn > 0.0;

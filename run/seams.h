@@ -1,4 +1,4 @@
-// Segments that a circle passes from one to the next, where both end at one point: there both press.
+// Finds common end points of two segments over which a circle rolls from one segment to the next: at this point both segments press.
 #pragma once
 
 #include "run/finding.h"
@@ -6,7 +6,7 @@
 
 namespace steplap {
 
-/// One for each circle and body with segments, naming the first such corner.
+/// Returns one finding for each circle and body with segments. It names the first such point.
 [[nodiscard]] std::vector<Finding> doubled_corners(const LoadedModel& loaded);
 
 } // namespace steplap

@@ -21,9 +21,9 @@ namespace steplap {
 
 namespace {
 
-// A run of either method may take so many times the evaluations of the one that is looked at, …
+// Limit for a run of either method, relative to the evaluations of the checked run, …
 constexpr long k_most_times = 10;
-constexpr double k_always_granted = 3e7; // … and in any case a few seconds: parts evaluated (global_error.h)
+constexpr double k_always_granted = 3e7; // … and the evaluated parts (global_error.h) that are always permitted, which take a few seconds
 constexpr double k_second_tolerance = 1e-6;
 
 CrossMethod method_used(const System& system, const SimulationOptions& as_run) {
@@ -50,8 +50,8 @@ std::string text_of(const Disagreement& d) {
   return d.text.empty() ? text : text + ", " + d.text;
 }
 
-// How often the other method's runs do not meet a criterion about events that the run in question meets: whether something
-// slips at all is no matter of digits, and may be lost between two samples.
+// Counts how often runs of the other method violate a criterion on events that the checked run meets. A single violation is not conclusive,
+// because a slip can be lost between two samples.
 class EventCriteria {
 public:
   EventCriteria(const Model& model, const System& system, const RunResult& run) : model_(model), system_(system) {
@@ -70,7 +70,7 @@ public:
         }
   }
 
-  /// Of what none of its runs meets; empty: nothing.
+  /// Returns a criterion that all runs of the other method violate; "" if there is none.
   [[nodiscard]] std::string contradiction() const {
     for (const Met& met : met_)
       if (runs_ > 0 && met.contradictions == runs_) return "'" + met.name + "', " + met.text + ": not met by '" + met.where;
@@ -89,9 +89,9 @@ private:
 };
 
 constexpr double k_drawn_share = 1.0 / 3.0; // of the mean step of the run
-constexpr std::uint64_t k_drawn_seed = 42;  // the same steps whenever the same run is asked
+constexpr std::uint64_t k_drawn_seed = 42;  // constant, so that repeated checks of a run use the same steps
 
-// Times at which steps of the drawn lengths end.
+// Returns the end times of steps with random lengths.
 std::vector<double> drawn_times(double end, double mean) {
   std::vector<double> times;
   double t = 0.0;
@@ -103,12 +103,12 @@ std::vector<double> drawn_times(double end, double mean) {
 }
 
 std::unique_ptr<System> compiled_for_audit(const Model& model) {
-  std::unique_ptr<System> system = compile(model); // with channels of its own
+  std::unique_ptr<System> system = compile(model); // a new system with its own channels
   add_audit_channels(*system, model);
   return system;
 }
 
-// Asks others than the method used about one run.
+// Runs other methods than the one used for the checked run.
 class Asker {
 public:
   Asker(const Run& asked, const RunOptions& options)
@@ -117,7 +117,7 @@ public:
 
   SecondOpinion time_stepping() { return ask(other_method(as_run_)); }
 
-  // Takes the first of two methods that reaches the end: rodas5p where tsit5 needs too many evaluations.
+  // Uses the first of two methods that reaches the end: rodas5p if tsit5 needs too many evaluations.
   SecondOpinion drawn_steps() {
     const double mean = k_drawn_share * as_run_.end / static_cast<double>(std::max(run_.statistics.steps, 1L));
     const std::unique_ptr<System> stopping = compiled_for_audit(loaded_.model);
@@ -130,7 +130,7 @@ public:
       opinion = ask({name,
                      {{name, tolerance, false}, {name, 0.1 * tolerance, false}},
                      stopping.get(),
-                     1.5 * mean}); // behind an action the system is another one
+                     1.5 * mean}); // the system changes after an action
       opinion.drawn_step = mean;
       if (opinion.none_because.empty()) break;
     }
@@ -138,7 +138,7 @@ public:
   }
 
 private:
-  static constexpr double k_finest_drawn = 1e-9; // a tenth of it is still above rounding
+  static constexpr double k_finest_drawn = 1e-9; // s; a tenth of it is still above rounding
 
   SecondOpinion ask(CrossMethod other) {
     CrossCheckOptions options;

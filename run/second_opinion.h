@@ -1,13 +1,12 @@
-// What a method that shares little with the one used makes of the same run: asked for where a verdict has to hold.
+// Checks a run by a second method that has little in common with the first. Requested for verdicts that must be reliable.
 //
-// Beside moreau, which locates no events, stands the method that was used; a run by moreau is compared with dop853. Both are
-// made at two or three settings and compared as `steplap check --cross` does (mbd/trust/cross_check.h): every channel,
-// event and energy, beyond the errors that both methods tell of themselves. Whether it had time is counted in evaluations,
-// not seconds, for an exit code hangs on it.
+// A run is compared with moreau, which locates no events; a run by moreau is compared with dop853. Both methods run with two or three
+// settings and are compared as in `steplap check --cross` (mbd/trust/cross_check.h): every channel, event and energy must agree within the
+// error estimates of both. The limit on computing time is counted in evaluations, because an exit code depends on it.
 //
-// Where time stepping cannot run the scene, or is too coarse for it, a method that locates events is asked instead, whose steps are
-// others: at most a third of the mean step of the run, times a pseudo-random number between 0.5 and 1.5. The search for events and the
-// polynomials are then the same, but what passes between two looks of the one run is met by the other.
+// If time stepping cannot run the scene or is too coarse for it, the second run uses an event-locating method with other steps: at most a
+// third of the mean step of the first run, times a pseudo-random number between 0.5 and 1.5. It shares the event search and the
+// interpolation with the first run, but samples event functions at other times and so can find an event that the first run missed.
 #pragma once
 
 #include "run/run.h"
@@ -16,17 +15,17 @@
 
 namespace steplap {
 
-/// What the other method said, or why it said nothing.
+/// Result of the second method, or the reason why there is none.
 struct SecondOpinion {
-  std::string method;       ///< with its step or tolerance: "moreau@0.0005"
-  double drawn_step = 0.0;  ///< s: mean of the steps that were drawn for it; 0: it had steps of its own
-  std::string none_because; ///< not empty: it has no opinion, and why
-  std::string disagreement; ///< not empty: what differs by more than both errors
-  double worst_ratio = 0.0; ///< of differences over what the errors allow
-  double known_until = 0.0; ///< s: from there on it is too coarse to tell
+  std::string method;       ///< method with its step or tolerance: "moreau@0.0005"
+  double drawn_step = 0.0;  ///< mean of the random steps, s; 0 if the method has its own steps
+  std::string none_because; ///< not empty: the reason why there is no result
+  std::string disagreement; ///< not empty: a difference that exceeds both errors
+  double worst_ratio = 0.0; ///< largest ratio of a difference to the difference that both errors permit
+  double known_until = 0.0; ///< time from which the second method is too coarse to compare, s
 };
 
-/// `run` reached its end; it was made with `options`.
+/// Checks `run` by a second method. Precondition: `run` reached its end and was made with `options`.
 [[nodiscard]] SecondOpinion second_opinion(const Run& run, const RunOptions& options);
 
 } // namespace steplap

@@ -12,9 +12,9 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 1e-9; // of a scale: what computing leaves of zero
+constexpr double k_rounding = 1e-9; // relative to the scale; smaller values are rounding
 
-// "m/s²" for "m/s^2"
+// Returns "m/s²" for "m/s^2".
 std::string shown_unit(std::string unit) {
   if (const std::size_t at = unit.find("^2"); at != std::string::npos) unit.replace(at, 2, "²");
   return unit;
@@ -82,17 +82,19 @@ std::string shown_quantity(double value, const std::string& unit, const ShownCon
 
 std::string shown_share(double share, std::optional<double> error, ShownDigits digits) {
   if (!std::isfinite(share)) return "–";
-  constexpr double k_countless = 1000.0; // of the limit: nothing is left that holds (Utilisation::k_most_share), and the number is none
+  constexpr double k_countless = 1000.0; // times the limit; larger shares mean that no capacity is left (Utilisation::k_most_share)
   if (share >= k_countless && !digits.is_full) return "> 1000 %";
   ShownContext context;
   if (error) context.error = 100.0 * *error;
   context.limit = 100.0;
-  context.scale = 1e7; // a share of a hundredth of a percent and less is none
+  context.scale = 1e7; // shares below a hundredth of a percent are shown as zero
   const double percent = 100.0 * share;
   const bool is_error_shown = error && !(100.0 * std::abs(*error) < std::min(0.5, std::abs(percent - 100.0))) && *error != 0.0;
   if (digits.is_full || is_error_shown) return shown_quantity(percent, "%", context, digits);
   int decimals = std::abs(percent) < 10.0 ? 1 : 0;
-  while (decimals < 3 && percent != 100.0 && rounded_to(percent, -decimals) == "100") ++decimals; // beyond or not has to be seen
+  while (decimals < 3 && percent != 100.0 && rounded_to(percent, -decimals) == "100")
+    ++decimals; // a value on the other side of 100 % must be
+                // distinguishable
   return rounded_to(percent, -decimals) + " %";
 }
 

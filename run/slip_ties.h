@@ -1,8 +1,8 @@
-// Finds verdicts that depend on which of two frictional elements slips first.
+// Finds verdicts that depend on which of two friction elements slips first.
 //
-// Where one element begins to slip and another is all but at its own bound (SlipTie), a few digits of a coefficient decide which of
-// them gives way; the one that does relieves the other by what its kinetic coefficient takes. The run is then repeated with the same
-// settings, but at that instant the other one slips. If this leads to another verdict, neither of the two is known.
+// If one element begins to slip while another is almost at its own friction bound (SlipTie), tiny changes of a coefficient decide which one
+// slips. The slipping element then unloads the other one. The run is repeated with the same settings, but with the other element slipping
+// at that time. If this changes the verdict, the verdict is not reliable.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -16,9 +16,10 @@ namespace steplap {
 
 struct GlobalErrorEstimate;
 
-/// Of each pair of elements the tie that is nearest: a share of the bound nearer to 1 than 1e-5, or than the share changes by within the
-/// error of the event's time. A warning, which forbids "hold", where the other order leads to another verdict; a note where it leads to
-/// the same one or could not be run. `errors`: of the run; null: not known. At most `most_runs` runs are made.
+/// Returns one finding for each pair of elements, for their closest tie. A tie is closest if the share of the friction bound in use is
+/// nearest to 1: nearer than 1e-5, or nearer than the change of the share within the error of the event time. The finding is a warning and
+/// prevents "hold" if the other order changes the verdict. It is a note if the verdict is the same or the other order could not be run.
+/// `errors` belong to the run; nullptr if unknown. At most `most_runs` runs are made.
 [[nodiscard]] std::vector<Finding> slip_ties(const Run& run, const RunOptions& options, const Judgement& judgement,
                                              const GlobalErrorEstimate* errors, int most_runs = 3);
 

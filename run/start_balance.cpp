@@ -11,7 +11,7 @@ namespace steplap {
 
 namespace {
 
-// Coordinates beyond which joints are left out: dense algebra of that size takes a tenth of a second.
+// Number of coordinates above which joint constraints are ignored: dense algebra of this size takes a tenth of a second.
 constexpr int k_most_dense = 300;
 
 } // namespace

@@ -1,9 +1,9 @@
-// Is what presses at the start answered by anything, or does it spring apart?
+// Tells whether contact forces at the start are in balance, or push bodies apart because the initial penetration is wrong.
 //
-// With a(F) the accelerations that forces F give a machine on its joints, at rest and without friction, and g the gradient of a
-// gap: all forces open it with g·a(Q), those that are no contacts' with g·a(Q₀). What settles under its loads begins with
-// accelerations like these; a contact that is too deep opens with many times as much. Contacts that press against each other
-// (a clamp) answer each other.
+// Let a(F) be the acceleration of the machine, at rest and without friction, under forces F with its joint constraints, and g the gradient
+// of a gap. All forces Q open the gap with g·a(Q), and the forces Q₀ without contacts with g·a(Q₀). If contacts merely settle under loads,
+// both are of similar size; if a contact penetrates too deeply, the first is many times larger. Opposing contacts (a clamp) balance each
+// other in a(Q).
 #pragma once
 
 #include "mbd/rest/tangent.h"
@@ -11,24 +11,24 @@
 
 namespace steplap {
 
-/// The forces at the start of a run and the accelerations that they give; made once, asked for each contact.
+/// Forces and accelerations at the start of a run. Built once and queried for each contact.
 class StartBalance {
 public:
-  /// In the pose of `state`, with nothing moving.
+  /// Computes the forces in the pose of `state` with all velocities zero.
   StartBalance(const System& system, const State& state);
 
-  /// How fast a coordinate begins to open.
+  /// Initial acceleration of a coordinate.
   struct Opening {
-    double acceleration = 0.0; ///< m/s² or rad/s², by all forces
-    double by_loads = 0.0;     ///< by those that are no contacts', its size
+    double acceleration = 0.0; ///< due to all forces, m/s² or rad/s²
+    double by_loads = 0.0;     ///< magnitude due to forces other than contact forces
   };
-  /// Of a coordinate with this gradient (three numbers per body, the ground left out). `own`: a force along it that is no load
-  /// either, a stop's.
+  /// Returns the opening acceleration of a coordinate with this gradient (three numbers per body without the ground). `own` is the force of
+  /// a stop along the coordinate, which is excluded from the loads.
   [[nodiscard]] Opening opening(const VecX& gradient, double own = 0.0) const;
 
-  /// Gradient of the gap of a contact that presses, by the index of its force; empty if that one does not press.
+  /// Returns the gradient of the gap of a pressed contact, given by the index of its force; empty if the contact is not pressed.
   [[nodiscard]] VecX gap_gradient(int contact) const;
-  /// Gradient of what a row measures: three numbers per body, the ground left out.
+  /// Returns the gradient of the coordinate that a row constrains: three numbers per body without the ground.
   [[nodiscard]] VecX gradient(const RowSpec& row) const;
 
 private:
@@ -37,10 +37,10 @@ private:
 
   State state_;
   Statics statics_;
-  VecX scale_, mass_; ///< mass_: of the scaled coordinates
-  MatX free_;         ///< motions that joints allow, scaled; empty: all
-  MatX inverse_;      ///< of their masses
-  VecX all_, loads_;  ///< accelerations under all forces, and under those that are no contacts'
+  VecX scale_, mass_; ///< masses of the scaled coordinates
+  MatX free_;         ///< scaled motions that the joints permit; empty: all motions
+  MatX inverse_;      ///< inverse of the mass matrix of these motions
+  VecX all_, loads_;  ///< accelerations under all forces, and under the forces other than contact forces
   std::vector<PairJacobian> parts_;
 };
 

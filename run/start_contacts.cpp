@@ -16,7 +16,7 @@ namespace steplap {
 
 namespace {
 
-// Names of the markers of a contact, if the element is one.
+// Returns the names of the markers of a contact, if the element is one.
 std::optional<std::pair<std::string, std::string>> ends_of(const Element& element) {
   if (const auto* const foot = dynamic_cast<const UnilateralContact*>(&element)) return std::pair{foot->a, foot->b};
   if (const auto* const round = dynamic_cast<const RoundContact*>(&element)) return std::pair{round->a, round->b};
@@ -59,7 +59,7 @@ std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& 
     return found == channel_of.end() ? std::nullopt : std::optional(found->second->value(snapshot));
   };
   std::vector<ContactAtStart> contacts;
-  int contact = -1; // elements compile in the order of the file, each of these to one contact
+  int contact = -1; // elements are compiled in the order of the file, and each of these has one contact
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto ends = ends_of(*entry.element);
     const std::string& name = entry.element->name;

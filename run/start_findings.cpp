@@ -1,4 +1,4 @@
-// What about the start contradicts what the file says elsewhere.
+// Finds contradictions between the initial state and other data of the model.
 #include "elements/contact_depth.h"
 #include "elements/limit.h"
 #include "elements/unilateral_contact.h"
@@ -25,18 +25,18 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_unanswered = 10.0; // times what the loads accelerate it with: what settles under them is within a few times that
-constexpr double k_leans = 2.0;       // the same at a stop: it is stiff, and what leans on one is near where it bears
-constexpr double k_felt = 0.1;        // of gravity: what springs back with less than that is rounding of poses, or a spring's play
-constexpr double k_typed = 1e-6;      // of the bodies' size: digits of poses that were worked out and typed
-constexpr double k_through = 0.5;     // of the depth at which a law loses its meaning
-constexpr double k_off = 1e-3;        // of the bodies' size: from there on places differ, and not by digits
-constexpr double k_light = 0.01;      // of a homogeneous plate's moment of inertia: a tenth of its radius of gyration
-constexpr double k_changes = 1e-3;    // of a state's scale, within the run
-// Of the largest moment that the mass could have within its outline, all of it at the farthest corner; outlines are drawn roughly.
+constexpr double k_unanswered = 10.0; // times the acceleration due to loads; contacts that settle under loads stay within a few times of it
+constexpr double k_leans = 2.0;       // the same for stops, which are stiff: a body leaning on a stop is near its equilibrium
+constexpr double k_felt = 0.1;        // of gravity; smaller accelerations come from rounded poses or clearance
+constexpr double k_typed = 1e-6;      // of the bodies' size; rounding of typed poses
+constexpr double k_through = 0.5;     // of the depth at which a contact law becomes invalid
+constexpr double k_off = 1e-3;        // of the bodies' size; larger deviations are not rounding
+constexpr double k_light = 0.01;      // of a homogeneous plate's moment of inertia; its radius of gyration is then a tenth of the plate's
+constexpr double k_changes = 1e-3;    // relative to a state's scale, within the run
+// times the largest moment of inertia possible within the outline, with all mass at the farthest corner; outlines are approximate.
 constexpr double k_heavy = 2.0;
-// A radius of gyration is implausible beyond so many times the body's farthest place, and so many times the whole scene: a flywheel may be
-// known by its crank pin alone.
+// Ratios of the radius of gyration to the farthest point of the body, and to the size of the scene, above which it is implausible. A
+// flywheel may have only its crank pin as a point.
 constexpr double k_beyond_places = 10.0, k_beyond_scene = 2.0;
 
 std::string rounded(double value) {
@@ -44,7 +44,7 @@ std::string rounded(double value) {
   std::snprintf(text, sizeof text, "%.3g", value + 0.0);
   return text;
 }
-// Three digits are enough to find what is meant.
+// Rounds to three digits, which suffice to identify a value.
 std::string short_text(double value, const char* unit) { return quantity_text(std::strtod(rounded(value).c_str(), nullptr), unit); }
 std::string length_text(double value) { return short_text(value, "m"); }
 std::string force_text(double value, const char* unit = "N") { return short_text(value, unit); }
@@ -59,7 +59,7 @@ public:
     contacts_ = contacts_at(loaded_, start_);
     for (const ContactAtStart& contact : contacts_) look_at_gap(contact);
     for (const ContactAtStart& contact : contacts_) look_at_ends(contact);
-    // A search for rest begins from such poses as well as from others.
+    // The search for an equilibrium also starts from these poses.
     if (loaded_.model.simulation.initial != "equilibrium") {
       for (const ContactAtStart& contact : contacts_) look_at_depth(contact);
       for (const ElementEntry& entry : loaded_.model.elements)
@@ -85,7 +85,7 @@ private:
     return opening.acceleration > k_unanswered * std::max(opening.by_loads, k_felt * system_.gravity.norm());
   }
 
-  // An equilibrium is sought with own states as they start: what changes from there on moves the machine out of it.
+  // In the search for an equilibrium inner states keep their initial values. If they change afterwards, the machine leaves the equilibrium.
   void look_at_states() {
     const std::vector<const OwnState*> states = own_states(loaded_.model);
     const auto* group = states.empty() ? nullptr : own_state_group(system_);
@@ -109,7 +109,7 @@ private:
     }
   }
 
-  // A gap, an interference or a preload moves the contact's line to where that holds, wherever marker b is.
+  // A gap, an interference or a preload shifts the contact line, so the position of marker b does not matter.
   void look_at_gap(const ContactAtStart& contact) {
     const auto* const foot = dynamic_cast<const UnilateralContact*>(contact.entry->element.get());
     if (!foot || !(foot->gap || foot->interference || foot->preload)) return;
@@ -141,7 +141,7 @@ private:
     add("gap_contradicts_poses", foot->where, text);
   }
 
-  // At or behind its line, or near it, but beside the face, with no other contact below that place.
+  // The touching point is behind the line or near it, but beyond the end of the face, and no other contact is below it.
   void look_at_ends(const ContactAtStart& contact) {
     const auto* const foot = dynamic_cast<const UnilateralContact*>(contact.entry->element.get());
     if (!foot || !foot->ends || !contact.along) return;
@@ -215,8 +215,8 @@ private:
                       : length_text(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
   }
 
-  // Drives and joints of the ground say how it turns, whatever acts on it: its inertia acts on nothing but what they bear, which no
-  // criterion limits. An action may let go of it later.
+  // Returns true if drives and joints to the ground determine the rotation. Its inertia then affects only their loads, which no criterion
+  // limits. With actions the result is false, because they may release drives and joints.
   [[nodiscard]] bool is_driven(const Body& body) const {
     const auto named = std::find_if(system_.bodies.begin(), system_.bodies.end(), [&](const BodyData& b) { return b.name == body.name; });
     if (named == system_.bodies.end() || action_group(system_)) return false;
@@ -242,7 +242,7 @@ private:
     });
   }
 
-  // A plate of the outline's shape, about the body's centre of gravity.
+  // Compares the moment of inertia with that of a plate with the shape of the outline, about the body's centre of gravity.
   void look_at_inertia(const Body& body) {
     double area = 0.0, moment = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < body.outline.size(); ++i) {
@@ -266,7 +266,7 @@ private:
     add("inertia_unlike_outline", body.where, text);
   }
 
-  // `reach`: as far as the body's places are from its centre; `extent`: of the whole scene.
+  // Checks the radius of gyration. `reach` is the largest distance of the body's points from its centre, `extent` the size of the scene.
   void look_at_gyration(const Body& body, double reach, double extent) {
     const double gyration = std::sqrt(body.inertia / body.mass);
     if (!(reach > 0.0) || !(gyration > k_beyond_places * reach) || !(gyration > k_beyond_scene * extent) || is_driven(body)) return;

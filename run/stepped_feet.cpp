@@ -12,8 +12,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_step_share = 0.01; // of the way from foot to foot: by so much of N times that way may the couple be wrong
-constexpr double k_same = 1e-9;       // m: as points are typed
+constexpr double k_step_share = 0.01; // permitted error of the couple, as a fraction of N times the distance between the feet
+constexpr double k_same = 1e-9;       // m; accuracy of typed coordinates
 
 struct Spread {
   double low = 0.0, high = 0.0;
@@ -26,7 +26,7 @@ struct Spread {
   [[nodiscard]] double size() const { return high - low; }
 };
 
-// In b's frame: where the line is that it touches, along the normal, and where it is on that.
+// Height of the contact line along the normal, and position along the line, in b's frame.
 void add_foot(const LoadedModel& loaded, const State& given, const UnilateralContact& contact, Spread& height, Spread& way) {
   const Place a = place_of(loaded.model, contact.a), b = place_of(loaded.model, contact.b);
   const Vec3 at = pose_of(*loaded.system, given, a.body), on = pose_of(*loaded.system, given, b.body);

@@ -1,5 +1,5 @@
-// Contacts that share one friction, but touch on lines at different heights: friction acts at one of them, with a lever that is
-// wrong for the others.
+// Finds contacts at different heights that share one friction element. The friction force acts at one of them, so its lever arm is wrong
+// for the others.
 #pragma once
 
 #include "run/finding.h"
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// One for each coulomb_stick of such contacts.
+/// Returns one finding for each such coulomb_stick.
 [[nodiscard]] std::vector<Finding> stepped_feet(const LoadedModel& loaded);
 
 } // namespace steplap

@@ -21,8 +21,8 @@ namespace steplap {
 
 namespace {
 
-// What entries tell of. Of what goes to and fro the first event says which way is told: a foot that stood lifts, a ball that flew
-// touches.
+// Subject of a story entry. If an element opens and closes repeatedly, its first event decides whether the entry says "opens" or "closes":
+// a resting foot lifts, a flying ball touches.
 enum class What {
   slips,
   would_slip,
@@ -45,8 +45,8 @@ enum class What {
 
 struct Words {
   const char* key;     // StoryEntry::what
-  const char* verb;    // of one
-  const char* several; // of several
+  const char* verb;    // singular
+  const char* several; // plural
 };
 
 const Words& words_of(What what) {
@@ -71,17 +71,17 @@ const Words& words_of(What what) {
   return k_words[static_cast<std::size_t>(what)];
 }
 
-// One element doing one thing.
+// One element with one kind of occurrence.
 struct Happening {
   What what = What::slips;
   std::string who;
   std::size_t count = 0;
-  double from = 0.0, begun = 0.0; // of the first and of the last time
-  std::optional<double> to;       // of the last time; none: it lasts
+  double from = 0.0, begun = 0.0; // begin of the first and of the last occurrence, s
+  std::optional<double> to;       // end of the last occurrence, s; none: it lasts
   std::optional<StoryAmount> amount;
   std::optional<double> from_error, to_error;
   bool is_over = true;
-  std::string detail = {}; // of an action: what it does
+  std::string detail = {}; // for an action: its effect
 };
 
 bool is_instant(What what) {
@@ -89,11 +89,11 @@ bool is_instant(What what) {
          what == What::happens;
 }
 
-// --- from events to happenings
+// --- from events to occurrences
 
-constexpr double k_at_start = 1e-5; // of the run: what happens before happens at the start
+constexpr double k_at_start = 1e-5; // of the run; earlier events count as part of the start
 
-// Of an element that goes to and fro: what its first event began.
+// For an element that opens and closes repeatedly: the occurrence that its first event began.
 struct Way {
   What what;
   bool is_opening;
@@ -113,7 +113,7 @@ public:
     add_monitored();
     add_tipped();
     const double end = report_.run.result.final_state.t;
-    std::erase_if(found_, [end](const Happening& h) { // what is put on the floor at the start, and stays
+    std::erase_if(found_, [end](const Happening& h) { // bodies placed on the floor at the start that stay there
       return h.what == What::touches && h.count == 1 && h.from <= k_at_start * end && !h.is_over;
     });
     std::stable_sort(found_.begin(), found_.end(), [](const Happening& a, const Happening& b) { return a.from < b.from; });
@@ -121,7 +121,7 @@ public:
   }
 
 private:
-  static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi; // rad: less is rocking on springs
+  static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi; // rad; smaller rotations are rocking on springs
 
   const ElementEntry* entry_of(const std::string& element) const {
     const auto found = entry_of_.find(element);
@@ -138,12 +138,12 @@ private:
     return entry && dynamic_cast<const Tyre*>(entry->element.get());
   }
 
-  // Does the contact bear against gravity, so that opening it is a lift?
+  // Returns true if the contact supports a body against gravity, so that its opening is a lift.
   bool is_upright(const std::string& element) const {
     const ElementEntry* entry = entry_of(element);
     const Model& model = report_.run.loaded->model;
     if (!entry) return false;
-    Vec2 normal = Vec2::Zero(); // from b to a, in the axes of the model
+    Vec2 normal = Vec2::Zero(); // from b to a, in the model's axes
     const auto angle_of = [](const Place& b) { return b.angle + (b.body ? b.body->angle : 0.0); };
     const auto in_ground = [](const Place& place, const Vec2& point) {
       const Vec3 pose = place.body ? place.body->reference_pose() : Vec3::Zero();
@@ -159,7 +159,7 @@ private:
       normal = Vec2(-along.y(), along.x());
       if (normal.dot(in_ground(a, Vec2::Zero()) - in_ground(b, round->from)) < 0.0) normal = -normal; // a is on this side
     }
-    constexpr double k_upright = 0.7; // of the cosine: less than 45° off
+    constexpr double k_upright = 0.7; // cosine; less than 45° from the vertical
     const double size = normal.norm() * model.header.gravity.norm();
     return size > 0.0 && -normal.dot(model.header.gravity) > k_upright * size;
   }
@@ -194,7 +194,7 @@ private:
     h.to_error = error;
   }
 
-  // `is_opening`: it opens, goes slack, reaches its stop; else the way back.
+  // `is_opening`: the element opens, goes slack or reaches its stop; false for the reverse.
   void toggle(bool is_opening, const Event& event, std::optional<double> error) {
     auto way = ways_.find(event.element);
     if (way == ways_.end()) way = ways_.emplace(event.element, Way{what_of(event, is_opening), is_opening}).first;
@@ -202,7 +202,7 @@ private:
     else end(way->second.what, event, error);
   }
 
-  // What the first event of an element that goes to and fro begins.
+  // Returns the occurrence that begins with the first event of the element.
   What what_of(const Event& event, bool is_opening) const {
     switch (event.kind) {
     case EventKind::opens:
@@ -215,7 +215,7 @@ private:
     }
   }
 
-  // What an action releases slides, bears and hangs slack no more.
+  // An action that releases an element ends its occurrences: the element no longer slides, presses or is slack.
   void take_action(const Event& event, std::optional<double> error) {
     begin(What::happens, event, error);
     entry(What::happens, event.element).detail = event.detail;
@@ -240,7 +240,7 @@ private:
     case EventKind::sticks:
     case EventKind::loses_normal_force: return end(What::slips, event, error);
     case EventKind::force_reaches_zero:
-      if (is_tyre(event.element)) end(What::slips, event, error); // its contact and its tread are one
+      if (is_tyre(event.element)) end(What::slips, event, error); // a tyre has one friction element for contact and tread
       return;
     case EventKind::opens:
       if (is_tyre(event.element)) end(What::slips, event, error);
@@ -261,7 +261,7 @@ private:
     }
   }
 
-  // The way of a channel from where it began, or its largest value.
+  // Returns the change of a channel since the start, or its largest value.
   std::optional<StoryAmount> excursion(const std::string& channel, bool is_from_start) const {
     const ChannelRange* range = ranges_.find(channel);
     if (!range || !std::isfinite(range->high.value) || !std::isfinite(range->low.value)) return {};
@@ -295,7 +295,7 @@ private:
         if (!h.amount) h.amount = excursion(h.who + part, false);
   }
 
-  // A joint that is only watched slips nowhere, and would have.
+  // A monitored joint does not slip; the entry says that it would have slipped.
   void add_monitored() {
     for (const JointAssessment& joint : report_.joints)
       if (joint.is_monitored && joint.first_slip)
@@ -306,7 +306,7 @@ private:
     if (const Place place = place_of(report_.run.loaded->model, marker); place.body) bodies.insert(place.body->name);
   }
 
-  // Bodies that stand on corners or faces and are guided by nothing: wheels and cranks are meant to turn.
+  // Adds bodies on corners or faces that rotated far and that nothing guides. Rotation of wheels and cranks is intended.
   void add_tipped() {
     std::unordered_set<std::string> standing, guided;
     for (const ElementEntry& entry : report_.run.loaded->model.elements) {
@@ -335,23 +335,23 @@ private:
   const Report& report_;
   const RangeIndex& ranges_;
   std::unordered_map<std::string, const ElementEntry*> entry_of_;
-  std::unordered_map<std::string, std::size_t> place_; // of element and what
+  std::unordered_map<std::string, std::size_t> place_; // key: element and What
   std::unordered_map<std::string, Way> ways_;
   std::vector<Happening> found_;
 };
 
-// --- from happenings to words
+// --- from occurrences to text
 
 class Teller {
 public:
   Teller(const Report& report, ShownDigits digits) : digits_(digits), end_(report.run.result.final_state.t) {
-    for (const ChannelRange& range : report.ranges()) { // what rounding is measured by
+    for (const ChannelRange& range : report.ranges()) { // scale for the detection of rounding
       if (range.channel->unit == "m") scale_m_ = std::max(scale_m_, std::abs(range.largest().value));
       if (range.channel->unit == "N") scale_n_ = std::max(scale_n_, std::abs(range.largest().value));
     }
   }
 
-  // `beside`: a later time in the same sentence, whose unit both have.
+  // `beside` is a later time in the same sentence; both get the same unit.
   std::string time(double t, std::optional<double> error, double beside = 0.0) const {
     if (is_start(t)) return "the start";
     return shown_quantity(t, "s", {.error = error, .scale = end_, .column = std::max(t, beside)}, digits_);
@@ -366,7 +366,7 @@ public:
     return shown_quantity(a.value, a.unit, {.error = a.error, .scale = a.unit == "m" ? scale_m_ : scale_n_}, digits_);
   }
 
-  // "", or ", at most 3.1 mm" and the like.
+  // Returns "", or ", at most 3.1 mm" and similar.
   std::string reach(What what, const std::optional<StoryAmount>& a) const {
     if (!a) return "";
     const std::string shown = amount(*a);
@@ -382,7 +382,7 @@ public:
     }
   }
 
-  // " at 0.2 s", " from 0.2 s to 0.3 s", " 14 times between 0.2 s and 1.1 s"
+  // Returns " at 0.2 s", " from 0.2 s to 0.3 s" or " 14 times between 0.2 s and 1.1 s".
   std::string when(const Happening& h) const {
     const std::string from = time(h.from, h.from_error, h.to.value_or(end_)), to = h.to ? time(*h.to, h.to_error) : "the end";
     if (h.count > 1) return " " + times(h.count) + " between " + from + " and " + to;
@@ -393,7 +393,7 @@ public:
 
   static std::string times(std::size_t count) { return count == 2 ? "twice" : std::to_string(count) + " times"; }
 
-  // "Feet" slip, "Front foot" slips.
+  // Returns true if the name is a plural, which determines the verb form: "Feet slip", "Front foot slips".
   static bool is_plural(const std::string& name) {
     if (name.ends_with("feet")) return true;
     return name.size() > 2 && name.back() == 's' && std::string("aisu").find(name[name.size() - 2]) == std::string::npos;
@@ -416,7 +416,7 @@ public:
     return {h.from, is_instant(h.what) ? std::nullopt : h.to, words_of(h.what).key, {h.who}, h.count, h.amount, sentence(h)};
   }
 
-  // Several elements that do the same.
+  // Merges elements with the same occurrence into one entry.
   StoryEntry entry(const std::vector<const Happening*>& group) const {
     const Happening* most = nullptr;
     StoryEntry entry{group.front()->from, group.front()->from, words_of(group.front()->what).key, {}, 0, {}, ""};
@@ -445,13 +445,13 @@ public:
   }
 
 private:
-  static constexpr double k_over = 60.0 / 180.0 * std::numbers::pi; // rad: it does not come back
+  static constexpr double k_over = 60.0 / 180.0 * std::numbers::pi; // rad; a body rotated further does not return
   ShownDigits digits_;
   double end_ = 0.0, scale_m_ = k_least_length_scale, scale_n_ = 0.0;
 };
 
-constexpr std::size_t k_few = 8;      // entries that are read one by one
-constexpr std::size_t k_together = 3; // elements that do the same are told of together, where there are more than a few entries
+constexpr std::size_t k_few = 8;      // number of entries that are shown individually
+constexpr std::size_t k_together = 3; // smallest number of elements that are merged, if there are more than k_few entries
 
 } // namespace
 

@@ -1,7 +1,7 @@
-// What happened in a run, in few entries: who slipped, lifted, tipped, broke, when and how far.
+// Summarises the events of a run in few entries: what slipped, lifted, tipped or broke, when and how far.
 //
-// Events of one element that repeat are one entry: a foot that lifts 14 times is told of once. Where more than a handful of elements
-// do the same, they are one entry, too. Changes that only the integrator needs (a change of foot, a kink of a table) are left out.
+// Repeated events of one element are one entry: a foot that lifts 14 times is reported once. If more than a handful of elements do the
+// same, they share one entry. Events that concern only the integrator (change of contact point, kink of a table) are omitted.
 #pragma once
 
 #include "run/range_index.h"
@@ -15,32 +15,32 @@
 
 namespace steplap {
 
-/// How far, or how hard: SI.
+/// An extreme amount of motion or load, SI.
 struct StoryAmount {
   double value = 0.0;               ///< in `unit`
   std::string unit;                 ///< "m", "N", "rad"
-  std::optional<double> error = {}; ///< in `unit`, if it was estimated
+  std::optional<double> error = {}; ///< in `unit`, if estimated
 };
 
-/// m: by which lengths are measured that may be rounding, as places are known to 1e-12 m.
+/// Reference length, m. Lengths below 1e-9 of it are rounding, because positions are known to 1e-12 m.
 constexpr double k_least_length_scale = 1e-3;
 
-/// One thing that happened, once or several times.
+/// Something that happened once or repeatedly.
 struct StoryEntry {
-  double from = 0.0;                 ///< s, when it began for the first time
-  std::optional<double> to;          ///< s, when it was over for the last time; none: an instant, or it lasts to the end of the run
+  double from = 0.0;                 ///< first begin, s
+  std::optional<double> to;          ///< last end, s; empty for an instant, or if it lasts until the end of the run
   std::string what;                  ///< "slips", "lifts", "opens", "closes", "tips", "breaks", "strikes", …
-  std::vector<std::string> who;      ///< names of elements; of what tips, of bodies
-  std::size_t count = 1;             ///< how often
-  std::optional<StoryAmount> amount; ///< how far at most
-  std::string text;                  ///< a sentence: "Front joint slips from 0.122 s to 0.15 s and slides 46 mm."
+  std::vector<std::string> who;      ///< names of elements; for "tips", of bodies
+  std::size_t count = 1;             ///< number of occurrences
+  std::optional<StoryAmount> amount; ///< largest amount
+  std::string text;                  ///< sentence: "Front joint slips from 0.122 s to 0.15 s and slides 46 mm."
 };
 
-/// In order of their begin.
+/// Returns the entries in order of their begin.
 [[nodiscard]] std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits = {});
-/// Does such an entry tell that elements moved that could have held (slipped, opened, broke)?
+/// Returns true if the entry reports that an element slipped, opened or broke.
 [[nodiscard]] bool tells_of_motion(const StoryEntry& entry);
-/// The name as a sentence begins with it: "Front joint".
+/// Returns the name with a capital first letter: "Front joint".
 [[nodiscard]] std::string sentence_name(std::string name);
 
 } // namespace steplap

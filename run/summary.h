@@ -1,5 +1,5 @@
-// What summary.json says of a run, as a document: the file is written from it, and so is what the screen shows, of a run
-// just made as of one read back.
+// Contents of summary.json as a JSON document. The file is written from it, and the screen shows it, for a new run as for one read from its
+// folder.
 #pragma once
 
 #include "run/ordered_json.h"
@@ -8,9 +8,9 @@
 
 namespace steplap {
 
-/// What a reader wants to know first: model, overview, findings, how many events. `digits`: of the texts of the overview.
+/// Returns the main part: model, overview, findings, number of events. `digits` applies to the texts of the overview.
 [[nodiscard]] OrderedJson summary_head(const Report& report, ShownDigits digits = {});
-/// All of it, but for the files and the checksum that the file ends with.
+/// Returns the whole document except for the list of files and the checksum.
 [[nodiscard]] OrderedJson summary_document(const Report& report, ShownDigits digits = {});
 
 } // namespace steplap

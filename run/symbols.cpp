@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// --- what elements press, pull and turn with ------------------------------------------------------
+// --- springs, rods, ropes and drives --------------------------------------------------------------
 
 std::string style_of_spring(const Sketch& s) {
   const bool has_spring = s.number("stiffness") > 0.0 || !s.points("force_table").empty();
@@ -49,7 +49,7 @@ void wound_rope(Sketch& s) {
   s.draw({"rope", "", "tension", {*a, *b}, {}, {radius_a, radius_b}});
 }
 
-// Round its drum it is not drawn: the drum is.
+// A rope end on a drum is not drawn, because the drum is.
 void band(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b"), drum = s.place("drum");
   if (!a || !b || !drum) return;
@@ -116,7 +116,7 @@ void segment_contact(Sketch& s) {
   s.draw({"edge_touch", "", "force", {*a, *b}, {}, {s.number("radius"), first.x(), first.y(), last.x(), last.y(), s.number("thickness")}});
 }
 
-// A flat road has no ends: it reaches beyond any picture, and is no part of the body's geometry.
+// A flat road has no ends: it extends beyond any picture and is not part of the body's geometry.
 void flat_road(Sketch& s, const MarkerPlace& a, const MarkerPlace& b, double radius) {
   constexpr double k_beyond = 1e3;
   const Vec2 first = b.in_body({-k_beyond * radius, 0.0}), last = b.in_body({k_beyond * radius, 0.0});
@@ -124,7 +124,7 @@ void flat_road(Sketch& s, const MarkerPlace& a, const MarkerPlace& b, double rad
 }
 
 void tyre(Sketch& s) {
-  constexpr int k_parts = 4, k_most_points = 2000; // of a curve's piece, while there are few
+  constexpr int k_parts = 4, k_most_points = 2000; // per piece of a curve; for all pieces together
   const auto a = s.place("a"), b = s.place("b");
   if (!a || !b) return;
   const double radius = s.number("radius");
@@ -142,7 +142,7 @@ void tyre(Sketch& s) {
       s.segment(*b, before, here, 0.0);
       if (sizes.size() == 1) sizes.insert(sizes.end(), {b->in_body(before).x(), b->in_body(before).y()});
       sizes.insert(sizes.end(), {b->in_body(here).x(), b->in_body(here).y()});
-      if (sizes.size() == 5) sizes.push_back(0.0); // the thickness
+      if (sizes.size() == 5) sizes.push_back(0.0); // thickness
       before = here;
     }
   s.draw({"edge_touch", "", "force", {*a, *b}, {}, std::move(sizes)});
@@ -170,8 +170,9 @@ void gear(Sketch& s) {
   s.draw({"touch", "gear", "", {*a, *b}, {}, {s.number("radius_a"), s.number("radius_b"), s.is("inside") ? 1.0 : 0.0}});
 }
 
-// The outline that lifts a pointed follower as the curve's points say: where its point is, seen from the cam that turns. None of a
-// curve that would pass through the cam's axis, as where the follower's place is not its point.
+// Returns the outline of a cam that lifts a pointed follower according to the points of the curve: the positions of the follower's tip
+// relative to the rotating cam. Returns nothing if the outline would pass through the cam's axis, for example if the follower's marker is
+// not at its tip.
 std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, const MarkerPlace& frame, const MarkerPlace& cam) {
   constexpr int k_corners = 180;
   const std::vector<Vec2> points = s.points("lift");
@@ -182,7 +183,7 @@ std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, c
   const Vec2 along = rotated(axis->normalized(), frame.axes), from_axis = follower.at - cam.at;
   const double start = s.number("start_angle"), now = curve.at(start).value + s.number("gap");
   std::vector<Vec2> corners;
-  double turned = 0.0; // twice the area, to tell whether the axis is inside
+  double turned = 0.0; // twice the signed area; tells whether the axis is inside
   for (int i = 0; i < k_corners; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / k_corners;
     const Vec2 place = from_axis + along * (curve.at(start + turn).value - now);
@@ -197,7 +198,7 @@ std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, c
   return corners;
 }
 
-// Where the follower is lifted an arrow with the force.
+// Adds an arrow with the force at the position where the follower is lifted.
 void cam(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b"), turning = s.place("cam");
   if (!a || !b) return;
@@ -205,7 +206,7 @@ void cam(Sketch& s) {
   s.draw({"arrow", "motor", "force", {*a, *b}, s.direction("axis"), {}});
 }
 void freewheel(Sketch& s) { s.draw({"arc", "brake", "couple", s.places(), {}, {}}); }
-// Two wheels that turn against each other on axles apart: their pitch circles. Others may be whole gear boxes.
+// Draws the pitch circles of two wheels on separate axles. Other gears may be whole gear boxes.
 void lossy_gear(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b");
   const double ratio = s.number("ratio"), apart = a && b ? (a->at - b->at).norm() : 0.0;
@@ -224,7 +225,7 @@ void rack(Sketch& s) {
   rail(s);
 }
 
-// --- coordinates that something drives, stops or brakes -------------------------------------------
+// --- driven, limited and braked coordinates -------------------------------------------------------
 
 void coordinate(Sketch& s, const std::string& style, const std::string& along, const std::string& about) {
   const std::string which = s.text("coordinate");
@@ -241,7 +242,8 @@ void coordinate(Sketch& s, const std::string& style, const std::string& along, c
 
 void motor(Sketch& s) { coordinate(s, "motor", "force", "couple"); }
 void drive(Sketch& s) { coordinate(s, "drive", "reaction", "reaction"); }
-// Where it stops: from the reference pose, of a distance the distance itself; a side without a stop has none.
+// Draws stops at their positions, measured from the reference pose, or for a distance at its absolute value. A side without a stop has
+// none.
 void limit(Sketch& s) {
   coordinate(s, "limit", "force", "couple");
   s.size_last({s.given_number("lower").value_or(-HUGE_VAL), s.given_number("upper").value_or(HUGE_VAL)});
@@ -305,7 +307,7 @@ Symbol symbol_of(const std::string& kind) {
   return found == symbols.end() ? neutral : found->second;
 }
 
-// As the field `draw` asks: what kind of element it is tells what it presses with, where it sits, along what.
+// Draws the element as its field `draw` requests; its kind determines quantity, position and direction.
 Shape asked_for(const Sketch& as_usual, const std::string& type) {
   Shape shape{type, "", "", as_usual.places(), {}, {}};
   for (const char* field : {"normal", "axis"})

@@ -14,10 +14,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rank = 1e-8; // of rows' gradients
+constexpr double k_rank = 1e-8; // relative to the largest gradient of the rows
 constexpr double k_pi = std::numbers::pi;
 
-// Of a part by itself, with all that stands on it.
+// Tipping of single parts, each with everything that stands on it.
 class PartTipping {
 public:
   explicit PartTipping(const TippingScene& scene) : scene_(scene) {}
@@ -49,13 +49,13 @@ public:
   }
 
 private:
-  // It stands on a foot.
+  // Returns true if the part stands on at least one foot.
   [[nodiscard]] bool is_carried(const TippingPart& part) const {
     const std::vector<Foot>& feet = scene_.feet();
     return std::any_of(feet.begin(), feet.end(),
                        [&](const Foot& foot) { return TippingScene::push_on(part, foot).dot(scene_.system().gravity) < 0.0; });
   }
-  // Joints to what does not belong to it leave it no turn about any foot.
+  // Returns true if joints to other bodies prevent rotation about every foot.
   [[nodiscard]] bool is_led(const TippingPart& part) const {
     const MatX rows = outer_rows(part);
     if (rows.rows() == 0) return false;
@@ -66,7 +66,8 @@ private:
     });
   }
 
-  // Rigid motions are (velocity of the ground's origin as the part sees it, rate of turning).
+  // Returns the velocity of a point. A rigid motion `twist` is (velocity of the point of the part at the ground's origin, angular
+  // velocity).
   [[nodiscard]] static Vec2 velocity(const Vec3& twist, const Vec2& at) { return Vec2(twist.head<2>()) + twist.z() * quarter_turn(at); }
   [[nodiscard]] static Vec3 turn_about(const Vec2& point, double rate) {
     const Vec2 v = -rate * quarter_turn(point);
@@ -74,7 +75,7 @@ private:
   }
   [[nodiscard]] static Vec3 gap_row(const Vec2& at, const Vec2& normal) { return {normal.x(), normal.y(), normal.dot(quarter_turn(at))}; }
 
-  // Of joints and drives between the part and the rest: what they say of its rigid motion.
+  // Returns the gradients, with respect to the part's rigid motion, of joints and drives between the part and other bodies.
   [[nodiscard]] MatX outer_rows(const TippingPart& part) const {
     std::vector<Vec3> found;
     for (const RowSpec& row : scene_.system().rows) {
@@ -89,7 +90,7 @@ private:
     return rows;
   }
 
-  // About a foot, the sense that lifts another one; nothing if others would be pressed in.
+  // Returns the sense of rotation about a foot that lifts another foot; nothing if other feet would penetrate.
   [[nodiscard]] std::optional<Vec3> motion_about(const Foot& pivot, const Vec2& normal, const MatX& rows, double rate) const {
     if (rows.rows() == 0) return turn_about(pivot.point, rate);
     const Vec3 row = rows.row(0).transpose();
@@ -121,7 +122,7 @@ private:
     return best;
   }
 
-  // Rate at which a part's motion would make a rope longer.
+  // Returns the rate at which a motion of the part would lengthen a rope.
   [[nodiscard]] double lengthening(const TippingPart& part, const OneSidedRow& rope, const Vec3& twist) const {
     double rate = 0.0;
     rope.for_parts([&](const RowSpec& row) {
@@ -169,7 +170,7 @@ private:
       of_loads += scene_.load(i).fx * v.x() + scene_.load(i).fy * v.y() + scene_.load(i).m * twist.z();
     }
     const double size = portable::hypot(of_gravity, of_turned);
-    if (!(size > std::abs(of_loads))) return std::nullopt; // no tilt changes it
+    if (!(size > std::abs(of_loads))) return std::nullopt; // no tilt changes the balance
     const double now = of_gravity + of_loads, middle = portable::atan2(of_turned, of_gravity);
     const double reach = portable::atan2(std::sqrt(size * size - of_loads * of_loads), -of_loads); // acos(-of_loads/size)
     double nearest = 2.0 * k_pi;
@@ -180,7 +181,7 @@ private:
     if (!(std::abs(nearest) < 0.5 * k_pi)) return std::nullopt;
     Tipping tipping;
     tipping.margin = now > 0.0 ? -std::abs(nearest) : std::abs(nearest);
-    tipping.is_clockwise = (nearest > 0.0) == (now <= 0.0); // gravity turned one way is the ground tilted the other way
+    tipping.is_clockwise = (nearest > 0.0) == (now <= 0.0); // gravity turned in one sense corresponds to the ground tilted in the other
     if (std::abs(of_turned) > k_rank * size) tipping.acceleration = std::abs(now / of_turned) * scene_.system().gravity.norm();
     if (const auto slope = scene_.slope_below(part)) {
       tipping.slope = slope;

@@ -1,14 +1,15 @@
-// How far what stands is from tipping over: the angle by which it can be tilted, and the acceleration that does the same.
+// Computes the margin against tipping over: the tilt angle, and the acceleration of the support, that tip a part.
 //
-// What joints hold together, with all that stands on it, is taken as one rigid part on its feet: springs and contacts keep
-// the forces that they have in the pose looked at, friction at the foot that it turns about holds. It tips about a foot P when
-// the power of gravity g(φ), turned by φ, and of the other loads in a rotation about P that lifts the other feet vanishes:
+// A part is a set of bodies connected by joints, with everything that stands on it, treated as one rigid body on its feet. Springs and
+// contacts keep their forces in the given pose, and friction at the tipping foot is assumed to hold. The part tips about a foot P if, in a
+// rotation about P that lifts the other feet, the power of gravity turned by φ and of the other loads vanishes:
+//
 //   A cos φ + B sin φ + C = 0,
-// A of gravity, B of gravity turned by a right angle, C of loads and springs. For a block of width 2b and height 2h on an
-// incline α: φ = atan(b/h) − α. What hangs freely counts with its mass in the point that it hangs from (tipping_hung.h). What
-// stands on several others, and these with it, are blocks that come down together (tipping_mechanism.h). Parts that joints keep
-// from turning over, that forces alone hold in shape (a servo) or that springs and ropes tie to others are not judged, and it is
-// said why.
+//
+// with A from gravity, B from gravity turned by 90°, C from loads and springs. For a block of width 2b and height 2h on an incline α this
+// gives φ = atan(b/h) − α. A freely hanging load counts as a point mass at its suspension point (tipping_hung.h). Parts that rest on
+// several others are treated as blocks that collapse together (tipping_mechanism.h). Parts that joints prevent from tipping, whose shape
+// only forces maintain (a servo), or that springs or ropes tie to others are not judged, and the reason is reported.
 #pragma once
 
 #include "run/loaded_model.h"
@@ -17,29 +18,31 @@
 
 namespace steplap {
 
-/// How near a part is to tipping over, and about what.
+/// Margin of a part against tipping.
 struct Tipping {
-  int body = 0;                               ///< the heaviest of the part
-  int others = 0;                             ///< bodies that tip with it
-  std::string about, lifts;                   ///< feet
-  double margin = 0.0;                        ///< |φ|, rad; negative: it tips over as it is, and would stand if tilted back by so much
-  bool is_clockwise = true;                   ///< the tilt of the ground that makes it tip
-  double acceleration = 0.0;                  ///< of what it stands on that makes it tip, m/s²; zero: none does
-  std::optional<double> slope, slope_at_most; ///< of what it stands on, now and where it tips, rad; where all feet stand on one
+  int body = 0;                               ///< heaviest body of the part
+  int others = 0;                             ///< number of other bodies of the part
+  std::string about, lifts;                   ///< names of the foot about which it tips and of the foot that lifts
+  double margin = 0.0;                        ///< |φ|, rad; negative if the part tips in its present pose: it would be stable after a tilt
+                                              ///< back by this angle
+  bool is_clockwise = true;                   ///< direction in which the ground is tilted
+  double acceleration = 0.0;                  ///< acceleration of the support that makes the part tip, m/s²; zero if none does
+  std::optional<double> slope, slope_at_most; ///< slope of the support in the present pose and at the limit, rad, if all feet are on one
+                                              ///< plane
 };
 
-/// Of every part that can tip over, the nearest way for each; margins of more than a right angle are left out.
+/// Returns the smallest margin of every part that can tip. Margins of more than a right angle are omitted.
 [[nodiscard]] std::vector<Tipping> tipping_of(const LoadedModel& loaded, const State& state);
 
-/// What stands on feet and is not judged.
+/// A part on feet that cannot be judged.
 struct Unjudged {
-  int body = 0;    ///< the heaviest of the part
-  std::string why; ///< follows "because"
+  int body = 0;    ///< heaviest body of the part
+  std::string why; ///< reason, as a clause after "because"
 };
-/// Of every such part; parts that are judged are not among them.
+/// Returns all parts on feet that tipping_of() does not judge.
 [[nodiscard]] std::vector<Unjudged> not_judged_for_tipping(const LoadedModel& loaded, const State& state);
 
-/// A sentence for each part that tips over as it is: about what, and from which angle on.
+/// Returns a sentence for each part that tips in its present pose: the foot about which it tips, and the limit angle.
 [[nodiscard]] std::vector<std::string> tipping_over(const LoadedModel& loaded, const State& state);
 
 } // namespace steplap

@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_most_friction = 2.0; // of what presses: no dry friction is beyond
+constexpr double k_most_friction = 2.0; // largest coefficient of dry friction that is considered possible
 constexpr double k_same = 1e-6;         // rad
 
 class BlockTipping {
@@ -27,7 +27,7 @@ public:
   }
 
 private:
-  // Components that feet join, where one of them cannot be taken by itself.
+  // Returns groups of components connected by feet, in which at least one component cannot be judged alone.
   [[nodiscard]] std::vector<std::vector<int>> leaning_groups() const {
     std::vector<int> group(scene_.system().bodies.size());
     for (int i = 0; i < scene_.system().body_count(); ++i) group[i] = scene_.component(i);
@@ -47,11 +47,11 @@ private:
     }
     return found;
   }
-  // Rows of the blocks: of a force `along` at `at` on body a, its opposite on b.
+  // Coordinates of the blocks. A row is a unit force `along` at `at` on body a and its opposite on b.
   struct BlockRows {
-    std::vector<int> place; ///< of each body, -1: it stands still
+    std::vector<int> place; ///< index per body; −1: the body is fixed
     int count = 0;
-    double length = 0.0; ///< by which angles count
+    double length = 0.0; ///< length by which angles are scaled
     void add(VecX& row, int body, const Vec3& part, double sign) const {
       if (place[body] < 0) return;
       row.segment<3>(3 * place[body]) += sign * Vec3(part.x(), part.y(), part.z() / length);
@@ -82,7 +82,7 @@ private:
       if (!scene_.is_rigid(c)) return std::nullopt;
       scene_.add_component(c, part);
     }
-    for (const PairJacobian& j : scene_.springs()) { // that join two of the blocks, or one with what moves otherwise
+    for (const PairJacobian& j : scene_.springs()) { // springs between two blocks, or between a block and another moving body
       const bool is_between = j.a != k_ground && j.b != k_ground && !scene_.is_hung(j.a) && !scene_.is_hung(j.b) &&
                               scene_.component(j.a) != scene_.component(j.b);
       if (is_between && (part[j.a] || part[j.b]) && !j.stiffness.isZero()) return std::nullopt;
@@ -155,10 +155,10 @@ private:
     return blocks;
   }
 
-  // Where friction would have to hold what does not press, the bodies come apart otherwise than by turning: nothing is
-  // said.
+  // Returns true if friction up to k_most_friction suffices for the balance. Otherwise the bodies separate in another way, and no
+  // result is given.
   [[nodiscard]] bool is_held_by_friction(const Collapse& collapse, const std::vector<const Foot*>& feet) const {
-    std::map<std::string, std::pair<double, double>> of_contact; // normal, tangential
+    std::map<std::string, std::pair<double, double>> of_contact; // normal and tangential force
     double most = 0.0;
     for (std::size_t i = 0; i < feet.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -198,7 +198,7 @@ private:
     return tipping;
   }
 
-  // Of what each of its bodies would do by itself it comes first.
+  // Returns true if the group collapses before each of its bodies tips alone.
   [[nodiscard]] bool is_before(const std::vector<Tipping>& found, const std::vector<int>& group, const Tipping& tipping) const {
     return std::none_of(found.begin(), found.end(), [&](const Tipping& t) {
       const bool is_ours = std::find(group.begin(), group.end(), scene_.component(t.body)) != group.end();

@@ -14,8 +14,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_near = 1e-3; // of the radius of gyration
-constexpr double k_flat = 0.02; // rad: faces that lie on each other
+constexpr double k_near = 1e-3; // relative to the radius of gyration
+constexpr double k_flat = 0.02; // rad; largest angle between faces in full contact
 
 struct Line {
   Vec2 from, to;
@@ -42,7 +42,7 @@ private:
   struct Seen {
     int body;
     Vec3 pose;
-    double angle; ///< of the marker's axes
+    double angle; ///< orientation of the marker
     Vec2 point;
   };
   [[nodiscard]] Seen seen(const std::string& name) const {
@@ -89,7 +89,7 @@ private:
     feet_.push_back({contact.name, contact.name, a.body, b.body, a.point - contact.radius_a * normal, normal});
   }
 
-  // Corners of one side, counter-clockwise.
+  // Returns the corners of one side, counter-clockwise.
   [[nodiscard]] std::vector<Vec2> corners(const std::string& name, const std::vector<Vec2>& given) const {
     const Place place = place_of(loaded_.model, name);
     const Seen at = seen(name);
@@ -112,7 +112,7 @@ private:
       if (const Vec2& to = corners[(i + 1) % corners.size()]; to != corners[i]) faces.push_back({corners[i], to});
     return faces;
   }
-  // Outwards.
+  // Returns the outward normal.
   static Vec2 normal_of(const Line& face) {
     const Vec2 along = (face.to - face.from).normalized();
     return {along.y(), -along.x()};
@@ -148,7 +148,7 @@ private:
   struct Best {
     double gap = -std::numeric_limits<double>::infinity();
     Vec2 normal, origin;
-    double low = 0.0, high = 0.0; ///< of what touches, along the face
+    double low = 0.0, high = 0.0; ///< ends of the touching part, along the face
     bool is_of_a = false;
   };
   static void try_line(const Line& face, const std::vector<Vec2>& other, bool is_of_a, Best& best) {
@@ -156,7 +156,7 @@ private:
     const double one = along.dot(face.from), two = along.dot(face.to);
     try_face(n, face.from, other, is_of_a, std::min(one, two), std::max(one, two), best);
   }
-  // The face that the other body enters least is the one that it stands on.
+  // The supporting face is the one that the other body penetrates least.
   static void try_face(const Vec2& n, const Vec2& origin, const std::vector<Vec2>& other, bool is_of_a, double from, double to,
                        Best& best) {
     const Vec2 along(n.y(), -n.x());

@@ -14,10 +14,10 @@ namespace steplap {
 
 namespace {
 
-/// An element between bodies: what it joins, and where, if all that it does there is to pull at points.
+/// An element as a connection of bodies, with its end points if it exerts only forces at points.
 struct Tie {
   std::vector<int> bodies;
-  std::vector<Vec2> points; ///< per body; empty: it does more
+  std::vector<Vec2> points; ///< per body; empty if it also exerts couples or forces elsewhere
 };
 
 bool is_contact(const Element& element) {
@@ -49,7 +49,7 @@ public:
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < ties_.size(); ++i)
       if (auto candidate = hung_by(i)) candidates.push_back(std::move(*candidate));
-    for (const Candidate& candidate : candidates) // those within others come along with them
+    for (const Candidate& candidate : candidates) // loads inside another hanging load are part of it
       if (std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.is_below[candidate.load.carrier]; }))
         take(candidate);
     return std::move(found_);
@@ -59,8 +59,8 @@ private:
   struct Candidate {
     std::size_t tie = 0;
     std::vector<char> is_below;      ///< per body
-    std::size_t first = 0, last = 0; ///< of the tie's points, those that are not below
-    std::size_t at = 0;              ///< of these the one that it hangs from
+    std::size_t first = 0, last = 0; ///< range of the tie's points that are not on the load
+    std::size_t at = 0;              ///< index, among these, of the suspension point
     HungLoad load;
   };
 
@@ -85,14 +85,14 @@ private:
       add_point(tie, rope->b);
       return tie;
     }
-    if (tie.bodies.size() == 1) tie.bodies.push_back(k_ground); // a load: it does not hang freely
+    if (tie.bodies.size() == 1) tie.bodies.push_back(k_ground); // a load element: it does not hang freely
     const auto* const spring = dynamic_cast<const SpringDamper*>(&element);
     const bool only_pulls = entry.kind == &revolute_kind() || entry.kind == &distance_kind() || (spring && !spring->axis);
     if (!only_pulls) tie.points.clear();
     return tie;
   }
 
-  // All that is joined with a body if one tie is cut; nothing beyond the ground.
+  // Returns all bodies connected with a body if one tie is cut; the search stops at the ground.
   [[nodiscard]] std::vector<char> joined_with(int body, std::size_t cut) const {
     std::vector<char> is_joined(system_.bodies.size(), 0);
     is_joined[body] = 1;
@@ -118,11 +118,12 @@ private:
       if (c.is_below[k_ground]) continue;
       const auto is_above = [&](int b) { return c.is_below[b] == 0; };
       const auto first = std::find_if(tie.bodies.begin(), tie.bodies.end(), is_above);
-      const auto last = std::find_if(tie.bodies.rbegin(), tie.bodies.rend(), is_above).base(); // one beyond
+      const auto last = std::find_if(tie.bodies.rbegin(), tie.bodies.rend(), is_above).base(); // one past the last
       if (first == tie.bodies.end() || !std::all_of(first, last, is_above)) continue;
       c.first = static_cast<std::size_t>(first - tie.bodies.begin());
       c.last = static_cast<std::size_t>(last - tie.bodies.begin()) - 1;
-      if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last) continue; // by two falls from different points
+      if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last)
+        continue; // held by two rope parts at different points, so it does not swing
       c.at = c.first > 0 ? c.first : c.last;
       c.load.carrier = tie.bodies[c.at];
       c.load.point = tie.points[c.at];
@@ -133,8 +134,7 @@ private:
     return std::nullopt;
   }
 
-  // Forces of the tie as they are now are taken off, those with the load at rest laid on; its weight itself goes with
-  // the mass.
+  // Subtracts the present forces of the tie and adds those with the load at rest. The weight itself is added with the mass of the load.
   void take(const Candidate& c) {
     const Tie& tie = ties_[c.tie];
     Vec2 on_load = Vec2::Zero();
@@ -145,7 +145,7 @@ private:
       add_force(found_.correction[c.load.carrier], centre(c.load.carrier), c.load.point, on_load);
       found_.loads.push_back(c.load);
     }
-    const double change = c.load.mass * system_.gravity.norm() - on_load.norm(); // of the tension
+    const double change = c.load.mass * system_.gravity.norm() - on_load.norm(); // change of the tension
     for (std::size_t p = c.first; p < c.last; ++p) {
       const Vec2 along = tie.points[p + 1] - tie.points[p];
       if (tie.bodies[p] == tie.bodies[p + 1] || along == Vec2::Zero()) continue;

@@ -1,9 +1,8 @@
-// What hangs on something: its whole weight pulls at the point that it hangs from, whichever way down is.
+// Finds freely hanging loads. The weight of such a load acts at its suspension point in every direction of gravity.
 //
-// A load at rest that touches nothing else and hangs by one pin, rod, spring or rope swings until its centre of gravity
-// lies below the point that it hangs from. So it acts there with its weight and with no couple, as if all its mass were
-// in that point, however the machine that carries it is tilted. A rope that runs on from there to a winch has that
-// weight for its tension.
+// A load at rest that touches nothing else and hangs by one pin, rod, spring or rope swings until its centre of gravity is below the
+// suspension point. It then exerts its weight and no couple, like a point mass at that point, for every tilt of the machine that carries
+// it. A rope that continues from the suspension to a winch has the weight as its tension.
 #pragma once
 
 #include "mbd/system/link.h"
@@ -11,23 +10,24 @@
 
 namespace steplap {
 
-/// A load at the body that carries it.
+/// A hanging load at the body that carries it.
 struct HungLoad {
   int carrier = k_ground;    ///< body of the system
-  Vec2 point = Vec2::Zero(); ///< it hangs from, in the ground's axes
+  Vec2 point = Vec2::Zero(); ///< suspension point in ground axes, m
   double mass = 0.0;         ///< kg
-  int bodies = 0;            ///< of which it is made
+  int bodies = 0;            ///< number of bodies of the load
 };
 
-/// What hangs in a pose, and what is left for whatever carries it.
+/// All hanging loads of a pose, and their effect on the bodies that carry them.
 struct Hanging {
-  std::vector<HungLoad> loads;       ///< one for each load that hangs
+  std::vector<HungLoad> loads;       ///< one for each hanging load
   std::vector<char> is_hung;         ///< per body
-  std::vector<BodyForce> correction; ///< per body, of those that carry: what forces of elements are more, with loads at rest
-  std::vector<std::string> by;       ///< names of the elements that they hang by
+  std::vector<BodyForce> correction; ///< per body: to be added to the element forces on bodies that carry loads, so that they are those of
+                                     ///< loads at rest
+  std::vector<std::string> by;       ///< names of the suspending elements
 };
 
-/// `force`: on each body, of elements that are neither contacts nor joints, in `state`.
+/// Finds the hanging loads. `force` are the forces on each body, in `state`, of elements that are neither contacts nor joints.
 [[nodiscard]] Hanging hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
                                     const std::vector<BodyForce>& force);
 

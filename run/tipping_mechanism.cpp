@@ -12,10 +12,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rank = 1e-8;       // of rows
-constexpr double k_balanced = 1e-10;  // of the loads: what is left of them is rounding
+constexpr double k_rank = 1e-8;       // relative tolerance for the rank of the rows
+constexpr double k_balanced = 1e-10;  // relative to the loads; smaller unbalanced parts are rounding
 constexpr double k_same_tilt = 1e-12; // rad
-constexpr int k_most_looks = 200;     // for a tilt
+constexpr int k_most_looks = 200;     // iterations for a tilt
 constexpr double k_right_angle = 0.5 * std::numbers::pi;
 
 MatX columns_of(const MatX& a, const std::vector<int>& which) {
@@ -24,7 +24,7 @@ MatX columns_of(const MatX& a, const std::vector<int>& which) {
   return some;
 }
 
-// x ≥ 0 with a x as near to b as can be (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23).
+// Solves min |a x − b| with x ≥ 0 (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23).
 VecX nonnegative_solution(const MatX& a, const VecX& b, double rounding) {
   VecX x = VecX::Zero(a.cols());
   std::vector<int> held; // columns whose x is not zero
@@ -55,7 +55,7 @@ VecX nonnegative_solution(const MatX& a, const VecX& b, double rounding) {
   return x;
 }
 
-// Of a cos φ + b sin φ + c = 0: from `from` on in the direction of `sign`, the nearest; nothing within a turn.
+// Returns the first root of a cos φ + b sin φ + c = 0 after `from` in the direction `sign`; nothing if there is no root.
 std::optional<double> root_beyond(double a, double b, double c, double from, double sign) {
   const double size = portable::hypot(a, b);
   if (!(size > std::abs(c))) return std::nullopt;
@@ -78,7 +78,7 @@ public:
     rounding_ = k_balanced * (blocks.weight.norm() + blocks.turned.norm() + blocks.loads.norm());
   }
 
-  // Newton's method for the power of the motion that gains most: each motion's own limit is the next tilt.
+  // Newton's method on the tilt: the next tilt is the root of the power of the motion that has most power at the present tilt.
   std::optional<Collapse> run(double sign) {
     Collapse found;
     balance(0.0);
@@ -108,8 +108,8 @@ private:
   [[nodiscard]] VecX load(double tilt) const {
     return portable::cos(tilt) * blocks_.weight + portable::sin(tilt) * blocks_.turned + blocks_.loads;
   }
-  // What of the loads no pressing at gaps balances is the motion that they drive: it opens gaps or leaves them, and
-  // gains its own square.
+  // Projects the loads onto those that contact forces ≥ 0 can balance. The remainder left_ is zero in balance. Otherwise it is the motion
+  // of the collapse: it opens gaps or keeps them closed, and its power is |left_|².
   void balance(double tilt) {
     const VecX driving = basis_.transpose() * load(tilt);
     forces_ = nonnegative_solution(gaps_.transpose(), -driving, rounding_);

@@ -1,10 +1,10 @@
-// Bodies that stand on each other in more ways than one (a beam on two columns): by which tilt their forces cannot
-// balance any more, and the motion in which they then come down.
+// Finds the tilt at which bodies that support each other in several ways (a beam on two columns) lose their balance, and the motion of the
+// collapse.
 //
-// Limit analysis of what bears no tension (J. Heyman, The Stone Skeleton, 1995; R. K. Livesley, Int. J. Numer. Meth.
-// Engng 12 (1978) 1853), with friction that holds: there is balance as long as no motion that the contacts let (gaps
-// open or stay, nothing slides, joints hold) gains power from the loads P(φ) = A cos φ + B sin φ + C, A the weights, B
-// the same a right angle on.
+// Limit analysis of structures without tension (J. Heyman, The Stone Skeleton, 1995; R. K. Livesley, Int. J. Numer. Meth. Engng 12 (1978)
+// 1853), with friction that does not slip. The structure is in balance as long as the loads P(φ) = A cos φ + B sin φ + C have no positive
+// power in any motion that the contacts permit (gaps open or stay closed, nothing slides, joints hold). A are the weights, B the weights
+// turned by a right angle, C the other loads.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -13,25 +13,24 @@
 
 namespace steplap {
 
-/// Of n velocities, forces on them and what they do to joints and gaps. Coordinates are scaled so that they are alike
-/// in size.
+/// Constraints and loads on n velocities. Coordinates are scaled to similar size.
 struct Blocks {
-  MatX joints;                ///< rows that stay zero: of joints, and of friction in what touches
-  MatX gaps;                  ///< rows that stay zero or grow
+  MatX joints;                ///< rows whose velocity is zero: joints, and friction in closed contacts
+  MatX gaps;                  ///< rows whose velocity is zero or positive
   VecX weight, turned, loads; ///< A, B, C
 };
 
-/// Where blocks come down, and how.
+/// The tilt at which blocks collapse, and the motion.
 struct Collapse {
   double turned = 0.0; ///< φ of gravity, rad
-  VecX motion;         ///< in which they come down, of length 1
-  VecX gap_forces;     ///< at φ, of a balance that is still possible there; empty if there is none
-  VecX joint_forces;   ///< the same, the shortest of them
-  bool stands = true;  ///< with φ = 0
+  VecX motion;         ///< motion of the collapse, length 1
+  VecX gap_forces;     ///< contact forces of the last possible balance at φ; empty if there is none
+  VecX joint_forces;   ///< joint forces of this balance, with the least norm
+  bool stands = true;  ///< true if the structure is in balance at φ = 0
 };
 
-/// In one direction of tilting, `sign` = ±1: up to where what stands goes on standing, or from where on what does not
-/// would. Nothing within a right angle.
+/// Searches in one direction of tilting, `sign` = ±1. If the structure stands at φ = 0, the result is the tilt up to which it stands.
+/// Otherwise it is the tilt from which it would stand. Returns nothing if this is not within a right angle.
 [[nodiscard]] std::optional<Collapse> collapse_of(const Blocks& blocks, double sign);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// What tips over as it is given, in words.
+// Describes in sentences the parts that tip in the given pose.
 #include "mbd/base/shown_text.h"
 #include "run/tipping.h"
 

@@ -1,4 +1,4 @@
-// What there is to tip over in a pose: bodies that joints hold together, feet, ropes, loads and what hangs.
+// Describes a pose for the analysis of tipping: rigid parts, feet, ropes, loads and hanging loads.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -12,53 +12,54 @@
 
 namespace steplap {
 
-using TippingPart = std::vector<char>; ///< per body: does it belong?
+using TippingPart = std::vector<char>; ///< per body: true if it belongs to the part
 
-/// `r` turned counter-clockwise by a right angle.
+/// Returns `r` turned counter-clockwise by a right angle.
 [[nodiscard]] inline Vec2 quarter_turn(const Vec2& r) { return {-r.y(), r.x()}; }
 
-/// The pose that is looked at, as bodies, feet, springs and loads. Refers to the model that it was made of.
+/// Bodies, feet, springs and loads of a pose. Keeps references to the model.
 class TippingScene {
 public:
-  static constexpr double k_still = 1e-6; ///< of its size: what neither lifts nor sinks
+  static constexpr double k_still = 1e-6; ///< relative velocity below which a foot neither lifts nor sinks
 
-  /// In the pose of `state`; refers to `loaded`.
+  /// Analyses the pose of `state`. Keeps a reference to `loaded`.
   TippingScene(const LoadedModel& loaded, const State& state);
 
-  /// The system of the model.
+  /// Returns the system of the model.
   [[nodiscard]] const System& system() const { return system_; }
-  /// Of all contacts that touch.
+  /// Returns all touching contact points.
   [[nodiscard]] const std::vector<Foot>& feet() const { return feet_; }
-  /// Inextensible ropes that are taut and carry nothing that hangs: they let no motion by which they would be longer.
+  /// Returns the taut inextensible ropes that carry no hanging load. They prevent motions that would lengthen them.
   [[nodiscard]] const std::vector<const OneSidedRow*>& stays() const { return stays_; }
-  /// Of all loads that hang freely.
+  /// Returns all freely hanging loads.
   [[nodiscard]] const std::vector<HungLoad>& hung() const { return hanging_.loads; }
-  /// Of springs and the like, between which bodies.
+  /// Returns springs and similar elements, with the bodies that they connect.
   [[nodiscard]] const std::vector<PairJacobian>& springs() const { return springs_; }
-  /// On a body, about its centre of gravity: of everything but gravity, contacts and joints.
+  /// Returns the force on a body, about its centre of gravity, of everything except gravity, contacts and joints.
   [[nodiscard]] const BodyForce& load(int body) const { return load_[body]; }
-  /// Centre of gravity, ground axes, m.
+  /// Returns the centre of gravity, ground axes, m.
   [[nodiscard]] Vec2 centre(int body) const { return {state_.q[3 * body], state_.q[3 * body + 1]}; }
-  /// Does the body belong to a load that hangs?
+  /// Returns true if the body belongs to a hanging load.
   [[nodiscard]] bool is_hung(int body) const { return hanging_.is_hung[body] != 0; }
-  /// Bodies that rows hold together are of one component: the number of any body's, and all numbers.
+  /// Returns the component of a body. A component is a set of bodies connected by constraint rows.
   [[nodiscard]] int component(int body) const { return component_[body]; }
-  /// The number of each component once.
+  /// Returns the number of each component once.
   [[nodiscard]] const std::vector<int>& components() const { return components_; }
-  /// Joints between its bodies leave it no motion but those of a rigid body.
+  /// Returns true if the joints within the component permit only motions of it as a rigid body.
   [[nodiscard]] bool is_rigid(int component) const;
-  /// Marks all bodies of the component.
+  /// Adds all bodies of the component to the part.
   void add_component(int component, TippingPart& part) const;
-  /// A component with all that stands on it; nothing where some of that moves, or stands elsewhere, too. `why`: the reason,
-  /// following "because", where no other part can be judged for it.
+  /// Returns the component with everything that stands on it. Returns nothing if some of this can move or also stands on something else.
+  /// `why` receives the reason, as a clause after "because", if the component cannot be judged as a part of another one either.
   [[nodiscard]] std::optional<TippingPart> part_on(int component, std::string* why = nullptr) const;
-  /// Of a foot between the part and something else: the normal of the force on the part; zero for others.
+  /// Returns the normal of the force on the part at a foot between the part and something else; zero for other feet.
   [[nodiscard]] static Vec2 push_on(const TippingPart& part, const Foot& foot);
-  /// What a row measures, by the poses of its bodies.
+  /// Returns the gradient of a row's coordinate with respect to the poses of its two bodies.
   [[nodiscard]] Eigen::Matrix<double, 6, 1> gradient(const RowSpec& row) const;
-  /// Of the plane that all feet of the part stand on, counter-clockwise from the horizontal.
+  /// Returns the slope of the plane on which all feet of the part stand, counter-clockwise from the horizontal, rad; nothing if there is no
+  /// common plane.
   [[nodiscard]] std::optional<double> slope_below(const TippingPart& part) const;
-  /// Fills in the heaviest body of the part and how many tip with it.
+  /// Sets the heaviest body of the part and the number of other bodies in `tipping`.
   void name_part(const TippingPart& part, Tipping& tipping) const;
 
 private:
@@ -78,8 +79,8 @@ private:
   std::vector<int> component_, components_;
 };
 
-/// What stands on several others, with all of them: where it comes down before any of them would by itself. `found`:
-/// what these would do.
+/// Returns the collapses of parts that stand on several others together with these, if they collapse before any of them tips alone. `found`
+/// contains the margins of the parts alone.
 [[nodiscard]] std::vector<Tipping> tipping_of_blocks(const TippingScene& scene, const std::vector<Tipping>& found);
 
 } // namespace steplap

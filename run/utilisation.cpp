@@ -10,17 +10,17 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_most_frictions = 100;
-constexpr double k_unused = 1e-9; // share of a friction that takes nothing but rounding
+constexpr double k_unused = 1e-9; // smaller shares of a friction are rounding
 
 std::string last_part(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 std::string element_part(const std::string& channel) { return channel.substr(0, channel.rfind('.')); }
 
-// What of an element a criterion of its kind asks of: by its channel.
+// For kinds with a criterion of their own: the channel that it limits, and the text for it.
 struct Aspect {
   const char* channel;
   const char* name;
-  bool is_lower;  // the value has to stay above its limit
-  const char* of; // what the share is one of
+  bool is_lower;  // the limit is a lower bound
+  const char* of; // quantity to which the share refers
 };
 
 const Aspect* aspect_of(const std::string& channel) {
@@ -42,7 +42,7 @@ const Aspect* aspect_of(const std::string& channel) {
 // --- shares
 
 struct Share {
-  double value = 0.0, slope = 0.0; // slope: of the share with the value
+  double value = 0.0, slope = 0.0; // `slope`: derivative of the share with respect to the value
 };
 
 std::optional<Share> share_by_way(double value, double limit, const ChannelRange* range) {
@@ -79,7 +79,7 @@ public:
 private:
   // --- criteria
 
-  // The model's come last among all criteria of a judgement, in their order.
+  // The criteria of the model come last in a judgement, in their order.
   void add_criteria() {
     const auto& all = report_.judgement.criteria;
     const auto& own = report_.run.loaded->model.criteria;
@@ -104,7 +104,7 @@ private:
     u.at = c.t;
     u.beyond = c.outcome == Verdict::inspect || c.outcome == Verdict::reject;
     u.is_judged = !c.name.empty();
-    const bool is_settled = u.beyond && !c.reserve; // it slipped or broke, whatever the last digits say
+    const bool is_settled = u.beyond && !c.reserve; // it slipped or broke, independently of rounding
     if (c.error && !is_settled) u.error = std::abs(*c.error * share->slope);
     u.detail = detail;
     u.text = shown_share(u.share, u.error, digits_) + " of " + of + (detail.empty() ? "" : ": " + detail);
@@ -121,7 +121,7 @@ private:
   }
   std::string shown_limit(const CriterionResult& c) const { return shown_quantity(*c.limit, c.unit, {}, digits_); }
 
-  // Whether it is met at 1 or at a larger margin that the model asks for.
+  // A criterion on a margin is met at 1 or at a larger margin that the model requires.
   void add_of_element(const CriterionResult& c) {
     const Aspect* aspect = aspect_of(c.channel);
     if (!aspect) return;
@@ -153,7 +153,7 @@ private:
         is_lower ? shown_value(c) + ", at least " + shown_limit(c) : size_of(c, asked) + " of " + shown_limit(c), "the limit");
   }
 
-  // Those that are meant to break first, and are therefore not judged.
+  // Adds elements that are designed to break first and are therefore not judged.
   void add_ties() {
     for (const ChannelRange& range : report_.ranges()) {
       const std::string& name = range.channel->name;
@@ -173,7 +173,7 @@ private:
 
   struct Friction {
     std::string element;
-    const ChannelRange* used = nullptr; ///< of its channel "share"
+    const ChannelRange* used = nullptr; ///< range of its channel "share"
     double share = 0.0, at = 0.0;
   };
 

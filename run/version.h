@@ -1,4 +1,4 @@
-// The program's version, as CMake knows it.
+// Version of the program, set by CMake.
 #pragma once
 
 namespace steplap {

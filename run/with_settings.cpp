@@ -11,16 +11,16 @@ namespace steplap {
 
 namespace {
 
-// What [simulation] and [output] become, and what is to be said of it.
+// New contents of [simulation] and [output], with messages for the user.
 struct Settings {
   SimulationSettings simulation;
   OutputSettings output;
-  std::vector<std::string> assignments; // "path=value": none if there is nothing to lay over the model
+  std::vector<std::string> assignments; // "path=value"; empty if nothing differs from the model
 };
 
 Settings settings_of(const LoadedModel& loaded, const RunOptions& options) {
   Settings s{loaded.model.simulation, loaded.model.output, {}};
-  // One that is in force already, since it was laid over the model before, is not laid twice.
+  // A setting that already equals the model's is not applied again.
   const auto lay = [&](const std::string& path, const auto& value, const std::string& text, auto& field) {
     const std::string assignment = path + "=" + text;
     if (field == value && std::find(loaded.overrides.begin(), loaded.overrides.end(), assignment) != loaded.overrides.end()) return;
@@ -35,7 +35,7 @@ Settings settings_of(const LoadedModel& loaded, const RunOptions& options) {
   return s;
 }
 
-// The model is well as it is: whatever is wrong comes from the settings.
+// The model itself is valid, so every error is due to the settings.
 void check(Model model, const RunOptions& options) {
   model.simulation.where = model.output.where = {"RunOptions", 0, 0};
   std::vector<Diagnostic> problems = validate(model);
@@ -62,7 +62,7 @@ std::shared_ptr<const LoadedModel> with_settings(std::shared_ptr<const LoadedMod
   model.simulation = std::move(settings.simulation);
   model.output = std::move(settings.output);
   check(model, options);
-  const InputFiles read; // until its signals are built
+  const InputFiles read; // must exist until the signals are built
   std::shared_ptr<const System> system = compile(model);
   if (!loaded->inputs.empty()) refuse_changed(read.files(), loaded->inputs);
   auto laid = std::make_shared<LoadedModel>(*load_completed(std::move(model), std::move(system), loaded->path));

@@ -16,8 +16,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_same_margin = 0.02; // between a run with errors estimated and the same run among the samples
-constexpr double k_still = 1e-3;       // m/s: what moves more slowly is at rest for the next event
+constexpr double k_same_margin = 0.02; // permitted difference between a run with error estimate and the same run among the samples
+constexpr double k_still = 1e-3;       // m/s; slower bodies are regarded as at rest before the next event
 
 void stop_if_asked(const AssessmentOptions& options, const std::string& where) {
   if (!options.stop) return;
@@ -85,7 +85,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
       if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
 }
 
-// Judges shared frictions in an event that all models have passed. Frees the traces: those of a whole voyage would be large.
+// Evaluates shared frictions in an event after all models. Discards the traces, which would be large for a whole voyage.
 void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
   std::vector<const std::vector<FrictionTrace>*> traces;
   std::vector<const DriveHistory*> histories;
@@ -119,7 +119,7 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
   }
 }
 
-// The same voyage by the way of the samples: two ways to one result.
+// Repeats the voyage by the method used for samples, as a check.
 void check_against_samples(Assessment& a) {
   const VoyageSummary twin =
       a.by_samples ? *a.by_samples : voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
@@ -165,7 +165,7 @@ void assume(Assessment& a) {
   for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
-  constexpr double k_unlikely = 0.01; // on either side
+  constexpr double k_unlikely = 0.01; // probability in each tail
   for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
     const UncertainValue& value = a.uncertain->values()[i];
     if (value.nominal >= a.uncertain->quantile(i, k_unlikely) && value.nominal <= a.uncertain->quantile(i, 1.0 - k_unlikely)) continue;

@@ -1,5 +1,5 @@
-// From records and models to a decision: every event of the voyage through every model, in order of time, then the voyage under all
-// that is uncertain, then the criteria. The whole of what `steplap assess` does, without a console.
+// Computes a transport assessment from shock records and models: simulates every event of the voyage in every model in order of time,
+// repeats the voyage with sampled uncertain values, and applies the criteria. This is `steplap assess` without its console.
 #pragma once
 
 #include "tools/assess/coverage.h"
@@ -14,78 +14,80 @@
 
 namespace steplap::assess {
 
-/// How an assessment is made.
+/// Options of an assessment.
 struct AssessmentOptions {
   EventReading reading;
-  std::vector<std::string> overrides;     ///< "path=value", laid over every model
-  std::vector<Evidence> accepted;         ///< missing evidence that the user takes upon himself
-  std::optional<Voyage> voyage;           ///< from when to when the machine travelled
-  double budget = 60.0;                   ///< s of computing, for each day of record begun, that the search for a threshold may take
-  std::string criteria = "acceptance-3g"; ///< file or preset
+  std::vector<std::string> overrides;     ///< "path=value", applied to every model
+  std::vector<Evidence> accepted;         ///< missing evidence that the user accepts
+  std::optional<Voyage> voyage;           ///< begin and end of the transport
+  double budget = 60.0;                   ///< s of computing time per started day of record that the search for a lower event threshold may
+                                          ///< use
+  std::string criteria = "acceptance-3g"; ///< file name or preset
   Estimating estimating = Estimating::cheap;
   SamplingOptions sampling;
   std::function<void(const std::string& what, long done, long all)> progress;
-  std::function<std::string()> stop; ///< what it says is why to stop; ""
+  std::function<std::string()> stop; ///< polled during the work; a text other than "" stops it and becomes the reason
 };
 
-/// An event of the voyage, in order of time over all records.
+/// A shock event, with its results in all models. Events are in order of time over all records.
 struct VoyageEvent {
   std::size_t record = 0, event = 0; ///< indices
   std::vector<Passage> passages;     ///< one for each model
-  std::vector<Probability> slip;     ///< the same; no runs without samples
-  std::vector<SharedPassage> shared; ///< one for each shared friction
+  std::vector<Probability> slip;     ///< probability of slip for each model; `runs` is 0 without samples
+  std::vector<SharedPassage> shared; ///< one for each friction shared by models of two planes
 };
 
-/// Why the decision is what it is.
+/// A criterion with its outcome and the explanation.
 struct Reason {
   std::string criterion, text, source;
   Decision outcome = Decision::energise;
   std::vector<std::string> tests;
 };
 
-/// All that was found.
+/// All results of an assessment.
 struct Assessment {
   std::vector<RecordEvents> records;
   std::vector<DrivenModel> models;
-  std::vector<SharedFriction> shared; ///< frictions that models of several planes have in common
+  std::vector<SharedFriction> shared; ///< friction elements that models of two planes have in common
   std::vector<VoyageEvent> events;
-  std::vector<std::vector<DriveHistory>> histories; ///< per model, of the events
+  std::vector<std::vector<DriveHistory>> histories; ///< drive histories, indexed by model and event
   std::unique_ptr<UncertainValues> uncertain;
   std::vector<VoyageSample> samples;
-  std::vector<double> shares; ///< of the uncertain numbers; empty if not known
+  std::vector<double> shares; ///< share of each uncertain number in the scatter of the margin (shares_of()); empty if unknown
   VoyageSummary summary;
   Probability damage;
   DecisionCriteria criteria;
   Decision decision = Decision::open;
   std::string reason;
-  std::vector<Reason> reasons; ///< the gravest first; all criteria
+  std::vector<Reason> reasons; ///< all criteria, most severe outcome first
   std::vector<std::string> hangs_on, assumptions, tests;
-  std::vector<MissingEvidence> missing; ///< of the records and of all together
+  std::vector<MissingEvidence> missing; ///< of single records and of all records together
   std::vector<Evidence> accepted;
-  std::optional<VoyageSummary> by_samples; ///< the voyage with the models' own values by the way of the samples, once it was made
-  int halvings = 0;                        ///< of the threshold, until the outcome stayed the same
+  std::optional<VoyageSummary> by_samples; ///< result with nominal values computed by VoyageRunner, if it was run
+  int halvings = 0;                        ///< number of halvings of the event threshold until the decision stayed the same
 
+  /// Returns true if the user accepts that this evidence is missing.
   [[nodiscard]] bool is_accepted(Evidence item) const;
 };
 
-/// Throws RecordError, FileError and ModelError for what cannot be used, NumericalFailure if it was stopped.
+/// Runs an assessment. Throws RecordError, FileError or ModelError for invalid input, NumericalFailure if stopped.
 [[nodiscard]] Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models,
                                 const AssessmentOptions& options);
 
-/// Judges what was found: fills decision, reason, reasons and tests.
+/// Applies the criteria and fills decision, reason, reasons and tests.
 void decide(Assessment& assessment);
-/// What criteria make of a voyage with values of its own: the worst outcome, records as the assessment has them. Probabilities are of
-/// all values together, and are left out.
+/// Returns the most severe outcome of all criteria for this summary, with the records of the assessment. Probabilities concern all samples
+/// together and are not judged here.
 [[nodiscard]] Decision decision_of(const Assessment& assessment, const VoyageSummary& summary);
-/// The same by the criteria alone, whatever evidence is missing.
+/// As decision_of(), but without regard to missing evidence.
 [[nodiscard]] Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary& summary);
 /// Fills events and histories from the events of the records.
 void list_events(Assessment& assessment);
-/// Voyages of the assessment's events with drawn values. `suffix` tells their store from others.
+/// Simulates the assessment's events with sampled values. `suffix` is added to the name of the sample file.
 [[nodiscard]] std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Assessment& assessment,
                                                    const std::string& suffix);
 
-/// The text of assessment.json.
+/// Returns the text of assessment.json.
 [[nodiscard]] std::string assessment_json(const Assessment& assessment);
 
 } // namespace steplap::assess

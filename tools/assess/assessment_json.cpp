@@ -1,4 +1,4 @@
-// assessment.json: all that the printed page and scripts read. SI unless a unit stands beside; null where nothing is known.
+// Writes assessment.json, which the printed page and scripts read. SI unless a unit is given; null for unknown values.
 #include "run/left_out.h"
 #include "run/ordered_json.h"
 #include "run/version.h"
@@ -15,7 +15,7 @@ namespace steplap::assess {
 namespace {
 
 using Json = OrderedJson;
-constexpr std::size_t k_figure_points = 600; // of a curve that a page draws a hand wide
+constexpr std::size_t k_figure_points = 600; // points of a curve, enough for the width of a page
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
@@ -116,7 +116,7 @@ Json models(const Assessment& a) {
   return all;
 }
 
-// Of each stretch the sample that is furthest from zero, so that peaks stay.
+// Returns the curves of an event, thinned. The sample furthest from zero is kept from each interval, so that peaks remain.
 Json figure(const RecordEvents& record, const Window& window) {
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (count + k_figure_points - 1) / k_figure_points);
   const std::string axes = record.axes();
@@ -247,7 +247,7 @@ Json shared_frictions(const Assessment& a) {
   return all;
 }
 
-// Each joint's sums after the last event that was run.
+// Returns the totals of each joint after the last simulated event.
 Json voyage(const Assessment& a) {
   Json joints = Json::array();
   for (std::size_t m = 0; m < a.models.size(); ++m) {

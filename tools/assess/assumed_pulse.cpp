@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::size_t k_axes = 3;
 constexpr const char* k_letters = "xyz";
-constexpr int k_intervals = 200;  // of a pulse: straight lines between its samples miss a half sine by 3e-5 of its peak
-constexpr double k_noticed = 0.1; // of the threshold: what is smaller shakes nothing loose that the road had left
-constexpr double k_differs = 0.2; // between the change of velocity that is told and that of the pulse
+constexpr int k_intervals = 200;  // samples per pulse; linear interpolation of a half sine then has an error of 3e-5 of its peak
+constexpr double k_noticed = 0.1; // of the threshold; smaller shocks move nothing that survived the journey
+constexpr double k_differs = 0.2; // permitted relative difference between the listed velocity change and that of the pulse
 
 using Peaks = std::array<double, k_axes>; // m/s²
 
 struct Shape {
   PulseShape shape;
   const char* name;
-  double area; // of a pulse of height 1 and length 1
+  double area; // area of a pulse with height 1 and duration 1
 };
 constexpr Shape k_shapes[] = {{PulseShape::half_sine, "half-sine", 2.0 / std::numbers::pi},
                               {PulseShape::haversine, "haversine", 0.5},
@@ -35,7 +35,7 @@ const Shape& shape_of(PulseShape shape) {
   return *std::find_if(std::begin(k_shapes), std::end(k_shapes), [&](const Shape& s) { return s.shape == shape; });
 }
 
-// Height of the pulse at a share of its length.
+// Returns the height of the pulse at a fraction of its duration.
 double height(PulseShape shape, double share) {
   const double sine = portable::sin(std::numbers::pi * share);
   switch (shape) {
@@ -58,7 +58,7 @@ public:
   }
 
   void make() {
-    std::array<double, k_axes> best{}; // of what stays below the threshold
+    std::array<double, k_axes> best{}; // largest peaks below the threshold
     std::array<const PeakEntry*, k_axes> quiet{};
     std::vector<const PeakEntry*> chosen;
     for (const PeakEntry& entry : record_.recording.peaks) {
@@ -74,13 +74,13 @@ public:
     for (std::size_t i = 0; i < k_axes; ++i)
       if (quiet[i] && best[i] >= least && std::find(chosen.begin(), chosen.end(), quiet[i]) == chosen.end()) chosen.push_back(quiet[i]);
     std::stable_sort(chosen.begin(), chosen.end(),
-                     [](const PeakEntry* a, const PeakEntry* b) { return a->line < b->line; }); // as the list has them
+                     [](const PeakEntry* a, const PeakEntry* b) { return a->line < b->line; }); // in the order of the list
     for (const PeakEntry* const entry : chosen) add(*entry);
     say();
   }
 
 private:
-  // The axis that gravity is subtracted from, by its index.
+  // Returns the index of the axis from which gravity is subtracted.
   static std::optional<std::size_t> gravity_axis(const EventReading& reading, const RecordEvents& record) {
     if (!reading.gravity)
       throw FileError(record.file,
@@ -95,14 +95,15 @@ private:
     return axis;
   }
 
-  // Along the axes, without gravity; NaN is none.
+  // Returns the peaks along the axes without gravity; NaN if missing.
   Peaks peaks_of(const PeakEntry& entry) const {
     Peaks a{};
     bool has_axis = false;
     for (std::size_t i = 0; i < k_axes; ++i)
       if (std::isfinite(entry.axis[i])) a[i] = entry.axis[i], has_axis = true;
     if (has_axis) {
-      // What rests reads 1 g there. Of a list without signs a peak that is lower, or the other way, cannot be told from rest.
+      // A recorder at rest reads 1 g along this axis. In a list without signs, a smaller or opposite peak cannot be distinguished from
+      // rest.
       if (gravity_) a[*gravity_] = std::copysign(std::max(0.0, std::abs(a[*gravity_]) - k_gravity), a[*gravity_]);
       return a;
     }
@@ -139,7 +140,7 @@ private:
   void add(const PeakEntry& entry) {
     const Peaks a = peaks_of(entry);
     const double length = length_of(entry, a);
-    // Each way that signs may have been. The first axis counts fastest.
+    // All combinations of signs that are possible; the first axis changes fastest.
     std::vector<std::size_t> turned;
     for (std::size_t i = 0; i < k_axes; ++i)
       if (a[i] != 0.0 && !is_signed_) turned.push_back(i);
@@ -167,7 +168,7 @@ private:
     record_.events.push_back(std::move(event));
   }
 
-  // In words of what was assumed.
+  // Describes the assumptions in sentences.
   void say() {
     std::vector<std::string>& notes = record_.assumed;
     const std::string list = "Of '" + record_.file + "' only peaks are known: ";

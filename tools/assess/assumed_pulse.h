@@ -1,5 +1,5 @@
-// Shocks of which a recorder tells the peaks alone, as pulses of an assumed shape: what a list of peaks leaves open is asked for, or
-// run in all the ways that it may have been.
+// Creates acceleration pulses of an assumed shape for recorders that store only the peaks of shocks. Data missing in the list is taken from
+// options; all directions that the list leaves possible are simulated.
 #pragma once
 
 #include "tools/assess/record_events.h"
@@ -10,12 +10,13 @@
 
 namespace steplap::assess {
 
-/// "half-sine", "haversine" or "triangle", and how long where the list does not tell, as in "half-sine 50 ms". Nothing for other text.
+/// Parses "half-sine", "haversine" or "triangle", optionally with a duration for lists without one, as in "half-sine 50 ms". Returns
+/// nothing for any other text.
 [[nodiscard]] std::optional<AssumedPulse> parse_assumed_pulse(std::string_view text);
 
-/// Adds an event for each entry whose peak is beyond the threshold, and for the greatest of each axis below it; where no peak of the
-/// list has a sign, one for each of the directions it may have had. Throws FileError if the list does not tell how long a shock
-/// lasted, along which axis it was, or whether gravity is in it, and no option does.
+/// Adds an event for each entry whose peak exceeds the threshold, and for the largest peak of each axis below it. If peaks have no sign,
+/// one event is added for each possible direction. Throws FileError if neither the list nor an option gives the duration of a shock, its
+/// axis, or whether gravity is included.
 void add_assumed_pulses(const EventReading& reading, RecordEvents& record);
 
 } // namespace steplap::assess

@@ -9,13 +9,14 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr std::size_t k_many = 100, k_very_many = 200; // rows: fewer may be alike by chance where steps are coarse
+constexpr std::size_t k_many = 100, k_very_many = 200; // rows; shorter sequences may be equal by chance if the resolution is coarse
 constexpr std::size_t k_most_of_rest = 100000;         // rows
 constexpr double k_long = 0.2;                         // s
-constexpr double k_moves = 0.05 * k_gravity;           // m/s²: another axis moves
-constexpr double k_coarse = 20.0;                      // steps of the converter: what moves another axis so far moves this one by one
-constexpr double k_often = 0.5;                        // of the rows: noise is larger than a step
-constexpr double k_few_steps = 4.0, k_coupling = 0.05; // an axis feels that much of another, by its mounting alone
+constexpr double k_moves = 0.05 * k_gravity;           // m/s²; threshold for motion of another axis
+constexpr double k_coarse = 20.0;                      // steps of the converter; if another axis moves this far, this axis must change by
+                                                       // at least one step
+constexpr double k_often = 0.5;                        // of the rows; noise is larger than a step
+constexpr double k_few_steps = 4.0, k_coupling = 0.05; // fraction of another axis' motion that an axis reads because of misalignment
 
 } // namespace
 
@@ -82,7 +83,7 @@ std::optional<AxisWatch::Stuck> AxisWatch::stuck(std::size_t index) const {
   const Axis& axis = axes_[index];
   if (axis.changes == 0) return rows_ >= k_many ? std::optional(Stuck{axis.now.from, axis.now.to}) : std::nullopt;
   if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return Stuck{axis.moved.from, axis.moved.to};
-  // Without a shock in it the noise tells: it was there before, the others have it still.
+  // Without a shock in the interval the noise decides: the axis had noise before, and the other axes still have it.
   const Run& run = axis.longest;
   const auto share = [](std::size_t part, std::size_t all) {
     return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1));

@@ -1,4 +1,4 @@
-// Does every axis measure, from the first row to the last? An axis that keeps one value while others move has stopped.
+// Detects axes of a recorder that do not measure: an axis whose value stays constant while the others change.
 #pragma once
 
 #include <array>
@@ -9,36 +9,37 @@
 
 namespace steplap::assess {
 
-/// Takes samples as they were read, m/s².
+/// Receives the samples as read, m/s².
 class AxisWatch {
 public:
+  /// Adds a sample with `axes` values.
   void put(double t, const double* a, std::size_t axes);
-  /// After the last sample.
+  /// Must be called after the last sample.
   void finish();
 
   struct Stuck {
     double from = 0.0, to = 0.0; ///< s
   };
-  /// The stretch in which the axis kept one value while others moved; nothing if there is none.
+  /// Returns the interval in which the axis was constant while others changed; nothing if there is none.
   [[nodiscard]] std::optional<Stuck> stuck(std::size_t axis) const;
-  /// Median of the first second, m/s²: a shock in it changes a mean.
+  /// Returns the median of the first second, m/s². A shock in this second would change a mean, but hardly the median.
   [[nodiscard]] double rest(std::size_t axis) const;
-  /// Does the axis move by a few steps of its converter only, while another moves at least twenty times as far?
+  /// Returns true if the axis changes by only a few steps of its converter while another axis changes at least twenty times as much.
   [[nodiscard]] bool is_insensitive(std::size_t axis) const;
 
 private:
   struct Run {
     double from = 0.0, to = 0.0;
     std::size_t rows = 0;
-    double others = 0.0;            ///< m/s², largest range of another axis in it
-    std::size_t others_changes = 0; ///< rows in which every other axis changed
+    double others = 0.0;            ///< largest range of another axis during the run, m/s²
+    std::size_t others_changes = 0; ///< number of rows in which all other axes changed
   };
   struct Axis {
-    double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< m/s²; smallest change
+    double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< m/s²; smallest change of the value
     double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
     std::size_t changes = 0;
-    Run now, moved, longest;             ///< moved: that of all long runs in which others moved furthest
-    std::array<double, 3> low{}, high{}; ///< of all axes in the run
+    Run now, moved, longest;             ///< current run; the long run in which other axes moved most; the longest run
+    std::array<double, 3> low{}, high{}; ///< minimum and maximum of all axes during the run
   };
   void end_run(Axis& axis) const;
   [[nodiscard]] double others_range(std::size_t axis) const;

@@ -12,8 +12,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_alive = 0.05 * k_gravity;          // m/s²: a road, a rail and a crane move a recorder further than this
-constexpr double k_hours = 7200.0, k_minutes = 120.0; // s: beyond, people count in hours, in minutes
+constexpr double k_alive = 0.05 * k_gravity;          // m/s²; any transport by road, rail or crane moves a recorder more than this
+constexpr double k_hours = 7200.0, k_minutes = 120.0; // s; above these durations text uses hours or minutes
 
 std::string span_text(double seconds) {
   return seconds > k_hours     ? rounded_text(seconds / 3600.0, 4) + " h"
@@ -35,7 +35,7 @@ std::optional<Stamp> instant(const std::string& text) {
 
 MissingEvidence missing(const std::string& reason, const std::string& remedy) { return {Evidence::coverage, reason, remedy}; }
 
-// The stretches of the voyage that no record covers, s from its begin: the first of them, and their sum.
+// Intervals of the voyage that no record covers, s from its begin: the first of them, and their sum.
 struct Uncovered {
   double from = 0.0, to = 0.0, sum = 0.0;
 };
@@ -44,7 +44,7 @@ Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& v
   std::vector<std::array<double, 2>> spans;
   for (const RecordEvents& record : records) {
     const double start = voyage.is_clock ? 1e-9 * static_cast<double>(*record.clock_ns - voyage.from_ns) : -voyage.from;
-    const double slack = record.rate > 0.0 ? 1.5 / record.rate : 0.0; // a row stands for the interval next to it
+    const double slack = record.rate > 0.0 ? 1.5 / record.rate : 0.0; // a row represents the sampling interval around it
     spans.push_back({start + record.recording.facts.first - slack, start + record.recording.facts.last + slack});
   }
   std::sort(spans.begin(), spans.end());

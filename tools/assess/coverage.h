@@ -1,4 +1,4 @@
-// When the voyage began and ended, as whoever decides says it, and how much of it the records show.
+// Compares the begin and end of the voyage, as given by the user, with the time covered by the records.
 #pragma once
 
 #include "tools/assess/record_events.h"
@@ -9,19 +9,19 @@
 
 namespace steplap::assess {
 
-/// From when to when: on a clock, or in the record's own seconds.
+/// Begin and end of the voyage, as clock times or in the seconds of the record.
 struct Voyage {
   std::string text; ///< as given
   bool is_clock = false, has_zone = false;
-  double from = 0.0, to = 0.0;         ///< s, of the record; 0 on a clock
-  std::int64_t from_ns = 0, to_ns = 0; ///< since 1970; 0 in the record's seconds
+  double from = 0.0, to = 0.0;         ///< s in the time of the record; 0 for clock times
+  std::int64_t from_ns = 0, to_ns = 0; ///< ns since 1970; 0 for seconds of the record
 };
-/// "FROM,TO": two times of the record in s, or two dates with times of day. Nothing for other text.
+/// Parses "FROM,TO": two times of the record in s, or two dates with times of day. Returns nothing for any other text.
 [[nodiscard]] std::optional<Voyage> parse_voyage(const std::string& text);
 
-/// What the records cover, a whole sentence.
+/// Returns a sentence about the time covered by the records.
 [[nodiscard]] std::string coverage_text(const std::vector<RecordEvents>& records);
-/// Why the voyage is not covered, and what helps; nothing if it is.
+/// Returns the reason why the voyage is not covered, with a remedy; nothing if it is covered.
 [[nodiscard]] std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& records, const std::optional<Voyage>& voyage);
 
 } // namespace steplap::assess

@@ -1,4 +1,4 @@
-// Criteria against what was found.
+// Applies the criteria to the results.
 #include "tools/assess/assessment.h"
 
 #include "mbd/base/shown_text.h"
@@ -16,20 +16,20 @@ std::string percent(double share) { return rounded_text(std::round(1e3 * share) 
 
 Decision outcome_of(const DecisionCriterion& c) { return c.outcome == "return" ? Decision::send_back : Decision::inspect; }
 
-// The largest of what the recorder read, with where it was read.
+// The largest value that a recorder measured, with its location.
 struct Reading {
   double value = 0.0;
   std::size_t event = k_no_event;
   char axis = 'x';
   double bandwidth = 0.0; ///< Hz
   bool is_known = true;
-  bool is_beneath = false; ///< shocks below the threshold were not looked at, and may be larger than the limit
+  bool is_beneath = false; ///< true if shocks below the threshold were not searched and may exceed the limit
   static constexpr std::size_t k_no_event = static_cast<std::size_t>(-1);
 };
 
-constexpr double k_told = 95.0; // Hz: with less of a shock its peak in g says nothing (the same impact reads 18 g or 1.5 g)
+constexpr double k_told = 95.0; // Hz; with less bandwidth the peak of a shock in g has no meaning (the same impact reads 18 g or 1.5 g)
 
-// Does the criterion look at what the recorder read itself? It does where no filter is between, or one that hides shocks.
+// Returns true if the criterion refers to the recorder's own readings: no filter was applied, or only one that hides shocks.
 bool looks_at_rows(const DecisionCriterion& c, const RecordEvents& record) {
   return c.quantity == "peak" && c.bandwidth == "record" && (!record.is_filtered || record.bandwidth < k_told);
 }
@@ -39,7 +39,7 @@ double value_of(const DecisionCriterion& c, const AxisEvent& axis) {
   return std::abs(c.bandwidth == "100 Hz" ? axis.at_cfc60 : c.bandwidth == "17 Hz" ? axis.at_cfc10 : axis.peak);
 }
 
-// Of all rows, less what was subtracted.
+// Returns the largest value of all rows without the subtracted offset.
 double largest_row(const RecordEvents& record, std::size_t axis) {
   const AxisFacts& facts = record.recording.facts.axes[axis];
   return std::max(std::abs(facts.greatest - record.offset[axis]), std::abs(facts.least - record.offset[axis]));
@@ -52,7 +52,7 @@ std::size_t event_of_row(const Assessment& a, std::size_t record, std::size_t ax
     if (a.events[e].record == record)
       for (const double value : a.records[record].events[a.events[e].event].window.plain[axis])
         if (std::abs(value) > most) most = std::abs(value), best = e;
-  return most >= 0.98 * largest_row(a.records[record], axis) ? best : Reading::k_no_event; // resampling may take a little off
+  return most >= 0.98 * largest_row(a.records[record], axis) ? best : Reading::k_no_event; // resampling may reduce the peak slightly
 }
 
 void take(Reading& largest, double value, std::size_t event, char axis, double bandwidth) {
@@ -83,14 +83,14 @@ Reading largest_reading(const DecisionCriterion& c, const Assessment& a) {
     const RecordLayout& layout = a.records[r].recording.layout;
     if (layout.is_peaks || (c.axis != "any" ? !a.records[r].axis(c.axis.front()) : layout.axes.size() < k_axes)) largest.is_known = false;
     if (!layout.is_peaks) look_at_record(c, a, r, largest);
-    for (const PeakEntry& entry : a.records[r].recording.peaks) // of a table of peaks at least that
+    for (const PeakEntry& entry : a.records[r].recording.peaks) // for a table of peaks at least its own bandwidth
       for (const double value : {entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude})
         if (c.quantity == "peak" && std::abs(value) > largest.value) largest.value = std::abs(value), largest.event = Reading::k_no_event;
   }
   return largest;
 }
 
-// What a criterion makes of a number of which more may be known to be too much, or too little to be known.
+// Creates the reason for a criterion on a number that is known to exceed its limit, or not known well enough.
 Reason judged(const DecisionCriterion& c, Decision outcome, std::string text) {
   Reason reason{c.name, std::move(text), c.source, outcome, {}};
   if (outcome == Decision::inspect || outcome == Decision::send_back) reason.tests = c.tests;
@@ -121,7 +121,7 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
   return judged(c, Decision::energise, what + shown(largest.value) + where + "; " + shown(*c.at_most) + " are allowed.");
 }
 
-// Of criteria that look at joints: why nothing can be said of them; "".
+// Returns why criteria on joints cannot be evaluated; "" if they can.
 std::string joints_unknown(const Assessment& a) {
   bool has_joints = false;
   for (const VoyageEvent& event : a.events)
@@ -133,7 +133,7 @@ std::string joints_unknown(const Assessment& a) {
   return has_joints ? "" : "no model has a joint that can be judged.";
 }
 
-// Of criteria that look at runs: a record that no model was driven by; "".
+// Returns why criteria on runs cannot be evaluated (a record drove no model); "" if they can.
 std::string waves_unknown(const Assessment& a) {
   for (const RecordEvents& record : a.records)
     if (record.recording.layout.is_peaks && !record.pulse)
@@ -209,7 +209,7 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
   return judge_probability(c, a.damage, "damage in the voyage", waves_unknown(a));
 }
 
-// Friction is one vector, and each model judged the part along its plane.
+// Judges both planes together: friction is one vector, but each model judged only the component in its plane.
 Reason judge_planes(const VoyageSummary& s) {
   const char* const name = "friction of several planes";
   const char* const source = "rules of this program";
@@ -223,7 +223,7 @@ Reason judge_planes(const VoyageSummary& s) {
   return {name, s.planes_slip, source, outcome, {}};
 }
 
-// Of whatever the criteria say: what is not known forbids "energise".
+// Adds reasons that are independent of the criteria: missing evidence prevents "energise".
 void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
   const auto open = [&](const char* name, const std::string& text) {
     reasons.push_back({name, text, "rules of this program", Decision::open, {}});

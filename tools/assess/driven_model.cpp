@@ -23,7 +23,7 @@ namespace steplap::assess {
 
 namespace {
 
-// A history that stands in no file.
+// A signal whose samples are given in memory, not in a file.
 struct Recorded : SignalDefinition {
   std::vector<DriveHistory> histories;
   enum class Axis { x, y, across } axis = Axis::x;
@@ -32,11 +32,12 @@ struct Recorded : SignalDefinition {
   }
 };
 
-// The acceleration across sheets must not jump: a history ends at zero, and one that goes on holds its last value until the next begins.
+// The acceleration across the sheets must be continuous. A history ends at zero; if it continues, it holds its last value until the next
+// one.
 Signal build_pressing(const Recorded& recorded) {
   std::vector<Signal::Piece> pieces(1);
   double held = 0.0;
-  bool is_held = true; // whatever it is at t = 0
+  bool is_held = true; // constant before the first breakpoint
   for (const DriveHistory& history : recorded.histories) {
     std::vector<double> a = history.across;
     if (a.size() < 2) continue;
@@ -57,14 +58,14 @@ Signal build_pressing(const Recorded& recorded) {
 
 Signal build_recorded(const SignalDefinition& definition) {
   const auto& recorded = static_cast<const Recorded&>(definition);
-  std::vector<Signal::Piece> pieces(1); // at rest from t = 0 on
+  std::vector<Signal::Piece> pieces(1); // at rest from t = 0
   if (recorded.axis == Recorded::Axis::across) return build_pressing(recorded);
   for (const DriveHistory& history : recorded.histories) {
     const std::vector<double>& a = recorded.of(history);
     for (std::size_t i = 0; i < a.size(); ++i) {
       Signal::Piece piece;
       piece.start = history.begin + static_cast<double>(i) * history.step;
-      if (i + 1 < a.size()) piece.c[0] = a[i], piece.c[1] = (a[i + 1] - a[i]) / history.step; // the last one: 0 from there on
+      if (i + 1 < a.size()) piece.c[0] = a[i], piece.c[1] = (a[i + 1] - a[i]) / history.step; // 0 after the last sample
       if (piece.start > pieces.back().start) pieces.push_back(std::move(piece));
       else pieces.back() = std::move(piece);
     }
@@ -100,7 +101,7 @@ void add_drive(Model& model, const std::string& name, const Recorder& recorder, 
   motion.as = "acceleration";
 }
 
-// The record's third axis replaces the signals by which cores and joints are pressed across their sheets.
+// The record's third axis replaces the signals that press cores and joints across their sheets.
 void add_across(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   if (recorder.across == "none") return;
   const auto is_taken = [&](std::string& signal, const std::string& name) {
@@ -126,7 +127,7 @@ void add_across(Model& model, const Recorder& recorder, std::vector<std::string>
   model.signals.emplace_back(&recorded_kind(), std::move(definition));
 }
 
-// What else drives the body would contradict the record.
+// Throws if another drive moves the body, because it would contradict the record.
 void refuse_other_drives(const Model& model, const Recorder& recorder, const std::string& body) {
   const auto body_of = [&](const std::string& marker) {
     for (const Marker& m : model.markers)
@@ -141,7 +142,7 @@ void refuse_other_drives(const Model& model, const Recorder& recorder, const std
   }
 }
 
-// Of a criterion or a figure that looks at elements which are gone.
+// Returns true if a channel of a criterion or figure belongs to a removed element.
 bool looks_at(const std::string& channel, const std::set<std::string>& gone) {
   return std::any_of(gone.begin(), gone.end(), [&](const std::string& name) { return channel.starts_with(name + "."); });
 }
@@ -156,7 +157,7 @@ void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& 
   std::erase_if(model.tables, [&](const TableEntry& entry) {
     const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
     return (c && (looks_at(c->channel, gone) || gone.contains(c->element))) ||
-           dynamic_cast<const Plot*>(entry.table.get()); // nothing is drawn
+           dynamic_cast<const Plot*>(entry.table.get()); // figures are not drawn
   });
   for (const std::string& name : recorder.replaces) notes.push_back("The record takes the place of '" + name + "'.");
 }
@@ -190,7 +191,8 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
     return values;
   };
   DriveHistory history;
-  // An event begins and ends at rest: what is left of the signal there goes to zero along a cosine, in the half that is further from it.
+  // An event must begin and end at rest. The remaining signal is reduced to zero along a cosine, in the half that is further from the
+  // shock.
   const std::size_t rise = window.lead / 2, fall = window.tail / 2;
   const auto weight = [&](std::size_t i) {
     const auto ramp = [](std::size_t at, std::size_t length) {
@@ -205,7 +207,7 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   if (recorder.across != "none") history.across = along(recorder.across);
   for (std::vector<double>* const values : {&a, &b, &history.across}) {
     if (values->empty() || recorder.drift != "line" || count < 2) continue;
-    double sum = 0.0; // of the trapezoids between samples
+    double sum = 0.0; // sum of the trapezoids between samples
     for (std::size_t i = 1; i < count; ++i) sum += 0.5 * ((*values)[i - 1] + (*values)[i]);
     const double mean = sum / static_cast<double>(count - 1);
     for (double& value : *values) value -= mean;
@@ -220,14 +222,15 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
 }
 
 std::string check_gravity(const RecordEvents& record, const DrivenModel& model) {
-  constexpr double k_seen = 0.7, k_other = 0.5; // g: rests in the record at all; is somewhere else, whatever the first second shakes
+  constexpr double k_seen = 0.7, k_other = 0.5; // g: smallest reading that shows gravity along this axis; reading that shows it along
+                                                // another axis in spite of shocks in the first second
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   double size = 0.0;
   for (std::size_t i = 0; i < axes.size(); ++i) size += record.rest[i] * record.rest[i];
   if (model.given.header.gravity.norm() < k_seen * k_gravity || record.recording.layout.is_peaks) return "";
   if (std::sqrt(size) < k_seen * k_gravity)
     return "'" + record.file + "' has no gravity in it: that its axes point as '" + model.name + "' says could not be seen.";
-  // What stands still feels the push of its support: against gravity.
+  // At rest an accelerometer reads the reaction of its support, opposite to gravity.
   const Vec2 up = -model.given.header.gravity / model.given.header.gravity.norm();
   const double c = portable::cos(model.marker_angle), s = portable::sin(model.marker_angle);
   const std::pair<std::string, double> felt[] = {{model.recorder.x, c * up.x() + s * up.y()}, {model.recorder.y, -s * up.x() + c * up.y()}};
@@ -252,7 +255,7 @@ DrivenModel driven_model(Model given, const std::string& name) {
   DrivenModel driven;
   driven.name = name;
   driven.recorder = *found;
-  const Model whole = completed(given); // inherited places of bodies are known then
+  const Model whole = completed(given); // inherited positions of bodies are known afterwards
   const auto marker = std::find_if(whole.markers.begin(), whole.markers.end(), [&](const Marker& m) { return m.name == found->marker; });
   driven.body = marker->body;
   driven.marker_angle = marker->angle + whole.find_body(driven.body)->angle;
@@ -263,7 +266,7 @@ DrivenModel driven_model(Model given, const std::string& name) {
   add_drive(given, k_along_y, driven.recorder, "y");
   if (driven.recorder.rotation == "held") add_drive(given, k_angle, driven.recorder, "angle");
   add_across(given, driven.recorder, driven.notes);
-  for (TableEntry& entry : given.tables) // what it names is gone, and no usual run looks at it
+  for (TableEntry& entry : given.tables) // elements that it names may have been removed, and no usual run uses it
     if (entry.kind == &recorder_kind()) static_cast<Recorder&>(*entry.table).replaces.clear();
   driven.given = std::move(given);
   return driven;
@@ -286,7 +289,7 @@ void drive_by(Model& driven, std::vector<DriveHistory> histories, double end) {
     if (recorded.name != k_angle) recorded.histories = histories;
   }
   driven.simulation.end = end;
-  driven.output.step = end; // extremes and events do not hang on it
+  driven.output.step = end; // extremes and events do not depend on it
 }
 
 } // namespace steplap::assess

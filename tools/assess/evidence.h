@@ -1,6 +1,5 @@
-// What "energise" needs: evidence that the whole voyage was seen, in every direction that matters, and that the models were driven by
-// it. Each item that is missing makes the decision "open" at best, says what would supply it, and has one word by which whoever decides
-// takes it upon himself.
+// Evidence that the decision "energise" requires: the whole voyage was recorded, in every relevant direction, and the models were driven by
+// it. Each missing item limits the decision to "open". It has a remedy, and a word by which the user can accept that it is missing.
 #pragma once
 
 #include <string>
@@ -8,27 +7,29 @@
 
 namespace steplap::assess {
 
+/// One item of evidence.
 enum class Evidence {
-  clipped,   ///< peaks were higher
+  clipped,   ///< peaks were cut off by the recorder's range
   gaps,      ///< samples are missing
-  peaks,     ///< there is no waveform
+  peaks,     ///< only peaks were recorded, no waveform
   cut,       ///< the record begins or ends too early
-  comments,  ///< a line among the rows tells of something that is not understood
-  fall,      ///< the recorder read nothing for a time, gravity included
+  comments,  ///< a comment within the data was not understood
+  fall,      ///< the recorder read zero for a time, including gravity: it fell
   dead,      ///< an axis did not measure, or stopped measuring
-  unit,      ///< what the record reads at rest is neither gravity nor nothing, or a value is none of a transport
+  unit,      ///< the reading at rest is neither gravity nor zero, or a value is impossible in a transport
   axis,      ///< an axis with shocks drives no model, or is not recorded
-  coverage,  ///< the records do not show the voyage from its begin to its end
+  coverage,  ///< the records do not cover the whole voyage
   clock,     ///< the order of the records is not known
-  bandwidth, ///< the decision depends on frequencies that a filter or the rate leaves out
-  place,     ///< the margin is smaller than what the place of the recorder may falsify
-  vibration  ///< the decision depends on what stays below the lowest threshold that the budget allows
+  bandwidth, ///< the decision depends on frequencies above the filter or the sampling rate
+  place,     ///< the margin is smaller than the possible effect of the recorder's position
+  vibration  ///< the decision depends on vibration below the lowest threshold that the computing budget permits
 };
-/// The word of --accept.
+/// Returns the word used with --accept.
 [[nodiscard]] const char* name_of(Evidence item);
+/// Returns all items in the order of the enumeration.
 [[nodiscard]] const std::vector<Evidence>& all_evidence();
 
-/// An item that is missing: why, and what supplies it; whole sentences.
+/// A missing item with reason and remedy, as sentences.
 struct MissingEvidence {
   Evidence item = Evidence::clipped;
   std::string reason, remedy;

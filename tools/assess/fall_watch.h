@@ -1,4 +1,4 @@
-// Does a record show a fall? A recorder that falls reads nothing on any axis, gravity included.
+// Detects a free fall in a record. A falling recorder reads zero on all axes, including gravity.
 #pragma once
 
 #include <array>
@@ -7,14 +7,16 @@
 
 namespace steplap::assess {
 
-/// Takes samples as they were read, m/s², and keeps the longest stretch in which all axes together read less than 0.3 g.
+/// Receives samples as read, m/s², and keeps the longest interval in which the magnitude of all axes is below 0.3 g.
 class FallWatch {
 public:
-  static constexpr double k_weightless = 0.3 * 9.80665;   ///< m/s²: a jolt of the road leaves more for longer than k_least
-  static constexpr double k_gravity_seen = 0.7 * 9.80665; ///< m/s²: read at rest, at least, by a recorder that has gravity in it
-  static constexpr double k_least = 0.1;                  ///< s: a fall of 5 cm
+  static constexpr double k_weightless = 0.3 * 9.80665;   ///< m/s²; jolts of a road do not stay below this for k_least
+  static constexpr double k_gravity_seen = 0.7 * 9.80665; ///< m/s²; smallest reading at rest of a recorder that includes gravity
+  static constexpr double k_least = 0.1;                  ///< s; a fall of 5 cm
 
+  /// Must be called at each begin of a segment: a fall cannot extend across a gap.
   void begin_segment() { is_inside_ = false; }
+  /// Adds a sample with `axes` values.
   void put(double t, const double* a, std::size_t axes) {
     double size = 0.0;
     for (std::size_t i = 0; i < axes; ++i) size += a[i] * a[i];
@@ -23,7 +25,7 @@ public:
     else if (t - from_ > longest_) longest_ = t - from_, at_ = from_;
   }
   [[nodiscard]] double longest() const { return longest_; } ///< s
-  [[nodiscard]] double at() const { return at_; }           ///< s, where it begins
+  [[nodiscard]] double at() const { return at_; }           ///< begin of the interval, s
 
 private:
   bool is_inside_ = false;

@@ -31,7 +31,7 @@ bool has_opened(const Model& whole, const RunResult& result, const std::string& 
 } // namespace
 
 double trace_step(const DriveHistory& history) {
-  constexpr double k_most = 1e-3, k_least = 5e-4; // s: contacts of heavy machines vibrate at less than 100 Hz
+  constexpr double k_most = 1e-3, k_least = 5e-4; // s; contacts of heavy machines vibrate below 100 Hz
   if (history.step > k_most) return history.step / std::ceil(history.step / k_most);
   return history.step * std::ceil(k_least / history.step);
 }
@@ -55,7 +55,7 @@ std::vector<FrictionTrace> friction_traces(const Model& whole, const System& sys
       trace.mu_static = friction->mu_static, trace.mu_kinetic = friction->mu_kinetic;
     const std::size_t force = rows.column(element + ".friction"), normal = rows.column(element + ".normal"),
                       mode = rows.column(element + ".mode");
-    // Rows of a run that began at another time than 0 lie at multiples of the step on its own axis of time.
+    // If a run did not begin at 0, its rows are at multiples of the step on its own time axis.
     constexpr double k_hair = 1e-6; // of a step
     for (std::size_t i = 0, k = 0; i < rows.size(); ++k) {
       const double t = begin + static_cast<double>(k) * step;

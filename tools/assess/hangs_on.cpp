@@ -1,5 +1,5 @@
-// Which uncertain number a decision hangs on: the value nearest to the model's own at which the decision is another, all others as
-// they are. Found by halving between the model's own value and an end of the distribution.
+// Finds the uncertain number on which the decision depends: the one that changes the decision closest to its nominal value, with all other
+// numbers constant. Uses bisection between the nominal value and an end of the distribution.
 #include "tools/assess/hangs_on.h"
 
 #include "mbd/base/shown_text.h"
@@ -12,8 +12,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_tail = 0.005;   // of the distribution on either side: beyond, values are not looked at
-constexpr double k_located = 0.01; // of the way between the model's own value and that end
+constexpr double k_tail = 0.005;   // probability in each tail; values beyond are not examined
+constexpr double k_located = 0.01; // of the distance between the nominal value and that end
 
 struct Turn {
   double value = 0.0;

@@ -9,7 +9,7 @@ namespace steplap::assess {
 
 namespace {
 
-// Relative to the driven body: that one may move on evenly.
+// Speeds are relative to the driven body, which may move uniformly.
 double still_moving(const System& system, const State& state, const std::string& driven) {
   std::size_t base = 0;
   for (std::size_t i = 1; i < system.bodies.size(); ++i)
@@ -35,7 +35,7 @@ LimitPassage limit_of(const CriterionResult& criterion, const Overview& overview
   return limit;
 }
 
-// What the elements that gave way have left behind.
+// Returns true for findings caused by the removal of replaced elements.
 bool is_of_replaced(const Finding& finding) { return finding.code == "unused_signal" || finding.code == "unused_marker"; }
 
 std::vector<FootPassage> feet_of(const Report& report) {
@@ -82,7 +82,8 @@ void Traveller::look(const Report& report, Passage& passage) {
     p.came_apart = joint.has_come_apart;
     p.margin = joint.smallest_margin;
     p.at = joint.time_of_smallest;
-    if (joint.has_slipped) p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]); // else it is rounding, or yields
+    if (joint.has_slipped)
+      p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]); // otherwise the difference is rounding or elastic
     slid_x_[i] = joint.slid_x, slid_y_[i] = joint.slid_y;
     p.slid_total = slid_total_[i] += p.slid;
     if (const ChannelRange* const left = report.find(joint.joint + ".overlap_left")) p.overlap_left = left->final;

@@ -1,4 +1,4 @@
-// One event through one model: from the state in which the event before left it, with errors estimated, judged.
+// Simulates one event in one model, starting from the state after the previous event, with error estimate and verdict.
 #pragma once
 
 #include "elements/step_lap/step_lap_assessment.h"
@@ -13,60 +13,61 @@
 
 namespace steplap::assess {
 
-/// Did it slide, or, of a joint that is watched and held, would it have?
+/// Returns true if the joint slipped or, for a joint that is only monitored, if its capacity was exceeded.
 [[nodiscard]] inline bool would_slip(const JointAssessment& joint) {
   return joint.has_slipped || (joint.is_monitored && joint.smallest_margin < 1.0);
 }
 
-/// What an event did to a step-lap joint.
+/// Result of an event for a step-lap joint.
 struct JointPassage {
   std::string name;
   bool slips = false, came_apart = false;
-  double margin = 0.0, at = 0.0;       ///< least capacity over demand; s, when
-  double slid = 0.0, slid_total = 0.0; ///< m: moved by this event; sum over all events so far
-  double overlap_left = 1.0;           ///< share, at the end
-  std::optional<double> error;         ///< of the margin; not-a-number: unknown
+  double margin = 0.0, at = 0.0;       ///< smallest capacity over demand; its time, s
+  double slid = 0.0, slid_total = 0.0; ///< m: slide during this event; sum over all events so far
+  double overlap_left = 1.0;           ///< remaining overlap at the end, as a fraction of the initial overlap
+  std::optional<double> error;         ///< error of the margin; NaN: unknown
 };
 
-/// A contact that opened.
+/// A contact that opened during an event.
 struct FootPassage {
   std::string name;
   double from = 0.0;            ///< s
-  std::optional<double> height; ///< m, at most
+  std::optional<double> height; ///< largest gap, m
 };
 
-/// What an acceptance of the model asks, and what came of it.
+/// A limit of an [[acceptance]] of the model with its result.
 struct LimitPassage {
   std::string name, unit, text;
   double value = 0.0, allowed = 0.0;
-  double share = 0.0; ///< 1: the limit
+  double share = 0.0; ///< utilisation; 1 is the limit
   bool is_met = true;
   Verdict outcome = Verdict::hold;
 };
 
-/// An event through a model.
+/// Results of one event in one model.
 struct Passage {
   std::size_t event = 0, model = 0; ///< indices
-  bool is_made = false;             ///< false: the run could not be begun or finished, or an event before ended the voyage
+  bool is_made = false;             ///< false if the run failed, or if an earlier event ended the voyage
   Verdict verdict = Verdict::open;
   std::string reason, trust;
   TrustLevel trust_level = TrustLevel::none;
-  bool is_trusted = false; ///< nothing forbids to believe it
+  bool is_trusted = false; ///< true if there is no reason to distrust the numbers
   std::vector<JointPassage> joints;
-  std::vector<std::string> unjudged; ///< joints of which nothing can be said
+  std::vector<std::string> unjudged; ///< joints without a result
   std::vector<FootPassage> feet;
   std::vector<LimitPassage> reactions, clearances, others;
   std::vector<std::string> findings;
-  double still_moving = 0.0;         ///< m/s: fastest body against the tank at the end
-  std::vector<FrictionTrace> traces; ///< of DrivenModel::traced
+  double still_moving = 0.0;         ///< largest speed of a body relative to the tank at the end, m/s
+  std::vector<FrictionTrace> traces; ///< traces of the elements in DrivenModel::traced
 };
 
-/// A model on its way through the voyage.
+/// State of a model during the voyage.
 class Traveller {
 public:
   explicit Traveller(const DrivenModel& model) : model_(model) {}
 
-  /// `estimating`: whether errors of its numbers are found by finer runs. Throws ModelError for a model that cannot be run.
+  /// Simulates the next event. `estimating` decides whether errors are estimated by finer runs. Throws ModelError if the model cannot be
+  /// run.
   [[nodiscard]] Passage pass(const DriveHistory& history, Estimating estimating);
 
 private:
@@ -75,7 +76,7 @@ private:
   const DrivenModel& model_;
   std::optional<State> state_;
   std::vector<double> slid_x_, slid_y_, slid_total_;
-  std::string ended_; ///< why the voyage ended for this model
+  std::string ended_; ///< reason why the voyage ended for this model
 };
 
 } // namespace steplap::assess

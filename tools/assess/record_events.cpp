@@ -18,7 +18,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_felt = 0.5; // of the threshold: what rests there would tell of gravity, not of shocks
+constexpr double k_felt = 0.5; // of the threshold; a larger reading at rest would be mistaken for shocks
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
 
@@ -31,7 +31,7 @@ std::string sha256_of(const std::string& path) {
   return sum.hex();
 }
 
-// The mean of each axis over a stretch of time.
+// Computes the mean of each axis over an interval.
 class StretchMean : public SampleSink {
 public:
   explicit StretchMean(const std::array<double, 2>& stretch) : stretch_(stretch) {}
@@ -66,13 +66,13 @@ std::array<double, 3> rest_of(const std::string& file, const EventReading& readi
   return mean.means();
 }
 
-// Gravity is along an axis of the record, which is known when its columns are.
+// Subtracts gravity from an axis of the record, which is known only after the columns have been read.
 class WithoutGravity : public SampleSink {
 public:
   WithoutGravity(Conditioning conditioning, const EventReading& reading, SignalSink& sink)
       : conditioning_(conditioning), reading_(reading), sink_(sink) {}
   void begin(const RecordLayout& layout) override {
-    if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // of peaks, see assumed_pulse.h
+    if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // for peaks see assumed_pulse.h
       const bool is_turned = reading_.gravity->starts_with('-');
       const std::string axis = reading_.gravity->substr(is_turned ? 1 : 0);
       const auto found =
@@ -120,7 +120,7 @@ Conditioning conditioning_of(const EventReading& reading) {
   return conditioning;
 }
 
-// The signal of a file with its offset: --gravity, or what it reads at rest.
+// Reads the signal of a file and subtracts its offset: --gravity, or its reading at rest.
 Recording read_signal(const std::string& file, const EventReading& reading, WithoutGravity& first) {
   LineSource source(file);
   return read_record(source, reading.read, first);
@@ -137,14 +137,14 @@ void refuse_gravity_as_shock(const RecordEvents& record) {
   }
 }
 
-// The time 0 of the record, where its start is told with a date and a clock.
+// Determines the clock time of time 0 of the record, if its start is given with date and time.
 void read_clock(RecordEvents& record) {
   const RecordLayout& layout = record.recording.layout;
   std::string text = layout.time.start.substr(0, layout.time.start.find(" ("));
   const bool is_utc = text.ends_with(" UTC");
   if (is_utc) text.resize(text.size() - 4);
   const unsigned orders = possible_date_orders(text);
-  if (orders == 0 || (orders & (orders - 1)) != 0) return; // none, or more than one
+  if (orders == 0 || (orders & (orders - 1)) != 0) return; // invalid or ambiguous
   const auto stamp = parse_stamp(text, orders);
   if (!stamp || !stamp->has_date || !stamp->has_clock) return;
   record.clock_ns = stamp->ns;
@@ -165,7 +165,7 @@ std::optional<std::size_t> RecordEvents::axis(char letter) const {
 }
 
 std::string RecordEvents::axes() const {
-  if (pulse) return "xyz"; // what the list does not tell is zero
+  if (pulse) return "xyz"; // axes missing in the list are zero
   std::string letters;
   for (const AxisColumn& each : recording.layout.axes) letters += each.axis;
   return letters;
@@ -178,7 +178,7 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   record.rules = reading.rules;
   Conditioning conditioning = conditioning_of(reading);
   if (reading.rest) conditioning.offset = rest_of(file, reading);
-  constexpr double k_within = 0.25; // of a shock: less is left of one before its begin, or after its end
+  constexpr double k_within = 0.25; // of a shock; before its begin and after its end less than this remains
   SignalWatch signal(k_within * shock_level(reading.rules));
   WithoutGravity first(conditioning, reading, signal);
   record.recording = read_signal(file, reading, first);

@@ -13,12 +13,14 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_felt = 0.5; // of the threshold: what rests there is quiet, not clipped; what is beyond it next to a hole is a shock
+constexpr double k_felt = 0.5; // of the threshold; constant values below it are no clipping, and values above it next to a gap indicate a
+                               // shock
 constexpr double k_least_band =
-    49.0; // Hz: at 25 Hz the needed pressure of a joint is up to 22 % wrong, at 50 Hz up to 4 % (docs/evidence/recorders.md)
-constexpr double k_no_gravity = 0.02 * k_gravity, k_gravity_seen = 0.9 * k_gravity, k_gravity_most = 1.1 * k_gravity; // m/s², size at rest
-constexpr double k_harmless_hole = 0.005; // s: a shock that hides in it has its frequencies above 100 Hz, which joints do not feel
-constexpr double k_beyond_transport = 1000.0 * k_gravity; // m/s²: nothing on wheels reads it, a wrong scale does
+    49.0; // Hz; with 25 Hz the required pressure of a joint has errors up to 22 %, with 50 Hz up to 4 % (docs/evidence/recorders.md)
+constexpr double k_no_gravity = 0.02 * k_gravity, k_gravity_seen = 0.9 * k_gravity,
+                 k_gravity_most = 1.1 * k_gravity; // m/s²; magnitude at rest
+constexpr double k_harmless_hole = 0.005;          // s; a shock within it has frequencies above 100 Hz, to which joints do not respond
+constexpr double k_beyond_transport = 1000.0 * k_gravity; // m/s²; impossible on a vehicle, caused by a wrong scale
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
 
@@ -60,7 +62,7 @@ private:
   void find_clipped() {
     for (std::size_t i = 0; i < layout_.axes.size(); ++i) {
       const AxisFacts& axis = facts_.axes[i];
-      // What stays where it rests is quiet, not clipped, as where a signal without noise begins at once.
+      // Constant values near rest are no clipping, for example where a signal without noise begins.
       const bool is_flat_top = is_flat(axis, record_.rules.threshold) && !layout_.holds;
       if (axis.beyond_range.count == 0 && !is_flat_top) continue;
       return add(Evidence::clipped,
@@ -182,7 +184,8 @@ private:
   const SignalWatch& signal_;
 };
 
-// The stretch around sample `at` in which the signal, straight between samples, is beyond a share of its value there, in samples.
+// Returns the length, in samples, of the interval around sample `at` in which the linearly interpolated signal exceeds a fraction of its
+// value there.
 double width_at(const std::vector<double>& a, std::size_t at, double share) {
   const double sign = a[at] < 0.0 ? -1.0 : 1.0, level = share * std::abs(a[at]);
   std::size_t from = at, to = at;
@@ -202,12 +205,12 @@ double shock_level(const EventRules& rules) { return std::min(rules.threshold, E
 
 void find_missing_evidence(const AxisWatch& axes, const SignalWatch& signal, RecordEvents& record) { Finder(axes, signal, record).find(); }
 
-// Of a half-sine 0.43 of the width at half its height lies above 0.9 of it, of a haversine 0.41, of a triangle 0.2. A top that is wider is
-// that of a signal which cannot go further, or of braking and bends, which last longer.
+// Finds peaks whose top is too wide. The time above 0.9 of the peak is 0.43 of the width at half height for a half sine, 0.41 for a
+// haversine, 0.2 for a triangle. A wider top indicates clipping, or braking and curves, which last longer.
 void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<MissingEvidence>& missing) {
-  constexpr double k_wide = 0.6, k_longest = 0.3, k_near = 0.95; // share; s; of the record's extreme
-  constexpr double k_samples = 3.0;                              // above 0.9 of the peak: fewer are wide by chance
-  constexpr double k_seen = 0.25;                                // of a shock: a top that is lower is none of one
+  constexpr double k_wide = 0.6, k_longest = 0.3, k_near = 0.95; // fraction; s; of the record's extreme
+  constexpr double k_samples = 3.0;                              // above 0.9 of the peak; with fewer the width is not reliable
+  constexpr double k_seen = 0.25;                                // fraction of a shock; lower tops are not relevant
   const auto is_clipped = [](const MissingEvidence& m) { return m.item == Evidence::clipped; };
   for (const RecordEvents& record : records) {
     const RecordLayout& layout = record.recording.layout;
@@ -221,7 +224,7 @@ void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<Mis
         const std::vector<double>& a = e.window.plain[i];
         const auto found = std::max_element(a.begin(), a.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
         if (found == a.end() || std::abs(*found) < k_near * most) continue;
-        // At the end of its range a sensor reads more than anywhere else; in a fall it reads nothing.
+        // A sensor at the end of its range reads its largest value; in a fall it reads zero.
         const double read = *found + record.offset[i],
                      extreme = std::max(std::abs(record.recording.facts.axes[i].least), std::abs(record.recording.facts.axes[i].greatest));
         if (std::abs(read) < k_felt * extreme) continue;
@@ -256,7 +259,7 @@ bool is_ordinary_end(const std::string& remark) {
   for (const char c : text) {
     if (std::isalpha(static_cast<unsigned char>(c)) != 0) word += c;
     else take();
-    is_known &= static_cast<unsigned char>(c) < 0x80 && c != '\\'; // words of other alphabets, and bytes that are no text
+    is_known &= static_cast<unsigned char>(c) < 0x80 && c != '\\'; // text in other alphabets, and bytes that are not text
   }
   take();
   return is_known && (has_word || text.find_first_of("0123456789") == std::string::npos);

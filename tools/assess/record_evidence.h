@@ -1,4 +1,4 @@
-// What one record lacks of the evidence that a decision to energise needs.
+// Finds evidence that a single record lacks for the decision "energise".
 #pragma once
 
 #include "tools/assess/axis_watch.h"
@@ -7,13 +7,13 @@
 
 namespace steplap::assess {
 
-/// Below it nothing counts as a shock, whatever threshold the user chose: m/s².
+/// Returns the acceleration, m/s², below which nothing counts as a shock, whatever threshold the user chose.
 [[nodiscard]] double shock_level(const EventRules& rules);
-/// Of a record that was read, without its events: adds what is missing.
+/// Adds the evidence that is missing in a record, without regard to its events.
 void find_missing_evidence(const AxisWatch& axes, const SignalWatch& signal, RecordEvents& record);
-/// Of the records' events: peaks that look cut off though no sample repeats.
+/// Adds evidence for events whose peaks look clipped, although no sample value repeats.
 void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<MissingEvidence>& missing);
-/// Does a comment or a last line tell of an ordinary end, and of nothing else?
+/// Returns true if a comment or last line reports a normal end of recording and nothing else.
 [[nodiscard]] bool is_ordinary_end(const std::string& remark);
 
 } // namespace steplap::assess

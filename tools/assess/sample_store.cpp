@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<const char*, 9> k_numbers{"least_margin", "slid",       "overlap_left", "slips", "lifts",
                                                "comes_apart",  "acceptance", "planes_use",   "planes"};
 
-// All that a sample's outcome hangs on.
+// Text that identifies everything on which a sample's outcome depends.
 std::string scene_of(const SamplingOptions& options, const std::vector<DrivenModel>& models,
                      const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain) {
   std::string scene = "seed " + std::to_string(options.seed) + "\n";
@@ -81,7 +81,7 @@ SampleStore::SampleStore(const SamplingOptions& options, const std::vector<Drive
   try {
     store_ = std::make_unique<study::Store>(options.store, identity, study::StoreMode::run);
   } catch (const study::StoreError& error) {
-    if (error.helps().empty()) throw; // held by another process, or a file that cannot be written
+    if (error.helps().empty()) throw; // used by another process, or not writable
     store_ = std::make_unique<study::Store>(options.store, identity, study::StoreMode::restart);
   }
 }
@@ -94,8 +94,7 @@ long SampleStore::load(std::vector<VoyageSample>& samples) {
   long known = 0;
   for (const study::StoredSample& row : rows) {
     VoyageSample& sample = samples[static_cast<std::size_t>(known)];
-    if (row.values != sample.values || row.outcome.numbers.size() != k_numbers.size())
-      break; // a store that was changed: made again from here
+    if (row.values != sample.values || row.outcome.numbers.size() != k_numbers.size()) break; // changed store: recompute from here
     restore(row, sample);
     ++known;
   }

@@ -1,4 +1,4 @@
-// Samples of a voyage kept in a file, so that an assessment that was interrupted goes on (tools/study/store.h).
+// Stores samples of a voyage in a file, so that an interrupted assessment can continue (tools/study/store.h).
 #pragma once
 
 #include "tools/assess/samples.h"
@@ -8,14 +8,16 @@
 
 namespace steplap::assess {
 
+/// The file with the samples of one assessment.
 class SampleStore {
 public:
-  /// No file if the options name none. One of another assessment is replaced: its samples are of other models, records or values.
+  /// Opens the file named by the options, if any. A file of another assessment is replaced, because its samples belong to other models,
+  /// records or values.
   SampleStore(const SamplingOptions& options, const std::vector<DrivenModel>& models,
               const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain);
-  /// Fills the first samples with those that are there; returns how many.
+  /// Fills the first entries with stored samples. Returns their number.
   [[nodiscard]] long load(std::vector<VoyageSample>& samples);
-  /// Keeps samples from number `begin` (from 0) to before `end`.
+  /// Stores the samples with indices `begin` (from 0) to `end` − 1.
   void append(const std::vector<VoyageSample>& samples, long begin, long end);
 
 private:

@@ -19,7 +19,7 @@ namespace {
 
 struct Runners {
   std::vector<std::unique_ptr<VoyageRunner>> of_models;
-  const std::vector<std::vector<DriveHistory>>& histories; ///< per model, of the events
+  const std::vector<std::vector<DriveHistory>>& histories; ///< indexed by model and event
   const std::vector<SharedFriction>& shared;
 };
 
@@ -31,7 +31,7 @@ Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std
   return runners;
 }
 
-// Judges shared frictions event by event, as far as all models came.
+// Evaluates shared frictions event by event, as far as all models were simulated.
 void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
   std::size_t events = outcomes.front().events_made;
   for (const VoyageOutcome& outcome : outcomes) events = std::min(events, outcome.events_made);
@@ -71,7 +71,7 @@ Probability probability(long harmful, long unknown, long runs) {
   return p;
 }
 
-// Places in the order of the values; ties share their mean.
+// Ranks in the order of the values; equal values share their mean rank.
 std::vector<double> ranks_of(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -95,7 +95,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-// Samples as they come: those that are there without a gap are kept, each half second.
+// Collects samples as they finish. The complete initial sequence is stored every half second.
 class VoyageCourse {
 public:
   VoyageCourse(const SamplingOptions& options, SampleStore& store, std::vector<VoyageSample>& samples)
@@ -103,15 +103,15 @@ public:
     if (options_.progress) options_.progress(done_, options_.samples);
   }
 
-  /// So many from the first on are there.
+  /// number of samples in the complete initial sequence
   [[nodiscard]] long done() const { return done_; }
 
-  /// On any thread: makes sample n, unless it is time to stop. What goes wrong is told by end().
+  /// Computes sample n on any thread, unless stopped. Errors are reported by end().
   void make(long n, const std::function<void(VoyageSample&, const std::function<bool()>&)>& run) {
     try {
       if (should_stop()) return;
       run(samples_[static_cast<std::size_t>(n)], [this] { return should_stop(); });
-      if (!should_stop()) add(n); // else it may be cut off
+      if (!should_stop()) add(n); // otherwise it may be incomplete
     } catch (...) {
       const std::scoped_lock lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
@@ -119,7 +119,7 @@ public:
     }
   }
 
-  /// Keeps what is left to keep. Throws what went wrong, or NumericalFailure if there was a stop.
+  /// Stores the rest. Throws errors of the threads, or NumericalFailure if stopped.
   void end() {
     keep();
     if (failure_) std::rethrow_exception(failure_);
@@ -157,11 +157,11 @@ private:
   const SamplingOptions& options_;
   SampleStore& store_;
   std::vector<VoyageSample>& samples_;
-  std::mutex mutex_; ///< of all below, while threads make samples
+  std::mutex mutex_; ///< protects everything below while threads run
   std::vector<bool> is_made_;
   long done_, kept_;
   Clock::time_point last_ = Clock::now();
-  std::string why_; ///< it was stopped
+  std::string why_; ///< reason of a stop
   std::exception_ptr failure_;
   std::atomic<bool> is_ended_ = false;
 };
@@ -185,9 +185,9 @@ std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);
   VoyageCourse course(options, store, samples);
-  std::vector<Runners> teams; // compiled by one thread: models are read and completed here
+  std::vector<Runners> teams; // compiled by one thread, because models are read and completed here
   for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, shared, uncertain));
-    // Without batches, at whose ends threads would wait for the longest voyage.
+    // Samples are distributed singly, so that threads do not wait for the longest voyage of a batch.
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
   for (long n = course.done(); n < options.samples; ++n)
     course.make(n, [&](VoyageSample& sample, const std::function<bool()>& stop) {
@@ -211,7 +211,7 @@ Probability slip_probability(const std::vector<VoyageSample>& samples, std::size
 Probability damage_probability(const std::vector<VoyageSample>& samples) {
   long damaged = 0, unknown = 0;
   for (const VoyageSample& sample : samples) {
-    if (is_damaged(sample.summary)) ++damaged; // whatever came after
+    if (is_damaged(sample.summary)) ++damaged; // damage remains damage, whatever happened afterwards
     else if (!sample.summary.unknown.empty() || sample.summary.acceptance == Verdict::open || sample.summary.planes != Verdict::hold)
       ++unknown;
   }

@@ -1,7 +1,7 @@
-// The voyage under all that is uncertain: samples of the numbers through all events of all models, on all threads.
+// Simulates the voyage for samples of all uncertain numbers, in parallel threads.
 //
-// Sample n of a seed is the same on every machine and for every number of threads. Samples that were made are kept in a store
-// (tools/study/store.h), so that an assessment that was interrupted goes on where it was.
+// Sample n of a seed is the same on every computer and for every number of threads. Finished samples are stored in a file
+// (tools/study/store.h), so that an interrupted assessment can continue.
 #pragma once
 
 #include "tools/assess/shared_friction.h"
@@ -14,48 +14,48 @@
 
 namespace steplap::assess {
 
-/// A voyage with values of its own.
+/// A voyage with one set of sampled values.
 struct VoyageSample {
   std::vector<double> values; ///< of the uncertain numbers
-  VoyageSummary summary;      ///< of all models
+  VoyageSummary summary;      ///< worst over all models
   std::vector<char> slips;    ///< per event of model 0, then of model 1, …
 };
 
-/// How samples are made.
+/// Options of the sampling.
 struct SamplingOptions {
   long samples = 200;
   std::uint64_t seed = 1;
-  int threads = 0;   ///< 0: OMP_NUM_THREADS, else as many as there are processors
-  std::string store; ///< file that keeps them; "": none
+  int threads = 0;   ///< 0: OMP_NUM_THREADS if set, otherwise the number of processors
+  std::string store; ///< name of the sample file; "": none
   std::function<void(long done, long all)> progress;
-  std::function<std::string()> stop; ///< what it says is why to stop; ""
+  std::function<std::string()> stop; ///< polled; a text other than "" stops the work and becomes the reason
 };
 
-/// A probability with its interval (Clopper and Pearson, 95 %): runs of which nothing is known count as harmless for its low end and
-/// as harmful for its high end.
+/// A probability with its 95 % confidence interval (Clopper and Pearson). Runs without a result count as harmless for the lower bound and
+/// as harmful for the upper bound.
 struct Probability {
   double value = 0.0, low = 0.0, high = 1.0;
   long runs = 0, unknown = 0;
 };
 
-/// `shared`: frictions that the models share. Throws NumericalFailure if it was stopped.
+/// Simulates the samples. `shared` are frictions shared by models of two planes. Throws NumericalFailure if stopped.
 [[nodiscard]] std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
                                                        const std::vector<std::vector<DriveHistory>>& histories,
                                                        const UncertainValues& uncertain, const SamplingOptions& options,
                                                        const std::vector<SharedFriction>& shared = {});
-/// One voyage with these values; of all models.
+/// Simulates one voyage in all models with these values.
 [[nodiscard]] VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
                                        const UncertainValues& uncertain, const std::vector<double>& values,
                                        const std::vector<SharedFriction>& shared = {});
 
-/// Of a joint to slip in an event of a model.
+/// Returns the probability that a joint slips in this event of this model.
 [[nodiscard]] Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event,
                                            std::size_t events);
-/// Of a joint to slip, or an acceptance not to be met, in the voyage.
+/// Returns the probability that in the voyage a joint slips or an acceptance is not met.
 [[nodiscard]] Probability damage_probability(const std::vector<VoyageSample>& samples);
-/// Does the summary tell of damage?
+/// Returns true if the summary contains damage: a slip or an acceptance that is not met.
 [[nodiscard]] bool is_damaged(const VoyageSummary& summary);
-/// Of each uncertain number: the square of its rank correlation with the least margin, 0 to 1. Empty without samples.
+/// Returns for each uncertain number the square of its rank correlation with the smallest margin, 0 to 1. Empty without samples.
 [[nodiscard]] std::vector<double> shares_of(const std::vector<VoyageSample>& samples);
 
 } // namespace steplap::assess

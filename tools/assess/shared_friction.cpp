@@ -23,10 +23,11 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_one_line = 1e-6;      // of directions of contacts whose friction is summed
-constexpr double k_same_load = 0.02;     // of normal forces of one contact in two models, which are made independently
-constexpr double k_same_gravity = 1e-6;  // of its sizes
-constexpr double k_part_of_other = 0.05; // of mu N: with less across, the capacity along falls by 0.1 %, and one plane decides alone
+constexpr double k_one_line = 1e-6;      // tolerance for the directions of contacts whose friction is summed
+constexpr double k_same_load = 0.02;     // tolerance for normal forces of one contact in two independent models
+constexpr double k_same_gravity = 1e-6;  // tolerance for the magnitude of gravity
+constexpr double k_part_of_other = 0.05; // of mu N; a smaller transverse component reduces the capacity by less than 0.1 %, and one plane
+                                         // decides alone
 
 const std::string& key_of(const CoulombStick& stick) { return stick.shared_friction.empty() ? stick.name : stick.shared_friction; }
 
@@ -35,7 +36,7 @@ struct Compiled {
   Model whole;
   std::unique_ptr<System> system;
   explicit Compiled(const DrivenModel& model) : whole(completed(model.given)), system(compile(whole)) {
-    static_cast<void>(check_presentation(whole, *system)); // limits in the units of their channels
+    static_cast<void>(check_presentation(whole, *system)); // converts limits to the units of their channels
   }
 };
 
@@ -46,17 +47,17 @@ Vec2 normal_of(const System& system, const std::string& element) {
     const RowSpec& foot = friction->feet.front();
     if (foot.kind == MeasureKind::slide) return rotated(foot.direction, system.bodies[foot.b].pose.z());
   }
-  return Vec2::Zero(); // a wheel's, or one that is gone
+  return Vec2::Zero(); // a wheel or a removed element
 }
 
-// Letter of the record's axis along a direction of the model; ' ' where there is none.
+// Returns the letter of the record's axis along a direction of the model; ' ' if there is none.
 char letter_along(const DrivenModel& model, const Vec2& direction) {
   const Vec2 x = rotated(Vec2(1.0, 0.0), model.marker_angle);
   const std::string& axis = std::abs(x.dot(direction)) >= std::abs(cross(x, direction)) ? model.recorder.x : model.recorder.y;
   return axis == "none" ? ' ' : axis.back();
 }
 
-// Bodies that an element names, itself or by markers; the ground with a single one.
+// Returns the bodies that an element names directly or by markers; adds the ground if there is only one.
 std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::string, std::string>& body_of_marker) {
   std::set<std::string> bodies;
   const auto add = [&](const std::string& name) {
@@ -73,14 +74,14 @@ std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::s
   return bodies;
 }
 
-// Loads and drives hold nothing.
+// Returns true for loads and drives, which hold nothing.
 bool is_action_from_outside(const Element& element) {
   return dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element) ||
          dynamic_cast<const PrescribedMotion*>(&element);
 }
 
-// Elements besides `own` by which the load on these frictions is held. The load is all that hangs together with the body that rests on
-// the other one, as far as neither that nor the driven body nor the ground.
+// Returns the elements, other than `own`, that hold the load on these frictions. The load is the set of bodies connected with the body on
+// the friction, up to the supporting body, the driven body and the ground.
 std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& compiled, const std::vector<std::string>& own) {
   const Model& whole = compiled.whole;
   std::map<std::string, std::string> body_of_marker;
@@ -133,7 +134,7 @@ std::vector<PlaneOfFriction::Limit> limits_of(const Compiled& compiled, const st
   return limits;
 }
 
-using Sticks = std::map<std::string, std::vector<std::string>>; ///< names of elements by the name of the friction
+using Sticks = std::map<std::string, std::vector<std::string>>; ///< names of elements by name of the friction
 
 Sticks sticks_of(const DrivenModel& model) {
   Sticks sticks;
@@ -164,7 +165,7 @@ std::optional<PlaneOfFriction> plane_of(std::size_t index, const DrivenModel& mo
   return plane;
 }
 
-// Adds the elements to those that are traced; returns their places there.
+// Adds the elements to the traced ones and returns their indices there.
 std::vector<std::size_t> trace(DrivenModel& model, const std::vector<std::string>& elements) {
   std::vector<std::size_t> places;
   for (const std::string& element : elements) {
@@ -202,26 +203,26 @@ std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& mode
   return found;
 }
 
-// --- an event ---------------------------------------------------------------------------------------
+// --- evaluation of an event -------------------------------------------------------------------------
 
 struct SharedFrictionCourse::Instant {
-  std::array<double, 2> force{}; ///< N, of the models
-  std::array<double, 2> pull{};  ///< m/s², acceleration that friction has to give to what lies on it
+  std::array<double, 2> force{}; ///< in each model, N
+  std::array<double, 2> pull{};  ///< acceleration that friction must give to the load, m/s²
   std::array<bool, 2> sticks{};
-  double normal = 0.0; ///< N, of both planes
+  double normal = 0.0; ///< in both planes together, N
 };
 
 namespace {
 
 double at(const std::vector<double>& values, double place) {
-  if (values.empty() || place >= static_cast<double>(values.size() - 1)) return 0.0; // the record is over
+  if (values.empty() || place >= static_cast<double>(values.size() - 1)) return 0.0; // after the end of the record
   const auto i = static_cast<std::size_t>(place);
   return values[i] + (place - static_cast<double>(i)) * (values[i + 1] - values[i]);
 }
 
 template <class T> T last_or(const std::vector<T>& values, std::size_t i) { return values[std::min(i, values.size() - 1)]; }
 
-// The sum of the frictions of a plane.
+// Returns the sum of the frictions of a plane.
 FrictionTrace sum_of(const PlaneOfFriction& plane, const std::vector<FrictionTrace>& traces) {
   FrictionTrace sum = traces[plane.traces.front()];
   for (std::size_t k = 1; k < plane.traces.size(); ++k) {
@@ -281,7 +282,7 @@ std::string SharedFrictionCourse::disagreement_at_rest() const {
 
 void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std::array<FrictionTrace, 2>& traces, bool goes_on,
                                  SharedPassage& passage) {
-  // T = m a of what holds, by least squares; and which way T acts for a positive a.
+  // Fits T = m a over sticking intervals by least squares, including the sign of T for positive a.
   double mass_sum = 0.0, squares = 0.0;
   std::array<double, 2> sign{};
   for (std::size_t p = 0; p < 2; ++p) {
@@ -321,7 +322,7 @@ void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std
 SharedPassage SharedFrictionCourse::pass(const std::array<FrictionTrace, 2>& traces, const std::array<const DriveHistory*, 2>& histories) {
   SharedPassage passage;
   passage.slid_total = slid_total_;
-  if (traces[0].force.empty() || traces[1].force.empty()) return passage; // a run that was not made tells why itself
+  if (traces[0].force.empty() || traces[1].force.empty()) return passage; // a failed run reports its reason itself
   if (!at_rest_) at_rest_ = {traces[0].normal.front(), traces[1].normal.front()};
   passage.disagreement = disagreement_at_rest();
   if (!passage.disagreement.empty()) return passage;

@@ -1,5 +1,5 @@
-// What the conditioned signal of a record comes to before it is searched for shocks: how far each axis goes, and whether it begins or ends
-// within a shock.
+// Inspects the conditioned signal of a record before the search for shocks: largest value of each axis, and whether the record begins or
+// ends during a shock.
 #pragma once
 
 #include "transformer/recorder/conditioner.h"
@@ -9,20 +9,22 @@
 
 namespace steplap::assess {
 
+/// Receives the conditioned signal.
 class SignalWatch : public SignalSink {
 public:
-  /// `level`, m/s²: a segment whose first or last samples are beyond it begins or ends within a shock.
+  /// A segment begins or ends during a shock if its first or last samples exceed `level`, m/s².
   explicit SignalWatch(double level) : level_(level) {}
 
-  /// Where a segment begins or ends within a shock.
+  /// A begin or end of a segment during a shock.
   struct End {
     bool is_begin = true;
     double t = 0.0, value = 0.0; ///< s; m/s²
     char axis = 'x';
-    std::size_t count = 0; ///< of such ends in the record; 0: there is none
+    std::size_t count = 0; ///< number of such ends in the record; 0: none
   };
+  /// Returns the first begin or end during a shock, with their number.
   [[nodiscard]] const End& first_end() const { return end_; }
-  /// m/s² without sign, of each axis, filtered.
+  /// Returns the largest magnitude of each axis, filtered, m/s².
   [[nodiscard]] const std::array<double, 3>& greatest() const { return greatest_; }
 
   void begin(const RecordLayout& layout, double rate) override;
@@ -32,7 +34,7 @@ public:
 
 private:
   void note(bool is_begin, double t, std::size_t axis, double value);
-  static constexpr std::size_t k_looked_at = 3; // samples at an end: a single one may be noise that crosses zero
+  static constexpr std::size_t k_looked_at = 3; // samples inspected at an end; a single one may be a zero crossing
   double level_;
   std::size_t axes_ = 0, samples_ = 0;
   std::array<char, 3> letters_{};

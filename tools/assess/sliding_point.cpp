@@ -7,7 +7,7 @@
 
 namespace steplap::assess {
 
-// A load that goes straight from one to another.
+// A load that changes linearly from one value to another.
 struct SlidingPoint::Piece {
   const PointLoad &begin, &end;
   double duration;
@@ -21,7 +21,7 @@ SlidingPoint::SlidingPoint(double mass, double mu_static, double mu_kinetic, dou
     : mass_(mass), mu_static_(mu_static), mu_kinetic_(mu_kinetic), largest_step_(largest_step), velocity_(velocity),
       rests_(velocity == Vec2::Zero()) {}
 
-// The first time from `from` on after which |D| is larger than mu_s N; infinity if it is not in this piece.
+// Returns the first time after `from` at which |D| exceeds mu_s N; infinity if there is none in this piece.
 double SlidingPoint::onset(const Piece& piece, double from) const {
   const PointLoad load = piece.at(from);
   const Vec2 rate = (piece.end.drive - piece.begin.drive) / piece.duration;
@@ -47,9 +47,9 @@ std::optional<double> SlidingPoint::time_to_stop(const PointLoad& load) const {
   return mass_ * (load.drive.dot(velocity_) + c * velocity_.norm()) / ((c - d) * (c + d));
 }
 
-// A slow point that is pulled across turns fast: its direction turns at |v × D| / (m v²).
+// A slow point under a transverse force changes direction quickly, at the rate |v × D| / (m v²).
 double SlidingPoint::step_for(const PointLoad& load) const {
-  constexpr double k_turn = 0.03, k_least = 1e-4; // rad in a step; of the largest step, as a point that reverses has no direction
+  constexpr double k_turn = 0.03, k_least = 1e-4; // rad per step; of the largest step, because a reversing point has no direction
   const double turning = std::abs(cross(velocity_, load.drive)), square = mass_ * velocity_.squaredNorm();
   if (!(turning * largest_step_ > k_turn * square) || square == 0.0) return largest_step_;
   return std::max(k_least * largest_step_, k_turn * square / turning);

@@ -16,7 +16,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_beyond = -1e-3; // left of friction that has slid on the way: how far beyond is not measured
+constexpr double k_beyond = -1e-3; // reserve of friction that has slid on the way; the amount beyond the limit is not measured
 
 int channel_index(const System& system, const std::string& name) {
   for (std::size_t i = 0; i < system.channels.size(); ++i)
@@ -68,7 +68,7 @@ void StaticMachine::find_watches() {
     if (dynamic_cast<const StepLapJoint*>(entry.element.get())) {
       step_lap.insert(name);
       const int usage = channel_index(*system_, name + ".u");
-      if (usage < 0) continue; // it holds whatever it takes
+      if (usage < 0) continue; // it holds any load
       joints_.push_back(name);
       add(LimitKind::slips, name, usage, -1);
       continue;
@@ -103,7 +103,7 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
 }
 
 Probe StaticMachine::probe(const State& start, const Vec2& pull) {
-  struct Restored { // whatever happens, the machine is as it was
+  struct Restored { // restores the machine in every case
     System& system;
     Vec2 gravity;
     ~Restored() { system.gravity = gravity; }

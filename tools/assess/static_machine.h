@@ -1,12 +1,12 @@
-// A machine on a vehicle that accelerates steadily, as statics sees it: at rest under apparent gravity g + p, p the pull.
+// Statics of a machine on a vehicle with constant acceleration: equilibrium under apparent gravity g + p, where p is called the pull.
 //
-// On a vehicle with constant acceleration a, in axes that move with it, every body of mass m is pulled by −m a beside its weight:
-// Newton's second law for the rest in these axes is statics with gravity g − a. So the model's vector of gravity is changed and
-// the drives of the vehicle are held. What springs, contacts and joints do depends on relative places alone and stays as it
-// is. The vehicle's rotation and what it does before its acceleration is steady are not part of it.
+// In axes that move with a vehicle of constant acceleration a, every body of mass m has the additional force −m a. Equilibrium in these
+// axes is statics with gravity g − a, so p = −a. The model's gravity vector is changed and the drives of the vehicle are held. Springs,
+// contacts and joints depend on relative positions only and are unchanged. Rotation of the vehicle and transients before the acceleration
+// is constant are not considered.
 //
-// Step-lap joints that stick exactly are taken as monitors: they hold whatever they take and tell what share of their capacity that
-// is, so that the margin of a joint that would slip is known, too.
+// Step-lap joints with exact sticking are replaced by monitors: they hold any load and report their utilisation. The margin is then known
+// even for a joint that would slip.
 #pragma once
 
 #include "mbd/rest/equilibrium.h"
@@ -18,51 +18,54 @@
 
 namespace steplap::assess {
 
-/// What a growing pull may do.
+/// Kinds of limits that a growing pull can reach.
 enum class LimitKind {
-  slips,  ///< a joint that friction holds in the plane: it does not hold any more
-  slides, ///< friction on a line or about a pin gives way; what it held may come to rest elsewhere
-  lifts,  ///< a contact that pressed at rest opens
-  ends    ///< no rest near the one before
+  slips,  ///< friction of a joint in the plane is exceeded
+  slides, ///< friction along a line or about a pin is exceeded; the body may come to rest elsewhere
+  lifts,  ///< a contact that was pressed at rest opens
+  ends    ///< no equilibrium exists near the previous one
 };
-/// "slips", "slides", "lifts" or "ends".
+/// Returns "slips", "slides", "lifts" or "ends".
 [[nodiscard]] const char* name_of(LimitKind kind);
 
-/// Something that is looked at while a pull grows.
+/// A possible limit that is monitored while a pull grows.
 struct Watch {
   LimitKind kind = LimitKind::slips;
   std::string element;
 };
 
-/// A rest under a pull, or why there is none.
+/// An equilibrium under a pull, or the reason why there is none.
 struct Probe {
   std::optional<Equilibrium> rest;
-  std::string failure;        ///< where there is no rest: a sentence
-  bool is_unknown = false;    ///< no rest was found, but that there is none is not said
-  std::vector<double> left;   ///< of each watch: positive while it holds, zero at its limit; in linear statics convex or linear in the pull
+  std::string failure;        ///< sentence, if there is no equilibrium
+  bool is_unknown = false;    ///< true if the search failed without showing that no equilibrium exists
+  std::vector<double> left;   ///< reserve of each watch: positive below its limit, zero at it; for linear statics convex or linear in the
+                              ///< pull
   std::vector<double> values; ///< of System::channels
 };
 
+/// A model prepared for statics under different pulls.
 class StaticMachine {
 public:
-  /// Finds the rest under gravity alone. Throws NumericalFailure if there is none, saying why.
+  /// Finds the equilibrium under gravity alone. Throws NumericalFailure with the reason if there is none.
   explicit StaticMachine(const LoadedModel& loaded);
 
   [[nodiscard]] const System& system() const { return *system_; }
-  [[nodiscard]] const Model& model() const { return model_; } ///< with joints as monitors
+  [[nodiscard]] const Model& model() const { return model_; } ///< the model with monitored joints
   [[nodiscard]] const Vec2& gravity() const { return gravity_; }
   [[nodiscard]] const Probe& at_rest() const { return at_rest_; }
   [[nodiscard]] const std::vector<Watch>& watches() const { return watches_; }
-  /// Step-lap joints that have friction to lose.
+  /// Returns the step-lap joints with finite friction capacity.
   [[nodiscard]] const std::vector<std::string>& joints() const { return joints_; }
 
-  /// The pull grows from zero on the machine at rest.
+  /// Increases the pull from zero, starting from the equilibrium under gravity alone.
   [[nodiscard]] Probe ramped(const Vec2& pull);
-  /// The same on the machine at rest under another pull.
+  /// Increases the pull from the equilibrium `before`, which belongs to another pull.
   [[nodiscard]] Probe ramped_from(const Probe& before, const Vec2& pull);
-  /// Friction on lines and about pins bears nothing, as after long vibration; joints that friction holds in the plane hold.
+  /// Finds the equilibrium if friction along lines and about pins carries nothing, as after long vibration. Friction of joints in the plane
+  /// holds.
   [[nodiscard]] Probe worked_loose(const Vec2& pull);
-  /// The value of a channel; not-a-number if there is none of that name.
+  /// Returns the value of a channel; NaN if there is none of that name.
   [[nodiscard]] double value(const Probe& probe, const std::string& channel) const;
 
 private:
@@ -75,8 +78,8 @@ private:
   Vec2 gravity_;
   Probe at_rest_;
   std::vector<Watch> watches_;
-  std::vector<int> channel_, friction_; ///< of each watch, or −1
-  std::vector<double> rest_gap_;        ///< of each watch, m
+  std::vector<int> channel_, friction_; ///< of each watch; −1: none
+  std::vector<double> rest_gap_;        ///< penetration of each watched contact at rest, m
   std::vector<std::string> joints_;
 };
 

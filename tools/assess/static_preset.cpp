@@ -12,10 +12,10 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_g = 9.81;   // m/s², as models have it: 1 g upwards then takes away the whole weight and no more
-constexpr double k_most = 1e4; // m/s²: more is a slip of the pen
+constexpr double k_g = 9.81;   // m/s², as in models: 1 g upwards then cancels exactly the weight
+constexpr double k_most = 1e4; // m/s²; larger values are mistakes
 
-// Along the axes and halfway between them.
+// Returns loads of size a along the axes and halfway between.
 std::vector<StaticLoad> all_round(double a) {
   const double half = a * std::sqrt(0.5);
   return {
@@ -30,7 +30,8 @@ std::vector<StaticLoad> road() {
           {"to the left", {-0.5 * k_g, 0.0}, "transverse"}};
 }
 
-// The largest of the table for each axis; the ship's heave lessens the weight, adds to it, or is not there.
+// Returns the loads of a sea transport: the largest value of the table for each axis; the ship's heave reduces the weight, increases it, or
+// is zero.
 std::vector<StaticLoad> sea() {
   constexpr double k_along = 3.8, k_across = 7.4, k_up = 9.2; // m/s²
   std::vector<StaticLoad> loads;

@@ -17,13 +17,13 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_close = 1e-6;      // of a margin: searched rests are not known closer
-constexpr double k_just_below = 1e-3; // of the first limit of a direction: where other ways to the load are asked
+constexpr double k_close = 1e-6;      // of a margin; accuracy of an equilibrium
+constexpr double k_just_below = 1e-3; // distance below the first limit of a direction, relative, at which the other ways are computed
 
-// Rests have places and forces; velocities and accelerations of a run are not among them.
+// Returns true for units of positions and forces. Velocities and accelerations have no meaning in an equilibrium.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
-// What rests under one load tell, as a run from the rest without acceleration to them would.
+// Returns the results of an equilibrium in the form of a run from the equilibrium without acceleration.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -43,7 +43,7 @@ RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   return result;
 }
 
-// Of one rest: criteria of elements and of the model.
+// Evaluates the criteria of elements and of the model in one equilibrium.
 std::vector<CriterionResult> judged(const StaticMachine& machine, const Probe& probe) {
   const RunResult result = as_run(machine, probe);
   const Model& model = machine.model();
@@ -72,7 +72,7 @@ std::string criterion_text(const CriterionResult& c, const std::string& begin) {
   return begin + ": " + c.text + " (" + what + (c.value ? " is " + number(*c.value, c.unit) : " has no value") + ")";
 }
 
-// One load, asked in several ways.
+// Computes one load in several ways.
 class CaseProof {
 public:
   CaseProof(StaticMachine& machine, const LoadedModel& loaded, const StaticLoad& load) : machine_(machine), loaded_(loaded) {
@@ -85,7 +85,7 @@ public:
     grown_ = a > 0.0 ? machine_.ramped(case_.load.pull) : machine_.at_rest();
     if (a > 0.0) follow(a);
     if (!grown_.rest) return std::move(case_);
-    case_.verdict = Verdict::hold; // until something speaks against it
+    case_.verdict = Verdict::hold; // until a check fails
     ways_.push_back(&grown_);
     ask_other_ways();
     collect();
@@ -101,7 +101,7 @@ private:
     case_.why = why;
   }
 
-  // What gives way first on the way to the load.
+  // Finds what gives way first while the load grows.
   void follow(double a) {
     const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
     if (!ray.limits.empty()) {
@@ -142,7 +142,7 @@ private:
       StaticJoint one{joint, std::numeric_limits<double>::infinity()};
       for (const Probe* way : ways_) {
         const double margin = machine_.value(*way, joint + ".margin");
-        if (!(margin >= one.margin)) one.margin = margin; // not-a-number is the worst
+        if (!(margin >= one.margin)) one.margin = margin; // NaN is the worst
       }
       case_.joints.push_back(one);
     }
@@ -180,7 +180,7 @@ private:
     }
   }
 
-  // Of a machine whose gravity is the apparent one.
+  // Computes tipping under the apparent gravity.
   void find_tipping() {
     if (!(case_.apparent.norm() > 0.0)) return;
     Model model = loaded_.model;
@@ -230,13 +230,13 @@ private:
   StaticCase case_;
 };
 
-// Just below its first limit, in the other ways.
+// Returns true if the machine also has an intact equilibrium when the pull grows from the opposite pull.
 bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
   const auto is_intact = [](const Probe& probe) {
     return probe.rest && std::all_of(probe.left.begin(), probe.left.end(), [](double left) { return left > 0.0; });
   };
   const Probe turned = machine.ramped(-pull);
-  if (!is_intact(turned)) return true; // what it would leave behind is not this machine's
+  if (!is_intact(turned)) return true; // the opposite load would change the machine
   return is_intact(machine.ramped_from(turned, pull));
 }
 

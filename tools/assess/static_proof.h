@@ -1,15 +1,15 @@
-// Static proof: does a machine stand the constant accelerations that a standard asks for, and which one is too much in each direction?
+// Static proof: tells whether a machine withstands the constant accelerations required by a standard, and the limit in each direction.
 //
-// The machine is at rest on its vehicle; the pull of each load (static_preset.h) is laid over its gravity (static_machine.h). With friction
-// there are many rests under one load, and which one a machine comes to hangs on what was before. So each load is asked in three ways:
-// it grows from nothing; it grows from the same load turned round; friction between bodies bears nothing, as after
-// hours of vibration (if there is a rest then: what needs friction to hold is taken to have it, which is said). Only what all of them
-// bear is proven: where they disagree the verdict is open, and margins and reactions are the worst of them.
+// The machine is at rest on its vehicle, and the pull of each load (static_preset.h) is added to its gravity (static_machine.h). With
+// friction one load can have many equilibria, depending on the history. Each load is therefore computed in three ways: it grows from zero;
+// it grows from the opposite load; friction between bodies carries nothing, as after hours of vibration (if an equilibrium then exists;
+// otherwise friction is assumed to hold, which is reported). A load is proven only if all ways give an equilibrium. If they disagree the
+// verdict is open. Margins and reactions are the worst of all ways.
 //
-//   hold    there is a rest in all of these ways, and all criteria that a rest can answer are met
-//   reject  the machine leaves its rest below the load, and it is known by what; or a criterion is not met
-//   open    anything else: no rest was found and nothing explains it, nothing holds a body where it rests, the ways disagree, a margin
-//           lies within rounding of its limit
+//   hold    all ways have an equilibrium, and all criteria that can be evaluated at rest are met
+//   reject  the machine leaves its equilibrium below the load for a known reason, or a criterion is not met
+//   open    otherwise: no equilibrium was found without an explanation, a body at rest is held by nothing, the ways disagree, or
+//           a margin is within rounding of its limit
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -21,78 +21,82 @@
 
 namespace steplap::assess {
 
-/// What something has to bear, and may.
+/// A reaction with its limit.
 struct StaticReaction {
-  std::string name;   ///< of the channel
-  double value = 0.0; ///< in `unit`, that of the way in which it is largest
+  std::string name;   ///< name of the channel
+  double value = 0.0; ///< in `unit`; of the way in which it is largest
   std::string unit;
-  std::optional<double> allowed; ///< by a criterion of the model that bounds its size
+  std::optional<double> allowed; ///< limit, if a criterion of the model limits the magnitude
 };
 
-/// A contact that pressed at rest.
+/// A contact that was pressed at rest.
 struct StaticFoot {
   std::string name;
-  bool lifts = false;  ///< in any of the ways
-  double force = 0.0;  ///< N, when the load has grown from nothing
-  double height = 0.0; ///< m, the largest
+  bool lifts = false;  ///< true if it lifts in any of the ways
+  double force = 0.0;  ///< N, after the load has grown from zero
+  double height = 0.0; ///< largest gap, m
 };
 
-/// A step-lap joint by itself.
+/// Result for a step-lap joint.
 struct StaticJoint {
   std::string name;
-  double margin = 0.0; ///< capacity over demand, the least of the ways; infinite without load
+  double margin = 0.0; ///< capacity over demand, smallest of all ways; infinite without load
 };
 
-/// What became of one load.
+/// Result for one load.
 struct StaticCase {
   StaticLoad load;
-  Vec2 apparent = Vec2::Zero();    ///< gravity and pull, m/s²
-  Verdict verdict = Verdict::open; ///< never "inspect": what is not met is not proven
-  std::string why;                 ///< a sentence, where it is not "hold"
-  std::string first;               ///< what gives way first while the pull grows, and where; "" if nothing does
-  std::vector<StaticJoint> joints; ///< empty without a rest
+  Vec2 apparent = Vec2::Zero();    ///< gravity plus pull, m/s²
+  Verdict verdict = Verdict::open; ///< never "inspect": a limit that is not met is not proven
+  std::string why;                 ///< reason if not "hold", a sentence
+  std::string first;               ///< first limit that the growing pull reaches, with its acceleration; "" if none
+  std::vector<StaticJoint> joints; ///< empty if there is no equilibrium
   std::vector<StaticFoot> feet;
-  std::vector<std::string> slid; ///< friction that slid to where it holds
+  std::vector<std::string> slid; ///< friction elements that slid to a new equilibrium
   std::vector<StaticReaction> reactions;
-  std::vector<CriterionResult> criteria; ///< that a rest can answer
+  std::vector<CriterionResult> criteria; ///< criteria that can be evaluated at rest
   std::vector<Tipping> tipping;
-  double moved = 0.0; ///< m, the furthest, from the rest without acceleration
+  double moved = 0.0; ///< largest displacement from the equilibrium without acceleration, m
   std::vector<std::string> remarks;
 };
 
-/// What a pull in one direction does.
+/// Result for a pull in one direction.
 struct StaticDirection {
-  double angle = 0.0; ///< rad, counter-clockwise from x, of the pull
+  double angle = 0.0; ///< direction of the pull, rad, counter-clockwise from x
   StaticRay ray;
-  bool is_unique = true; ///< other ways to the load bear what is just below its first limit, too
+  bool is_unique = true; ///< true if the other ways also have an equilibrium just below the first limit
 };
 
+/// Results of a static proof for one model.
 struct StaticProof {
   std::string model, file;
-  std::vector<std::string> overrides;   ///< "path=value", laid over the file
+  std::vector<std::string> overrides;   ///< "path=value", applied to the file
   std::vector<std::string> assumptions; ///< sentences
   Plane plane = Plane::lengthwise;
   StaticPreset preset;
   Vec2 gravity = Vec2::Zero();
   std::vector<StaticCase> cases;
   std::vector<StaticDirection> polar;
-  double largest = 0.0;             ///< m/s², beyond which directions are not followed
-  Verdict verdict = Verdict::open;  ///< the worst of the cases
+  double largest = 0.0;             ///< largest pull that was examined in each direction, m/s²
+  Verdict verdict = Verdict::open;  ///< worst of the cases
   std::string reason;               ///< a sentence
-  std::vector<std::string> unasked; ///< criteria of the model that a rest cannot answer
+  std::vector<std::string> unasked; ///< criteria of the model that cannot be evaluated at rest
 };
 
+/// Options of a static proof.
 struct StaticProofOptions {
   Plane plane = Plane::lengthwise;
   int directions = 72;
   double largest = 98.1;             ///< m/s²
-  std::function<std::string()> stop; ///< asked between directions; what it says is why the work ends there
+  std::function<std::string()> stop; ///< polled between directions; a text other than "" stops the work and becomes the reason
 };
 
-/// Throws NumericalFailure if the machine has no rest without acceleration, or if it was stopped.
+/// Runs the proof. Throws NumericalFailure if the machine has no equilibrium without acceleration, or if stopped.
 [[nodiscard]] StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& preset, const StaticProofOptions& options);
 
-/// "tips over", "slides away" or "" of the limit that a ray ends at: by what is at its limit there.
+/// Returns text for entry `limit` of ray.limits: which element slips, slides or lifts. If this entry is the loss of equilibrium (`ends`),
+/// the text names the limits that were reached at the same acceleration, such as "'foot' slides away" or "the machine tips over as 'foot'
+/// lifts".
 [[nodiscard]] std::string limit_words(const StaticRay& ray, std::size_t limit);
 
 } // namespace steplap::assess

@@ -7,10 +7,10 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_first_step = 1.0 / 16.0; // of the machine's own gravity, or of the largest pull without any
+constexpr double k_first_step = 1.0 / 16.0; // of the machine's gravity, or of the largest pull if there is no gravity
 constexpr double k_growth = 1.3;
-constexpr double k_width = 1e-6;    // of the acceleration: how closely a limit is closed in on
-constexpr double k_at_limit = 1e-4; // of what a watch has left at rest: hundred times what is left at the end of such an interval
+constexpr double k_width = 1e-6;    // of the acceleration; accuracy of a limit
+constexpr double k_at_limit = 1e-4; // of the reserve at rest; a hundred times the reserve at the end of an interval of width k_width
 constexpr int k_most_probes = 80;
 
 struct Point {
@@ -54,13 +54,13 @@ private:
     found_.limits.push_back({watch.kind, watch.element, "'" + watch.element + "' " + name_of(watch.kind), a, error});
   }
 
-  // Where the straight line through what w had left at two points says that it has nothing left.
+  // Returns the acceleration at which the linearly extrapolated reserve of watch w is zero.
   [[nodiscard]] static double foreseen(const Point& before, const Point& low, std::size_t w) {
     const double slope = (low.probe.left[w] - before.probe.left[w]) / (low.a - before.a);
     return slope < 0.0 ? low.a - low.probe.left[w] / slope : low.a - 1.0;
   }
 
-  // The first place where the watches still to come, or w alone, are foreseen to be at their limits.
+  // Returns the smallest predicted limit of the remaining watches, or that of w only.
   [[nodiscard]] double foreseen(const Point& before, const Point& low, std::optional<std::size_t> only) const {
     double first = low.a - 1.0;
     for (std::size_t w = 0; w < is_reached_.size(); ++w) {
@@ -71,7 +71,7 @@ private:
     return first;
   }
 
-  // Closes in on where `is_good` ends, from a good point to a bad one.
+  // Bisects between a point at which `is_good` is true and one at which it is false.
   template <class IsGood> void close_in(Point& low, Point& high, std::optional<std::size_t> only, const IsGood& is_good) {
     Point before = low;
     for (int i = 0; i < k_most_probes; ++i) {
@@ -93,7 +93,7 @@ private:
     }
   }
 
-  // Limits that watches reach between two points of rest.
+  // Locates limits of watches between two equilibria.
   void look_between(const Point& from, const Point& to) {
     for (std::size_t w = 0; w < is_reached_.size(); ++w) {
       if (is_reached_[w] != 0 || to.probe.left[w] > 0.0) continue;

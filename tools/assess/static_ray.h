@@ -1,34 +1,37 @@
-// A pull that grows in one direction until the machine leaves its rest: what gives way, and at which acceleration.
+// Increases a pull in one direction until the machine leaves its equilibrium, and finds what gives way at which acceleration.
 //
-// The pull grows by steps, each a tenth to a third of what it is. What a watch has left (static_machine.h) at both ends of a step tells whether it
-// reached its limit within; there it is closed in on. Below the first limit of a machine whose springs and contacts are linear its
-// rest moves in a straight line with the pull: contacts press with forces linear in it, and of friction what is in use, the gauge of a wrench
-// linear in it over a convex set, is convex. A watch that has something left at both ends of a step then has in between, so
-// that the first limit is not missed. Beyond it the machine is another one (a foot is up, a floor slides), and a limit that is reached and left
-// within one step could be: these are given as what a growing pull was seen to reach.
+// The pull grows in steps of 10 % to 33 % of its value. The reserve of each watch (static_machine.h) at both ends of a step shows whether
+// it reaches its limit within the step; the limit is then located by bisection.
+//
+// The first limit cannot be missed if springs and contacts are linear. The equilibrium is then linear in the pull, contact forces are
+// linear, and the utilisation of friction is convex (the gauge of a convex set, applied to a wrench that is linear in the pull). A watch
+// with a reserve at both ends of a step therefore has one everywhere between. Beyond the first limit the system changes (a foot has lifted,
+// a floor slides). A limit that is reached and left again within one step could be missed there, so later limits are only those that were
+// observed.
 #pragma once
 
 #include "tools/assess/static_machine.h"
 
 namespace steplap::assess {
 
-/// Where something gives way.
+/// A limit that the growing pull reaches.
 struct StaticLimit {
   LimitKind kind = LimitKind::ends;
-  std::string element;       ///< "" of an end
-  std::string text;          ///< "'front joint' slips"; of an end what the search says
+  std::string element;       ///< "" if the kind is `ends`
+  std::string text;          ///< "'front joint' slips"; for `ends` the message of the equilibrium search
   double acceleration = 0.0; ///< m/s²
-  double error = 0.0;        ///< half the interval in which it lies, m/s²
+  double error = 0.0;        ///< half the width of the interval that contains it, m/s²
 };
 
-/// What a growing pull does.
+/// Limits along one direction of pull.
 struct StaticRay {
-  std::vector<StaticLimit> limits; ///< by acceleration
-  bool is_explained = true;        ///< false: it ends, but nothing gave way before, or the search does not know why
-  double largest = 0.0;            ///< how far the pull grew, m/s²
+  std::vector<StaticLimit> limits; ///< ascending in acceleration
+  bool is_explained = true;        ///< false if equilibrium is lost although nothing gave way before, or if the search failed without a
+                                   ///< reason
+  double largest = 0.0;            ///< largest pull with an equilibrium, m/s²
 };
 
-/// `direction` of length 1; `most`: m/s², where nothing has to be known any more.
+/// Increases the pull along `direction` (length 1) up to `most`, m/s².
 [[nodiscard]] StaticRay grow_pull(StaticMachine& machine, const Vec2& direction, double most);
 
 } // namespace steplap::assess

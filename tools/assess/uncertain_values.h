@@ -1,4 +1,4 @@
-// The uncertain numbers of all models as one joint law: a name stands for one number, in however many models.
+// Joint probability distribution of the uncertain numbers of all models. Equal names in several models denote one number.
 #pragma once
 
 #include "tools/assess/driven_model.h"
@@ -10,13 +10,13 @@
 
 namespace steplap::assess {
 
-/// A number of the voyage that is not known exactly.
+/// An uncertain number of the voyage.
 struct UncertainValue {
   std::string name, unit, source, source_text;
-  std::string path;     ///< the first one
-  double nominal = 0.0; ///< the models' own
+  std::string path;     ///< first path that it sets
+  double nominal = 0.0; ///< value in the models
   bool is_factor = false;
-  /// Where it goes: factor times it, or it.
+  /// A model field that receives the number, multiplied by `factor`.
   struct Setting {
     std::size_t model = 0;
     std::string path;
@@ -25,21 +25,25 @@ struct UncertainValue {
   std::vector<Setting> settings;
 };
 
-/// All of them, with their distributions. Uncertain values are taken to be independent.
+/// All uncertain numbers with their distributions, assumed to be independent.
 class UncertainValues {
 public:
-  /// Throws ModelError for a distribution that is none, and for one name with two laws.
+  /// Throws ModelError for an invalid distribution, or if one name has two different distributions.
   explicit UncertainValues(const std::vector<DrivenModel>& models);
 
   [[nodiscard]] const std::vector<UncertainValue>& values() const { return values_; }
   [[nodiscard]] bool empty() const { return values_.empty(); }
+  /// Returns the values in the models.
   [[nodiscard]] std::vector<double> nominal() const;
-  /// Values of sample `number` (from 1), always the same for a seed.
+  /// Returns the values of sample `number` (from 1), which depend on the seed only.
   [[nodiscard]] std::vector<double> draw(std::uint64_t seed, std::uint64_t number) const;
+  /// Returns the p-quantile of a value.
   [[nodiscard]] double quantile(std::size_t value, double p) const;
+  /// Returns a description of a value's distribution.
   [[nodiscard]] std::string law_text(std::size_t value) const;
-  /// Paths of a model that get values, and the numbers for them.
+  /// Returns the paths in a model that are set, in the order of numbers().
   [[nodiscard]] std::vector<std::string> paths(std::size_t model) const;
+  /// Returns the numbers for paths(model), computed from the values of all uncertain numbers.
   [[nodiscard]] std::vector<double> numbers(std::size_t model, const std::vector<double>& values) const;
 
 private:

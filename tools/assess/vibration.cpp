@@ -13,19 +13,20 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_release = 0.25;     // of the threshold: what is cut off an event, and tapered, is that small
-constexpr double k_floor = 0.03;       // of the threshold asked for: noise of a recorder, which nothing feels
+constexpr double k_release = 0.25;     // of the threshold; largest signal at the ends of an event, where it is tapered
+constexpr double k_floor = 0.03;       // of the requested threshold; noise of a recorder, without mechanical effect
 constexpr double k_same_margin = 0.02; // relative
-constexpr double k_same_share = 0.1;   // of the interval of the probability
-constexpr double k_same_length = 0.2;  // s: an event that grows by less than this, below a quarter of its threshold, is the same
+constexpr double k_same_share = 0.1;   // of the confidence interval of the probability
+constexpr double k_same_length = 0.2;  // s; an event that is extended by less, with signals below a quarter of its threshold, is regarded
+                                       // as equal
 constexpr double k_day = 86400.0;      // s
-constexpr double k_most_samples = 4e6; // of all events together: 200 MB
+constexpr double k_most_samples = 4e6; // for all events together: 200 MB
 const std::string k_too_long = "it lasts too long to be held in memory";
 constexpr int k_needed = 2, k_most_halvings = 12;
 
 double least_threshold(const RecordEvents& record) { return k_floor * record.rules.threshold; }
 
-/// What must not change.
+/// Results that must not change.
 struct Outcome {
   Decision decision = Decision::open;
   double margin = 0.0;
@@ -42,7 +43,7 @@ bool is_same(const Outcome& a, const Outcome& b) {
   return a.decision == b.decision && is_margin_same && is_share_same;
 }
 
-/// Events of all records at one threshold, with what came of them.
+/// Events of all records at one threshold, with the results of their simulation.
 struct Level {
   std::vector<std::vector<RecordedEvent>> events;
   Outcome outcome;
@@ -126,7 +127,7 @@ private:
     return sum;
   }
 
-  // Of each record what is beyond the threshold asked for, cut short.
+  // Takes the part of each record above the requested threshold, shortened.
   void load_greatest() {
     for (RecordEvents& record : a_.records) {
       EventRules rules = record.rules;
@@ -146,7 +147,7 @@ private:
     return level;
   }
 
-  // One voyage with the models' own values, and the samples.
+  // Simulates one voyage with nominal values, and the samples.
   Outcome outcome(int halvings) {
     const std::clock_t from = std::clock();
     if (options_.progress) options_.progress("threshold", halvings, k_most_halvings);
@@ -163,7 +164,7 @@ private:
     return now;
   }
 
-  // s that all models are run for.
+  // Returns the duration for which all models are simulated, s.
   double length() const {
     double events = 0.0, sum = 0.0;
     for (const RecordEvents& record : a_.records) events += length_of(record);
@@ -173,7 +174,7 @@ private:
 
   static double seconds_since(std::clock_t from) { return static_cast<double>(std::clock() - from) / CLOCKS_PER_SEC; }
 
-  // False: all thresholds are as low as they get.
+  // Returns false if all thresholds have reached their minimum.
   bool is_lower(int halvings) const {
     return std::any_of(a_.records.begin(), a_.records.end(), [&](const RecordEvents& record) {
       return !record.recording.layout.is_peaks && rules_at(record, used_, halvings).each != rules_at(record, used_, halvings - 1).each;
@@ -196,7 +197,7 @@ private:
   Assessment& a_;
   std::string used_;
   std::clock_t begin_;
-  double budget_ = 0.0, affordable_ = 0.0; ///< s of computing; s of events
+  double budget_ = 0.0, affordable_ = 0.0; ///< computing time, s; duration of events, s
 };
 
 } // namespace
@@ -210,7 +211,7 @@ EventRules rules_at(const RecordEvents& record, const std::string& used, int hal
   std::size_t largest = 0;
   double most = -1.0;
   bool has_any = false;
-  constexpr double k_below = 0.999; // the greatest sample itself is beyond its threshold
+  constexpr double k_below = 0.999; // so that the largest sample itself exceeds its threshold
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const bool is_used = used.find(axes[i]) != std::string::npos;
     const double greatest = record.greatest[i];
@@ -220,7 +221,7 @@ EventRules rules_at(const RecordEvents& record, const std::string& used, int hal
       each[i] = std::max(least_threshold(record), std::min(rules.threshold, k_below * greatest) / std::exp2(halvings));
     has_any |= greatest > each[i];
   }
-  if (!has_any && most >= 0.0) { // a record of noise: the greatest of it is run, and no more
+  if (!has_any && most >= 0.0) { // a record of noise: only its largest value is simulated
     each[largest] = k_below * most;
     rules.release = 1.0;
   }

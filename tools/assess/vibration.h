@@ -1,18 +1,20 @@
-// How low the threshold of events has to be: what stays below it is not run, and may shake a machine for long enough to matter.
+// Chooses the threshold above which stretches of a record are simulated, because vibration below it may still move the machine if it lasts
+// long.
 //
-// An event begins and ends where the signal is at rest, a quarter of its threshold, so that sustained vibration is run whole. On an axis
-// that drives a model the threshold is the one asked for, or the greatest that the axis reads where that is less, and it is halved until
-// the decision, the least margin and, with the same samples, the probability of damage stay the same through two halvings.
+// An event begins and ends where the signal falls below a quarter of its threshold, so that sustained vibration is one event. For an axis
+// that drives a model, the first threshold is the requested one, or the largest reading of the axis if this is lower. It is halved until
+// the decision, the smallest margin and, with equal samples, the probability of damage do not change over two halvings.
 #pragma once
 
 #include "tools/assess/assessment.h"
 
 namespace steplap::assess {
 
-/// Thresholds of a record's axes after so many halvings; `used`: letters of the axes that drive a model. The others keep the one asked for.
+/// Returns the thresholds of a record's axes after `halvings`. `used` are the letters of axes that drive a model; other axes keep the
+/// requested threshold.
 [[nodiscard]] EventRules rules_at(const RecordEvents& record, const std::string& used, int halvings);
 
-/// Of records without events: fills events, histories and, if they were made for the comparison, samples.
+/// Finds the events of records read without events. Fills events, histories and, if needed for the comparison, samples.
 void find_events_that_matter(const AssessmentOptions& options, Assessment& assessment);
 
 } // namespace steplap::assess

@@ -11,8 +11,8 @@ namespace steplap::assess {
 
 namespace {
 
-// A recorder on the lid of a tank that is driven without turning makes the pressure that joints need up to 45 % wrong, in either
-// direction (docs/evidence/recorders.md): a margin that is smaller than this is not known.
+// The position of a recorder on the lid of a tank that does not rotate causes errors up to 45 % in the pressure that joints require, in
+// either direction (docs/evidence/recorders.md). A smaller margin is therefore not reliable.
 constexpr double k_lid_margin = 1.5;
 
 void find_axes(Assessment& a) {
@@ -21,10 +21,10 @@ void find_axes(Assessment& a) {
     if (record.recording.layout.is_peaks) continue;
     const std::string axes = record.axes();
     const auto is_used = [&](std::size_t i) { return used.find(axes[i]) != std::string::npos; };
-    double seen = 0.0; // by the models
+    double seen = 0.0; // as seen by the models
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (is_used(i)) seen = std::max(seen, record.greatest[i]);
-    // A smaller shock counts where it is the largest of all axes: so a recorder reads that was turned.
+    // A smaller shock counts if it is the largest of all axes, because a rotated recorder would show this.
     constexpr double k_turned = 0.25;
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (!is_used(i) && record.greatest[i] > (record.greatest[i] > seen ? k_turned : 1.0) * shock_level(record.rules))
@@ -47,12 +47,12 @@ double class_of(double bandwidth) {
   return bandwidth / (ChannelFilter::k_ratio * std::pow(std::sqrt(2.0) - 1.0, 0.25));
 }
 
-// The assessment's records, filtered by another corner frequency; false if that cannot be.
+// Filters the assessment's records with another corner frequency. Returns false if this is not possible.
 bool refilter(Assessment& other, double factor) {
   for (RecordEvents& record : other.records) {
     if (record.recording.layout.is_peaks) continue;
     double frequency_class = class_of(factor * record.bandwidth);
-    const double highest = 0.1 * record.rate * (1.0 - 1e-9); // that the filter can do
+    const double highest = 0.1 * record.rate * (1.0 - 1e-9); // highest possible for the filter
     const bool is_whole = frequency_class > highest;
     if (is_whole && factor > 1.0 && !record.is_filtered) return false;
     if (is_whole && factor < 1.0) frequency_class = highest;
@@ -83,7 +83,7 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
   double lowest = 0.0;
   for (const RecordEvents& record : a.records)
     if (!record.recording.layout.is_peaks) lowest = lowest == 0.0 ? record.bandwidth : std::min(lowest, record.bandwidth);
-  if (lowest == 0.0) return; // pulses that are assumed
+  if (lowest == 0.0) return; // assumed pulses
   const auto open = [&](const std::string& what) {
     a.missing.push_back(
         {Evidence::bandwidth,
@@ -108,7 +108,8 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
         if (c.quantity == "damage_probability" && damage.high > *c.at_most)
           return open(where + "not, as the probability of damage is " + rounded_text(100.0 * damage.value, 3) + " %");
     }
-    // Of a record without a filter what lies beyond half of its rate cannot be looked at: the step to it is taken for as large as the last.
+    // For a record without filter, frequencies above half its sampling rate are unknown. Their effect is assumed to equal that of the last
+    // halving.
     const bool can_double = std::any_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.is_filtered; });
     if (factor < 1.0 && !can_double && a.summary.least_margin < summary.least_margin &&
         a.summary.least_margin * a.summary.least_margin < summary.least_margin)

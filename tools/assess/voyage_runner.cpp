@@ -25,7 +25,7 @@ std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double
   return begins;
 }
 
-// Channels that joints, criteria and trust look at: the search for extremes of all others would take most of a sample's time.
+// Returns the channels needed for joints, criteria and trust. Extremes of all other channels would take most of the time of a sample.
 std::vector<std::string> channels_wanted(const Model& whole, const System& system, const std::vector<std::string>& traced) {
   std::vector<std::string> wanted = channels_of_trust(whole);
   for (const std::string& channel : traced_channels(traced)) wanted.push_back(channel);
@@ -53,7 +53,7 @@ VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHist
   drive_by(given_, std::move(placed), std::max(begins_.back(), 1e-9));
   Model whole = completed(given_);
   const std::unique_ptr<System> system = compile(whole);
-  static_cast<void>(check_presentation(whole, *system)); // limits in the units of their channels
+  static_cast<void>(check_presentation(whole, *system)); // converts limits to the units of their channels
   for (TableEntry& entry : given_.tables)
     if (auto* const criterion = dynamic_cast<Criterion*>(entry.table.get()))
       for (const Criterion& known : whole.criteria)
@@ -70,10 +70,10 @@ struct VoyageRunner::Course {
   const System& system;
   const std::function<bool()>& stop;
   VoyageOutcome outcome;
-  std::vector<double> x, y, slid; ///< m, per joint
+  std::vector<double> x, y, slid; ///< per joint, m
 };
 
-// What a stretch of the run tells.
+// Evaluates one interval of the run.
 static void look(const Model& whole, const System& system, const RunResult& result, std::size_t event, VoyageOutcome& outcome,
                  std::vector<double>& x, std::vector<double>& y, std::vector<double>& slid) {
   VoyageSummary now;
@@ -125,7 +125,7 @@ void VoyageRunner::pass_events(Course& course) {
     if (!model_.traced.empty())
       course.outcome.traces.push_back(friction_traces(course.whole, course.system, result, model_.traced, begins_[i], steps_[i]));
     state = result.final_state;
-    state.t = begins_[i + 1]; // to the last bit
+    state.t = begins_[i + 1]; // exactly, without rounding
     state.dissipated = state.work = 0.0;
     if (result.stop_reason.empty()) continue;
     if (course.outcome.summary.unknown.empty()) course.outcome.summary.unknown = result.stop_reason;

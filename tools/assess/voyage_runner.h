@@ -1,5 +1,6 @@
-// A whole voyage of one model by one compiled system, for many samples of its uncertain values: events one after the other on one
-// axis of time, quiet stretches left out. Slides, verdicts and margins as in the passages in detail, without errors.
+// Simulates the whole voyage of one model for many samples of its uncertain values with one compiled system. Events follow each other on
+// one time axis without the quiet intervals. Slides, verdicts and margins are computed as in Traveller (passage.h), but without error
+// estimates.
 #pragma once
 
 #include "mbd/system/instance.h"
@@ -14,33 +15,33 @@
 
 namespace steplap::assess {
 
-/// What a sample made of a voyage in one model.
+/// Result of one sample for one model.
 struct VoyageOutcome {
   VoyageSummary summary;
-  std::vector<char> slips; ///< per event: a joint slipped
+  std::vector<char> slips; ///< per event: true if a joint slipped
   std::size_t events_made = 0;
-  std::vector<std::vector<FrictionTrace>> traces; ///< per event made, of DrivenModel::traced
+  std::vector<std::vector<FrictionTrace>> traces; ///< per simulated event, of DrivenModel::traced
 };
 
-/// One object for each thread.
+/// Runs samples. Each thread needs its own object.
 class VoyageRunner {
 public:
-  /// `histories`: of the events, each from 0. `paths` of the numbers that vary. Throws ModelError for a model that cannot be run.
+  /// `histories` are those of the events, each from 0; `paths` are the fields that vary. Throws ModelError if the model cannot be run.
   VoyageRunner(const DrivenModel& model, const std::vector<DriveHistory>& histories, std::vector<std::string> paths);
   VoyageRunner(const VoyageRunner&) = delete;
   VoyageRunner& operator=(const VoyageRunner&) = delete;
   ~VoyageRunner();
 
-  /// `numbers`: one per path. Never throws for what a sample may do: then `unknown` of the summary says why. `stop`, if given, is
-  /// asked between events.
+  /// Runs one sample. `numbers` has one value per path. Failures of the sample do not throw; they are described in `unknown` of the
+  /// summary. `stop`, if given, is polled between events.
   [[nodiscard]] VoyageOutcome run(const std::vector<double>& numbers, const std::function<bool()>& stop = {});
 
 private:
   struct Course;
   void pass_events(Course& course);
   const DrivenModel& model_;
-  std::vector<double> begins_; ///< s, of each event; then the end of the last
-  std::vector<double> steps_;  ///< s, of traces in each event
+  std::vector<double> begins_; ///< begin of each event, then the end of the last, s
+  std::vector<double> steps_;  ///< step of the traces in each event, s
   Model given_;
   std::unique_ptr<Variants> variants_;
 };

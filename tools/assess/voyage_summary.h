@@ -1,4 +1,4 @@
-// What a voyage came to, as criteria look at it: the same of the voyage in detail and of every sample of it.
+// Results of a voyage that criteria use, for the detailed simulation and for each sample.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -10,22 +10,23 @@
 
 namespace steplap::assess {
 
-/// Of all models and events so far, the worst.
+/// Worst values over all models and events so far.
 struct VoyageSummary {
-  double least_margin = std::numeric_limits<double>::infinity(); ///< of a joint's friction capacity over its demand
-  double slid = 0.0;                                             ///< m, of the joint that slid most, sum over events
-  double overlap_left = 1.0;                                     ///< share, of the joint that has least
+  double least_margin = std::numeric_limits<double>::infinity(); ///< smallest friction capacity over demand of a joint
+  double slid = 0.0;                                             ///< largest slide of a joint, summed over events, m
+  double overlap_left = 1.0;                                     ///< smallest remaining overlap of a joint, as a fraction
   bool slips = false, lifts = false, comes_apart = false;
-  Verdict acceptance = Verdict::hold; ///< of what the models ask: [[acceptance]] and elements' own
-  double planes_use = 0.0;            ///< largest share of a friction that two planes use together
-  Verdict planes = Verdict::hold;     ///< of what they slide: inspect beyond a limit or as an upper bound, open without a limit
-  std::string planes_slip;            ///< a sentence on the worst of it; "" where they slide nothing together
-  std::string unknown;                ///< not empty: why a run of it could not be made or is not to be trusted
-  std::string first_slip;             ///< "'front joint' slips in event 3", for people
+  Verdict acceptance = Verdict::hold; ///< verdict on the limits in the models: [[acceptance]] and those of elements
+  double planes_use = 0.0;            ///< largest share of a friction used by two planes together
+  Verdict planes = Verdict::hold;     ///< verdict on the slide of shared frictions: inspect beyond a limit or if the slide is an upper
+                                      ///< bound, open if there is no limit
+  std::string planes_slip;            ///< sentence about the largest such slide; "" if there is none
+  std::string unknown;                ///< if not empty: reason why a run failed or cannot be trusted
+  std::string first_slip;             ///< for people: "'front joint' slips in event 3"
   std::string first_unmet;            ///< "'bottom arresting devices' in event 1", of the worst acceptance
 };
 
-/// The worse of both.
+/// Merges `other` into `summary`, keeping the worse of each value.
 inline void worsen(VoyageSummary& summary, const VoyageSummary& other) {
   summary.least_margin = other.least_margin < summary.least_margin ? other.least_margin : summary.least_margin;
   summary.slid = other.slid > summary.slid ? other.slid : summary.slid;

@@ -1,7 +1,7 @@
-// Cost of one evaluation, of one step of each integrator and of a whole run on the paper's
-// transformer, and of the same bodies on springs only: what contacts, friction and constraints cost.
+// Measures the cost of one evaluation, of one step of each integrator and of a whole run for the paper's transformer, and for the same
+// bodies with springs only, which shows the cost of contacts, friction and constraints.
 //
-// Names are scene/what/…, so that lines of two scenes can be divided by each other.
+// Benchmarks are named scene/quantity/…, so that results of two scenes can be divided.
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"
@@ -17,8 +17,8 @@ using namespace steplap;
 
 namespace {
 
-constexpr double k_sliding = 0.10;  // s: the active part slides, the load is near its peak
-constexpr double k_stretch = 0.005; // s of motion that the step benchmark goes through again and again
+constexpr double k_sliding = 0.10;  // s; the active part slides and the load is near its peak
+constexpr double k_stretch = 0.005; // s of motion that the step benchmark repeats
 
 struct Scene {
   Model model;
@@ -54,7 +54,7 @@ void evaluation(benchmark::State& state, const std::string& path) {
   state.counters["evaluations"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
-// Steps without looking for events or samples, over a short stretch again and again.
+// Repeats steps over a short interval, without event search and samples.
 void step(benchmark::State& state, const std::string& path, const std::string& method) {
   const Scene& s = scene(path);
   Dynamics dynamics(*s.system);
@@ -76,7 +76,7 @@ void step(benchmark::State& state, const std::string& path, const std::string& m
   state.counters["evaluations_per_step"] = static_cast<double>(dynamics.evaluations() - before) / static_cast<double>(state.iterations());
 }
 
-// A whole run as the model asks for it, without samples: events found and passed.
+// Measures a whole run with the settings of the model, without samples: events are located and handled.
 void whole_run(benchmark::State& state, const std::string& path, const std::string& method) {
   const Scene& s = scene(path);
   SimulationOptions options = options_of(s.model);
@@ -90,7 +90,7 @@ void whole_run(benchmark::State& state, const std::string& path, const std::stri
   state.counters["evaluations_rate"] = benchmark::Counter(static_cast<double>(statistics.evaluations) * runs, benchmark::Counter::kIsRate);
 }
 
-// A system with another mass, by instantiate() and from variants of the model without channels.
+// Measures a change of mass by instantiate() and by variants of the model without channels.
 void make_system(benchmark::State& state, bool has_variants) {
   const Model given = read_given_model(STEPLAP_MODELS "/paper/interference.toml", transformer_catalog());
   const std::string path = "body.active part.mass";

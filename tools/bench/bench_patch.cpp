@@ -1,6 +1,5 @@
-// How long the friction of a step-lap joint takes: closed form against adaptive quadrature of the
-// same accuracy, required pressure cold and warm, the certified bound, overlap fast and exact, sheets
-// that are not convex against convex ones.
+// Measures the computing time of step-lap joint friction: closed form against adaptive quadrature of equal accuracy, required pressure with
+// and without a start value, the certified bound, fast and exact overlap, non-convex against convex sheets.
 #include "elements/step_lap/patch/overlap.h"
 #include "elements/step_lap/patch/required_pressure.h"
 
@@ -40,7 +39,7 @@ Patch joint() {
 
 Polygon quadrilateral() { return {{{-0.5, -0.3}, {0.6, -0.4}, {0.5, 0.35}, {-0.4, 0.3}}, {}}; }
 
-/// Twists that turn about points all over and around the quadrilateral.
+/// Twists about points inside and around the quadrilateral.
 std::array<Vec3, 256> near_twists() {
   std::array<Vec3, 256> twists;
   for (std::size_t i = 0; i < twists.size(); ++i) {
@@ -50,8 +49,8 @@ std::array<Vec3, 256> near_twists() {
   return twists;
 }
 
-/// Adaptive Gauss-Kronrod (7, 15) in both directions over the triangles from the first vertex:
-/// what one would write without a closed form. h only; the wrench would be three more integrands.
+/// Adaptive Gauss-Kronrod (7, 15) quadrature in both directions over the triangles from the first vertex, the obvious method without a
+/// closed form. It computes h only; the wrench would require three more integrands.
 double adaptive(const auto& f, double a, double b, double tolerance, int depth) {
   static constexpr double x[8] = {0.991455371120813, 0.949107912342759, 0.864864423359769, 0.741531185599394,
                                   0.586087235467691, 0.405845151377397, 0.207784955007898, 0.0};
@@ -119,7 +118,7 @@ void h_gradient_hessian_far(benchmark::State& state) {
 }
 BENCHMARK(h_gradient_hessian_far);
 
-/// The argument is the tolerance's exponent; "largest_error" says which one achieves 1e-10.
+/// The argument is the exponent of the tolerance; "largest_error" shows which one reaches 1e-10.
 void h_only_quadrature(benchmark::State& state) {
   Patch patch;
   patch.add(quadrilateral(), 1);
@@ -134,7 +133,7 @@ void h_only_quadrature(benchmark::State& state) {
 }
 BENCHMARK(h_only_quadrature)->DenseRange(6, 10, 1);
 
-/// Wrenches that wander as those of a run do: turning force, changing couple.
+/// Wrenches that vary as in a run: rotating force, changing couple.
 std::array<Vec3, 1024> wrenches() {
   std::array<Vec3, 1024> out;
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -199,7 +198,7 @@ void overlap_exact(benchmark::State& state) {
 }
 BENCHMARK(overlap_exact);
 
-/// What a sliding joint does anew at every evaluation, both corners: overlap, patch, wrench.
+/// Work of a sliding joint at every evaluation, for both corners: overlap, patch, wrench.
 void sliding_joint(benchmark::State& state) {
   const std::array yokes{yoke_sheet(1), yoke_sheet(-1)}, limbs{limb_sheet(1), limb_sheet(-1)};
   OverlapWorkspace workspace;
@@ -218,9 +217,9 @@ void sliding_joint(benchmark::State& state) {
 }
 BENCHMARK(sliding_joint);
 
-// --- sheets that are not convex, against convex ones of as many corners ---------------------------------
+// --- non-convex sheets, against convex ones with as many corners ----------------------------------------
 
-/// Regular, of radius 1; with every other corner at `inner` a star.
+/// Returns a regular polygon of radius 1, or a star if every other corner has the radius `inner`.
 Ring regular(int corners, double inner = 1, double scale = 1) {
   Ring ring;
   for (int i = 0; i < corners; ++i) {
@@ -246,7 +245,7 @@ Polygon star(int tips) { return {regular(2 * tips, 0.6), {}}; }
 Polygon plate(int hole_corners) { return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {regular(hole_corners, 1, 0.6)}}; }
 Polygon polygon_with(int corners) { return {regular(corners), {}}; }
 
-/// Seconds that f(pose) takes, the least of some tries: shifts up to a fifth of the sheets, turns up to 1 rad.
+/// Returns the time of f(pose), s, the minimum of several trials: shifts up to a fifth of the sheets, rotations up to 1 rad.
 double seconds(const auto& f) {
   double best = 1;
   for (int trial = 0; trial < 7; ++trial) {
@@ -280,8 +279,8 @@ struct SheetTimes {
   }
 };
 
-/// A sheet on itself, shifted and turned: overlap alone (µs, and over a regular polygon's of as many corners), the depth
-/// that tells when the two part, and all that a sliding joint does anew at an evaluation.
+/// Prints times for a sheet on a copy of itself, shifted and rotated: overlap alone (µs, and relative to a regular polygon with as many
+/// corners), the depth used to detect separation, and the whole work of a sliding joint at an evaluation.
 void concave_to_convex(benchmark::State& state, const Polygon& polygon) {
   const Outline sheet = make_outline(polygon);
   std::size_t corners = polygon.outer.size();

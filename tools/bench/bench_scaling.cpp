@@ -1,6 +1,8 @@
-// What a body costs in scenes of 10 to 100 000 of them: reading, compiling, starting, a step of rk4, memory.
-// Chains of pendulums (two constraint rows a body: sparse constraint algebra), square grids of masses on
-// springs (no constraints), and four-bar linkages side by side (islands). Linear cost shows as columns that do not change with n.
+// Measures the cost per body in scenes of 10 to 100 000 bodies: reading, compiling, starting, a step of rk4, memory.
+//
+// The scenes are chains of pendulums (two constraint rows per body: sparse constraint algebra), square grids of masses on springs (no
+// constraints), and adjacent four-bar linkages (islands). If the cost is linear, columns do not change with n.
+//
 //   bench_scaling [largest number of bodies, default 100000] [smallest number, default 10] [scene]
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
@@ -25,7 +27,7 @@ constexpr int k_batches = 5;
 
 const char* const k_header = "gravity = [0.0, -9.81]\n[simulation]\nend = 10.0\nintegrator = \"rk4\"\nstep = 1e-4\n";
 
-// A horizontal chain that falls, each link pinned to the one before it.
+// A falling chain, initially horizontal, with pins between its links.
 std::string chain(int n) {
   std::ostringstream text;
   text << k_header;
@@ -41,7 +43,7 @@ std::string chain(int n) {
   return text.str();
 }
 
-// A square net of masses, 1 m apart, that hangs from its first row.
+// A square net of masses, 1 m apart, suspended at its first row.
 std::string grid(int n) {
   const int side = std::max(2, static_cast<int>(std::lround(std::sqrt(n))));
   std::ostringstream text;
@@ -66,7 +68,7 @@ std::string grid(int n) {
   return text.str();
 }
 
-// Linkages of crank, coupler and rocker, 4 m apart, that fall by their weight.
+// Linkages of crank, coupler and rocker, 4 m apart, falling under gravity.
 std::string linkages(int n) {
   std::ostringstream text;
   text << k_header;
@@ -104,7 +106,7 @@ void measure(const char* scene, const std::string& text, bool is_absolute = fals
   SimulationOptions options = options_of(model);
   options.output_step = 0.0;
   if (is_absolute) options.coordinates = Coordinates::absolute;
-  options.has_extremes = false; // a search of its own, over all channels
+  options.has_extremes = false; // the search for extremes of all channels would be measured, too
   Simulation simulation(*system, system->initial_state(), options);
   const double started = thread_cpu_seconds();
   const double memory = allocated() - empty;

@@ -1,8 +1,8 @@
-// mbd/integrators/sparse_lu against KLU of SuiteSparse, on matrices as rodas5p factors them: what one step of it takes (new numbers in a known
-// pattern, factors, six solutions), and how exact the solutions are.
+// Compares mbd/integrators/sparse_lu with KLU of SuiteSparse on matrices as factored by rodas5p: time for one step (new values in a known
+// pattern, factorisation, six solutions) and accuracy of the solutions.
 //
-// The matrices are I/(h γ) − J of bodies of three coordinates each, in a row or in a square grid, each held to its neighbours by springs and dampers
-// that couple all coordinates: 3 × 3 blocks of random numbers, damping and stiffness taken together as StageSystem does.
+// The matrices are I/(h γ) − J for bodies with three coordinates each, in a row or in a square grid, each connected with its neighbours by
+// springs and dampers that couple all coordinates: 3 × 3 blocks of random numbers that combine damping and stiffness as in StageSystem.
 #include "mbd/integrators/sparse_lu.h"
 
 #include <benchmark/benchmark.h>
@@ -17,7 +17,7 @@
 namespace steplap {
 namespace {
 
-constexpr int k_solutions = 6; // stages of a step of rodas5p that solve; its later ones reuse the factors alike
+constexpr int k_solutions = 6; // stages of rodas5p that solve a linear system with the same factors
 
 struct Entry {
   int row = 0, column = 0;
@@ -25,8 +25,8 @@ struct Entry {
 
 struct Matrix {
   int n = 0;
-  std::vector<Entry> entries;              ///< places may come twice, their values add up
-  std::vector<std::vector<double>> values; ///< of several steps
+  std::vector<Entry> entries;              ///< positions may occur repeatedly; their values are added
+  std::vector<std::vector<double>> values; ///< values for several steps
 };
 
 Matrix coupled(const std::vector<std::pair<int, int>>& pairs, int bodies) {
@@ -63,7 +63,7 @@ Matrix grid_of(int side) {
   return coupled(pairs, side * side);
 }
 
-// The largest |A x − b|, b being all ones, of the values of one step.
+// Returns the largest |A x − b| for the values of one step, with b = 1 in all components.
 double residual(const Matrix& m, std::size_t step, const std::vector<double>& x) {
   std::vector<double> left(static_cast<std::size_t>(m.n), -1.0);
   for (std::size_t k = 0; k < m.entries.size(); ++k) left[m.entries[k].row] += m.values[step][k] * x[m.entries[k].column];

@@ -1,10 +1,10 @@
-// What stiffness costs: the paper's transformer on feet 1, 100 and 10 000 times stiffer (springs and dampers
-// alike), explicit against implicit at equal error. The limbs are held (joints as monitors), so that the
-// three scenes differ in stiffness alone and not in what slips when a hard foot lands.
+// Measures the cost of stiffness: the paper's transformer on feet that are 1, 100 and 10 000 times stiffer (springs and dampers), with
+// explicit and implicit methods at equal error. The limbs are held (joints as monitors), so that the three scenes differ in stiffness only
+// and not in which joint slips at impacts.
 //
-// Error: the worse of the active part's pitch and the bottom arresting force over 1 kHz samples, each divided
-// by its range; the reference is dop853 at 1e-12, which rodas5p at 1e-10 must meet. Cost: CPU time of this
-// thread, least of repeats, and evaluations; both interpolated between tolerances at the errors wanted.
+// The error is the larger of that of the active part's pitch and that of the bottom arresting force over 1 kHz samples, each divided by its
+// range. The reference is dop853 at 1e-12, with which rodas5p at 1e-10 must agree. The cost is the CPU time of this thread, the minimum of
+// several runs, and the number of evaluations, both interpolated between tolerances at the required errors.
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
@@ -27,7 +27,7 @@ struct Entry {
 
 RunResult run(const System& system, const Model& model, const std::string& method, double tolerance, bool is_sampled) {
   SimulationOptions options = options_of(model);
-  options.has_extremes = false; // which take as long again, and nobody asks for them here
+  options.has_extremes = false; // not needed here, and would double the time
   options.integrator = method;
   options.settings.tolerance = tolerance;
   options.output_step = is_sampled ? 1e-3 : 0.0;
@@ -56,7 +56,7 @@ Entry measure(const System& system, const Model& model, const std::string& metho
   return entry;
 }
 
-// The least cost that keeps the error, between neighbouring tolerances by powers; NaN where none does.
+// Returns the smallest cost for this error, by power-law interpolation between neighbouring tolerances; NaN if it is not reached.
 double cost_at(const std::vector<Entry>& ladder, double error, double Entry::*cost) {
   double least = std::nan("");
   for (std::size_t i = 0; i < ladder.size(); ++i) {

@@ -1,5 +1,5 @@
-// What a study of the paper's transformer costs beside its runs: the same samples by a loop written by hand, in three
-// steps from the bare integration (dop853, events located) to what the study does with each sample.
+// Measures the overhead of a study of the paper's transformer: runs the same samples by a hand-written loop, in three steps from the bare
+// integration (dop853, with event location) to everything that the study does with each sample.
 //
 //   steplap study export STORE > samples.csv      of models/studies/slip_probability.toml
 //   bench_study samples.csv
@@ -24,8 +24,7 @@ struct Samples {
   std::vector<std::vector<double>> values; ///< floor friction, joint friction, pressure, shock
 };
 
-// Columns number, status, reason, error, evaluations, then the four variables: words are no numbers, so that it is
-// split by hand.
+// Parses the columns number, status, reason, error, evaluations and the four variables. Some contain words, so the line is split here.
 Samples read_samples(const char* file) {
   std::ifstream stream(file);
   std::string line;

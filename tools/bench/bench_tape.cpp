@@ -1,8 +1,8 @@
-// Machine code of a tape: what a step of it takes to be compiled and to be run, in nanoseconds, for each set of instructions
-// that the processor has; beside it what replay takes.
+// Measures the machine code of a tape: time per tape step for compilation and for execution, in nanoseconds, for each instruction set of
+// the processor, in comparison with replay.
 //
-// The tape is made up to be like an evaluation: sums of products along chains, of which a dozen go side by side, an operand in
-// three from inputs or constants, a value out of ten used again much later, two divisions in a hundred, a root, a condition.
+// The tape is synthetic and resembles an evaluation: sums of products along about a dozen parallel chains, every third operand an input or
+// a constant, every tenth value used again much later, two percent divisions, one square root, one condition.
 #include "mbd/tape/machine_code.h"
 #include "mbd/tape/register_plan.h"
 
@@ -41,7 +41,7 @@ Tape evaluation_like(int steps) {
     const TapeOperation o = q < 4 ? divide : q < 100 ? multiply : q < 160 ? add : subtract;
     tape.steps.push_back({o, chain, other});
     chain = made;
-    if (q == 199) { // roots and conditions that always hold
+    if (q == 199) { // square roots and conditions that are always true
       tape.steps.push_back({absolute, chain, 0});
       tape.steps.push_back({square_root, made + 1, 0});
       chain = made + 2;
@@ -55,7 +55,7 @@ Tape evaluation_like(int steps) {
   return simplified(tape);
 }
 
-// Steps that are done: all but those that stand for inputs and constants.
+// Steps that are executed: all except those for inputs and constants.
 int count_steps(const Tape& tape) {
   int count = 0;
   for (const TapeStep& s : tape.steps) count += !is_given(s.operation);
@@ -97,7 +97,7 @@ void run(benchmark::State& state, InstructionSet set) {
   std::vector<double> outputs(tape.outputs.size());
   for (auto _ : state) {
     benchmark::DoNotOptimize(code.run(inputs.data(), tape.constants.data(), outputs.data()));
-    inputs[0] = 0.5 + 1e-3 * (outputs[0] > 0.0); // the next hangs on this one, as stages do
+    inputs[0] = 0.5 + 1e-3 * (outputs[0] > 0.0); // the next evaluation depends on this one, as between stages
     benchmark::ClobberMemory();
   }
   print_per_step(state, tape);

@@ -1,13 +1,16 @@
-// steplap on the scenes of tools/bench/peers, over a ladder of tolerances, beside the peers' own
-// rows.
+// Runs steplap on the scenes of tools/bench/peers over a sequence of tolerances and prints the results together with those of the peers.
 //
 // Usage: compare_steplap [--csv FILE] [--only PROBLEM] [PEERS.csv ...]
-// Times and errors are taken as the peers take theirs: CPU time of the integration alone, one
-// thread, least of several runs, without samples; B6: the worse of θ1 and the bottom arresting
-// force over 1 kHz samples, each scaled by its range, against the program's own tightest run, both
-// conditions together; B1: the worst of the seven angles at the end, B2: the worse coordinate of
-// B0, B3 and B4: the worst of the state; B5: the worst height over samples each 10 ms against the
-// own tightest run. Reading and compiling a model are not in the time.
+//
+// Times and errors are measured as for the peers: CPU time of the integration only (without reading and compiling), one thread, minimum of
+// several runs, no samples. Errors:
+//
+//   B6           larger of θ1 and the bottom arresting force over 1 kHz samples, each scaled by its range, against the program's
+//                own run with the tightest tolerance, both conditions together
+//   B1           largest of the seven angles at the end
+//   B2           larger of both coordinates
+//   B0, B3, B4   largest component of the state
+//   B5           largest height over samples every 10 ms, against the program's own run with the tightest tolerance
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "tools/bench/peers/ladder.h"
@@ -29,20 +32,20 @@ namespace {
 using peers::Rung;
 
 constexpr double k_tightest = 1e-13;
-constexpr double k_longest_run = 10.0; // s of CPU time; what needs more has no row
+constexpr double k_longest_run = 10.0; // CPU time, s; slower settings have no row
 
 struct Scene {
   Model model;
   std::unique_ptr<const System> system;
-  std::vector<std::string> channels; // read in this order by the error
-  double sample_step = 0.0;          // s
+  std::vector<std::string> channels; // channels in the order in which `error` reads them
+  double sample_step = 0.0;          // sampling step, s
 };
 
 struct Problem {
-  std::string name;         // as the peers call it
-  bool is_against_tightest; // else the answer is known
+  std::string name;         // name used by the peers
+  bool is_against_tightest; // otherwise the solution is known
   std::vector<Scene> scenes;
-  // From the channels of one run, and of the tightest run of the same scene.
+  // Computes the error from the channels of one run and of the run with the tightest tolerance.
   std::function<double(const std::vector<std::vector<double>>&, const std::vector<std::vector<double>>&)> error;
 };
 
@@ -59,7 +62,7 @@ RunResult run(const Scene& scene, const std::string& method, double tolerance, b
   options.settings.step = 0.0;
   options.channels = scene.channels;
   options.output_step = is_sampled ? scene.sample_step : 0.0;
-  options.has_extremes = false; // the others look for none
+  options.has_extremes = false; // the other programs compute none
   const double begin = thread_cpu_seconds();
   Simulation simulation(*scene.system, scene.system->initial_state(), options);
   while (simulation.advance())
@@ -94,7 +97,7 @@ double at_the_end(const Series& a, const std::vector<double>& exact, double fact
   return worst;
 }
 
-// β, Θ, γ, Φ, δ, Ω, ε of the literature from the bodies' angles.
+// Converts the bodies' angles to β, Θ, γ, Φ, δ, Ω, ε of the literature.
 double andrews_error(const Series& k, const peers::AndrewsAngles& exact) {
   const auto a = [&k](int i) { return k[i - 1].back(); };
   const double angles[7] = {a(1), a(2) - a(1), a(3), a(4) - a(5), a(5), a(6) - a(7), a(7)};
@@ -133,7 +136,7 @@ std::vector<Problem> problems() {
   all.push_back(andrews("B1 A03 0.05 s", "andrews_a03", 1));
   for (const peers::FourBarExact& exact : peers::k_four_bar_exact) {
     const std::string n = std::to_string(exact.windows);
-    // B0 is as far from the rod's middle as that is from the ground.
+    // B0 is as far from the rod's middle as the middle is from the ground.
     all.push_back(ending(("B2 N = " + n).c_str(), "four_bar_" + n, {"rod 0.x", "rod 0.y"}, {exact.x, exact.y}, 2.0));
   }
   all.push_back(ending("B3 pendulum", "simple_pendulum", {"bob.x", "bob.y"}, {peers::k_pendulum_x, peers::k_pendulum_y}));

@@ -1,5 +1,6 @@
-// Evaluates the equations of motion of one model many times and does nothing else: to be run under a
-// profiler (tools/profile). The state is that of the model's run at a given time.
+// Evaluates the equations of motion of one model repeatedly, for use under a profiler (tools/profile). The state is that of the model's run
+// at a given time.
+//
 //   profile_evaluation MODEL TIME COUNT [COORDINATES]
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
@@ -18,7 +19,7 @@ using namespace steplap;
 
 namespace {
 
-constexpr int k_batches = 20; // the least of them is the figure least disturbed by other processes
+constexpr int k_batches = 20; // the minimum of them is least disturbed by other processes
 
 void profile(const char* path, double time, long count, const std::string& coordinates) {
   const Model model = read_model(path, transformer_catalog());
@@ -33,7 +34,7 @@ void profile(const char* path, double time, long count, const std::string& coord
   std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
   dynamics.pack(state, y.data());
   const double later = std::nextafter(state.t, std::numeric_limits<double>::infinity());
-  // At two times in turn: what is kept as long as the time is the same is not to help.
+  // Alternates between two times, so that values cached per time give no advantage.
   const auto nanoseconds = [&](const auto& evaluate) {
     double best = std::numeric_limits<double>::infinity();
     for (int batch = 0; batch < k_batches; ++batch) {

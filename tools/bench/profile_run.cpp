@@ -1,5 +1,6 @@
-// Runs models from start to end, nothing sampled and no extremes looked for, as often as asked: to be run under a
-// profiler (tools/profile_run). Reading and compiling lie outside profiled_run().
+// Runs models repeatedly without samples and extremes, for use under a profiler (tools/profile_run). Reading and compiling are outside
+// profiled_run().
+//
 //   profile_run METHOD COORDINATES TOLERANCE COUNT MODEL...
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"

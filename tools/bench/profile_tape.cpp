@@ -1,5 +1,6 @@
-// One evaluation of a model at a given time, written down on a tape (mbd/tape): what writing, simplifying and making code take, and
-// what an evaluation takes as ever and by code. The least of many batches.
+// Records one evaluation of a model at a given time on a tape (mbd/tape) and measures recording, simplification and code generation, and an
+// evaluation with and without machine code. Prints the minimum of many batches.
+//
 //   profile_tape MODEL TIME
 #include "mbd/dynamics/traced_evaluation.h"
 #include "mbd/io/reader.h"
@@ -75,7 +76,7 @@ int profile(const char* path, double time) {
   std::printf("%zu steps, %zu simplified; writing %.0f, simplifying %.0f, making code %.0f ns\n", traced.tape.steps.size(),
               tape.steps.size(), writing, simplifying, making);
   std::printf("evaluation %.1f ns\n", nanoseconds(5000, [&] { dynamics.rates(state.t, y.data(), dy.data()); }));
-  tape.first_inputs = 0; // all in one array, and so are outputs
+  tape.first_inputs = 0; // all inputs, and all outputs, are in one array
   tape.places.clear();
   const MachineCode code(tape);
   std::vector<double> out(tape.outputs.size());

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_values = 200; ///< varied at a time
+constexpr std::size_t k_most_values = 200; ///< varied at the same time
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -63,7 +63,7 @@ Json error_json(const Diagnostic& problem) {
   return {{"file", problem.where.file}, {"line", problem.where.line}, {"column", problem.where.column}, {"message", problem.message}};
 }
 
-// "%7B" is '{'.
+// Decodes "%7B" to '{'.
 std::string without_escapes(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {

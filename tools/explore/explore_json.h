@@ -1,4 +1,4 @@
-// What pages and server write to each other (explorer.h), as JSON.
+// JSON messages between pages and the server (explorer.h).
 #pragma once
 
 #include "run/report.h"
@@ -11,49 +11,49 @@
 
 namespace steplap {
 
-/// What is asked about one run.
+/// Request for one run.
 struct RunRequest {
-  std::size_t model = 0;   ///< which of the models
+  std::size_t model = 0;   ///< index of the model
   ExploredValues values;   ///< SI
-  std::string page;        ///< a name that the page has chosen for itself
-  bool is_settled = false; ///< errors are to be estimated
-  std::string name;        ///< of a file, where one is to be saved
+  std::string page;        ///< identifier chosen by the page
+  bool is_settled = false; ///< true: also estimate errors
+  std::string name;        ///< name of the file to save, if any
 };
 
-/// What is asked about a map of two values.
+/// Request for a map of two values.
 struct MapRequest {
   std::size_t model = 0;
   ExploredValues values;
   std::string x, y;                             ///< paths
-  std::vector<std::pair<double, double>> cells; ///< values at x and y
+  std::vector<std::pair<double, double>> cells; ///< pairs of values of x and y
 };
 
-/// One run of a map.
+/// Result of one run of a map.
 struct MapCell {
-  std::string verdict, error;                         ///< an error: there is no run
-  std::vector<std::pair<std::string, double>> shares; ///< of limits, by their names (run/utilisation.h)
+  std::string verdict, error;                         ///< error: there is no result
+  std::vector<std::pair<std::string, double>> shares; ///< utilisation of each limit by name (run/utilisation.h)
 };
 
-/// They throw std::invalid_argument for a text that is no such request: `models`: how many there are.
+/// Parses a request. Throws std::invalid_argument if the text is invalid. `models` is the number of models.
 [[nodiscard]] RunRequest run_request(const std::string& body, std::size_t models);
-/// The same; at most so many cells.
+/// Parses a request with at most `most_cells` cells. Throws as above.
 [[nodiscard]] MapRequest map_request(const std::string& body, std::size_t models, std::size_t most_cells);
-/// From the query of an address: "model=0&values=%7B…%7D".
+/// Parses the query of an address: "model=0&values=%7B…%7D". Throws as above.
 [[nodiscard]] RunRequest report_request(const std::string& query, std::size_t models);
 
-/// {"errors": [{"file", "line", "column", "message"}]}
+/// Returns {"errors": [{"file", "line", "column", "message"}]}.
 [[nodiscard]] std::string errors_json(const std::vector<Diagnostic>& problems);
-/// {"is_superseded": true}
+/// Returns {"is_superseded": true}.
 [[nodiscard]] std::string superseded_json();
-/// {"version", "data"}: curves take about `budget` bytes.
+/// Returns {"version", "data"}. Curves take about `budget` bytes.
 [[nodiscard]] std::string run_json(const Report& report, long version, std::size_t budget);
-/// {"cells"}
+/// Returns {"cells"}.
 [[nodiscard]] std::string map_json(const std::vector<MapCell>& cells);
-/// {"file"}
+/// Returns {"file"}.
 [[nodiscard]] std::string saved_json(const std::string& file);
-/// {"name", "path", "title", "sliders", "errors"} of one model.
+/// Returns {"name", "path", "title", "sliders", "errors"} of one model.
 [[nodiscard]] std::string model_state_json(const ExploredModel& model, const std::vector<Diagnostic>& problems);
-/// {"program", "version", "models"}: `models` are texts of model_state_json().
+/// Returns {"program", "version", "models"}. `models` are texts of model_state_json().
 [[nodiscard]] std::string state_json(long version, const std::vector<std::string>& models);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// A model that is run again and again with other values than its file gives.
+// A model that is run repeatedly with values that differ from its file.
 #pragma once
 
 #include "mbd/io/input_files.h"
@@ -16,31 +16,31 @@ namespace steplap {
 /// Numbers of a model by their paths, SI.
 using ExploredValues = std::map<std::string, double>;
 
-/// One model file. Not for several threads at a time.
+/// One model file. Not thread-safe.
 class ExploredModel {
 public:
-  /// `overrides`: "path=value", laid over the file whatever else is varied. Reads nothing yet.
+  /// `overrides` are settings "path=value" applied to the file before all other changes. Reads nothing yet.
   ExploredModel(std::string path, std::vector<std::string> overrides) : path_(std::move(path)), overrides_(std::move(overrides)) {}
 
-  /// Reads the file. Throws ModelError with all that is wrong with it; then what was read before stays in use.
+  /// Reads the file. Throws ModelError with all its errors; the model read before then stays in use.
   void read();
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
-  /// Of the file as it was read last.
+  /// Returns the sliders of the file as read last.
   [[nodiscard]] const std::vector<Slider>& sliders() const { return sliders_; }
-  /// Title of the model, "" without one.
+  /// Title of the model; "" if it has none.
   [[nodiscard]] const std::string& title() const { return title_; }
-  /// All files that the last reading looked at, also one that failed.
+  /// Returns all files that the last reading accessed, even if it failed.
   [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
-  /// Is there a model that was read without errors?
+  /// Returns true if a model has been read without errors.
   [[nodiscard]] bool is_read() const { return given_ != nullptr; }
 
-  /// The judged run of the model with these values. Its model has no text and no overrides. Throws ModelError for a path that is no
-  /// slider's and for values that make no model, NumericalFailure if nothing could be run.
+  /// Runs and judges the model with these values. The model of the report has no text and no overrides. Throws ModelError if a path has no
+  /// slider or the values are invalid, NumericalFailure if the run could not start.
   [[nodiscard]] Report run(const ExploredValues& values, const RunOptions& options);
-  /// The same by way of the file, as `steplap simulate` makes it with these values as overrides.
+  /// As run(), but reads the file with these values as overrides, like `steplap simulate`.
   [[nodiscard]] Report run_from_file(const ExploredValues& values, const RunOptions& options) const;
-  /// "path=value" for each of the values. Throws ModelError for a path that is no slider's, and for a value that is not finite.
+  /// Returns "path=value" for each value. Throws ModelError if a path has no slider or a value is not finite.
   [[nodiscard]] std::vector<std::string> assignments(const ExploredValues& values) const;
 
 private:
@@ -52,8 +52,8 @@ private:
   std::vector<std::string> overrides_, files_;
   std::unique_ptr<const Model> given_;
   std::vector<Slider> sliders_;
-  std::map<std::string, std::size_t> by_path_; ///< of the sliders
-  std::vector<std::string> varied_;            ///< paths that `variants_` were prepared for
+  std::map<std::string, std::size_t> by_path_; ///< index in `sliders_`
+  std::vector<std::string> varied_;            ///< paths for which `variants_` was prepared
   std::unique_ptr<Variants> variants_;
 };
 

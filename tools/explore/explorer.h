@@ -1,15 +1,18 @@
-// What stands behind the page of `steplap explore`: models, runs of them, a map, changes saved, files watched.
+// Server of `steplap explore`: runs models, computes maps, saves changes and watches files.
 //
-// Paths behind the token, and what they answer. All JSON; numbers in SI.
+// Paths after the token, with their replies. All data are JSON; numbers are SI.
+//
 //   ""               the page
-//   page.js page.css its script and its style
-//   state?since=N    GET   the models with their sliders and errors, at once if the version is not N, else when it changes or after a while
-//   run              POST  {"model", "values": {path: number}, "page", "is_settled"}: {"version", "data": what report_data() gives of the run}
+//   page.js page.css its script and style
+//   state?since=N    GET   the models with their sliders and errors: at once if the version is not N, otherwise when it changes or after
+//                          a timeout
+//   run              POST  {"model", "values": {path: number}, "page", "is_settled"}: {"version", "data": report_data() of the run}
 //                          or {"errors"} or {"is_superseded": true}
 //   cells            POST  {"model", "values", "x", "y", "cells": [[x, y], …]}: {"cells": [{"verdict", "shares": {name: share}} or {"error"}, …]},
-//                          fewer than asked for if something more urgent came, or time is up
+//                          fewer than requested if a more urgent request arrived or time is over
 //   save             POST  {"model", "values", "name"}: {"file"} or {"errors"}
 //   report?model=K&values={…}  GET  the page of that run
+//
 // Errors are [{"file", "line", "column", "message"}].
 #pragma once
 
@@ -26,25 +29,25 @@
 
 namespace steplap {
 
-/// Answers the requests of pages. Its own thread does the work.
+/// Answers the requests of pages. A thread of its own does the work.
 class Explorer {
 public:
-  static constexpr double k_map_seconds = 0.2;         ///< computing for one request for a map
-  static constexpr std::size_t k_most_cells = 400;     ///< of one request for a map
-  static constexpr std::size_t k_drag_budget = 300000; ///< bytes of curves in the answer to a run
-  static constexpr int k_longest_wait = 20;            ///< s, of a request for the state
+  static constexpr double k_map_seconds = 0.2;         ///< computing time for one request for a map, s
+  static constexpr std::size_t k_most_cells = 400;     ///< per request for a map
+  static constexpr std::size_t k_drag_budget = 300000; ///< bytes of curves in the reply to a run
+  static constexpr int k_longest_wait = 20;            ///< timeout of a request for the state, s
 
-  /// Reads the models. Throws ModelError with all that is wrong with any of them.
+  /// Reads the models. Throws ModelError with the errors of all.
   Explorer(const std::vector<std::string>& paths, const std::vector<std::string>& overrides);
   ~Explorer();
   Explorer(const Explorer&) = delete;
   Explorer& operator=(const Explorer&) = delete;
 
-  /// For LocalServer. To be called on one thread, together with tick().
+  /// Answers a request from LocalServer. Must be called on the same thread as tick().
   void answer(const PageRequest& request, const SendReply& send);
-  /// Looks at the files, and answers whoever has waited long. To be called now and then.
+  /// Checks the files for changes and answers requests that have timed out. Must be called regularly.
   void tick();
-  /// Stops what runs and lets go of all that waits: after that nothing is answered.
+  /// Stops the current run and discards all waiting requests. No request is answered afterwards.
   void end();
 
 private:
@@ -54,13 +57,13 @@ private:
     SendReply send;
   };
   struct Watched {
-    ExploredModel model;                   ///< only the queue's thread uses it, once it runs
-    std::string state;                     ///< JSON of the model in the answer to "state"; guarded by the mutex
-    FileWatch watch;                       ///< only tick()'s thread uses it
+    ExploredModel model;                   ///< used only by the queue's thread once it runs
+    std::string state;                     ///< JSON of the model in the reply to "state"; guarded by the mutex
+    FileWatch watch;                       ///< used only by the thread of tick()
     bool is_reading = false;               ///< guarded by the mutex
-    std::vector<std::string> files_read{}; ///< by a reading that has ended; guarded by the mutex
-    bool has_read = false;                 ///< those are to be watched now; guarded by the mutex
-    std::vector<std::string> watched{};    ///< what `watch` looks at
+    std::vector<std::string> files_read{}; ///< files of the last completed reading; guarded by the mutex
+    bool has_read = false;                 ///< true if `files_read` is to be watched; guarded by the mutex
+    std::vector<std::string> watched{};    ///< files that `watch` observes
   };
 
   void read_again(std::size_t k);
@@ -74,7 +77,7 @@ private:
   std::vector<std::unique_ptr<Watched>> models_;
   std::mutex mutex_;
   long version_ = 1;             ///< guarded by the mutex
-  std::vector<Waiting> waiting_; ///< only tick()'s thread uses it
+  std::vector<Waiting> waiting_; ///< used only by the thread of tick()
   std::unique_ptr<WorkQueue> queue_;
 };
 

@@ -1,4 +1,4 @@
-// Whether files have been changed, by looking at them again: editors replace files in many ways, and what counts is what stands there.
+// Detects changes of files by polling, because editors replace files in many different ways.
 #pragma once
 
 #include <map>
@@ -7,16 +7,16 @@
 
 namespace steplap {
 
-/// Looks at a list of files.
+/// Observes a list of files.
 class FileWatch {
 public:
-  /// From now on these. Of files that were watched before, a change that was not told yet still will be.
+  /// Sets the files to observe. A change of previously observed files that has not been reported yet is still reported.
   void watch(const std::vector<std::string>& files);
-  /// True once after a change, when the files have looked the same at two calls: what is being written is not looked at half.
+  /// Returns true once after a change, as soon as two successive calls have found the files equal, so that incomplete files are not read.
   [[nodiscard]] bool has_changed();
 
 private:
-  std::map<std::string, std::string> known_, before_; ///< path: size, time, identity; "" of a file that is not there
+  std::map<std::string, std::string> known_, before_; ///< path: size, time and identity; "" if the file does not exist
 };
 
 } // namespace steplap

@@ -1,15 +1,15 @@
-// Who may talk to the server: a page that it has sent itself, or somebody who was given its address.
+// Access control of the local server: only pages that it has sent, and users who were given its address, may use it.
 //
-// The server listens on 127.0.0.1, where every program and every web page of this computer can reach it. So each request has to
-// name the server as its host (else a name of another site could have been pointed at 127.0.0.1), carry the token in its path (which
-// no other site knows), and must not come from a page of another origin.
+// The server listens on 127.0.0.1, where every program and every web page of this computer can reach it. Each request must therefore name
+// the server as its host (this prevents DNS rebinding by another site), contain the secret token in its path, and must not come from a page
+// of another origin.
 #pragma once
 
 #include <string>
 
 namespace steplap {
 
-/// Of a request, what the gate looks at. Texts are "" where a header is missing.
+/// Parts of a request that are checked. Missing headers are "".
 struct Knock {
   std::string method;       ///< "GET"
   std::string target;       ///< "/TOKEN/run?…"
@@ -17,34 +17,34 @@ struct Knock {
   std::string origin;       ///< header Origin
   std::string fetch_site;   ///< header Sec-Fetch-Site
   std::string content_type; ///< header Content-Type
-  int host_headers = 1;     ///< how many headers Host there are
+  int host_headers = 1;     ///< number of Host headers
 };
 
-/// 32 hexadecimal digits from the system's source of randomness. Throws std::runtime_error if that gives none.
+/// Returns 32 hexadecimal digits from the system's random source. Throws std::runtime_error if it is not available.
 [[nodiscard]] std::string random_token();
 
-/// Compares without telling by its time how far the texts agree.
+/// Returns true if both secrets are equal. The time of the comparison does not depend on them.
 [[nodiscard]] bool is_same_secret(const std::string& a, const std::string& b);
 
-/// The rules of one server.
+/// Access rules of one server.
 class Gate {
 public:
-  /// `token`: as random_token() makes it.
+  /// `token` is created by random_token().
   Gate(unsigned short port, std::string token);
 
-  /// "127.0.0.1:PORT"
+  /// Returns "127.0.0.1:PORT".
   [[nodiscard]] const std::string& host() const { return host_; }
-  /// "http://127.0.0.1:PORT"
+  /// Returns "http://127.0.0.1:PORT".
   [[nodiscard]] const std::string& origin() const { return origin_; }
-  /// "/TOKEN/"
+  /// Returns "/TOKEN/".
   [[nodiscard]] const std::string& folder() const { return folder_; }
-  /// An address that serves once, for a program's command line, which other users of the computer can read: the server leads from
-  /// there to its folder. Whoever comes second is refused.
+  /// Returns a path that can be used once. It may appear on the command line of a browser, which other users of the computer can read. The
+  /// server redirects its first use to folder() and refuses later ones.
   [[nodiscard]] const std::string& first_path() const { return first_path_; }
 
-  /// Why the request is refused, "" if it is not. One for first_path() is let through as often as it comes.
+  /// Returns the reason for refusing a request; "" if it is permitted. Requests for first_path() always pass here.
   [[nodiscard]] std::string refusal(const Knock& knock) const;
-  /// Is it the first request for first_path()? Every later one is not.
+  /// Returns true for the first request for first_path(), false for every later one.
   [[nodiscard]] bool takes_first(const Knock& knock);
 
 private:

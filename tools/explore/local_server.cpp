@@ -33,7 +33,7 @@ Knock knock_of(const http::request<http::string_body>& request) {
           header("Sec-Fetch-Site"),         header("Content-Type"),    hosts};
 }
 
-// Nothing is kept by the browser or told to others, and nothing of it stands in another site's frame.
+// The browser must not store the page, send its address to other sites, or show it in a frame of another site.
 Response response_of(PageReply reply, bool keeps_open) {
   Response response(static_cast<http::status>(reply.status), 11);
   response.set(http::field::content_type, reply.type);
@@ -51,7 +51,7 @@ Response response_of(PageReply reply, bool keeps_open) {
   return response;
 }
 
-// What connections have in common; it outlives them.
+// Data shared by all connections; it outlives them.
 struct Shared {
   Shared(unsigned short port, LocalServer::Answer given) : gate(port, random_token()), answer(std::move(given)) {}
   Gate gate;
@@ -59,7 +59,7 @@ struct Shared {
   int connections = 0;
 };
 
-// One connection: a request, its reply, the next request.
+// One connection: reads a request, sends the reply, then reads the next request.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
   Connection(tcp::socket socket, std::shared_ptr<Shared> shared) : stream_(std::move(socket)), shared_(std::move(shared)) {
@@ -85,7 +85,7 @@ private:
     if (error && error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
         error != http::error::partial_message)
       return send({400, "text/plain; charset=utf-8", "That is no request.\n"}, false);
-    if (error) return; // closed, or too slow
+    if (error) return; // closed or timed out
     const http::request<http::string_body>& request = parser_->get();
     const Knock knock = knock_of(request);
     keeps_open_ = request.keep_alive();
@@ -105,7 +105,7 @@ private:
     const std::string rest = knock.target.substr(shared_->gate.folder().size());
     const std::size_t mark = rest.find('?');
     PageRequest asked{knock.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};
-    // The reply may come from another thread, and after this object would be gone.
+    // The reply may come from another thread after this object has been destroyed.
     shared_->answer(std::move(asked), [self = shared_from_this(), executor = stream_.get_executor()](PageReply reply) {
       asio::post(executor, [self, reply = std::move(reply)]() mutable { self->send(std::move(reply), self->keeps_open_); });
     });

@@ -1,4 +1,4 @@
-// A web server for one user on this computer: HTTP on 127.0.0.1, behind a gate (gate.h), one thread, bounded in everything.
+// A web server for one user of this computer: HTTP on 127.0.0.1 behind a gate (gate.h), single-threaded, with limits on all resources.
 #pragma once
 
 #include "tools/explore/gate.h"
@@ -11,32 +11,32 @@
 
 namespace steplap {
 
-/// Serves until it is told to end. What it is asked for is answered by a function, at once or later.
+/// Serves until stopped. Requests are answered by a function, at once or later.
 class LocalServer {
 public:
-  static constexpr std::size_t k_longest_body = 1U << 18U;   ///< bytes of a request
-  static constexpr std::size_t k_longest_header = 1U << 15U; ///< bytes, the address with its query among them
-  static constexpr int k_most_connections = 64;              ///< further ones are closed at once
-  static constexpr int k_patience = 30;                      ///< s: for the whole of a request, and for the next one
-  /// How often `tick` is called, ms.
+  static constexpr std::size_t k_longest_body = 1U << 18U;   ///< bytes of a request body
+  static constexpr std::size_t k_longest_header = 1U << 15U; ///< bytes of the header, including the address with its query
+  static constexpr int k_most_connections = 64;              ///< further connections are closed at once
+  static constexpr int k_patience = 30;                      ///< timeout for a whole request, and between requests, s
+  /// Interval between calls of `tick`, ms.
   static constexpr int k_tick = 100;
 
-  /// Called on the thread of run() for each request that has passed the gate.
+  /// Called on the thread of run() for each request that the gate permits.
   using Answer = std::function<void(PageRequest, SendReply)>;
 
-  /// Listens on 127.0.0.1. `port` 0: any that is free. Throws FileError if the port is taken.
+  /// Listens on 127.0.0.1. `port` 0 means any free port. Throws FileError if the port is in use.
   LocalServer(unsigned short port, Answer answer);
   ~LocalServer();
   LocalServer(const LocalServer&) = delete;
   LocalServer& operator=(const LocalServer&) = delete;
 
-  /// What a browser is given: "http://127.0.0.1:PORT/TOKEN/".
+  /// Returns the address for a browser: "http://127.0.0.1:PORT/TOKEN/".
   [[nodiscard]] std::string address() const;
-  /// An address that leads there once (Gate::first_path()).
+  /// Returns an address for a single use (Gate::first_path()).
   [[nodiscard]] std::string first_address() const;
-  /// Serves until `tick` says false, or stop() is called. Then connections are closed.
+  /// Serves until `tick` returns false or stop() is called, then closes all connections.
   void run(const std::function<bool()>& tick);
-  /// From any thread.
+  /// Stops run(). Can be called from any thread.
   void stop();
 
 private:

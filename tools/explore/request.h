@@ -1,4 +1,4 @@
-// What a page asks of the server, and what it gets.
+// Requests of a page to the server, and replies.
 #pragma once
 
 #include <functional>
@@ -6,24 +6,24 @@
 
 namespace steplap {
 
-/// A request that has passed the server's gate (gate.h).
+/// A request that the server's gate (gate.h) has permitted.
 struct PageRequest {
-  bool is_post = false; ///< else GET
-  std::string path;     ///< behind the token: "run"; "" of the page itself
-  std::string query;    ///< behind the question mark, as sent
+  bool is_post = false; ///< true: POST; false: GET
+  std::string path;     ///< path after the token: "run"; "" for the page itself
+  std::string query;    ///< text after the question mark, not decoded
   std::string body;     ///< at most LocalServer::k_longest_body bytes
 };
 
-/// What is sent back.
+/// Reply to a request.
 struct PageReply {
-  int status = 200; ///< of HTTP
+  int status = 200; ///< HTTP status
   std::string type = "text/plain; charset=utf-8";
   std::string body;
   std::string policy{};   ///< Content-Security-Policy; "": nothing may be loaded or run
-  std::string location{}; ///< where to go on, of a status of 303
+  std::string location{}; ///< redirect target for status 303
 };
 
-/// To be called once, from any thread.
+/// Sends the reply. Must be called once, from any thread.
 using SendReply = std::function<void(PageReply)>;
 
 } // namespace steplap

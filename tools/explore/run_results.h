@@ -1,4 +1,4 @@
-// A run as its folder would give it back, without a folder: what pages are made of.
+// Converts a run to the results that reading its folder would give, without writing files. Pages are made from these.
 #pragma once
 
 #include "run/report.h"
@@ -6,10 +6,10 @@
 
 namespace steplap {
 
-/// Whether `summary` of the results is made: its text takes as long as much of a short run.
+/// Whether the text of the summary is created, which takes much of the time of a short run.
 enum class SummaryText { made, left_out };
 
-/// What read_results() gives of the folder that Report::write() fills, but for the date of model.toml, which is not known.
+/// Returns the same as read_results() for the folder written by Report::write(), except for the date of model.toml, which is unknown.
 [[nodiscard]] Results results_of(const Report& report, SummaryText summary = SummaryText::made);
 
 } // namespace steplap

@@ -26,7 +26,7 @@ Node text_node(const std::string& key, const std::string& text) {
   return node;
 }
 
-// The child of that key, added if there is none.
+// Returns the child with that key, which is added if there is none.
 Node& child_of(Node& parent, const std::string& key, Node::Type type) {
   if (Node* found = parent.find(key)) return *found;
   Node& added = parent.children.emplace_back();
@@ -49,7 +49,7 @@ const Node* longest_entry(const Node& array, const std::string& rest) {
   return best;
 }
 
-// Takes the key that the path leads to, as a whole, from `whole` into `changes`. False if there is no such key.
+// Copies the whole key to which the path leads from `whole` to `changes`. Returns false if it does not exist.
 bool take_over(const Node& whole, const std::string& path, Node& changes) {
   const std::size_t point = path.find('.');
   const std::string top = path.substr(0, point), rest = point == std::string::npos ? "" : path.substr(point + 1);
@@ -74,7 +74,7 @@ bool take_over(const Node& whole, const std::string& path, Node& changes) {
     put(changes, *source);
     return true;
   }
-  // Names of parameters may hold points.
+  // Names of parameters may contain points.
   const Node* const value = source->find(rest) ? source->find(rest) : source->find(rest.substr(0, rest.find('.')));
   if (value) put(child_of(changes, top, Node::Type::table), *value);
   return value != nullptr;
@@ -82,12 +82,12 @@ bool take_over(const Node& whole, const std::string& path, Node& changes) {
 
 std::string path_in(const std::string& assignment) { return assignment.substr(0, assignment.find('=')); }
 
-// Does the text, as a file of that name, make that model?
+// Returns true if the text, read as a file of that name, gives that model.
 bool makes(const std::string& text, const std::string& file, const Model& wanted) {
   try {
     return changes_between(parse_given_model(text, file, program_catalogue()), wanted).empty();
   } catch (const ModelError&) {
-    return false; // it would not even be read
+    return false; // it cannot be read
   }
 }
 

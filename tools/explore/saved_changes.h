@@ -1,4 +1,4 @@
-// Changes of a model as a file of their own, which extends the model's.
+// Saves changes of a model as a file that extends the model's file.
 #pragma once
 
 #include "tools/explore/explored_model.h"
@@ -7,13 +7,13 @@
 
 namespace steplap {
 
-/// The text of a TOML file that stands in the folder of the model's file and makes the model with its overrides and these values: it
-/// `extends` that file and gives every key that is changed. Throws ModelError for values that make no model, and for those that no
-/// such file can give: what it makes has been compared, as a whole.
+/// Returns the text of a TOML file for the folder of the model's file. It `extends` that file and sets every changed key, including the
+/// overrides. The result is verified by reading it and comparing the models. Throws ModelError if the values are invalid, or if no such
+/// file can express them.
 [[nodiscard]] std::string text_of_changes(const ExploredModel& model, const ExploredValues& values);
 
-/// Writes that text. `name`: of the file, without a folder. Returns its path. Throws ModelError as above, FileError for a name that
-/// is none, for a file that is there already, and where the folder cannot be written.
+/// Writes that text to the file `name` in the model's folder and returns its path. Throws ModelError as above, FileError if the name is
+/// invalid, the file exists, or the folder is not writable.
 std::string save_changes(const ExploredModel& model, const ExploredValues& values, const std::string& name);
 
 } // namespace steplap

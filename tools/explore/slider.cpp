@@ -13,9 +13,9 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_longest_list = 40; ///< numbers: a record's samples are no sliders
+constexpr std::size_t k_longest_list = 40; ///< numbers; samples of a record get no sliders
 
-// Fields whose name holds the first text are found in the group of the second.
+// Fields whose name contains the first text belong to the group of the second.
 constexpr std::array<std::array<const char*, 2>, 13> k_groups{{{"friction", "friction"},
                                                                {"pressure", "pressure"},
                                                                {"peak", "peak"},
@@ -36,7 +36,7 @@ std::string group_of(const std::string& field) {
   return "";
 }
 
-// From a fifth of the value to twice as much; around zero as far as the field goes, or one unit.
+// Chooses a range from a fifth of the value to twice the value; around zero the range of the field, or one unit.
 void choose_range(Slider& slider, double minimum, double maximum) {
   const double value = slider.value;
   slider.least = value > 0.0 ? 0.2 * value : value < 0.0 ? 2.0 * value : -1.0;
@@ -107,11 +107,11 @@ private:
 
   void add_number(const std::string& path, double number, const std::string& unit, const Field& field) {
     if (!std::isfinite(number) || follows_.contains(path)) return;
-    // What is not given of a fixed body, and the like.
+    // Values outside their range are placeholders, for example of a fixed body.
     if (number < field.minimum || number > field.maximum || (field.is_minimum_excluded && number == field.minimum)) return;
     Slider slider{path, group_of(field.name), unit == "*" ? "" : unit, field.doc, number};
     slider.is_whole = field.type == FieldType::integer;
-    if (number == 0.0) slider.group.clear(); // what is not there is found by search
+    if (number == 0.0) slider.group.clear(); // values of zero are shown only in search results
     choose_range(slider, field.minimum, field.maximum);
     if (field.is_minimum_excluded && slider.least <= field.minimum) slider.least += 0.01 * (slider.most - slider.least);
     sliders_.push_back(std::move(slider));

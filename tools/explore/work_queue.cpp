@@ -31,7 +31,7 @@ bool WorkQueue::add(Urgency urgency, const std::string& owner, Task task) {
   return true;
 }
 
-// Of equally urgent ones the first that came.
+// Returns the most urgent task; among equally urgent ones the oldest.
 std::deque<WorkQueue::Entry>::iterator WorkQueue::most_urgent() {
   return std::max_element(waiting_.begin(), waiting_.end(), [](const Entry& a, const Entry& b) { return a.urgency < b.urgency; });
 }

@@ -1,4 +1,4 @@
-// One thread that does what is asked of it, the most urgent first.
+// A worker thread that executes the most urgent task first.
 #pragma once
 
 #include <condition_variable>
@@ -11,25 +11,25 @@
 
 namespace steplap {
 
-/// Tasks for one thread. What is asked anew makes the older task of the same owner stale: it is told so, and ends early.
+/// Task queue with one worker thread. A newer task makes an older one of the same owner stale; the older task can query this and end early.
 class WorkQueue {
 public:
-  /// The later ones are done first.
+  /// Higher values are executed first.
   enum class Urgency { background, page, drag };
-  /// Asked at any time by the task: is its result not wanted any more, or should it give way to something more urgent?
+  /// Tells a task whether its result is no longer needed or a more urgent task is waiting.
   using IsStale = std::function<bool()>;
   using Task = std::function<void(const IsStale&)>;
 
-  static constexpr std::size_t k_most_waiting = 256; ///< tasks; further ones are refused
+  static constexpr std::size_t k_most_waiting = 256; ///< maximum number of waiting tasks; further ones are rejected
 
   WorkQueue();
-  /// Waiting tasks are thrown away, the one that runs is told that it is stale and waited for.
+  /// Discards waiting tasks, marks the running one as stale and waits for it.
   ~WorkQueue();
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
-  /// `owner`: tasks of the same owner and urgency `drag` are stale once a newer one is there; "" owns nothing. A stale task is run all
-  /// the same, so that it can answer. False if too much is waiting: then the task is thrown away. Tasks must not throw.
+  /// Adds a task. A new task of urgency `drag` makes older tasks of the same owner and urgency stale, unless the owner is "". Stale tasks
+  /// are still run so that they can reply. Returns false and discards the task if too many are waiting. Tasks must not throw.
   [[nodiscard]] bool add(Urgency urgency, const std::string& owner, Task task);
 
 private:

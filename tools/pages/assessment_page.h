@@ -1,15 +1,15 @@
-// The page of an assessment, or of a static proof alone: read from assessment.json and static.json of a folder.
+// Creates the page of an assessment or of a static proof, from assessment.json and static.json in a folder.
 #pragma once
 
 #include <string>
 
 namespace steplap {
 
-/// True if the folder holds assessment.json or static.json.
+/// Returns true if the folder contains assessment.json or static.json.
 [[nodiscard]] bool is_assessment(const std::string& folder);
 
-/// One HTML file that needs no other file and no network. Its first printed sheet, with room for two signatures, is one page of A4.
-/// Throws FileError for a file that is not as `steplap assess` writes it, or whose decision is milder than one of its reasons.
+/// Returns a self-contained HTML file. Its first printed sheet is one A4 page with room for two signatures. Throws FileError if a file was
+/// not written by `steplap assess`, or if its decision is less severe than one of its reasons.
 [[nodiscard]] std::string assessment_page(const std::string& folder);
 
 } // namespace steplap

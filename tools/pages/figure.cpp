@@ -13,10 +13,10 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_stretches = 2000;
-// Okabe and Ito's colours, which colour-blind readers can tell apart.
+// Colours of Okabe and Ito, which colour-blind readers can distinguish.
 constexpr std::array k_colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
-// As gnuplot's single quotes want it.
+// Quotes a text for gnuplot's single quotes.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -31,7 +31,7 @@ struct Prefix {
   const char* text = "";
 };
 
-// A prefix that suits the largest value; none for units in which it would say something else.
+// Returns a prefix suitable for the largest value; none for units that a prefix would change.
 Prefix prefix_for(const Panel& panel) {
   static const std::set<std::string> prefixable{"m", "N", "N m", "Pa", "rad", "J", "m/s", "rad/s"};
   static constexpr std::array<Prefix, 6> prefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1.0, ""}, {1e-3, "m"}, {1e-6, "µ"}}};

@@ -1,4 +1,4 @@
-// Time histories as a gnuplot script: for papers and scripts, where no browser is at hand.
+// Creates gnuplot scripts of time histories, for papers and for computers without a browser.
 #pragma once
 
 #include "run/results.h"
@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// A curve of a panel.
 struct Curve {
   std::string label;
   const std::vector<double>* times = nullptr;
@@ -16,19 +17,21 @@ struct Curve {
   double sign = 1.0;
 };
 
+/// One diagram of a figure.
 struct Panel {
   std::string title, unit;
   std::vector<Curve> curves;
 };
 
+/// A figure with several panels.
 struct Figure {
   std::vector<Panel> panels; ///< row by row
   int columns = 1;
   int panel_width = 760, panel_height = 300; ///< pixels
 };
 
-/// Draws `figure` into the image `file` when gnuplot runs it; `ending` is svg, png or pdf. Names are text,
-/// whatever they hold. Curves of more samples than can be seen are thinned, peaks kept.
+/// Returns a script that draws `figure` into the image `file`; `ending` is svg, png or pdf. All characters of names are shown literally.
+/// Curves with more samples than visible are thinned; peaks are kept.
 [[nodiscard]] std::string gnuplot_script(const Figure& figure, const std::string& ending, const std::string& file);
 
 } // namespace steplap

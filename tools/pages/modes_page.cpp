@@ -47,7 +47,7 @@ std::string modes_page(const LoadedModel& loaded, const Equilibrium& rest, const
                        const std::vector<std::string>& moves_most, const std::vector<std::string>& remarks) {
   Json modes = Json::array();
   for (std::size_t i = 0; i < found.modes.size(); ++i) modes.push_back(mode_json(*loaded.system, found.modes[i], moves_most[i]));
-  // As a run without time histories, which the drawing is made for.
+  // The drawing expects the data of a run; this one has no time histories.
   Json run{{"name", loaded.name},
            {"summary", {{"extremes", Json::object()}}},
            {"events", Json::array()},

@@ -1,4 +1,4 @@
-// The small vibrations of a model as a page: its drawing at rest, moving in the mode that is chosen.
+// Creates a page that shows the vibration modes of a model as animations of its drawing.
 #pragma once
 
 #include "mbd/rest/modes.h"
@@ -9,7 +9,7 @@
 
 namespace steplap {
 
-/// One HTML file that needs no other file and no network. `moves_most`: a text for each mode.
+/// Returns a self-contained HTML file. `moves_most` has a text for each mode that names the bodies with the largest motion.
 [[nodiscard]] std::string modes_page(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found,
                                      const std::vector<std::string>& moves_most, const std::vector<std::string>& remarks);
 

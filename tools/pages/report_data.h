@@ -1,5 +1,4 @@
-// What the page of a report is made of, as JSON: the runs' summaries, events, drawings and time histories,
-// the histories thinned so that the page stays small.
+// Creates the data of a report page as JSON: summaries, events, drawings and time histories of runs, thinned to limit the size of the page.
 #pragma once
 
 #include "run/ordered_json.h"
@@ -11,17 +10,16 @@
 
 namespace steplap {
 
-/// JSON that can stand inside a <script> element: no '<' in it. Time histories are single precision,
-/// as differences from their first value, in base 64; all together they take about `budget` bytes, for
-/// which curves are thinned (thinning.h) and, where that is not enough, channels left out, those of plots,
-/// drawings and reactions last.
-/// Throws FileError for a summary.json or drawing.json that is not as steplap wrote it.
+/// Returns JSON that can be embedded in a <script> element: it contains no '<'. Time histories are single-precision differences from their
+/// first value, in base 64. They take about `budget` bytes in total. To achieve this, curves are thinned (thinning.h) and, if necessary,
+/// channels are omitted; those of plots, drawings and reactions are omitted last. Throws FileError for a summary.json or drawing.json that
+/// steplap did not write.
 [[nodiscard]] std::string report_data(const std::vector<Results>& runs, std::size_t budget = 3500000);
 
-/// The same of one run whose summary is at hand as a document (run/summary.h); its text in `run` is not looked at.
+/// As above for one run, whose summary is given as a document (run/summary.h); the summary text in `run` is ignored.
 [[nodiscard]] std::string report_data(const Results& run, OrderedJson summary, std::size_t budget);
 
-/// JSON without '<', which stands in strings only, where JSON has another way to write it.
+/// Returns equivalent JSON without '<'. The character occurs in strings only, where it can be escaped.
 [[nodiscard]] std::string in_script(const std::string& json);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// A report: one HTML file that needs no other file, no server and no network.
+// Creates a report of runs as one self-contained HTML file.
 #pragma once
 
 #include "run/results.h"
@@ -11,12 +11,12 @@
 
 namespace steplap {
 
-/// The page of one or several runs. Throws FileError for results that are damaged.
+/// Returns the page for one or several runs. Throws FileError for damaged results.
 [[nodiscard]] std::string report_page(const std::vector<Results>& runs);
 
-/// Text that stands in HTML as it is.
+/// Escapes a text for HTML.
 [[nodiscard]] std::string escaped_html(const std::string& text);
-/// "@NAME@" in the template becomes parts["NAME"]; what is put in is not looked at again.
+/// Replaces "@NAME@" in the template by parts["NAME"]. Inserted text is not searched again.
 [[nodiscard]] std::string filled_page(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Fewer samples that look the same: of every stretch of a curve its lowest and its highest point.
+// Reduces the samples of a curve without a visible change: keeps the minimum and maximum of every interval.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,8 @@
 
 namespace steplap {
 
-/// Indices, ascending, of at most about 2 `stretches` + 2 of the values: first, last, and the least and
-/// the largest of each stretch; of a stretch that holds some not-a-number, the first such besides. All, if
-/// there are no more than that.
+/// Returns indices, ascending, of at most about 2 `stretches` + 2 values: the first, the last, and the minimum and maximum of each
+/// interval, with the first NaN of an interval if it contains any. Returns all indices if there are no more values than that.
 [[nodiscard]] std::vector<std::size_t> thinned(const std::vector<double>& values, std::size_t stretches);
 
 } // namespace steplap

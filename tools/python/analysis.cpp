@@ -1,4 +1,4 @@
-// What is asked of a model without a run: modes of vibration and step-lap joints.
+// Analyses of a model without a run: vibration modes and step-lap joints.
 #include "mbd/rest/modes.h"
 #include "run/joint_view.h"
 #include "run/run.h"
@@ -14,7 +14,7 @@ namespace steplap::python {
 
 namespace {
 
-/// One mode, with the names of the bodies that its shape is of.
+/// One mode with the names of the bodies in its shape.
 struct PyMode {
   VibrationMode mode;
   std::shared_ptr<const LoadedModel> loaded;
@@ -40,7 +40,7 @@ py::dict shape(const PyMode& m) {
   return parts;
 }
 
-/// A step-lap joint, which keeps its model alive.
+/// A step-lap joint that keeps its model alive.
 struct PyJoint {
   std::shared_ptr<const LoadedModel> loaded;
   JointView view;

@@ -1,5 +1,4 @@
-// The module `steplap` of Python: thin wrappers of the room run/, one file a class. What is computed, judged and written is what the
-// library computes, judges and writes; nothing is decided here.
+// Python module `steplap`: thin wrappers of the library in run/, one file per class. All computation is done by the library.
 #pragma once
 
 #include "run/report.h"
@@ -14,37 +13,38 @@ namespace steplap::python {
 
 namespace py = pybind11;
 
-/// A model as Python holds it.
+/// A model object in Python.
 struct PyModel {
   std::shared_ptr<const LoadedModel> loaded;
-  std::shared_ptr<const std::string> source{}; ///< the text that it was made from, where it was made from one and not from a file
+  std::shared_ptr<const std::string> source{}; ///< source text, if the model was made from a text and not from a file
 };
 
-/// The model as given, to set values in.
+/// Returns the model as given, for setting values in it.
 [[nodiscard]] Model given_model(const PyModel& model);
 
-/// A run with its report; its samples as one block, which arrays of numpy look into and keep alive.
+/// A run with its report. NumPy arrays refer to `columns` and keep it alive.
 struct PyRun {
   std::shared_ptr<const Report> report;
   std::shared_ptr<const Columns> columns;
 };
 
-/// Asks Python, at most twenty times a second, whether Ctrl-C was pressed; for RunOptions::stop. Called without the interpreter's lock.
+/// Checks at most twenty times a second whether Ctrl-C was pressed in Python, for RunOptions::stop. Called without the interpreter lock
+/// (GIL).
 class Interruption {
 public:
-  /// What RunOptions::stop says: "" lets the run go on.
+  /// Returns the text for RunOptions::stop; "" lets the run continue.
   [[nodiscard]] std::string ask();
-  /// With the lock held: raises KeyboardInterrupt, or what a signal's handler raised, if it came to that.
+  /// Raises KeyboardInterrupt, or the exception of a signal handler, if one occurred. Must be called with the GIL held.
   void raise_if_any();
 
 private:
-  double asked_ = 0.0; ///< s, on a steady clock
+  double asked_ = 0.0; ///< time of the last check on a steady clock, s
   std::shared_ptr<py::error_already_set> raised_;
 };
 
-/// "path=value" of a value of Python: numbers with all digits, texts in quotes, lists. Throws TypeError for anything else.
+/// Returns "path=value" for a Python value: numbers with all digits, quoted texts, lists. Throws TypeError for other types.
 [[nodiscard]] std::string override_text(const std::string& path, const py::handle& value);
-/// A dictionary of such, or a list of "path=value".
+/// Converts a dictionary of values, or a list of "path=value".
 [[nodiscard]] std::vector<std::string> overrides_of(const py::object& given);
 
 void add_analysis(py::module_& module);

@@ -8,7 +8,7 @@ namespace steplap::python {
 
 namespace {
 
-// A class of exceptions, alive as long as the interpreter.
+// Creates an exception class that lives as long as the interpreter.
 py::object new_exception(py::module_& module, const char* name, const char* doc, const py::object& base) {
   const std::string full = std::string("steplap.") + name;
   py::object made = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(full.c_str(), doc, base.ptr(), nullptr));
@@ -20,7 +20,7 @@ struct Exceptions {
   py::object model, numerical, file;
 };
 
-// Never freed: the translator may be called while the interpreter ends.
+// Returns the exception classes. They are never freed, because the translator may be called while the interpreter shuts down.
 Exceptions& exceptions() {
   static Exceptions* const all = new Exceptions;
   return *all;

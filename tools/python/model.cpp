@@ -28,7 +28,7 @@ std::string quoted(const std::string& text) {
 std::string value_text(const std::string& path, const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
   if (py::isinstance<py::str>(value)) return quoted(value.cast<std::string>());
-  if (py::hasattr(value, "tolist")) return value_text(path, value.attr("tolist")()); // numpy's numbers and arrays
+  if (py::hasattr(value, "tolist")) return value_text(path, value.attr("tolist")()); // NumPy numbers and arrays
   if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) return py::repr(value).cast<std::string>();
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
     std::string text;
@@ -64,7 +64,7 @@ py::dict equilibrium(const PyModel& model) {
 } // namespace
 
 std::string Interruption::ask() {
-  constexpr double k_between = 0.05; // s: a person does not see it, a run of microseconds does not feel it
+  constexpr double k_between = 0.05; // s; too short to be noticed by a user, and long compared with the cost of a check
   const double now = seconds();
   if (now - asked_ < k_between) return "";
   asked_ = now;

@@ -13,13 +13,13 @@ namespace steplap::python {
 
 namespace {
 
-// A look into the block: no number is copied, the block lives as long as the array does. Nobody may write there.
+// Returns a read-only array that refers to the block without copying and keeps it alive.
 py::array look_into(const std::shared_ptr<const Columns>& columns, py::ssize_t first, py::ssize_t count, bool is_flat) {
   const auto* const owner = new std::shared_ptr<const Columns>(columns);
   const py::capsule keeper(owner, [](void* held) { delete static_cast<const std::shared_ptr<const Columns>*>(held); });
   const auto rows = static_cast<py::ssize_t>(columns->values.rows());
   const auto size = static_cast<py::ssize_t>(sizeof(double));
-  const double* const data = columns->values.data() + first * rows; // columns lie one after the other
+  const double* const data = columns->values.data() + first * rows; // columns are stored one after the other
   py::array array = is_flat
                         ? py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{rows}, std::vector<py::ssize_t>{size}, data, keeper)
                         : py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{rows, count},
@@ -81,7 +81,7 @@ PyRun run_of(const PyModel& model, std::optional<std::string> method, std::optio
   return run;
 }
 
-// The page is made of a folder of results, as the command line makes it.
+// The page is made from a folder of results, as by the command line.
 std::string page_of(const PyRun& run) {
   namespace fs = std::filesystem;
   std::string folder = (fs::temp_directory_path() / "steplap-XXXXXX").string();

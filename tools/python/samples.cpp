@@ -17,7 +17,7 @@ namespace {
 
 constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
 
-// What is looked at in each run: a channel, and which of its values.
+// A number taken from each run: a channel and one of its values.
 struct Response {
   std::string channel;
   enum class Which { low, high, first, final } which = Which::high;
@@ -48,7 +48,7 @@ double value_in(const Report& report, const Response& response) {
   return k_none;
 }
 
-// Runs the samples that nobody has taken yet, with a model of its own.
+// Runs samples that no other thread has taken, with its own copy of the model.
 struct Crew {
   const Model& given;
   const std::string& path;
@@ -83,7 +83,7 @@ struct Crew {
       troubles[i] = report.run.failure ? report.run.failure->text : report.judgement.distrust;
       if (!report.run.failure)
         for (std::size_t k = 0; k < responses.size(); ++k) row[k] = value_in(report, responses[k]);
-    } catch (const std::exception& error) { // the model does not take the values, or there is no start
+    } catch (const std::exception& error) { // the values are invalid, or there is no initial state
       verdicts[i] = name_of(Verdict::open);
       troubles[i] = error.what();
     }
@@ -102,7 +102,7 @@ py::tuple samples(const PyModel& model, const std::vector<std::string>& paths, c
   Numbers results({count, responses.size()});
   std::vector<std::string> verdicts(count), troubles(count);
   const Model given = given_model(model);
-  for (const std::string& path : paths) static_cast<void>(number_of(given, path)); // they lead somewhere, before threads begin
+  for (const std::string& path : paths) static_cast<void>(number_of(given, path)); // checks the paths before threads start
   Crew crew{given, model.loaded->path, paths, responses, values.data(), count, results.mutable_data(), verdicts, troubles};
   Interruption interruption;
   {

@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_usual_budget = 5.0;      // s of CPU time
-constexpr double k_steps_of_a_run = 8000.0; // where a model names no step: the middle of the ladder
+constexpr double k_usual_budget = 5.0;      // CPU time, s
+constexpr double k_steps_of_a_run = 8000.0; // if the model gives no step: middle of the ladder of settings
 
 struct AccuracyCommand {
   std::vector<std::string> models, overrides, integrators, settings, references, wanted;
@@ -48,7 +48,7 @@ void check_integrator(const std::string& name) {
   throw UsageError("unknown integrator '" + name + "'" + did_you_mean(name, known_integrators()));
 }
 
-// "dop853@1e-9", "rk4@1e-4": the number is a step for a method with fixed steps.
+// Parses "dop853@1e-9", "rk4@1e-4": the number is a step for methods with constant steps.
 MethodSetting setting_of(const System& system, const std::string& text, const std::string& option) {
   const std::size_t at = text.find('@');
   if (at == std::string::npos)
@@ -78,7 +78,7 @@ AccuracyOptions options_for(const AccuracyCommand& command, const LoadedModel& l
   if (command.repeats) options.repeats = static_cast<int>(number_of(*command.repeats, "--repeats"));
   if (command.cpu_limit) options.cpu_limit = number_of(*command.cpu_limit, "--cpu-limit");
   options.budget = command.budget ? number_of(*command.budget, "--budget") : k_usual_budget;
-  // A foot that changes at angles that cross slowly has no sharp time, and nothing depends on it.
+  // A change of contact point at nearly equal angles has no well-defined time and no effect, so it is not compared.
   options.is_event_counted = is_main_event;
   options.progress = [](const std::string& text) { log_detail(text); };
   return options;
@@ -96,7 +96,7 @@ std::vector<std::string> files_of(const AccuracyCommand& command, const LoadedMo
   return {(folder / "accuracy.csv").string(), (folder / "work_precision.svg").string()};
 }
 
-// Before a study that may take minutes.
+// Checks the arguments before a study that may take minutes.
 void check_files(const AccuracyCommand& command, const std::vector<std::shared_ptr<const LoadedModel>>& models) {
   std::set<std::string> seen;
   for (const auto& loaded : models)

@@ -1,4 +1,4 @@
-// steplap accuracy MODEL…
+// Command `steplap accuracy MODEL…`.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -26,7 +26,7 @@ std::string milliseconds(double seconds) {
   return text;
 }
 
-// "3.1e-09", "<2e-12" below what the reference resolves, "–" where it does not agree with itself.
+// Formats an error: "3.1e-09", "<2e-12" below the resolution of the reference, "–" if the reference is not converged.
 Cell error_cell(const AccuracyStudy& study, const AccuracyEntry& entry, ErrorKind kind) {
   if (!study.is_resolved(kind)) return "–";
   const double error = entry.error.of(kind).value, resolution = study.resolution.of(kind).value;
@@ -69,10 +69,10 @@ std::string sentence(const AccuracyStudy& study, double wanted) {
 constexpr double k_width = 640.0, k_height = 440.0, k_left = 70.0, k_right = 120.0, k_top = 40.0, k_bottom = 55.0;
 constexpr const char* k_colours[] = {"#1b6ca8", "#c8553d", "#3a7d44", "#7b4fa3", "#b8860b", "#4a4a4a"};
 
-// A logarithmic axis from whole decade to whole decade.
+// A logarithmic axis over whole decades.
 struct Axis {
   double low = INFINITY, high = -INFINITY; ///< decades
-  double from = 0.0, to = 1.0;             ///< on the paper
+  double from = 0.0, to = 1.0;             ///< position on the page
   void take(double value) {
     if (!(value > 0.0)) return;
     low = std::min(low, std::floor(portable::log10(value)));
@@ -166,7 +166,7 @@ std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
 
 namespace {
 
-// Which settings a budget has room for hangs on the computer.
+// Results depend on the computer, because a budget permits more settings on a fast one.
 void print_budget(std::ostream& out, const AccuracyStudy& study) {
   std::string left_out;
   for (const AccuracyEntry& e : study.entries)

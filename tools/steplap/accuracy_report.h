@@ -1,4 +1,4 @@
-// What an accuracy study tells: a table for the screen, the same as CSV, a work–precision diagram.
+// Output of an accuracy study: a table for the screen, CSV, and a work–precision diagram.
 #pragma once
 
 #include "mbd/trust/accuracy_study.h"
@@ -9,12 +9,12 @@
 
 namespace steplap {
 
-/// `wanted`: errors for which the cheapest setting is named in the last line.
+/// Prints the table. `wanted` are errors for which the last line names the cheapest setting.
 void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::vector<double>& wanted);
-/// One row an entry; errors that are not resolved and those of failed entries are empty fields.
+/// Returns CSV text with one row per entry. Errors that are not resolved and those of failed entries are empty fields.
 [[nodiscard]] std::string accuracy_csv(const AccuracyStudy& study);
-/// CPU time over error, both logarithmic, one line an integrator, Pareto entries filled, the
-/// resolution of the reference as a dashed line.
+/// Returns an SVG diagram of CPU time over error, both logarithmic, with one line per integrator. Pareto-optimal entries are filled; the
+/// resolution of the reference is a dashed line.
 [[nodiscard]] std::string work_precision_svg(const AccuracyStudy& study, const std::string& title);
 
 } // namespace steplap

@@ -11,7 +11,7 @@ namespace {
 ExitCode assess_here(const AssessOptions& options, Console& console) {
   if (!options.static_preset) throw UsageError("assessments are made by the program of studies: begin with 'steplap assess'");
   StaticProofArguments arguments;
-  arguments.models = options.records; // models stand where records would
+  arguments.models = options.records; // with --static the positional arguments are models, not records
   arguments.models.insert(arguments.models.end(), options.models.begin(), options.models.end());
   if (arguments.models.empty()) throw UsageError("--static: name the models, as in 'steplap assess --static road my.toml'");
   arguments.overrides = options.overrides;

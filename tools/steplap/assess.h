@@ -1,5 +1,5 @@
-// steplap assess: from recorders' files and models to a decision. What the command line takes; the work is done by the program of
-// studies (tools/study/program/assess.h), whose libraries it needs, or, with --static, here.
+// Command `steplap assess`: from recorders' files and models to a decision. This file parses the command line. The work is done by the
+// study program (tools/study/program/assess.h), which links the required libraries, or, with --static, here.
 #pragma once
 
 #include "tools/steplap/record_options.h"
@@ -9,7 +9,7 @@
 
 namespace steplap {
 
-/// As given on the command line.
+/// Arguments as given on the command line.
 struct AssessOptions : ReadingOptions {
   std::vector<std::string> records, models, overrides, accepted;
   Text criteria, print_criteria, samples, seed, threads, pulse, pulse_axis, voyage, budget;
@@ -18,11 +18,11 @@ struct AssessOptions : ReadingOptions {
   bool is_json = false, is_overwriting = false, is_estimate_left_out = false;
 };
 
-/// `work` does what was asked.
+/// Returns the command; `work` executes it.
 [[nodiscard]] Command assess_command(const std::function<ExitCode(const AssessOptions& options, Console& console)>& work);
-/// That of `steplap`: --static, and help.
+/// Returns the command for the program `steplap`: it executes --static and prints help.
 [[nodiscard]] Command assess_command();
-/// Is it for the program of studies?
+/// Returns true if these arguments must be passed to the study program.
 [[nodiscard]] bool asks_for_assessment(const std::vector<std::string>& arguments);
 
 } // namespace steplap

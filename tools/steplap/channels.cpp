@@ -29,7 +29,7 @@ struct Listed {
   const char* made; ///< "written", "not written" or "on request"
 };
 
-// Everything that the model has or could ask for.
+// Returns a system with all channels that the model has or could request.
 std::unique_ptr<System> with_all_channels(const Model& model) {
   Model all = model;
   all.output.also = {"*"};

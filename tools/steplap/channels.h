@@ -1,4 +1,4 @@
-// steplap channels MODEL
+// Command `steplap channels MODEL`.
 #pragma once
 
 #include "tools/steplap/command.h"

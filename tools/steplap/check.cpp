@@ -39,12 +39,12 @@ struct CheckOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   bool is_crossed = false;
-  bool is_updated = false; ///< the files are rewritten
+  bool is_updated = false; ///< true: the files are updated
   std::optional<std::string> cpu_limit;
-  std::optional<std::string> parameter; ///< whose uses are asked for
+  std::optional<std::string> parameter; ///< parameter whose uses are listed
 };
 
-constexpr double k_usual_cpu_limit = 60.0; // s, of all runs
+constexpr double k_usual_cpu_limit = 60.0; // for all runs together, s
 
 double cpu_limit_of(const CheckOptions& options) {
   if (!options.cpu_limit) return k_usual_cpu_limit;
@@ -55,7 +55,7 @@ double cpu_limit_of(const CheckOptions& options) {
   return value;
 }
 
-// "16: 2 unilateral_contact, 1 weld"
+// Returns "16: 2 unilateral_contact, 1 weld".
 template <class Entries, class KindOf> std::string counts_text(const Entries& entries, KindOf kind_of) {
   std::map<std::string, int> counts;
   for (const auto& entry : entries) ++counts[kind_of(entry)];
@@ -74,7 +74,7 @@ std::string bodies_text(const Model& model) {
   for (const Body& body : model.bodies) body.fixed ? static_cast<void>(++fixed) : static_cast<void>(mass += body.mass);
   std::string text = std::to_string(model.bodies.size());
   if (fixed > 0) text += ", " + std::to_string(fixed) + " of them fixed";
-  char rounded[32]; // a core's sheets weigh no round number of kilograms
+  char rounded[32]; // masses of sheets are not round numbers
   std::snprintf(rounded, sizeof rounded, "%.8g", mass);
   return text + "; " + rounded + " kg move";
 }
@@ -107,7 +107,7 @@ void print_freedom(TextTable& table, const System& system) {
   table.add_row({"degrees of freedom", degrees});
 }
 
-// What the file gives roughly, and what the run begins with.
+// Prints the given values that assembly changed, and the initial state.
 void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   const System& system = *loaded.system;
   const auto moves = assembly_moves(system.initial_state(), loaded.assembled);
@@ -124,7 +124,7 @@ void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   if (moves.size() > k_shown_moves) out << "  and " << counted(moves.size() - k_shown_moves, "body", "bodies") << " that moved less\n";
 }
 
-// Where the run begins; as given if there is no rest to begin at, which the run will say.
+// Returns the initial state, or the given one if no equilibrium exists; the run reports this error.
 State start_to_show(const LoadedModel& loaded, std::string& title) {
   const bool is_at_rest = loaded.model.simulation.initial == "equilibrium";
   title = is_at_rest ? "contact at rest" : "contact at the start";
@@ -136,7 +136,7 @@ State start_to_show(const LoadedModel& loaded, std::string& title) {
   }
 }
 
-// What touches, or could, how near it is and how hard it presses.
+// Prints all contacts with their gaps or forces.
 void print_contacts(std::ostream& out, const LoadedModel& loaded) {
   std::string title;
   if (loaded.system->contact_count == 0) return;
@@ -159,7 +159,7 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
     out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
 }
 
-// Formulas give numbers that nobody has rounded: six digits.
+// Formats with six digits, because values of formulas are not rounded.
 std::string with_unit(double value, const std::string& unit) {
   char rounded[32];
   std::snprintf(rounded, sizeof rounded, "%.6g", value);
@@ -188,7 +188,7 @@ void print_parameters(std::ostream& out, const Parameters& parameters) {
   out << table;
 }
 
-// Formulas of forces and states that name a parameter, or one that follows from it; how many.
+// Lists formulas of forces and states that use a parameter directly or indirectly, and returns their number.
 std::size_t add_formulas(TextTable& table, const Model& model, std::size_t asked) {
   const Parameters& parameters = model.parameters;
   const auto follows = [&](const std::string& name) {
@@ -212,7 +212,7 @@ std::size_t add_formulas(TextTable& table, const Model& model, std::size_t asked
   return count;
 }
 
-// All that follows from a parameter: other parameters, then fields, with what they come to.
+// Lists everything that depends on a parameter: other parameters, then fields, with their values.
 void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string& name) {
   const Parameters& parameters = loaded.model.parameters;
   const std::optional<std::size_t> asked = parameters.find(name);
@@ -264,7 +264,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
     out << (finding.level == FindingLevel::warning ? "  warning: " : "  note: ") << text_with_place(finding) << "\n";
 }
 
-// A note, once for all models.
+// Prints a note once for all models.
 void note_missing_format(std::ostream& out, const std::vector<std::shared_ptr<const LoadedModel>>& models) {
   std::vector<std::string> files;
   for (const auto& loaded : models)

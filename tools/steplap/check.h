@@ -1,4 +1,4 @@
-// steplap check MODEL…
+// Command `steplap check MODEL…`.
 #pragma once
 
 #include "tools/steplap/command.h"

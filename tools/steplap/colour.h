@@ -1,13 +1,13 @@
-// Whether what is shown may be coloured.
+// Decides whether output may be coloured.
 #pragma once
 
 #include <iosfwd>
 
 namespace steplap {
 
-/// NO_COLOR is set (no-color.org), or the terminal is one that knows no colours.
+/// Returns true if NO_COLOR is set (no-color.org) or the terminal has no colours.
 [[nodiscard]] bool is_colour_refused();
-/// Is `out` the standard output on a terminal, and is colour not refused?
+/// Returns true if `out` is the standard output on a terminal and colour is not refused.
 [[nodiscard]] bool takes_colour(const std::ostream& out);
 
 } // namespace steplap

@@ -50,7 +50,7 @@ struct BindOption {
   CLI::Option* operator()(std::string* target) const { return named(app.add_option(option.names, *target, option.doc)); }
   CLI::Option* operator()(std::vector<std::string>* target) const {
     CLI::Option* bound = named(app.add_option(option.names, *target, option.doc));
-    // An option may come again and again with one value each; a positional takes all that are left.
+    // An option can be repeated with one value each; a positional argument takes all remaining values.
     if (option.names.front() == '-') bound->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     return bound;
   }
@@ -66,8 +66,8 @@ struct CommonFlags {
   }
 };
 
-// `is_meant`: its options are made, which takes longer than all else that a short command does; the others are there
-// to be listed.
+// Adds a command to the parser. Options are created only if `is_meant`, because this takes longer than everything else in a short command;
+// the other commands are only listed.
 void bind(CLI::App& app, const Command& command, bool is_meant, CommonFlags& flags) {
   CLI::App* sub = app.add_subcommand(command.name, command.summary);
   if (!is_meant) return;
@@ -78,7 +78,7 @@ void bind(CLI::App& app, const Command& command, bool is_meant, CommonFlags& fla
   sub->add_flag("-v,--verbose", flags.is_verbose, "say more about what is done")->excludes(quiet);
 }
 
-// To be called in a handler: what was thrown, told. Returns the exit code.
+// Reports the exception that is being handled and returns the exit code. To be called in a catch block.
 ExitCode report_exception(Console& console) {
   try {
     throw;
@@ -103,7 +103,7 @@ ExitCode report_exception(Console& console) {
   }
 }
 
-// What to do without the first option among the arguments that the command has no longer; empty: there is none.
+// Returns advice for the first argument that is a retired option of the command; "" if there is none.
 std::string advice_on_retired(const std::vector<std::string>& arguments, const std::vector<Command>& commands) {
   if (arguments.empty()) return "";
   const auto command = std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == arguments.front(); });
@@ -132,7 +132,7 @@ bool is_given(const std::vector<std::string>& arguments, const std::string& word
   return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
 }
 
-// What the parser says about a wrong command line, with the nearest sub-command. Who gives nothing at all is told what there is.
+// Reports an error of the parser with the most similar sub-command. Without any arguments the list of commands is shown.
 ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program, CLI::App& app,
                       std::ostream& err) {
   if (arguments.empty()) {
@@ -156,7 +156,7 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
   return ExitCode::usage;
 }
 
-// The options of a parser as the parser knows them: what completions and man pages are made from.
+// Returns the options as known to the parser as JSON, for completion scripts and man pages.
 OrderedJson options_json(const CLI::App& app) {
   OrderedJson options = OrderedJson::array();
   for (const CLI::Option* option : app.get_options()) {
@@ -177,7 +177,7 @@ OrderedJson options_json(const CLI::App& app) {
   return options;
 }
 
-// All that --help says, of the program and of every command.
+// Returns the help of the program and of every command as JSON.
 OrderedJson help_json(const Program& program, const CLI::App& app, const std::string& exit_codes) {
   OrderedJson commands = OrderedJson::array();
   for (const Command& command : program.commands)
@@ -203,11 +203,11 @@ OrderedJson version_json(const Program& program) {
   return json;
 }
 
-// "help check" asks what "check --help" does.
+// Returns the arguments with "help check" replaced by "check --help".
 std::vector<std::string> without_help_command(const Program& program, std::vector<std::string> arguments) {
   if (arguments.empty() || arguments.front() != "help" || (arguments.size() > 1 && arguments[1].starts_with('-'))) return arguments;
   arguments.erase(arguments.begin());
-  if (arguments.empty() || is_command(program, arguments.front())) arguments.emplace_back("--help"); // else there is no such command
+  if (arguments.empty() || is_command(program, arguments.front())) arguments.emplace_back("--help"); // otherwise the command does not exist
   return arguments;
 }
 

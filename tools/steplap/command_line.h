@@ -1,4 +1,4 @@
-// The command line: arguments in, exit code out.
+// Parses the command line and runs the command.
 #pragma once
 
 #include "tools/steplap/command.h"
@@ -9,24 +9,24 @@
 
 namespace steplap {
 
-/// Runs `arguments` (without the program's name). `is_terminal`: `err` is one, progress may be shown.
-/// Every error is reported on `err`; never throws. Returns the exit code (command.h).
+/// Runs `arguments` (without the program's name) and returns the exit code (command.h). Errors are reported on `err`; never throws.
+/// `is_terminal` tells that `err` is a terminal, on which progress may be shown.
 int run_command_line(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal);
 
-/// At the end of a program: what was to be said has been written, or that is an error, too. Returns the exit code.
+/// Flushes the output at the end of a program. Returns `code`, or an error code if the output could not be written.
 int code_of_output(std::ostream& out, std::ostream& err, int code);
 
-/// A program of several commands.
+/// A program with several commands.
 struct Program {
   std::string name, doc;
   std::vector<Command> commands;
-  std::string exit_codes{}; ///< what help says of them; those of `steplap` if there is nothing
+  std::string exit_codes{}; ///< text about exit codes in the help; "": that of `steplap`
 };
 
-/// Is there a command of that name?
+/// Returns true if the program has a command of that name.
 [[nodiscard]] bool is_command(const Program& program, const std::string& word);
 
-/// The same for a program with other commands.
+/// As run_command_line(), for another program.
 int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal);
 
 } // namespace steplap

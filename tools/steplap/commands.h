@@ -1,4 +1,4 @@
-// All sub-commands: the one list that a new one is added to.
+// List of all sub-commands. New ones are added here.
 #pragma once
 
 #include "tools/steplap/command.h"

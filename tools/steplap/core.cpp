@@ -91,14 +91,14 @@ void print_packets(std::ostream& out, const Core& core, const CoreGeometry& geom
         << " sheets\n";
 }
 
-// Interfaces between layers, whether they carry an overlap or not.
+// Returns the number of interfaces between layers, with and without overlap.
 double interfaces_between_layers(const Stack& stack) {
   double count = 0.0;
   for (const LayerPair& pair : layer_pairs(stack)) count += static_cast<double>(pair.count);
   return count;
 }
 
-// How it gives way, where that is said; `area` of all its overlaps, m².
+// Describes the elasticity of the joint, if given; `area` is the total overlap area, m².
 void print_compliance(std::ostream& out, const Core& core, const CoreGeometry& geometry, double area) {
   if (core.is_elastic()) {
     double compliance = core.contact_stiffness ? 1.0 / *core.contact_stiffness : 0.0;
@@ -114,7 +114,7 @@ void print_compliance(std::ostream& out, const Core& core, const CoreGeometry& g
   out << "\n";
 }
 
-// Packets whose pressure follows the acceleration across the stack, of its first corner.
+// Lists the packets whose pressure follows the acceleration across the stack, for the first corner of each.
 void print_transverse(std::ostream& out, const Core& core, const CoreGeometry& geometry, const CoreCorner& corner) {
   if (core.transverse_acceleration.empty()) return;
   double most = -1e300, least = 1e300;
@@ -135,7 +135,7 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   double all = 0.0, capacity = 0.0;
   const std::vector<CoreCorner> corners = geometry.corners(core.is_middle(limb), side_of_limb(core, body, part), reach);
   for (const CoreCorner& corner : corners) {
-    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // area times pressure
+    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // `pressed`: area times pressure
     for (const Lap& lap : corner.laps) {
       count += lap.count;
       area += lap.count * lap.area;
@@ -167,7 +167,7 @@ void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geomet
   out << table;
 }
 
-// What the clamps of its yokes come to.
+// Prints the effect of the clamps of the yokes.
 void print_clamping(std::ostream& out, const Core& core, const Model& model) {
   if (!is_clamped(core, model)) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
@@ -181,7 +181,7 @@ void print_clamping(std::ostream& out, const Core& core, const Model& model) {
   out << table;
 }
 
-// Is it not the only table whose yokes are in its active part?
+// Returns true if other tables have yokes in the same active part.
 bool is_one_of_several(const Core& core, const Model& model) {
   return std::count_if(model.tables.begin(), model.tables.end(), [&core](const TableEntry& entry) {
            const auto* other = dynamic_cast<const Core*>(entry.table.get());
@@ -212,7 +212,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
   }
 }
 
-// With several cores: FILE.svg, FILE-2.svg …
+// Writes the drawing of core number `index` to FILE.svg, FILE-2.svg, ….
 void write_image(const std::string& path, std::size_t index, const Core& core, const Model& model, std::ostream& out) {
   std::filesystem::path file(path);
   if (index > 0) file.replace_filename(file.stem().string() + "-" + std::to_string(index + 1) + file.extension().string());

@@ -1,4 +1,4 @@
-// steplap core MODEL
+// Command `steplap core MODEL`.
 #pragma once
 
 #include "tools/steplap/command.h"

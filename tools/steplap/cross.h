@@ -1,4 +1,4 @@
-// `steplap check --cross`: every model run by methods that share little, and what they disagree on.
+// Option `steplap check --cross`: runs every model by methods that have little in common, and reports differences.
 #pragma once
 
 #include "run/run.h"
@@ -6,8 +6,8 @@
 
 namespace steplap {
 
-/// Runs and prints one table for each model, all of them within `cpu_limit`, s. Exit code 4 if anything disagrees beyond the estimates, or if there are
-/// no two opinions.
+/// Runs the methods and prints one table per model. All models together may use `cpu_limit`, s. Returns exit code 4 if results differ by
+/// more than the error estimates, or if fewer than two methods gave a result.
 [[nodiscard]] ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>>& models, double cpu_limit,
                                           Console& console);
 

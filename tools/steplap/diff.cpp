@@ -27,7 +27,7 @@ struct DiffOptions {
   bool is_sameness_required = false;
 };
 
-constexpr std::size_t k_longest = 40; // characters of a value that is no number
+constexpr std::size_t k_longest = 40; // characters of a value that is not a number
 
 std::string shortened(const std::string& text) {
   std::size_t length = 0, end = 0;
@@ -36,7 +36,7 @@ std::string shortened(const std::string& text) {
   return end < text.size() ? text.substr(0, end) + "…" : text;
 }
 
-// Six digits, or all where the other value has the same six.
+// Shows six digits, or all if the other value has the same six.
 Cell value_cell(const std::optional<double>& value, const std::optional<double>& other, const std::string& text, const std::string& unit) {
   if (!value) return text.empty() ? Cell("-") : Cell(shortened(shown(text)));
   const std::string usual = quantity_text(*value, unit);
@@ -74,7 +74,7 @@ std::size_t diff_models(const Model& before, const Model& after, std::ostream& o
 
 Model given_model(const std::string& path) { return read_given_model(path, program_catalogue()); }
 
-// What the folder's run was made from. Nothing if this program cannot read it, which is told.
+// Returns the model of a run's folder. Reports it and returns nothing if this program cannot read the model.
 std::optional<Model> model_of(const std::string& folder, std::ostream& out) {
   try {
     return given_model((fs::path(folder) / "model.toml").string());

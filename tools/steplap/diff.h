@@ -1,4 +1,4 @@
-// steplap diff: what differs between two models, or between two runs and what led to it.
+// Command `steplap diff`: differences between two models, or between two runs and their models.
 #pragma once
 
 #include "tools/steplap/command.h"

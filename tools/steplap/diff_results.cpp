@@ -20,7 +20,8 @@ using Align = TextTable::Align;
 using Json = OrderedJson;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_rounding = 1e-9;     // of the larger value, where no error says more: what two runs of other steps agree to anyhow
+constexpr double k_rounding = 1e-9;     // of the larger value; used if there are no error estimates, because runs with other steps agree to
+                                        // this accuracy
 constexpr std::size_t k_most_rows = 20; // of events, and of extremes, on the screen
 
 double number_in(const Json& json, const char* key) {
@@ -33,12 +34,12 @@ std::string text_in(const Json& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-// None where it was not estimated; not-a-number: unknown.
+// Returns the error: empty if not estimated, NaN if unknown.
 std::optional<double> error_in(const Json& json, const std::string& key) {
   return json.contains(key) ? std::optional(number_in(json, key.c_str())) : std::nullopt;
 }
 
-/// A number of a run.
+/// A number of a run with its error.
 struct Measured {
   double value = k_nan;
   std::optional<double> error;
@@ -48,16 +49,16 @@ Measured measured_in(const Json& json, const std::string& key, const std::string
   return {number_in(json, key.c_str()), error_in(json, error)};
 }
 
-// Differences within the errors are none, and neither are those of numbers whose errors are unknown.
+// Returns true if the values differ by more than their errors. Values with unknown errors never differ.
 bool differ(const Measured& a, const Measured& b) {
   if (std::isnan(a.value) || std::isnan(b.value)) return std::isnan(a.value) != std::isnan(b.value);
   const double difference = std::abs(a.value - b.value), rounding = k_rounding * std::max(std::abs(a.value), std::abs(b.value));
-  return difference > std::max(rounding, a.error.value_or(0.0) + b.error.value_or(0.0)); // false for not-a-number
+  return difference > std::max(rounding, a.error.value_or(0.0) + b.error.value_or(0.0)); // false for NaN
 }
 
-// Both values, in few digits with one prefix, or in all where few do not tell them apart.
+// Returns both values with few digits and one prefix, or with all digits if few do not distinguish them.
 std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::string& unit) {
-  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // of one, where the other is none
+  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // the finite one if the other is NaN
   const auto few = [&](const Measured& m) { return shown_quantity(m.value, unit, {.error = m.error, .limit = {}, .column = column}); };
   const bool is_told_apart = few(a) != few(b);
   const auto cell = [&](const Measured& m) {
@@ -66,7 +67,7 @@ std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::
   return {cell(a), cell(b)};
 }
 
-// What was zero within its error has no share by which it changed.
+// Returns an empty cell if the value before was zero within its error.
 Cell change_of(const Measured& a, const Measured& b) {
   if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_rounding * std::abs(b.value), a.error.value_or(0.0)))
     return "";
@@ -148,7 +149,7 @@ std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
   return table.rows().size() - 1;
 }
 
-// By element and what happens, in the order of time: the first lift of a foot is compared with its first lift.
+// Pairs events by element and kind in order of time: the first lift of a foot in one run with the first in the other.
 template <class Value> using ByEvent = std::map<std::pair<std::string, std::string>, Value>;
 using EventTimes = ByEvent<std::vector<Measured>>;
 
@@ -238,7 +239,7 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
   return rows.size();
 }
 
-// What only one of the runs has.
+// Prints what exists in one of the runs only, and returns the number of such entries.
 std::size_t print_missing(std::ostream& out, const Json& a, const Json& b) {
   std::size_t count = 0;
   for (const bool is_gone : {true, false}) {

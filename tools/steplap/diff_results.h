@@ -1,4 +1,4 @@
-// What followed from a change: two runs compared by their summaries and events.
+// Compares two runs by their summaries and events.
 #pragma once
 
 #include "tools/steplap/shown_run.h"
@@ -8,10 +8,11 @@
 
 namespace steplap {
 
-/// "+12 %"; what began at zero has no such number.
+/// Returns a cell such as "+12 %". It is empty if the value before is zero.
 [[nodiscard]] Cell change_cell(double before, double after);
 
-/// Tables of what differs by more than both errors together; where errors were not estimated, by more than rounding, which is said. Returns how many differences there are.
+/// Prints tables of values that differ by more than the sum of both errors, or, if errors were not estimated, by more than rounding (which
+/// is stated). Returns the number of differences.
 std::size_t print_result_changes(std::ostream& out, const ShownRun& before, const ShownRun& after);
 
 } // namespace steplap

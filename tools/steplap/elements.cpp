@@ -17,7 +17,7 @@ struct ElementsOptions {
   bool is_markdown = false;
 };
 
-// Rows whose first is the head.
+// Prints rows, the first of which contains the heads.
 void print_rows(std::ostream& out, const std::string& name, const ReferenceRows& rows) {
   TextTable table(std::vector<TextTable::Align>(rows.front().size(), TextTable::Align::left));
   table.set_head(name, rows.front());

@@ -1,4 +1,4 @@
-// steplap elements [KIND]
+// Command `steplap elements [KIND]`.
 #pragma once
 
 #include "tools/steplap/command.h"

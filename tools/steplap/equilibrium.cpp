@@ -22,7 +22,7 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr double k_unit = 1e-3; // m, rad: what is below a billionth of it counts as rounding
+constexpr double k_unit = 1e-3; // m, rad; values below 1e-9 of it are regarded as rounding
 
 const char* const k_of_one_rest = " at this one of many rests: they depend on the way to it, since friction holds the machine";
 
@@ -46,7 +46,7 @@ void print_poses(std::ostream& out, const System& system, const State& start, co
 }
 
 void print_reactions(std::ostream& out, const Model& model, const Equilibrium& found) {
-  const std::unique_ptr<System> system = compile(model); // its drives are held
+  const std::unique_ptr<System> system = compile(model); // a separate system, because its drives are held
   const std::vector<double> values = values_at_rest(*system, found.state);
   std::map<std::string, double> scale; // by unit
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -60,7 +60,7 @@ void print_reactions(std::ostream& out, const Model& model, const Equilibrium& f
   if (!table.is_empty()) out << "\nReactions" << (found.hangs_on_way ? k_of_one_rest : "") << "\n" << table;
 }
 
-// How much more of the present load each friction element could bear before it slips.
+// Prints by which factor the present load could grow before each friction element slips.
 void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins, bool hangs_on_way) {
   TextTable table({Align::left, Align::right, Align::right});
   table.set_head("friction", {"friction", "used", "slips at"});

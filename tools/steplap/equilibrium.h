@@ -1,4 +1,4 @@
-// steplap equilibrium MODEL…
+// Command `steplap equilibrium MODEL…`.
 #pragma once
 
 #include "tools/steplap/command.h"

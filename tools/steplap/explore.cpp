@@ -40,7 +40,8 @@ unsigned short port_of(const ExploreOptions& options) {
   return port;
 }
 
-// Without a shell. The browser is nobody's child: it lives on when this program ends, and leaves no zombie when it ends first.
+// Starts the browser without a shell and as an independent process: it continues after this program ends and leaves no zombie if it ends
+// first.
 bool open_browser(const std::string& address) {
   std::string words[] = {"xdg-open", address};
   char* arguments[] = {words[0].data(), words[1].data(), nullptr};
@@ -50,17 +51,17 @@ bool open_browser(const std::string& address) {
   if (child == 0) {
     if (fork() != 0) _exit(0);
     setsid();
-    const int nowhere = open("/dev/null", O_RDWR); // what browsers say is not ours
+    const int nowhere = open("/dev/null", O_RDWR); // discards the output of the browser
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, descriptor);
     execvp(arguments[0], arguments);
     const char failed = 1;
     (void)!write(ends[1], &failed, 1);
-    _exit(127); // there is no such program
+    _exit(127); // the program does not exist
   }
   close(ends[1]);
   if (child > 0) waitpid(child, nullptr, 0);
   char failed = 0;
-  const bool is_open = child > 0 && read(ends[0], &failed, 1) == 0; // closed by the program that took its place
+  const bool is_open = child > 0 && read(ends[0], &failed, 1) == 0; // closed when the browser program has started
   close(ends[0]);
   return is_open;
 }
@@ -72,9 +73,9 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   Explorer explorer(options.models, options.overrides);
   const InterruptionGuard guard;
   LocalServer server(port, [&explorer](const PageRequest& request, const SendReply& send) { explorer.answer(request, send); });
-  const Ending ending{explorer}; // before the server's: what waits holds connections
+  const Ending ending{explorer}; // must be destroyed before the server, because waiting requests hold connections
   console.out << server.address() << "\n" << std::flush;
-  if (!console.out) return ExitCode::done; // nobody knows the address, which is told as an error of the output
+  if (!console.out) return ExitCode::done; // the address could not be printed; reported as an output error
   const bool has_screen = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address())))
     log_info("No browser could be opened: open the address in one");

@@ -1,4 +1,4 @@
-// The sub-command `explore`.
+// Command `steplap explore`.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -1,11 +1,11 @@
-// steplap help: what --help says, of a command or of all.
+// Command `steplap help`: prints the help of one command or of all.
 #pragma once
 
 #include "tools/steplap/command.h"
 
 namespace steplap {
 
-/// For the list of commands: the parser answers it, since it alone knows all options (command_line.cpp).
+/// Returns the entry for the list of commands. The parser executes it, because only the parser knows all options (command_line.cpp).
 [[nodiscard]] Command help_command();
 
 } // namespace steplap

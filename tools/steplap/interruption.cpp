@@ -40,7 +40,7 @@ InterruptionGuard::InterruptionGuard() {
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < k_signals.size(); ++i) {
     sigaction(k_signals[i], nullptr, &before[i]);
-    // nohup has SIGHUP ignored, and a shell SIGINT of what it runs behind: that is how it stays.
+    // nohup ignores SIGHUP, and a shell ignores SIGINT for background processes; both remain ignored.
     if (before[i].sa_handler != SIG_IGN) sigaction(k_signals[i], &action, nullptr);
   }
 }

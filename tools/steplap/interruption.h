@@ -1,12 +1,12 @@
-// A run that is stopped from outside, by Ctrl-C or by whoever ends the session, is saved as far as it came.
+// Handles signals that stop a run, such as Ctrl-C: the run ends and its results so far are saved.
 #pragma once
 
 #include <string>
 
 namespace steplap {
 
-/// While one of these lives, the first SIGINT, SIGTERM, SIGHUP or SIGXCPU is noted instead of ending the program; a second one ends
-/// it at once.
+/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP or SIGXCPU is recorded instead of ending the program. A second
+/// one ends it at once.
 class InterruptionGuard {
 public:
   InterruptionGuard();
@@ -15,17 +15,17 @@ public:
   ~InterruptionGuard();
 };
 
-/// What cannot be written, beyond a file's allowed size or to a reader that has gone, is an error that can be told, not the end of
-/// the program with temporary files left behind. To be called once, first.
+/// Makes write errors (file size limit, closed pipe) return an error instead of ending the program by a signal, which would leave temporary
+/// files behind. Must be called once, first.
 void let_writing_fail();
-/// Ends the program by SIGPIPE, as others end, if nobody reads from `descriptor` any more.
+/// Ends the program by SIGPIPE if no process reads from `descriptor` any more.
 void end_if_nobody_reads(int descriptor);
 
-/// The signal noted, 0 if there was none.
+/// Returns the recorded signal; 0 if there was none.
 [[nodiscard]] int noted_signal();
-/// Why to stop: "stopped by SIGINT"; "" if no signal was noted (RunOptions::stop).
+/// Returns the reason to stop, "stopped by SIGINT"; "" if no signal was recorded. Suitable for RunOptions::stop.
 [[nodiscard]] std::string interruption();
-/// Ends the program by the signal noted, as if nobody had minded it: so that a shell's loop ends, too. Nothing if none was.
+/// Ends the program by the recorded signal, so that a calling shell loop ends, too. Does nothing if there was none.
 void end_by_noted_signal();
 
 } // namespace steplap

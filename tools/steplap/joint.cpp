@@ -41,7 +41,7 @@ std::vector<JointView> chosen_joints(const JointOptions& options, const LoadedMo
   return chosen;
 }
 
-// "53 kN, 0, 1.2e4": SI where there is no unit.
+// Parses a wrench such as "53 kN, 0, 1.2e4"; SI if there is no unit.
 Vec3 parse_wrench(const std::string& text) {
   static const std::array<const char*, 3> units = {"N", "N", "N m"};
   std::vector<std::string> parts;
@@ -68,7 +68,7 @@ Cell area_cell(double area) {
 }
 
 std::string point_text(const Vec2& point) {
-  // Places closer than an atom are rounding.
+  // Distances smaller than an atom are rounding.
   const auto coordinate = [](double x) { return quantity_text(std::abs(x) < 1e-10 ? 0.0 : x, "m"); };
   return "(" + coordinate(point.x()) + ", " + coordinate(point.y()) + ")";
 }
@@ -115,7 +115,7 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
   out << table;
 }
 
-// Whose capacity that is: a rigid joint bears the whole load until it slides.
+// Tells to which elements the capacity belongs: a rigid joint carries the whole load until it slides.
 void print_sharing(std::ostream& out, const JointView& view) {
   if (is_elastic(*view.joint)) out << "elastic: yields before it slides";
   if (view.beside.empty()) {

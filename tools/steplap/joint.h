@@ -1,4 +1,4 @@
-// steplap joint MODEL
+// Command `steplap joint MODEL`.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -13,7 +13,7 @@ OrderedJson number_json(double value) { return std::isfinite(value) ? OrderedJso
 
 OrderedJson cell_json(const Cell& cell) {
   if (!cell.value) return cell.text;
-  // Whole numbers as such: steps, counts.
+  // Writes integers such as steps and counts without decimals.
   const double value = *cell.value;
   if (cell.unit.empty() && !cell.error)
     return value == std::floor(value) && std::abs(value) < 9e15 ? OrderedJson(static_cast<long>(value)) : number_json(value);

@@ -1,12 +1,12 @@
-// --json: what a command would write on the screen, for programs.
+// Option --json: writes the output of a command as JSON.
 //
 //   {"program": "steplap", "version": "0.1.0", "command": "check", "results": [
 //     {"about": "my.toml", "text": ["my.toml: fine"], "tables": {"contacts": [{"contact": "foot", "force": {"value": 12, "unit": "N"}}]}}],
 //    "exit_code": 0}
 //
-// A table with a head is a list of objects, one for each row; a table without is one object of its pairs. Numbers are SI with all
-// digits: a plain number without a unit, else {"value", "unit"} and "error" where it was estimated. What is no number is text, null where the
-// number is missing. "text" holds the lines that people read beside the tables.
+// A table with column heads becomes a list of objects, one per row; a table without heads becomes one object. Numbers are SI with all
+// digits: a plain number if it has no unit, otherwise {"value", "unit"}, with "error" if it was estimated. Other cells are text, or null
+// for a missing number. "text" contains the lines outside tables.
 #pragma once
 
 #include "run/ordered_json.h"
@@ -16,14 +16,14 @@
 
 namespace steplap {
 
-/// A stream for a command to write on.
+/// Output stream for a command.
 class JsonScreen : public std::ostringstream, public TableSink {
 public:
   void begin(const About& about) override;
   void take(const TextTable& table) override;
-  /// A document of the result's own, besides its tables.
+  /// Adds a JSON document to the present result, in addition to its tables.
   void put(const std::string& name, OrderedJson document);
-  /// All that was written.
+  /// Returns the whole output as JSON text.
   [[nodiscard]] std::string document(const std::string& program, const std::string& command, int exit_code);
 
 private:
@@ -33,7 +33,7 @@ private:
   OrderedJson results_ = OrderedJson::array();
 };
 
-/// The stream as such a screen; nullptr if people read it.
+/// Returns the stream as a JsonScreen; nullptr if it is an ordinary text stream.
 [[nodiscard]] JsonScreen* json_screen(std::ostream& stream);
 
 } // namespace steplap

@@ -1,11 +1,11 @@
-// Under which licences the program may be used and passed on.
+// Licences of the program and of its parts.
 #pragma once
 
 #include <string_view>
 
 namespace steplap {
 
-/// LICENSE and THIRD_PARTY.md, as they were when the program was built.
+/// LICENSE and THIRD_PARTY.md at the time of the build.
 extern const std::string_view k_licences;
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// What the program says about itself while it works, one line each on the error stream:
-// "steplap: warning: …". Tables and other results do not go through here.
+// Messages of the program about its work, one line each on the error stream: "steplap: warning: …". Tables and other results do not use the
+// log.
 #pragma once
 
 #include "tools/steplap/console.h"
@@ -8,9 +8,9 @@
 
 namespace steplap {
 
-/// Sends the log to `err`, coloured on a terminal that takes colour.
+/// Sends the log to `err`, coloured if the terminal supports it.
 void start_log(std::ostream& err, bool is_terminal);
-/// quiet: errors only; verbose: details too.
+/// Sets which messages are shown. quiet: errors only; verbose: details, too.
 void set_log_level(Verbosity verbosity);
 
 void log_error(const std::string& text);

@@ -10,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Offset of a place in the text. Columns count characters, which have one to four bytes in UTF-8. Nothing beyond the text.
+// Returns the offset of a location in the text. Columns count characters, which have one to four bytes in UTF-8. Returns nothing beyond the
+// end of the text.
 std::optional<std::size_t> offset_of(const std::string& text, const Location& where) {
   std::size_t at = 0;
   for (int line = 1; line < where.line; ++line) {
@@ -26,7 +27,7 @@ std::optional<std::size_t> offset_of(const std::string& text, const Location& wh
   return at;
 }
 
-// Returns the offset at which the key's name begins, past a quote; nothing if another text is there.
+// Returns the offset at which the key's name begins, after a quote; nothing if the text differs.
 std::optional<std::size_t> place_of_key(const std::string& text, const RenamedKey& key) {
   std::optional<std::size_t> at = offset_of(text, key.where);
   if (at && *at < text.size() && (text[*at] == '"' || text[*at] == '\'')) ++*at;
@@ -34,7 +35,7 @@ std::optional<std::size_t> place_of_key(const std::string& text, const RenamedKe
   return at;
 }
 
-// The first line that is neither empty nor a comment; the end of the text if there is none.
+// Returns the offset of the first line that is neither empty nor a comment; the end of the text if there is none.
 std::size_t first_statement(const std::string& text) {
   std::size_t at = 0;
   while (at < text.size()) {
@@ -53,7 +54,7 @@ void add_format(std::string& text) {
   const std::string line_end = has_carriage_returns ? "\r\n" : "\n";
   const std::size_t at = first_statement(text);
   std::string line = "format = " + std::to_string(k_file_format) + line_end;
-  if (at < text.size() && text[text.find_first_not_of(" \t", at)] == '[') line += line_end; // a gap before the first table
+  if (at < text.size() && text[text.find_first_not_of(" \t", at)] == '[') line += line_end; // an empty line before the first table
   if (at > 0 && text[at - 1] != '\n') line = line_end + line;
   text.insert(at, line);
 }

@@ -1,4 +1,4 @@
-// Model files brought up to date: `format = 1` at the top, and present names for keys that were renamed. Comments and layout stay.
+// Updates model files: adds `format = 1` at the top and replaces renamed keys by their present names. Comments and layout are kept.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -10,13 +10,13 @@ namespace steplap {
 
 /// A model file after an update.
 struct ModelUpdate {
-  std::string text;             ///< of the file
-  bool adds_format = false;     ///< a line `format = 1` is new
-  std::size_t renamed_keys = 0; ///< that have their present names now
-  std::size_t left_keys = 0;    ///< earlier names that are not in this file's text as given, for example in a file that it extends
+  std::string text;             ///< new content of the file
+  bool adds_format = false;     ///< true if a line `format = 1` was added
+  std::size_t renamed_keys = 0; ///< number of keys that were renamed
+  std::size_t left_keys = 0;    ///< number of old names that do not occur in the text of this file, for example those in an extended file
 };
 
-/// Updates `text`, the content of `file`, for the findings in `model`, which was read from it.
+/// Updates `text`, the content of `file`, according to the findings in `model`, which was read from it.
 [[nodiscard]] ModelUpdate updated(const std::string& text, const std::string& file, const Model& model);
 
 } // namespace steplap

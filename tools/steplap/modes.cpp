@@ -34,7 +34,7 @@ std::string fixed_text(double value, const char* format) {
   return text;
 }
 
-// What moves most: "active part.theta 1.00, upper tank.x 0.42".
+// Returns the coordinates with the largest amplitudes: "active part.theta 1.00, upper tank.x 0.42".
 std::string shape_text(const System& system, const VibrationMode& mode) {
   struct Part {
     std::string name;
@@ -79,7 +79,7 @@ WantedModes wanted_modes(const ModesOptions& options) {
   return wanted;
 }
 
-// Which of them these are, and how far to be trusted, where they are not all.
+// Describes which part of the modes was computed and how accurate they are, if not all were computed.
 std::string choice_text(const VibrationModes& found, const WantedModes& wanted) {
   double worst = 0.0;
   for (const VibrationMode& mode : found.modes) worst = std::max(worst, mode.residual);
@@ -90,7 +90,7 @@ std::string choice_text(const VibrationModes& found, const WantedModes& wanted) 
                            : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric");
 }
 
-// Why there is none.
+// Prints the reason why there are no modes.
 void print_none(std::ostream& out, const VibrationModes& found) {
   out << "None: "
       << (found.rigid_motions > 0 ? "of what can move nothing is held" : "joints, drives and friction that sticks leave no motion free")
@@ -107,7 +107,7 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
     table.add_row({count_cell(i + 1), Cell(fixed_text(mode.natural_frequency(), "%.4f Hz"), mode.natural_frequency(), "Hz"),
                    mode.oscillates() ? Cell(fixed_text(mode.frequency(), "%.4f Hz"), mode.frequency(), "Hz") : Cell("-"),
                    mode.oscillates() ? Cell(fixed_text(std::round(1e5 * mode.damping_ratio()) / 1e3 + 0.0, "%.3f %%"),
-                                            100.0 * mode.damping_ratio(), "%") // no "-0.000"
+                                            100.0 * mode.damping_ratio(), "%") // avoids "-0.000"
                                      : Cell(fixed_text(mode.eigenvalue.real(), "%.4g /s"), mode.eigenvalue.real(), "1/s"),
                    shape_text(*loaded.system, mode)});
   }

@@ -1,4 +1,4 @@
-// steplap modes: natural frequencies, damping and shapes of the small vibrations about equilibrium.
+// Command `steplap modes`: natural frequencies, damping and shapes of small vibrations about equilibrium.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -23,7 +23,7 @@ struct NewOptions {
   std::map<std::string, std::optional<std::string>> values; ///< by option
 };
 
-// What stands between the next pair of quotes from `at`, which is moved behind them.
+// Returns the text between the next pair of quotes from `at`, and moves `at` behind them.
 std::string_view quoted(std::string_view line, std::size_t& at) {
   const std::size_t begin = line.find('"', at), end = begin == std::string_view::npos ? begin : line.find('"', begin + 1);
   if (end == std::string_view::npos) return {};
@@ -31,7 +31,7 @@ std::string_view quoted(std::string_view line, std::size_t& at) {
   return line.substr(begin + 1, end - begin - 1);
 }
 
-// "name = { value = "1 m", range = ["0.5 m", "2 m"], meaning = "…" } # source"
+// Parses "name = { value = "1 m", range = ["0.5 m", "2 m"], meaning = "…" } # source".
 std::optional<TemplateParameter> parameter_in(std::string_view line, std::size_t offset) {
   const std::size_t table = line.find(" = { value = \"");
   if (table == std::string_view::npos || line.find(' ') != table) return std::nullopt;
@@ -60,11 +60,11 @@ const ModelTemplate& template_called(const std::string& kind) {
   throw UsageError("there is no kind '" + kind + "' to start from" + did_you_mean(kind, names) + "; there are " + list);
 }
 
-// The text with the values given, each laid over the one that stands there. `only`: of this option alone.
+// Returns the text with the given values in place of those of the template; with `only`, those of this option.
 std::string filled(const ModelTemplate& one, const NewOptions& options, const std::string& only = "") {
   std::string text(one.text);
   std::vector<TemplateParameter> parameters = one.parameters();
-  std::reverse(parameters.begin(), parameters.end()); // from the end: places before it stay
+  std::reverse(parameters.begin(), parameters.end()); // from the end, so that positions before stay valid
   for (const TemplateParameter& p : parameters) {
     const auto given = options.values.find(p.option());
     if (given != options.values.end() && given->second && (only.empty() || only == p.option()))
@@ -97,7 +97,7 @@ ExitCode write_model(const NewOptions& options, Console& console) {
   const ModelTemplate& one = template_called(options.kind);
   refuse_wrong_values(one, options);
   const std::string text = filled(one, options);
-  // What each value alone allows, all of them together may not: that is told here, not when the file is first used.
+  // Values that are valid individually may be invalid together; this is reported now, not when the file is used.
   const auto loaded = load_given(parse_given_model(text, one.name + ".toml", program_catalogue()), one.name);
   for (const Finding& finding : findings_of(*loaded))
     if (finding.level == FindingLevel::warning) log_warning(finding.text);
@@ -140,7 +140,7 @@ parameters.NAME for one run. Values are SI or carry a unit.
   command.options = {{"KIND", &o->kind, "KIND", "block, machine or transformer", true},
                      {"-o,--output", &o->output, "FILE", "the file to write (default: the standard output)"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier file"}};
-  std::map<std::string, std::string> docs; // by option: several kinds may have one of that name
+  std::map<std::string, std::string> docs; // by option; several templates may have an option of the same name
   std::vector<std::string> order;
   for (const ModelTemplate& one : model_templates())
     for (const TemplateParameter& p : one.parameters()) {

@@ -1,7 +1,7 @@
-// steplap new: a commented model to start from, with its dimensions as options.
+// Command `steplap new`: writes a commented model, with its dimensions as options.
 //
-// templates/*.toml are the models themselves. Each line "name = { value = …, range = …, meaning = … } # source" of their [parameters] is
-// an option, --name, whose value takes the place of the one that stands there.
+// templates/*.toml are the models. Each line "name = { value = …, range = …, meaning = … } # source" in [parameters] becomes an option
+// --name, whose value replaces the value in the line.
 #pragma once
 
 #include "tools/steplap/command.h"
@@ -10,19 +10,19 @@
 
 namespace steplap {
 
-/// A parameter of a template that has a range: what may be given as an option.
+/// A parameter of a template that has a range and is therefore an option.
 struct TemplateParameter {
-  std::string name;  ///< as in the file: "window_height"
+  std::string name;  ///< name in the file: "window_height"
   std::string value; ///< "1.7 m"
   std::string low, high;
   std::string meaning, source;
-  std::size_t begin = 0, end = 0; ///< where the value stands in the text
+  std::size_t begin = 0, end = 0; ///< position of the value in the text
 
-  /// "--window-height"
+  /// Returns "--window-height".
   [[nodiscard]] std::string option() const;
 };
 
-/// A model to start from.
+/// A model template.
 struct ModelTemplate {
   std::string name;      ///< "transformer"
   std::string_view text; ///< the file

@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// How often the value is "-".
+// Counts how often the value is "-".
 struct CountStandard {
   std::size_t operator()(const bool*) const { return 0; }
   std::size_t operator()(const std::string* value) const { return is_standard_output(*value) ? 1 : 0; }

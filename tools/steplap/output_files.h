@@ -1,4 +1,4 @@
-// Files that a command writes besides what it says. "-" is the standard output, which then holds that file and nothing else.
+// Files that a command writes in addition to its messages. "-" is the standard output, which then contains that file and nothing else.
 #pragma once
 
 #include "tools/steplap/command.h"
@@ -7,26 +7,26 @@
 
 namespace steplap {
 
-/// An option that takes a file to write, and what was given.
+/// An option that names an output file, with its value.
 struct OutputFile {
-  const char* option; ///< "-o", for messages
+  const char* option; ///< option for messages, "-o"
   std::optional<std::string> path;
 };
 
 [[nodiscard]] inline bool is_standard_output(const std::string& path) { return path == "-"; }
 
-/// Throws UsageError, before anything is computed, for what the standard input and output cannot do: files to read and to write are
-/// "-" where only one can be, or where a folder or a store of results is meant.
+/// Throws UsageError, before anything is computed, if more than one file uses the standard input or output, or if "-" is given for a folder
+/// or a store of results.
 void refuse_wrong_streams(const Command& command);
 
-/// The files of one call of a command.
+/// Output files of one call of a command.
 class OutputFiles {
 public:
-  /// Throws UsageError if two files go to the standard output, or one with the tables of --json.
+  /// Throws UsageError if two files, or a file and the tables of --json, use the standard output.
   OutputFiles(Console& console, std::initializer_list<OutputFile> files, bool is_overwriting = false);
-  /// May the command say what it has to say? Not with -q, and not where the standard output holds a file.
+  /// Returns true if the command may print messages: not with -q, and not if the standard output contains a file.
   [[nodiscard]] bool has_words() const { return has_words_; }
-  /// Writes what `file` was given for: a whole file or nothing. Does nothing where no path was given. Throws FileError.
+  /// Writes the whole file or nothing. Does nothing if no path was given. Throws FileError.
   void write(const std::optional<std::string>& path, const std::string& content) const;
 
 private:

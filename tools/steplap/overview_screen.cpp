@@ -14,12 +14,12 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    // the second for all digits
-constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // with them the screen has at most 30 lines
-constexpr double k_least_share = 0.005;                                         // less is 0 %, and no news
+constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    // the second with all digits
+constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // chosen so that the screen has at most 30 lines
+constexpr double k_least_share = 0.005;                                         // smaller utilisations round to 0 % and are omitted
 constexpr int k_bar = 20;                                                       // characters
 
-// Characters, not bytes, of a text in UTF-8.
+// Counts the characters, not the bytes, of a UTF-8 text.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -36,7 +36,7 @@ std::string cut(const std::string& text, std::size_t most) {
   return kept + "…";
 }
 
-// Broken at blanks, but not between a number and what follows it, its unit; at most so many lines, all but the first indented.
+// Breaks a text at blanks, but not between a number and its unit, into at most the given number of lines; all but the first are indented.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t most_lines) {
   std::string result, line;
   std::size_t lines = 1;
@@ -72,7 +72,7 @@ std::string text_at(const OrderedJson& json, const char* key) { return json.at(k
 void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured) {
   const OrderedJson& overview = summary.at("overview");
   const std::string name = text_at(overview, "verdict");
-  const auto is_judged = overview.find("is_judged"); // results of older programs do not say
+  const auto is_judged = overview.find("is_judged"); // missing in results of older versions
   std::string verdict = is_judged != overview.end() && !is_judged->get<bool>() ? "no criteria" : name;
   std::transform(verdict.begin(), verdict.end(), verdict.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
@@ -139,11 +139,11 @@ void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_colo
   for (std::size_t i = 0; i < count; ++i)
     out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
-  for (const OrderedJson& f : findings) // what is unusual and has its reason is part of the result
+  for (const OrderedJson& f : findings) // findings with an explained reason are part of the result
     if (f.at("code") == "friction_by_source") out << wrapped("Note: " + shown(text_of(f)), 6, 3) << "\n";
 }
 
-// Levels of trust tell how large numerical errors are; nothing else, such as what a model leaves out, is known by them.
+// Returns the text for a level of trust. It refers to numerical errors only, not to effects that the model leaves out.
 std::string words_of_level(const std::string& level) {
   return level == "good" ? "small" : level == "limited" ? "not known to be small" : "not known";
 }

@@ -1,5 +1,5 @@
-// The screen of one run: verdict and reason, what happened, what came nearest to its limit, how far to trust it, where the rest is.
-// At most 30 lines of 100 columns.
+// Prints the summary of one run in at most 30 lines of 100 columns: verdict and reason, events, largest utilisations, reliability, location
+// of the files.
 #pragma once
 
 #include "tools/steplap/shown_run.h"
@@ -8,9 +8,9 @@
 
 namespace steplap {
 
-/// `is_coloured`: verdict and warnings, for a terminal. With all digits lines are as long as they need be.
+/// `is_coloured` colours verdict and warnings. With all digits lines may be longer.
 void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bool has_all_digits = false);
-/// Of several, one below the other; in colour where `out` takes it.
+/// Prints several summaries one below the other, coloured if `out` supports it.
 void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, bool has_all_digits = false);
 
 } // namespace steplap

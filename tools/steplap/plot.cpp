@@ -27,7 +27,7 @@ struct PlotOptions {
   bool is_beside = false, is_overwriting = false;
 };
 
-// What one figure shows, before it is known of which runs.
+// Contents of a figure, before the runs are known.
 struct Wanted {
   std::string title;
   std::vector<std::string> channels, bounds;
@@ -97,7 +97,7 @@ std::string shell_quoted(const std::string& text) {
   return result + "'";
 }
 
-// A folder of our own for the script and the image; both go with it.
+// A temporary folder for script and image, removed at the end.
 class Scratch {
 public:
   Scratch() {

@@ -1,4 +1,4 @@
-// steplap plot RESULT… --channels …
+// Command `steplap plot RESULT… --channels …`.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -1,4 +1,4 @@
-// One line on a terminal that tells how far a run is; nothing where there is no terminal.
+// Shows the progress of a run in one line of a terminal. Without a terminal it shows nothing.
 #pragma once
 
 #include "tools/steplap/console.h"
@@ -8,14 +8,16 @@
 
 namespace steplap {
 
+/// Progress of one run with the end time `end`, s.
 class Progress {
 public:
   Progress(Console& console, std::string name, double end);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Wipes the line.
+  /// Erases the line.
   ~Progress();
 
+  /// Shows the progress at time t, s.
   void operator()(double t);
 
 private:

@@ -38,7 +38,7 @@ struct RecordOptions : ReadingOptions {
   bool is_json = false, is_overwriting = false;
 };
 
-// The mean of each axis over a stretch of time.
+// Computes the mean of each axis over an interval.
 class QuietMean : public SampleSink {
 public:
   QuietMean(double from, double to) : from_(from), to_(to) {}
@@ -72,7 +72,7 @@ std::array<double, 3> quiet_offset(const std::string& file, const std::string& q
   return {mean.mean(0), mean.mean(1), mean.mean(2)};
 }
 
-// Hands the signal on to the events and, if asked, to files.
+// Passes the signal on to the event search and, if requested, to files.
 class Tee : public SignalSink {
 public:
   Tee(SignalSink& a, SignalSink* b) : a_(a), b_(b) {}
@@ -98,7 +98,7 @@ private:
   SignalSink* b_;
 };
 
-// Gravity is along an axis of the record, which is known when its columns are.
+// Subtracts gravity from an axis of the record, which is known only after the columns have been read.
 class GravityFirst : public SampleSink {
 public:
   GravityFirst(Conditioning conditioning, std::optional<std::string> gravity, const RecordOptions& options, SignalSink& sink)
@@ -145,7 +145,7 @@ void print_events(std::ostream& out, const RecordResult& result) {
   std::vector<const ShockEvent*> order;
   for (const EventResult& found : result.events) order.push_back(&found.event);
   const auto size = [](const ShockEvent* e) { return std::abs(e->axes[e->worst].peak); };
-  if (order.size() > k_shown_events) { // the greatest, in order of time
+  if (order.size() > k_shown_events) { // the largest, in order of time
     std::partial_sort(order.begin(), order.begin() + k_shown_events, order.end(),
                       [&](const auto* a, const auto* b) { return size(a) > size(b); });
     order.resize(k_shown_events);
@@ -207,7 +207,7 @@ void print_result(std::ostream& out, const RecordResult& result, const std::opti
   else print_events(out, result);
 }
 
-// Without effect but for the Conditioner before it.
+// A sink that ignores the signal; only the Conditioner before it matters.
 class Nowhere : public SignalSink {
 public:
   void begin(const RecordLayout&, double) override {}
@@ -216,7 +216,7 @@ public:
   void end_segment() override {}
 };
 
-// Of the whole signal, segment by segment: needs a first reading.
+// Returns the mean acceleration of each segment. This requires reading the file a first time.
 std::vector<std::array<double, 3>> means_of(const std::string& file, const RecordOptions& options, const Conditioning& conditioning) {
   if (is_standard_input(file)) throw UsageError("--drift line of a whole signal needs a file that can be read twice, not standard input");
   Nowhere nowhere;
@@ -227,7 +227,7 @@ std::vector<std::array<double, 3>> means_of(const std::string& file, const Recor
   return first.conditioner().segment_means();
 }
 
-// What an axis reads at rest counts towards the threshold: beyond this share of it events would tell of gravity, not of shocks.
+// Returns an error if the reading at rest is a large fraction of the threshold, because events would then report gravity, not shocks.
 std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, const RecordResult& result) {
   constexpr double k_felt = 0.5;
   if (options.gravity || options.quiet || result.recording.layout.is_peaks) return {};
@@ -242,7 +242,7 @@ std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, 
 }
 
 struct Outputs {
-  std::string folder;    ///< where files are written; "": none are
+  std::string folder;    ///< output folder; "": none
   std::size_t event = 0; ///< 0: all
   DriftCorrection drift = DriftCorrection::none;
 };
@@ -309,7 +309,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
   static_cast<void>(writer.commit());
 }
 
-// One folder for each file; of several files each has one of its own, named as the file.
+// Returns one output folder for each file; for several files each folder is named after its file.
 std::vector<std::unique_ptr<RecordFolder>> result_folders(const RecordOptions& options) {
   std::vector<std::unique_ptr<RecordFolder>> folders;
   for (const std::string& file : options.files) {
@@ -366,7 +366,9 @@ ExitCode record(const RecordOptions& options, Console& console) {
     if (options.output) outputs.folder = folders[i]->staging();
     process(options.files[i], options, outputs, console);
   }
-  for (const auto& folder : folders) commit(*folder, is_silent, console); // all files are read: none is refused any more
+  for (const auto& folder : folders)
+    commit(*folder, is_silent, console); // after all files have been read, so that none can be rejected
+                                         // any more
   return ExitCode::done;
 }
 

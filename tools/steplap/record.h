@@ -1,4 +1,4 @@
-// steplap record: a shock recorder's file read, what it was taken for, its events, and signals that a model can use.
+// Command `steplap record`: reads a shock recorder's file and writes its layout, its events, and signals for models.
 #pragma once
 
 #include "tools/steplap/command.h"

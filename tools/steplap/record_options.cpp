@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// "3 g", "20 m/s^2", "3" in g.
+// Parses "3 g", "20 m/s^2", or "3" in g.
 double acceleration_of(const std::string& text, const char* option) {
   const auto end = text.find_first_not_of("0123456789.+-eE");
   const auto value = parse_number(trimmed_blanks(text.substr(0, end)), '.');

@@ -1,4 +1,4 @@
-// Options by which a recorder's file is read and searched for shocks: those of every command that reads one.
+// Options for reading a recorder's file and for finding its shocks, shared by all commands that read one.
 #pragma once
 
 #include "tools/steplap/command.h"
@@ -9,7 +9,7 @@
 
 namespace steplap {
 
-/// As given on the command line.
+/// Values as given on the command line.
 struct ReadingOptions {
   using Text = std::optional<std::string>;
   Text x, y, z, time, time_unit, rate, unit, counts_per_g, delimiter, decimal, dates, missing, repeated, backward, gap, range;
@@ -17,12 +17,12 @@ struct ReadingOptions {
   bool holds = false;
 };
 
-/// They refer to `o`.
+/// Returns the options, which refer to `o`.
 [[nodiscard]] std::vector<Option> reading_options(ReadingOptions& o);
 
-/// A number above `least`. Throws UsageError.
+/// Returns a number above `least`. Throws UsageError.
 [[nodiscard]] double number_of(const ReadingOptions::Text& text, const char* option, double least, const char* unit = "");
-/// One of some words. Throws UsageError.
+/// Returns the value of one of the words. Throws UsageError.
 template <class Words> auto choice(const std::string& text, const char* option, const Words& words) {
   if (const auto meaning = meaning_of(words, text)) return *meaning;
   std::string known;
@@ -30,10 +30,10 @@ template <class Words> auto choice(const std::string& text, const char* option, 
   throw UsageError(std::string(option) + " '" + text + "': give one of " + known);
 }
 
-/// Throw UsageError.
+/// Convert the arguments. Throw UsageError for invalid values.
 [[nodiscard]] ReadOptions read_options(const ReadingOptions& o);
 [[nodiscard]] EventRules event_rules(const ReadingOptions& o);
-/// Two times in s, of --rest.
+/// Parses the two times of --rest, s.
 [[nodiscard]] std::array<double, 2> rest_stretch(const std::string& text);
 
 } // namespace steplap

@@ -32,7 +32,7 @@ std::string page_of_results(const std::vector<std::string>& folders) {
   return report_page(runs);
 }
 
-// Into the folder of a single run; beside the folders of several.
+// Returns the path in the folder of a single run, or next to the folders of several.
 std::string usual_place(const std::vector<std::string>& folders) {
   std::filesystem::path place = folders.front();
   if (folders.size() > 1) place = (place / "").lexically_normal().parent_path().parent_path();

@@ -1,4 +1,4 @@
-// steplap report RESULT…
+// Command `steplap report RESULT…`.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -28,11 +28,11 @@ using Json = OrderedJson;
 
 constexpr std::size_t k_most_events_shown = 30;
 
-// --- numbers of a summary
+// --- reading numbers from a summary
 
 std::string text_at(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 
-// Not-a-number for null, unless "…_is" beside it calls it an infinity.
+// Returns NaN for null, unless "…_is" denotes an infinity.
 double number_at(const Json& json, const std::string& key) {
   if (const Json& value = json.at(key); value.is_number()) return value.get<double>();
   const auto which = json.find(key + "_is");
@@ -41,13 +41,13 @@ double number_at(const Json& json, const std::string& key) {
   return *which == "-∞" ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
 }
 
-// Of what there may be none of: there is no such entry, or it is null.
+// Returns a number that may be missing: no entry, or null.
 std::optional<double> optional_at(const Json& json, const std::string& key) {
   if (!json.contains(key) || (json.at(key).is_null() && !json.contains(key + "_is"))) return {};
   return number_at(json, key);
 }
 
-// None if errors were not estimated; not-a-number: unknown.
+// Returns the error: empty if not estimated, NaN if unknown.
 std::optional<double> error_at(const Json& json, const std::string& key) {
   return json.contains(key) ? std::optional(number_at(json, key)) : std::nullopt;
 }
@@ -69,11 +69,11 @@ struct ShownRange {
   ShownExtreme low, high;
   bool is_on_request = false;
 
-  // Whichever is further from zero.
+  // Returns the extreme further from zero.
   [[nodiscard]] const ShownExtreme& largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
 };
 
-// A run with what is looked up in it again and again.
+// A run with lookup tables.
 struct TabledRun {
   explicit TabledRun(const ShownRun& shown) : run(shown), summary(shown.summary), name(text_at(summary.at("model"), "name")) {
     for (const auto& [channel, entry] : summary.at("extremes").items()) {
@@ -90,19 +90,19 @@ struct TabledRun {
 
   const ShownRun& run;
   const Json& summary;
-  std::string name; ///< at the head of its column
+  std::string name; ///< head of its column
   std::vector<ShownRange> ranges;
   std::unordered_map<std::string, std::size_t> places;
 };
 
-// "0.6", "12"
+// Formats "0.6", "12".
 std::string rough_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, value < 10.0 ? "%.1g" : "%.0f", value);
   return text;
 }
 
-// With the option that asks for what was too dear.
+// Describes results omitted because of their cost, with the option that requests them.
 std::string why_not_estimated(const TabledRun& run) {
   return text_at(run.summary, "error_not_estimated") + (run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "");
 }
@@ -143,12 +143,12 @@ void print_events(std::ostream& out, const std::vector<ResultEvent>& events) {
   if (shown > k_most_events_shown) out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
 }
 
-// Channels that are told of: reactions that are not zero throughout.
+// Returns the channels shown: reactions that are not always zero.
 bool is_shown(const ShownRange& range) {
   return is_reaction(range.name, range.unit) && !std::isnan(range.low.value) && range.largest().value != 0.0;
 }
 
-// What is rounding beside the channel's largest value is zero; an error says so itself.
+// Formats a value. Values that are rounding relative to the channel's largest one are shown as zero, unless an error is known.
 std::string value_text(const ShownRange& range, const ShownExtreme& extreme) {
   if (extreme.is_singular && extreme.error && std::isnan(*extreme.error)) return "diverges at a singular pose";
   return extreme.error ? measured_text(extreme.value, extreme.error, range.unit)
@@ -161,9 +161,9 @@ std::string extreme_time_text(double t, std::optional<double> error) {
 
 std::string time_of_text(const ShownExtreme& extreme) { return extreme_time_text(extreme.t.value_or(0.0), extreme.t_error); }
 
-// Of a joint that bears nothing but rounding, digits of its margin would say something that is not so.
+// Omits digits of the margin of a joint whose load is only rounding.
 std::string small_margin_text(double margin, std::optional<double> error) {
-  constexpr double k_unloaded = 1e9; // beyond it a margin is followed by its size only (mbd/simulation/extremes.cpp)
+  constexpr double k_unloaded = 1e9; // above it only the magnitude of a margin is tracked (mbd/simulation/extremes.cpp)
   if (!std::isfinite(margin)) return "–";
   if (margin > k_unloaded) return "> 1e9";
   if (error) return measured_text(margin, error, "");
@@ -172,7 +172,7 @@ std::string small_margin_text(double margin, std::optional<double> error) {
   return text;
 }
 
-// A row a channel: both its extremes and when.
+// Prints one row per channel with both extremes and their times.
 void add_extremes(TextTable& table, const ShownRange& range) {
   table.add_row(
       {range.name, value_text(range, range.low), time_of_text(range.low), value_text(range, range.high), time_of_text(range.high)});
@@ -199,7 +199,7 @@ bool is_requested(const ShownRange& range) { return range.is_on_request && !is_s
 
 constexpr std::size_t k_most_requested = 24;
 
-// What the model asks for besides, in the order in which it is made: formulas come last, and are the last to be left out.
+// Prints the channels requested by the model in the order of their creation. Formulas are last and are therefore omitted last.
 void print_requested(std::ostream& out, const TabledRun& run) {
   std::vector<const ShownRange*> asked;
   for (const ShownRange& range : run.ranges)
@@ -219,7 +219,7 @@ void print_slides(std::ostream& out, const TabledRun& run) {
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
-// Edges that bore, and what bears beside a joint.
+// Prints the largest line load on sheet edges in contact, and the elements that carry load in parallel with a joint.
 void print_beside(std::ostream& out, const std::string& joint, const Json& a) {
   if (const auto load = optional_at(a, "largest_edge_load"); load && *load > 0.0) {
     out << "  " << joint << ": sheet edges bore up to " << measured_text(*load, error_at(a, "error_largest_edge_load"), "N/m");
@@ -305,7 +305,7 @@ void print_judgement(std::ostream& out, const TabledRun& run) {
     print_second_opinion(out, run.summary.at("second_opinion"), number_at(run.summary.at("final_state"), "t"));
 }
 
-// "rk4, step 5e-05 s and 2.5e-05 s"; "auto, tolerance 1e-09 and 1e-11"
+// Formats "rk4, step 5e-05 s and 2.5e-05 s", "auto, tolerance 1e-09 and 1e-11".
 std::string finer_text(const Json& finer, bool has_steps) {
   std::string text = text_at(finer.back(), "integrator"), before = has_steps ? ", step " : ", tolerance ";
   for (const Json& options : finer) {
@@ -354,13 +354,13 @@ void print_global_error(std::ostream& out, const TabledRun& run) {
     out << "  " << counted(unmatched, "event is", "events are") << " in one of the runs only: the run is not converged there\n";
 }
 
-// Rows of the last table: name and how a run's value reads.
+// Rows of the last table: a name, and a function that formats a run's value.
 struct Figure {
   std::string name;
   std::function<std::string(const TabledRun&)> text;
 };
 
-// Of kinetic energy, work or dissipation, the balance of which is known to the residual.
+// Returns the error of kinetic energy, work or dissipation, whose balance is known up to the residual.
 std::optional<double> exchanged_error(const Json& accuracy) {
   const auto dissipated = error_at(accuracy, "error_dissipated"), work = error_at(accuracy, "error_work");
   if (!dissipated || !work) return {};
@@ -422,7 +422,7 @@ TextTable::Row cells(const std::string& name, const Tabled& runs, const std::fun
   return row;
 }
 
-// Names of the channels that any run tells of, in the order in which they come.
+// Returns the channels reported by any run, in order of appearance.
 template <class Predicate> std::vector<std::string> channel_names(const Tabled& runs, Predicate is_wanted) {
   std::vector<std::string> names;
   std::unordered_set<std::string> known;
@@ -432,7 +432,7 @@ template <class Predicate> std::vector<std::string> channel_names(const Tabled& 
   return names;
 }
 
-// "lowest" and "highest" of a channel for each run.
+// Prints the columns "lowest" and "highest" of a channel for each run.
 void add_range_row(TextTable& table, const Tabled& runs, const std::string& name) {
   TextTable::Row row{name};
   for (const TabledRun& run : runs) {
@@ -490,7 +490,7 @@ void print_comparison(std::ostream& out, const std::vector<ShownRun>& shown) {
   std::unordered_map<std::string, int> times;
   for (const TabledRun& run : runs) ++times[run.name];
   for (TabledRun& run : runs)
-    if (times[run.name] > 1) run.name = run.run.folder; // runs of one model
+    if (times[run.name] > 1) run.name = run.run.folder; // several runs of the same model
   for (const TabledRun& run : runs) {
     print_heading(out, run);
     print_events(out, run.run.events);

@@ -1,4 +1,4 @@
-// The tables of a run, or of several side by side: all events, extremes, joints, criteria, errors and residuals.
+// Prints the tables of one or several runs: events, extremes, joints, criteria, errors and residuals.
 #pragma once
 
 #include "tools/steplap/shown_run.h"
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// Of two or more events stand one below the other, everything else in one table with a column for each run.
+/// Prints the tables. For several runs the events are listed one run after the other; all other tables have one column for each run.
 void print_tables(std::ostream& out, const std::vector<ShownRun>& runs);
 
 } // namespace steplap

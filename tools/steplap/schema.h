@@ -1,4 +1,4 @@
-// steplap schema
+// Command `steplap schema`.
 #pragma once
 
 #include "tools/steplap/command.h"

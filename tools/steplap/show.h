@@ -1,4 +1,4 @@
-// steplap show RESULT…
+// Command `steplap show RESULT…`.
 #pragma once
 
 #include "tools/steplap/command.h"

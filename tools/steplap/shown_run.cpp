@@ -56,7 +56,7 @@ bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs) {
 ShownRun shown_run(const std::string& folder) {
   Results results = read_results(folder, Reading::without_rows);
   ShownRun run{parse_ordered(results.summary), std::move(results.events), folder, {}};
-  if (!run.summary.contains("error_estimate")) // of a version before this command
+  if (!run.summary.contains("error_estimate")) // written by an earlier version
     throw FileError(folder, "'" + folder +
                                 "' was written by another version of steplap, whose results cannot be shown: run the model again, or make "
                                 "its page with steplap report");

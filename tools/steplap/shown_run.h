@@ -1,4 +1,4 @@
-// A run as the screen shows it: what its summary and its events say, of a run just made as of one read back.
+// Data of a run for the screen: its summary and events, for a new run as for one read from its folder.
 #pragma once
 
 #include "run/ordered_json.h"
@@ -13,26 +13,28 @@
 
 namespace steplap {
 
-/// What only the process that made a run knows of it: no two runs share it, so that it stands in no file.
+/// Data that differ between repetitions of a run and are therefore in no file.
 struct MakingOfRun {
   double cpu_seconds = 0.0;
-  std::optional<double> cost_of_estimate; ///< s, where errors were not estimated for that
-  std::size_t rows = 0, channels = 0;     ///< of the trajectory written
+  std::optional<double> cost_of_estimate; ///< s, if errors were not estimated because of this cost
+  std::size_t rows = 0, channels = 0;     ///< of the written trajectory
 };
 
+/// A run as shown on the screen.
 struct ShownRun {
-  OrderedJson summary;             ///< run/summary.h
+  OrderedJson summary;             ///< contents of summary.json (run/summary.h)
   std::vector<ResultEvent> events; ///< empty if only the overview is shown
-  std::string folder;              ///< of its files
+  std::string folder;              ///< folder of its files
   std::optional<MakingOfRun> making;
 };
 
-/// Of a run just made; without events and all that follows the head of its summary if only the overview is shown.
+/// Returns the main part of the summary of a new run, without events, for the overview.
 [[nodiscard]] ShownRun overview_of_run(const Report& report, const std::string& folder, ShownDigits digits);
+/// Returns the complete summary and the events of a new run.
 [[nodiscard]] ShownRun shown_run(const Report& report, const std::string& folder);
-/// For programs: each run's folder, summary and events. False if people read the stream, and nothing was written.
+/// Writes each run's folder, summary and events if the stream is a JsonScreen. Returns false, without output, if it is not.
 bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs);
-/// Of a run read back from its folder, whose files are held against their digests. Throws FileError.
+/// Reads a run from its folder and compares the files with their digests. Throws FileError.
 [[nodiscard]] ShownRun shown_run(const std::string& folder);
 
 } // namespace steplap

@@ -49,7 +49,7 @@ struct SimulateOptions {
     return all;
   }
 
-  /// Of the numbers on the screen.
+  /// Returns the number of digits on the screen.
   [[nodiscard]] ShownDigits shown_digits() const {
     constexpr int k_most = 15;
     if (!digits) return {};
@@ -59,15 +59,15 @@ struct SimulateOptions {
     const auto [last, error] = std::from_chars(digits->data(), end_of_text, count);
     if (error != std::errc() || last != end_of_text || count < 1 || count > k_most)
       throw UsageError("--digits takes a whole number from 1 to " + std::to_string(k_most) + ", or full, not '" + *digits + "'");
-    return {.most = count + 1}; // of numbers that begin with 1
+    return {.most = count + 1}; // for numbers whose first digit is 1
   }
 
-  /// The trajectory alone, to the standard output.
+  /// true: writes only the trajectory, to the standard output.
   [[nodiscard]] bool is_streamed() const { return is_standard_output(output); }
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const { return (std::filesystem::path(output) / loaded.name).string(); }
 };
 
-/// A run and where its files are.
+/// A run with the folder of its files.
 struct FinishedRun {
   Report report;
   std::string folder;
@@ -75,7 +75,7 @@ struct FinishedRun {
 
 using Models = std::vector<std::shared_ptr<const LoadedModel>>;
 
-// One page of all runs: in the folder of a single one, or beside their folders.
+// Writes one page for all runs: in the folder of a single run, or next to the folders of several.
 std::string page_of(const SimulateOptions& options, const Models& models) {
   const std::filesystem::path place = models.size() == 1 ? options.folder_of(*models.front()) : options.output;
   return (place / "report.html").string();
@@ -131,7 +131,7 @@ FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const 
   for (const Finding& finding : before) asked.note(finding);
   Run run;
   {
-    Progress progress(console, loaded->name, loaded->model.simulation.end); // its line is gone before anything else is told
+    Progress progress(console, loaded->name, loaded->model.simulation.end); // erases its line before any other message
     asked.progress = std::ref(progress);
     run = run_model(loaded, asked);
     asked.progress = nullptr;
@@ -187,7 +187,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     try {
       runs.push_back(run_one(options, loaded, console));
       if (runs.back().report.run.failure) code = ExitCode::numerical_failure;
-    } catch (const NumericalFailure& failure) { // it could not even begin
+    } catch (const NumericalFailure& failure) { // the run could not even start
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;
     }

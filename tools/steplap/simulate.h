@@ -1,4 +1,4 @@
-// steplap simulate MODEL…
+// Command `steplap simulate MODEL…`.
 #pragma once
 
 #include "tools/steplap/command.h"

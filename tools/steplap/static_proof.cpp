@@ -25,9 +25,9 @@ using Align = TextTable::Align;
 
 constexpr int k_most_directions = 3600;
 constexpr double k_most_acceleration = 1e4; // m/s²
-constexpr double k_unloaded = 1e6;          // of a margin: what is left of a load is rounding
-constexpr double k_rounding = 1e-9;         // of a reaction's share of what it may be
-constexpr std::size_t k_most_feet = 2;      // named in a row
+constexpr double k_unloaded = 1e6;          // margin above which the load is only rounding
+constexpr double k_rounding = 1e-9;         // fraction of the permitted reaction
+constexpr std::size_t k_most_feet = 2;      // number of names in a row
 
 double number_of(const std::string& text, const std::string& option, double low, double high) {
   double value = 0.0;
@@ -56,7 +56,7 @@ StaticProofOptions options_of(const StaticProofArguments& arguments, const Stati
   return options;
 }
 
-// Four digits: files have all.
+// Shows four digits; files contain all.
 std::string acceleration_text(double a) { return rounded_text(a, 4) + " m/s²"; }
 
 std::string margin_text(const StaticCase& one) {
@@ -76,7 +76,7 @@ std::string feet_text(const StaticCase& one) {
   return text.empty() ? "-" : text;
 }
 
-// The reaction nearest to what it may be.
+// Returns the reaction with the highest utilisation.
 std::string reaction_text(const StaticCase& one) {
   const StaticReaction* nearest = nullptr;
   const auto share = [](const StaticReaction& r) { return std::abs(r.value) / *r.allowed; };
@@ -97,7 +97,7 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
 }
 
-// The direction in which the first limit of a kind comes soonest; of all kinds if none is given.
+// Prints for each kind of limit the direction in which it is lowest.
 void print_weakest(std::ostream& out, const StaticProof& proof) {
   if (proof.polar.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right});

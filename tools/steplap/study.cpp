@@ -14,25 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Asks only where somebody can answer: nothing waits for an answer in a script or a test.
+// Asks the user whether to build the program. Returns false without asking if there is no terminal, so that scripts and tests never wait
+// for an answer.
 bool is_build_wanted(const fs::path& build) {
   if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1 || !fs::exists(build / "CMakeCache.txt")) return false;
   std::cerr << "Studies need a second program, which is not built yet. Build it now? This takes some minutes. [y/N] " << std::flush;
   std::string answer;
-  if (!std::getline(std::cin, answer)) std::cerr << "\n"; // the end of input ends no line
+  if (!std::getline(std::cin, answer)) std::cerr << "\n"; // at the end of input no line break was entered
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
-// Without a shell: the folder may be called anything. False if it could not be built, which CMake says.
+// Builds the study program without using a shell, because folder names can contain any character. Returns false if this failed; CMake
+// reports the reason.
 bool build_study_program(const fs::path& build) {
   std::string folder = build.string();
   std::string words[] = {"cmake", "--build", folder, "--target", "steplap-study"};
   char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), words[4].data(), nullptr};
   const pid_t child = fork();
   if (child == 0) {
-    dup2(STDERR_FILENO, STDOUT_FILENO); // the standard output is for what the study says
+    dup2(STDERR_FILENO, STDOUT_FILENO); // the standard output is reserved for the study
     execvp(arguments[0], arguments);
-    _exit(127); // there is no cmake
+    _exit(127); // cmake was not found
   }
   int status = 0;
   return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;

@@ -1,17 +1,18 @@
-// steplap study: handed over to the program that has the libraries of studies, ../libexec/steplap-study.
+// Command `steplap study`: starts the separate program ../libexec/steplap-study, which links the libraries for studies.
 #pragma once
 
 #include "tools/steplap/command.h"
 
 namespace steplap {
 
-/// Becomes that program, with the arguments behind "study" (`words` begins with that word and ends with null). Returns an
-/// exit code only if it cannot be started.
+/// Replaces this process by that program, with the arguments after "study". `words` begins with "study" and ends with null. Returns an exit
+/// code only if the program cannot be started.
 int run_study_program(char** words);
-/// The same with arguments at hand.
+/// As above, for arguments in a vector.
 int run_study_program(const std::vector<std::string>& arguments);
 
-/// For the list of commands: main() has handed over before the command line is read.
+/// Returns the entry for the list of commands. It is never executed, because main() starts the study program before the command line is
+/// parsed.
 [[nodiscard]] Command study_command();
 
 } // namespace steplap

@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// UTF-8: continuation bytes take no room.
+// UTF-8 continuation bytes have no width.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

@@ -1,4 +1,4 @@
-// Tables of a command: aligned text on the screen, or names and numbers for programs (json_screen.h). A command makes the table once.
+// Tables of a command, shown as aligned text or as JSON (json_screen.h).
 #pragma once
 
 #include <iosfwd>
@@ -8,12 +8,12 @@
 
 namespace steplap {
 
-/// What stands in a cell: text for people, and for programs the number that the text rounds.
+/// A cell of a table: a text for people and, for programs, the number that the text rounds.
 struct Cell {
   std::string text;
-  std::optional<double> value = {}; ///< SI; not-a-number where there is none although the column has numbers
+  std::optional<double> value = {}; ///< SI; NaN if missing in a column of numbers
   std::string unit = {};
-  std::optional<double> error = {}; ///< of the value, if it was estimated
+  std::optional<double> error = {}; ///< error of the value, if estimated
 
   Cell(std::string text_) : text(std::move(text_)) {}
   Cell(const char* text_) : text(text_) {}
@@ -21,35 +21,35 @@ struct Cell {
       : text(std::move(text_)), value(value_), unit(std::move(unit_)), error(error_) {}
 };
 
-/// quantity_text() with the number behind it.
+/// Returns a cell with quantity_text() and the number.
 [[nodiscard]] Cell quantity_cell(double value, const std::string& unit);
-/// The same; what is rounding beside `scale` is shown as zero.
+/// As above, but values that are rounding relative to `scale` are shown as zero.
 [[nodiscard]] Cell quantity_cell(double value, const std::string& unit, double scale);
-/// measured_text() with the number behind it.
+/// Returns a cell with measured_text() and the number.
 [[nodiscard]] Cell measured_cell(double value, std::optional<double> error, const std::string& unit);
 [[nodiscard]] Cell count_cell(std::size_t count);
 
-/// Columns as wide as their widest cell (counted in characters, not bytes).
+/// A table. Columns are as wide as their widest cell (counted in characters, not bytes).
 class TextTable {
 public:
   enum class Align { left, right };
   using Row = std::vector<Cell>;
 
-  /// `indent` blanks before every row, two between columns; `columns` tells how each is aligned.
+  /// `indent` blanks precede every row, two blanks separate columns. `columns` gives the alignment of each.
   explicit TextTable(std::vector<Align> columns, int indent = 2);
 
-  /// What programs call the table. Without a head its rows are pairs of a name and what is said of it.
+  /// Sets the name for programs. In a table without column heads each row is a name with its value.
   void set_name(std::string name) { name_ = std::move(name); }
-  /// The same, and a first row with the heads of the columns. `keys`: what programs call the columns, where that is not the head.
+  /// Sets the name and the column heads. `keys` are the names of the columns for programs, if they differ from the heads.
   void set_head(std::string name, const std::vector<std::string>& heads, std::vector<std::string> keys = {});
-  /// Missing cells are empty.
+  /// Adds a row. Missing cells are empty.
   void add_row(Row cells);
 
   [[nodiscard]] bool is_empty() const { return rows_.size() == (keys_.empty() ? 0u : 1u); }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Of the columns; empty without a head.
+  /// Returns the keys of the columns; empty without heads.
   [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
-  /// The head, if there is one, is the first.
+  /// Returns the rows; the first contains the heads, if there are any.
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   friend std::ostream& operator<<(std::ostream& stream, const TextTable& table);
 
@@ -61,13 +61,13 @@ private:
   std::vector<Row> rows_;
 };
 
-/// What the tables that follow are about, for programs; people read it in the text.
+/// Subject of the tables that follow, for programs. People see it in the text.
 struct About {
   std::string subject;
 };
 std::ostream& operator<<(std::ostream& stream, const About& about);
 
-/// A stream that takes tables as they are instead of their text.
+/// An output stream that receives tables as objects instead of text.
 class TableSink {
 public:
   virtual ~TableSink() = default;

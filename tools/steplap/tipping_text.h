@@ -1,4 +1,4 @@
-// How far what stands is from tipping over, as a table.
+// Prints the margins against tipping as a table.
 #pragma once
 
 #include "run/tipping.h"
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// Of those that stand, and what is not judged; nothing where nothing stands.
+/// Prints all parts that can tip and those that are not judged. Prints nothing if nothing stands.
 void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& state);
 
 } // namespace steplap

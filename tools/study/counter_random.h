@@ -1,4 +1,4 @@
-// Random numbers of studies, drawn by counter (mbd/base/counter_random.h) from one seed and one purpose.
+// Counter-based random numbers of studies (mbd/base/counter_random.h), determined by seed, stream, sample and index.
 #pragma once
 
 #include "mbd/base/counter_random.h"
@@ -7,12 +7,13 @@
 
 namespace steplap::study {
 
-/// Streams keep apart what one study draws for different purposes.
+/// A stream of random numbers. Different purposes within one study use different streams.
 class CounterRandom {
 public:
   CounterRandom(std::uint64_t seed, std::uint32_t stream) : seed_(seed), stream_(stream) {}
-  /// In (0, 1), never an end of it; `index` < 2³¹.
+  /// Returns a number in the open interval (0, 1). `index` < 2³¹.
   [[nodiscard]] double uniform(std::uint64_t sample, std::uint32_t index) const { return counter_uniform(seed_, stream_, sample, index); }
+  /// Returns a standard normal number.
   [[nodiscard]] double normal(std::uint64_t sample, std::uint32_t index) const;
 
 private:

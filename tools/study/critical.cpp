@@ -25,7 +25,7 @@ std::vector<std::string> names_of(const Study& study) {
   return names;
 }
 
-// The expression along the variable, the others at their values.
+// The expression as a function of the variable, with all other variables at their nominal values.
 class Line {
 public:
   explicit Line(StudyRun& run)
@@ -70,8 +70,8 @@ void look_at(Line& line, std::vector<double> more, Look& look) {
   for (const auto& [x, g] : all) look.x.push_back(x), look.g.push_back(g);
 }
 
-// Where the expression has the same sign on both sides and is nearer to zero than there: it may touch zero, or cross it
-// twice. Those that come nearest first.
+// Finds points at which the expression has the same sign as, and is closer to zero than, both neighbours: it may touch zero or cross it
+// twice. The closest to zero come first.
 std::vector<std::size_t> turns_of(const Look& look) {
   constexpr std::size_t k_most = 6;
   std::vector<std::size_t> turns;
@@ -97,7 +97,7 @@ void look_closer(Line& line, Look& look) {
   }
 }
 
-// Zero at two neighbouring looks: all over between them, or two zeros that happen to lie there?
+// Decides for neighbouring points at which the expression is zero whether it is zero everywhere between or only at these points.
 void look_into_flats(Line& line, Look& look) {
   constexpr int k_parts = 4;
   std::vector<double> more;
@@ -128,7 +128,7 @@ std::string monotonic_text(const Look& look) {
   return rises ? "rises all over the range" : falls ? "falls all over the range" : "is constant over the range";
 }
 
-// Where the expression is zero at two neighbouring looks, it is at all values between; neighbours are joined.
+// If the expression is zero at two neighbouring points, it is assumed zero between; adjacent intervals are merged.
 void add_flat(double low, double high, const std::string& variable, long samples, Answer& answer) {
   answer.degrade(Standing::not_met);
   if (!answer.findings.empty() && answer.findings.back().high == low) {
@@ -140,7 +140,7 @@ void add_flat(double low, double high, const std::string& variable, long samples
   answer.findings.push_back(f);
 }
 
-// Intervals at whose ends the signs differ, and looks that have hit a zero.
+// Finds intervals with different signs at their ends, and points that are zeros.
 std::vector<Crossing> crossings_of(const Look& look, const std::string& variable, long samples, Answer& answer) {
   std::vector<Crossing> crossings;
   const auto is_zero = [&](std::size_t i) { return i < look.g.size() && look.g[i] == 0.0; };
@@ -155,16 +155,16 @@ std::vector<Crossing> crossings_of(const Look& look, const std::string& variable
   return crossings;
 }
 
-// Between looks that lie hardly closer than the crossings do there may be pairs of them that none of the looks tells.
+// Adds a note if the points are hardly denser than the crossings: pairs of crossings between two points may then be missed.
 void say_if_dense(std::size_t crossings, long points, Answer& answer) {
-  constexpr long k_looks = 3; // for each crossing
+  constexpr long k_looks = 3; // required points per crossing
   if (crossings < 3 || k_looks * static_cast<long>(crossings) < points) return;
   answer.notes.push_back(std::to_string(crossings) + " crossings among " + std::to_string(points) +
                          " looks: there may be more between them; look in more places (points)");
   answer.degrade(Standing::not_met);
 }
 
-// To all that evaluates samples the expression is a limit state.
+// Adds the expression as a limit state, so that the evaluator computes it.
 void add_critical_expression(LoadedStudy& loaded) {
   const auto& s = settings_of<CriticalSettings>(loaded.study);
   loaded.study.limit_states.push_back({"critical", s.expression, s.where, true});

@@ -1,15 +1,16 @@
-// The kind "critical": the values of one variable at which an expression is zero.
+// Study kind "critical": finds the values of one variable at which an expression is zero.
 #pragma once
 
 #include "tools/study/study_kind.h"
 
 namespace steplap::study {
 
+/// Settings of a "critical" study.
 struct CriticalSettings : KindSettings {
   std::string variable;
-  std::string expression;  ///< whose zeros are looked for
-  long points = 21;        ///< of the first look
-  double tolerance = 1e-9; ///< of the variable's range
+  std::string expression;  ///< the expression whose zeros are searched
+  long points = 21;        ///< number of points of the first scan
+  double tolerance = 1e-9; ///< relative to the variable's range
 };
 
 [[nodiscard]] StudyKind critical_kind();

@@ -11,8 +11,8 @@ double Crossing::root() const { return std::abs(g_low) < std::abs(g_high) ? low 
 namespace {
 
 struct Closing {
-  double low, high; ///< values of the ends, halved where an end stands still
-  double first;     ///< larger of both at the beginning
+  double low, high; ///< values at the ends, halved if an end stays unchanged (Illinois rule)
+  double first;     ///< larger of the two values at the beginning
   int stuck = 0;
 };
 
@@ -46,7 +46,7 @@ void close_crossings(std::vector<Crossing>& crossings, double tolerance, const B
       const Crossing& c = crossings[i];
       if (c.is_bad || c.high - c.low <= tolerance || c.g_low == 0.0 || c.g_high == 0.0) continue;
       double x = c.high - closing[i].high * (c.high - c.low) / (closing[i].high - closing[i].low);
-      // Not so near to an end that the other never moves.
+      // The new point keeps a distance from both ends, so that both ends move.
       const double inside = 0.3 * tolerance;
       x = round % 4 == 3 ? 0.5 * (c.low + c.high) : std::clamp(x, c.low + inside, c.high - inside);
       which.push_back(i);
@@ -56,7 +56,7 @@ void close_crossings(std::vector<Crossing>& crossings, double tolerance, const B
     const std::vector<double> values = function(which, at);
     for (std::size_t k = 0; k < which.size(); ++k) take(crossings[which[k]], closing[which[k]], at[k], values[k]);
   }
-  constexpr double k_continuous = 1e-3; // of what it was at the interval's ends
+  constexpr double k_continuous = 1e-3; // of the values at the ends of the initial interval
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     Crossing& c = crossings[i];
     c.is_jump = !c.is_bad && std::min(std::abs(c.g_low), std::abs(c.g_high)) > k_continuous * closing[i].first;

@@ -1,4 +1,4 @@
-// Zeros of a function that is only known by samples, several at a time.
+// Locates zeros of a function of one variable that is evaluated in batches, several zeros at a time.
 #pragma once
 
 #include <functional>
@@ -6,20 +6,20 @@
 
 namespace steplap::study {
 
-/// An interval at whose ends the function differs in sign.
+/// An interval at whose ends the function has different signs.
 struct Crossing {
   double low = 0.0, high = 0.0, g_low = 0.0, g_high = 0.0;
-  bool is_jump = false; ///< the function does not come to zero there: it jumps past it
-  bool is_bad = false;  ///< a run inside gave no value: it is closed in no further
+  bool is_jump = false; ///< true if the function jumps over zero
+  bool is_bad = false;  ///< true if a run inside the interval had no value; the interval is then not reduced further
 
-  /// The end at which the function is nearer to zero.
+  /// Returns the end at which the function is closer to zero.
   [[nodiscard]] double root() const;
 };
 
-/// Values at several places; not-a-number where there is none. `which`: the crossing each is asked for.
+/// Evaluates the function at several points, one for each crossing in `which`. NaN: no value.
 using BatchFunction = std::function<std::vector<double>(const std::vector<std::size_t>& which, const std::vector<double>& at)>;
 
-/// Closes all crossings in, to `tolerance` (Illinois' rule, with a bisection every fourth time).
+/// Reduces all intervals to `tolerance` by the Illinois method, with a bisection at every fourth iteration.
 void close_crossings(std::vector<Crossing>& crossings, double tolerance, const BatchFunction& function);
 
 } // namespace steplap::study

@@ -17,7 +17,7 @@ namespace steplap::study {
 
 namespace {
 
-// A run that has no result has no gradient either: the search from this start ends.
+// A run without a result gives no gradient, so the search from this start ends.
 class BadSample : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
@@ -38,7 +38,7 @@ double g_at(LimitFunction& limit, const OT::Point& u) {
   return value.g;
 }
 
-// g, and its differences asked for in one batch each, so that all processors have something to do.
+// Evaluates g and its differences, each in one batch, which uses all processors.
 class LimitEvaluation : public OT::EvaluationImplementation {
 public:
   explicit LimitEvaluation(LimitFunction& limit) : limit_(&limit) {
@@ -117,7 +117,7 @@ private:
 };
 
 OT::RandomVector event_of(LimitFunction& limit, double h) {
-  // Second differences take a larger step: their noise goes with its square.
+  // Second differences use a larger step, because their noise is inversely proportional to its square.
   const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
                               OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
                               OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
@@ -125,7 +125,7 @@ OT::RandomVector event_of(LimitFunction& limit, double h) {
   return OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0);
 }
 
-// Where a search has ended, held against what a design point is.
+// Checks whether the end of a search satisfies the conditions of a design point.
 DesignPoint point_of(LimitFunction& limit, const SearchEnd& end, bool is_origin_failing) {
   constexpr double k_on_surface = 1e-4, k_aligned = 1e-4;
   DesignPoint point;
@@ -164,13 +164,13 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
     try {
       point.hohenbichler = result.getEventProbabilityHohenbichler();
       point.tvedt = result.getEventProbabilityTvedt();
-    } catch (const OT::Exception&) { // where curvatures are too large for them
+    } catch (const OT::Exception&) { // curvatures too large for these formulas
     }
   } catch (const OT::Exception&) {
   } catch (const BadSample&) {}
 }
 
-// What OpenTURNS asks for beside a design point that is there already.
+// Returns a search algorithm that reports a known design point, as required by OpenTURNS.
 OT::AbdoRackwitz search_algorithm() {
   OT::Log::Show(OT::Log::NONE);
   OT::AbdoRackwitz search;
@@ -183,7 +183,7 @@ OT::AbdoRackwitz search_algorithm() {
   return search;
 }
 
-// True if the point is new.
+// Returns true if the point is new.
 bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
   for (DesignPoint& other : points)
     if (is_same(point, other)) {
@@ -194,10 +194,10 @@ bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
   return true;
 }
 
-// One search, which may take samples until there are `last`; what ends it early is noted.
+// Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point.
 bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found) {
   ++found.starts;
-  constexpr double k_near_surface = 1e-2; // where another search would go to and fro as well
+  constexpr double k_near_surface = 1e-2; // relative distance; near it another search would oscillate as well
   std::vector<std::vector<double>> known;
   for (const DesignPoint& p : found.points)
     if (p.is_found || p.off_surface < k_near_surface) known.push_back(p.u);
@@ -213,14 +213,14 @@ void sort_points(std::vector<DesignPoint>& points) {
   });
 }
 
-// For all searches together: a search takes some five steps of a gradient each, and most end at the first.
+// Returns the budget for all searches together: a search takes about five steps with a gradient each, and most end at known points.
 long budget_of(const LimitFunction& limit) {
   return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
 }
 
-// Directions that lie apart: of many random ones each time the one that is farthest from all taken before.
+// Returns well separated directions: of many random ones, repeatedly the one farthest from all chosen before.
 std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, long count) {
-  constexpr long k_pool = 20; // for each
+  constexpr long k_pool = 20; // candidates per direction
   const CounterRandom random(static_cast<std::uint64_t>(limit.study().seed), 3);
   std::vector<std::vector<double>> pool, directions;
   for (long k = 1; k <= k_pool * count; ++k) {
@@ -231,7 +231,7 @@ std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, l
     for (double& x : a) x /= length;
     pool.push_back(std::move(a));
   }
-  std::vector<double> nearest(pool.size(), -1.0); // cosine
+  std::vector<double> nearest(pool.size(), -1.0); // largest cosine to the chosen directions
   for (std::size_t next = 0; static_cast<long>(directions.size()) < count;) {
     directions.push_back(pool[next]);
     for (std::size_t i = 0; i < pool.size(); ++i) nearest[i] = std::max(nearest[i], cosine_between(pool[i], directions.back()));
@@ -240,10 +240,10 @@ std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, l
   return directions;
 }
 
-// Where searches begin: of looks in directions that lie apart, three for each start, those at which the limit state is
-// lowest (where the origin holds; highest, where it fails), and which lie apart from one another and from what is known.
+// Chooses the start points. The limit state is evaluated in three well separated directions per start. Points with the lowest values
+// (highest, if the origin fails) are chosen that are well separated from each other and from known design points.
 std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, const DesignPoints& found) {
-  constexpr double k_far = 3.0, k_apart = 0.9; // of the cosine between two directions
+  constexpr double k_far = 3.0, k_apart = 0.9; // cosine between two directions
   std::vector<std::vector<double>> looks = spread_directions(limit, 3 * count);
   std::vector<double> points;
   for (std::vector<double>& u : looks) {

@@ -1,36 +1,38 @@
-// Design points: the places of the limit state's surface that are nearest to the origin of standard normal space, and
-// what first and second order theory (FORM, SORM) make of them. Searched for from several starts; second order by
-// OpenTURNS.
+// Finds design points: points of the limit state surface with locally minimum distance to the origin of standard normal space, searched
+// from several starts. Computes probabilities by first and second order theory (FORM, SORM); second order uses OpenTURNS.
 #pragma once
 
 #include "tools/study/limit_function.h"
 
 namespace steplap::study {
 
+/// A design point in standard normal space.
 struct DesignPoint {
   std::vector<double> u;
-  double beta = 0.0;         ///< signed: negative if the origin fails
-  double g = 0.0;            ///< there; zero if the search has arrived
-  double off_surface = 0.0;  ///< |g| / |∇g|: how far from the surface that is, in standard deviations
-  double misalignment = 0.0; ///< 1 − cosine between u and the gradient's line: zero where it is nearest
+  double beta = 0.0;         ///< reliability index, signed: negative if the origin fails
+  double g = 0.0;            ///< value of the limit function at u; zero if the search converged
+  double off_surface = 0.0;  ///< |g| / |∇g|: distance to the surface in standard deviations
+  double misalignment = 0.0; ///< 1 − cosine of the angle between u and the gradient; zero at a point of minimum distance
   std::vector<double> alpha; ///< −u/beta: squares are the importance factors
   double breitung = 0.0, hohenbichler = 0.0,
-         tvedt = 0.0;    ///< probabilities of second order; not-a-number if not asked or unfit
-  bool is_found = false; ///< on the surface, and nearest there
+         tvedt = 0.0;    ///< second-order probabilities; NaN if not requested or not applicable
+  bool is_found = false; ///< true if u is on the surface and a point of minimum distance
 };
 
+/// Results of the search for design points.
 struct DesignPoints {
-  std::vector<DesignPoint> points; ///< found ones, the nearest first
+  std::vector<DesignPoint> points; ///< converged points, nearest first
   long starts = 0, failed_starts = 0;
-  long left_starts = 0; ///< not searched from: the samples for searches were used up
+  long left_starts = 0; ///< starts that were not used because the sample budget was exhausted
   bool is_origin_failing = false;
-  std::string trouble; ///< of the starts that failed, the first
+  std::string trouble; ///< reason of the first failed start
   long samples = 0;
 };
 
+/// Searches design points. `is_second_order` adds the probabilities of second order.
 [[nodiscard]] DesignPoints find_design_points(LimitFunction& limit, bool is_second_order);
 
-/// Searches once more, from `start`. True if it came to a point that is not among `found`, which is put there.
+/// Starts one more search from `start`. Returns true if it converged to a point that is not in `found`, and adds it.
 bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found);
 
 } // namespace steplap::study

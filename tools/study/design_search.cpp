@@ -10,8 +10,8 @@ namespace steplap::study {
 namespace {
 
 constexpr int k_most_steps = 30, k_most_halvings = 8;
-constexpr double k_arrived = 1e-5; // step, of the distance: beta is known to the square of that
-constexpr double k_known = 0.1;    // heading for a known place, of the distance
+constexpr double k_arrived = 1e-5; // step relative to the distance; the error of beta is of second order in it
+constexpr double k_known = 0.1;    // distance to a known point that ends the search, relative
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
@@ -19,7 +19,7 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// Where the plane that touches g is zero, nearest to the origin.
+// Returns the zero of the linearised g that is closest to the origin.
 std::vector<double> aim_of(const SearchEnd& at) {
   const double scale = (product(at.gradient, at.u) - at.g) / product(at.gradient, at.gradient);
   std::vector<double> aim(at.gradient);
@@ -75,7 +75,8 @@ private:
     return ended("a run without result lay on the way");
   }
 
-  // On the surface for some steps, and no nearer to the origin: gradients on both sides of an edge send it to and fro.
+  // Returns true if the search has been on the surface for some steps without coming closer to the origin: it then oscillates between
+  // gradients on both sides of an edge.
   bool stands_still() {
     constexpr double k_still = 1e-4;
     constexpr int k_steps = 4;
@@ -87,7 +88,7 @@ private:
     return still_ >= k_steps;
   }
 
-  // What the plane promises is there: g is zero where it says so, to a hundredth of what it was.
+  // Tests the linearisation: returns true if g at its predicted zero is less than 0.01 of its previous value.
   bool is_plane(const std::vector<double>& aim) {
     const LimitValue value = limit_.at_point(aim);
     return !value.is_bad && std::abs(value.g) < 0.01 * std::abs(at_.g);
@@ -95,9 +96,8 @@ private:
 
   [[nodiscard]] double merit(const std::vector<double>& u, double g, double c) const { return 0.5 * product(u, u) + c * std::abs(g); }
 
-  // Towards the aim, as far as the merit falls by a good part of what its slope promises (Armijo's rule: to fall at all
-  // is not enough where the surface is curved as the sphere is, on which full steps go to and fro). False if it falls
-  // nowhere.
+  // Steps towards the target as far as the merit function decreases sufficiently (Armijo's rule). Any decrease is not enough if the surface
+  // has the curvature of the sphere, on which full steps oscillate. Returns false if the merit function does not decrease.
   bool go(const std::vector<double>& aim) {
     const double steepness = length_of(at_.gradient.data(), at_.gradient.size()), distance = length_of(at_.u.data(), at_.u.size());
     const double c = 2.0 * std::max(distance, length_of(aim.data(), aim.size())) / steepness;

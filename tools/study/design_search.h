@@ -1,32 +1,35 @@
-// The search for a design point: Hasofer and Lind's, Rackwitz and Fiessler's iteration with a line search (Zhang and
-// Der Kiureghian, 1997).
+// Searches a design point by the iteration of Hasofer-Lind and Rackwitz-Fiessler with a line search (Zhang and Der Kiureghian, 1997).
 //
-// At u, with the gradient a of g, the plane that touches g there is zero nearest to the origin at
+// At u, with the gradient a of g, the zero of the linearised g closest to the origin is
+//
 //   w = a (a·u - g)/|a|².
-// A step goes towards w, as far as m(u) = |u|²/2 + c |g| falls, with c = 2 max(|u|, |w|)/|a|. Gradients are
-// central differences, asked for in one batch, so that all processors have something to do.
+//
+// A step goes towards w as long as m(u) = |u|²/2 + c |g| decreases, with c = 2 max(|u|, |w|)/|a|. Gradients are central differences
+// evaluated in one batch, which uses all processors.
 #pragma once
 
 #include "tools/study/limit_function.h"
 
 namespace steplap::study {
 
+/// End of a search.
 struct SearchEnd {
-  std::vector<double> u;        ///< where it ended
-  std::vector<double> gradient; ///< there
-  double g = 0.0;               ///< there
-  bool is_known = false;        ///< it was on its way to a place that is known already
-  bool is_bad = false;          ///< a run without result ended it
-  std::string trouble;          ///< why it did not arrive; "" if it did
+  std::vector<double> u;        ///< last point
+  std::vector<double> gradient; ///< gradient at u
+  double g = 0.0;               ///< value at u
+  bool is_known = false;        ///< true if the search was approaching a known point
+  bool is_bad = false;          ///< true if a run without a result ended the search
+  std::string trouble;          ///< reason if it did not converge; "" otherwise
 };
 
-/// From `start`; ends early where it heads for one of `known`, or when samples from `limit` reach `last`.
+/// Searches from `start`. Ends early if it approaches one of `known`, or when the samples taken from `limit` reach number `last`.
 [[nodiscard]] SearchEnd search_design_point(LimitFunction& limit, std::vector<double> start, const std::vector<std::vector<double>>& known,
                                             long last);
 
-/// Central differences with the step `h`; nothing where a run has no result.
+/// Returns the gradient by central differences with step `h`; nothing if a run has no result.
 [[nodiscard]] std::optional<std::vector<double>> gradient_at(LimitFunction& limit, const std::vector<double>& u, double h);
 
+/// Returns the Euclidean distance.
 [[nodiscard]] double distance_between(const std::vector<double>& a, const std::vector<double>& b);
 
 } // namespace steplap::study

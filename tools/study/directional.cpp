@@ -1,13 +1,12 @@
-// Directional simulation. Of a direction a, the probability of failing is the integral of the distance's density over
-// the stretches of the ray that fail. The ray is cut into strata; in each one look is taken at a random place, drawn
-// from the density within the stratum, and whether it fails, times the stratum's probability, is the estimate. Its mean
-// is exact whatever the shape of the failures: a band that is thinner than a stratum is hit as often as it deserves.
+// Directional simulation. For a direction a the probability of failure is the integral of the density of the distance over the failing
+// intervals of the ray. The ray is divided into strata. In each stratum one point is drawn from the density within the stratum; if it
+// fails, the stratum's probability is added. The estimate is unbiased for any shape of the failure region: a band thinner than a stratum is
+// hit with the correct probability.
 //
-// A stratum whose neighbours differ is cut into three, and so on, as a border lies there; so is one in which the line
-// through the two looks on one side of it comes to zero. Whether a stratum is cut hangs on looks outside of it alone,
-// never on its own: given all of them its look is still anywhere in it, so that the cutting leaves the mean exact. (To
-// cut where a look differs from its neighbours would lose what thin bands weigh: those that are hit would be cut and
-// seen to be thin, those that are missed would stay missed.)
+// A stratum is divided into three if its neighbours differ, because a border lies in it, and also if a line through the two points on one
+// side of it reaches zero inside. This decision must use points outside the stratum only. Its own point is then still distributed over the
+// whole stratum, and the division keeps the estimate unbiased. (Dividing strata whose point differs from the neighbours would underestimate
+// thin bands: those that are hit would be divided and found to be thin, those that are missed would stay missed.)
 #include "tools/study/sampling_course.h"
 
 #include <openturns/DistFunc.hxx>
@@ -21,7 +20,7 @@ namespace {
 enum class Look { holds, fails, bad };
 
 struct Seen {
-  double at = 0.0, g = 0.0; // radius
+  double at = 0.0, g = 0.0; // radius and value
   Look look = Look::holds;
 };
 
@@ -31,17 +30,17 @@ Seen seen_at(double at, const LimitValue& value) {
 
 struct Stratum {
   std::size_t ray;
-  double low, high;           // radii; the last one of a ray reaches to infinity
-  double tail_low, tail_high; // probabilities of being further out
+  double low, high;           // radii; infinity at the end of a ray
+  double tail_low, tail_high; // probability of a larger radius
   bool is_last = false;
   Seen own{};
-  Seen beside[4]{}; // outside of the stratum, and of the whole it was cut from: two before, two after
+  Seen beside[4]{}; // points outside the stratum and outside the whole from which it was divided: two before, two after
 
   [[nodiscard]] double probability() const { return tail_low - tail_high; }
 
-  // Of the looks beside it alone.
+  // Returns true if the stratum is to be divided. Uses the neighbouring points only.
   [[nodiscard]] bool is_to_cut() const {
-    constexpr double k_fine = 0.1; // of what lies outside of it: rays differ by more than that
+    constexpr double k_fine = 0.1; // of the probability outside the stratum; rays differ by more than this
     if (is_last || probability() <= k_fine * tail_low) return false;
     return beside[1].look != beside[2].look || comes_to_zero(beside[0], beside[1]) || comes_to_zero(beside[3], beside[2]);
   }
@@ -49,12 +48,12 @@ struct Stratum {
 private:
   [[nodiscard]] bool comes_to_zero(const Seen& far, const Seen& near) const {
     if (far.look != near.look || near.look == Look::bad || far.at == near.at) return false;
-    const double zero = near.at - near.g * (near.at - far.at) / (near.g - far.g); // not a number where it is level
+    const double zero = near.at - near.g * (near.at - far.at) / (near.g - far.g); // NaN if both values are equal
     return zero > low && zero < high;
   }
 };
 
-// Some rays at a time, so that all processors have something to do.
+// Several rays at a time, which uses all processors.
 class Rays {
 public:
   Rays(LimitFunction& limit, const CounterRandom& random, std::uint64_t first, std::size_t count, const Seen& origin)
@@ -83,7 +82,7 @@ public:
     while (refine()) {}
   }
 
-  /// Probability on each ray that `wanted` tells of a look.
+  /// Returns the probability on each ray of the points for which `wanted` is true.
   template <class Wanted> std::vector<double> probabilities(const Wanted& wanted) const {
     std::vector<double> sums(draws_.size(), 0.0);
     for (const Stratum& s : strata_)
@@ -106,7 +105,7 @@ private:
     s.tail_high = s.is_last ? 0.0 : beyond(s.high);
   }
 
-  // Anywhere in the stratum, by the density of the distance.
+  // Draws a point in the stratum from the density of the distance.
   void place(Stratum& s) {
     const double share = random_.uniform(first_ + s.ray, static_cast<std::uint32_t>(n_) + draws_[s.ray]++);
     const double tail = s.tail_high + share * s.probability();
@@ -126,10 +125,10 @@ private:
     }
   }
 
-  // Cuts strata into three. The look that one has serves for the part in which it lies.
+  // Divides strata into three. The existing point is reused for the part that contains it.
   bool refine() {
     std::vector<Stratum> next, fresh;
-    std::vector<std::size_t> places, cuts; // of fresh looks, and of the first of three parts
+    std::vector<std::size_t> places, cuts; // new points; first of the three parts
     for (const Stratum& s : strata_) {
       if (!s.is_to_cut()) {
         next.push_back(s);
@@ -158,7 +157,7 @@ private:
     return true;
   }
 
-  // Of three parts: one another, and what was beside the whole.
+  // Sets the neighbours of three parts: each other, and those of the whole.
   static void set_beside(Stratum* part) {
     const Seen *const outside = part[0].beside,
                       seen[] = {outside[0], outside[1], part[0].own, part[1].own, part[2].own, outside[2], outside[3]};
@@ -170,14 +169,14 @@ private:
     }
   }
 
-  static constexpr std::size_t k_strata = 16; // of a ray, at first
+  static constexpr std::size_t k_strata = 16; // of a ray, initially
   static constexpr int k_parts = 3;
   LimitFunction& limit_;
   const CounterRandom& random_;
   std::uint64_t first_;
   std::size_t n_;
   std::vector<double> directions_;
-  std::vector<std::uint32_t> draws_; // random numbers taken of each ray
+  std::vector<std::uint32_t> draws_; // random numbers used by each ray
   std::vector<Stratum> strata_;
   long bad_ = 0;
 };
@@ -185,8 +184,8 @@ private:
 } // namespace
 
 Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
-  constexpr std::size_t k_rays = 32; // at a time
-  constexpr long k_first = 64;       // rays of the first stage, and the fewest of the second
+  constexpr std::size_t k_rays = 32; // evaluated together
+  constexpr long k_first = 64;       // rays in the first stage, and minimum for the second
   const CounterRandom random(static_cast<std::uint64_t>(limit.run().study().seed), 5);
   SamplingCourse course(limit, target);
   Estimate e;
@@ -206,7 +205,7 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
     }
   };
   draw_until(k_first);
-  if (!course.is_over()) { // how many more rays it takes is known from these, which are not counted
+  if (!course.is_over()) { // the first stage, whose rays are not counted, determines the number of rays
     const long second = std::max(course.planned(safe.count(), e.cov), k_first);
     safe = unsafe = {};
     e.bad = 0;

@@ -12,7 +12,7 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Bytes of outcomes, as ranks send them to the first. All run the same program on the same kind of machine.
+// Serialises outcomes for transfer to rank 0. All ranks run the same program on the same kind of computer.
 void pack(const Outcome& o, std::vector<char>& bytes) {
   const auto add = [&bytes](const void* data, std::size_t size) {
     const char* first = static_cast<const char*>(data);
@@ -50,12 +50,12 @@ const char* unpack(const char* bytes, Outcome& o) {
   return bytes;
 }
 
-// Both zeros are one to a store.
+// Returns true if two values are the same for a store, which does not distinguish −0 and 0.
 bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 } // namespace
 
-// A scene for each thread.
+// Worker threads, each with its own scene.
 class Workers {
 public:
   Workers(const LoadedStudy& loaded, int threads) : width_(loaded.study.variables.size()), has_models_(!loaded.models.empty()) {
@@ -63,12 +63,12 @@ public:
     for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<Scene>(loaded));
   }
 
-  /// Outcome of every `stride`-th point from `first` on.
+  /// Runs every `stride`-th point from `first` on.
   void run(const double* points, std::size_t count, std::size_t first, std::size_t stride,
            const std::function<Outcome&(std::size_t)>& outcome) {
     const long mine = first < count ? static_cast<long>((count - first + stride - 1) / stride) : 0;
     const int block = has_models_ ? 1 : 256;
-    const bool is_worth_it = has_models_ ? mine > 1 : mine > 2000; // formulas take a microsecond, waking threads several
+    const bool is_worth_it = has_models_ ? mine > 1 : mine > 2000; // a formula takes a microsecond, starting threads takes several
 #pragma omp parallel for schedule(dynamic, block) num_threads(static_cast<int>(scenes_.size())) if (is_worth_it)
     for (long i = 0; i < mine; ++i) {
       const std::size_t k = first + static_cast<std::size_t>(i) * stride;
@@ -76,7 +76,7 @@ public:
     }
   }
 
-  /// What is a formula of other numbers is what the formula gives.
+  /// Returns true if all numbers defined by formulas agree with these formulas.
   [[nodiscard]] bool is_derived(const StoredSample& sample) { return scenes_.front()->is_derived(sample.values, sample.outcome); }
 
 private:
@@ -100,7 +100,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < width; ++j)
       if (!is_same(fetched_[i].values[j],
-                   points[(from + i) * width + j])) { // a study that has changed goes another way from here
+                   points[(from + i) * width + j])) { // the sequence of a changed study differs from here on
         if (!may_go_another_way(store))
           throw StoreError(store.path(),
                            "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
@@ -120,7 +120,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
   }
 }
 
-// What ends by the clock asks for more or less each time.
+// A study that ends by the clock requests a different number of samples each time.
 bool Evaluator::may_go_another_way(Store& store) const { return store.may_hold_others() || loaded_.study.settings->ends_by_clock(); }
 
 void Evaluator::run(std::size_t from, std::size_t count, const std::vector<double>& points) {
@@ -153,7 +153,7 @@ void Evaluator::check(const StoredSample& sample) const {
                      " (the study says failed = \"stop\")");
 }
 
-// Batches of about half a second, so that no more is lost than that. What is stored does not depend on their size.
+// Batches take about half a second, which limits the loss at an interruption. Stored data do not depend on the batch size.
 const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& points) {
   constexpr double k_batch = 0.5; // s
   const std::size_t width = loaded_.study.variables.size(), count = width ? points.size() / width : 0;

@@ -1,8 +1,8 @@
-// Samples in the order in which a study asks for them: those in the store are taken from there, the others are run on
-// all threads of all ranks, and stored.
+// Evaluates the samples that a study requests. Samples in the store are read from it; the others are run on all threads of all ranks and
+// stored.
 //
-// A study that is interrupted asks for the same samples again, in the same order, when it is run once more: nothing of
-// what it asks for hangs on threads, ranks or time. So the store alone tells where to go on.
+// An interrupted study requests the same samples in the same order when it is repeated, because requests depend neither on threads or ranks
+// nor on time. The store alone therefore determines where the study continues.
 #pragma once
 
 #include "tools/study/ranks.h"
@@ -13,46 +13,47 @@
 
 namespace steplap::study {
 
-/// failed = "stop", and a sample's run did not reach its end; or somebody asked the study to stop. Exit code 4.
+/// Thrown if a sample failed and the study has failed = "stop", or if the user stopped the study. Exit code 4.
 class StudyStopped : public NumericalFailure {
 public:
   using NumericalFailure::NumericalFailure;
 };
 
-/// How far a study is.
+/// Progress of a study.
 struct Pace {
-  long samples = 0, stored = 0; ///< asked for so far; of these, found in the store
+  long samples = 0, stored = 0; ///< requested so far; of these, found in the store
   double seconds = 0.0;
-  double rate = 0.0;     ///< samples run a second, lately
-  std::string estimate;  ///< the last that was noted
-  long expected = 0;     ///< samples when what runs now will have ended; 0: not known
-  bool is_guess = false; ///< that hangs on how an estimate goes on
+  double rate = 0.0;     ///< samples per second, recently
+  std::string estimate;  ///< latest estimate
+  long expected = 0;     ///< number of samples at the end of the current method; 0: unknown
+  bool is_guess = false; ///< true if `expected` is extrapolated from an estimate
 };
 
 class Workers;
 
+/// Evaluates samples and keeps the store up to date.
 class Evaluator {
 public:
   Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, std::function<void(const Pace&)> progress);
   ~Evaluator();
 
-  /// The outcomes of `points` (of all variables, one after the other), in their order; good until the next call.
+  /// Returns the outcomes of `points` (values of all variables, one point after the other) in their order, valid until the next call.
   const std::vector<StoredSample>& evaluate(const std::vector<double>& points);
-  /// Samples asked for so far.
+  /// Returns the number of samples requested so far.
   [[nodiscard]] long asked() const { return next_ - 1; }
-  /// The store, with all that was asked for so far in it.
+  /// Returns the store after all requested samples have been written.
   [[nodiscard]] Store& store() { return writer_.store(); }
-  /// Keeps an estimate as it grew, and shows it.
+  /// Stores an intermediate estimate and shows it.
   void note(const Finding& finding);
-  /// For the time left: so many samples are still to come, by a guess from how an estimate grew, or for sure; 0: not
-  /// known.
+  /// Sets the number of samples still to come, for the prediction of the remaining time; 0: unknown. `is_guess`: extrapolated from an
+  /// estimate.
   void expect(long more, bool is_guess = false);
-  /// Seconds since the study began, of this call of the program.
+  /// Returns the seconds since this call of the program started the study.
   [[nodiscard]] double seconds() const;
 
-  /// Of the other ranks: runs what rank 0 asks for until it is done.
+  /// Called on ranks other than 0: runs the samples that rank 0 requests until dismiss().
   static void serve(const LoadedStudy& loaded, const Ranks& ranks, int threads);
-  /// At rank 0: lets the others go.
+  /// Called on rank 0: ends serve() on the other ranks.
   static void dismiss(const Ranks& ranks);
 
 private:
@@ -63,7 +64,7 @@ private:
 
   const LoadedStudy& loaded_;
   StoreWriter writer_;
-  long stored_; ///< samples in the store, or on their way there
+  long stored_; ///< samples in the store or queued for writing
   const Ranks& ranks_;
   std::unique_ptr<Workers> workers_;
   std::function<void(const Pace&)> progress_;

@@ -1,5 +1,4 @@
-// Samples and findings as CSV: the same bytes for the same study, however it was run. What computing cost in seconds is
-// in the store only.
+// Exports samples and findings as CSV. The same study gives identical bytes however it was run, because computing times are not exported.
 #pragma once
 
 #include "tools/study/store.h"
@@ -8,8 +7,11 @@
 
 namespace steplap::study {
 
+/// Writes one row per sample.
 void export_samples(Store& store, std::ostream& out);
+/// Writes one row per measured value.
 void export_histories(const std::vector<Store::CurvePoint>& points, std::ostream& out);
+/// Writes one row per finding.
 void export_findings(const std::vector<Finding>& findings, std::ostream& out);
 
 } // namespace steplap::study

@@ -12,12 +12,12 @@ namespace {
 
 std::vector<std::string> function_names() {
   std::vector<std::string> names;
-  const mu::Parser parser; // a temporary would be gone before the loop begins
+  const mu::Parser parser; // must outlive the loop
   for (const auto& [name, function] : parser.GetFunDef()) names.push_back(name);
   return names;
 }
 
-// A '=' that is no part of a comparison.
+// Returns true if the text contains a '=' that is not part of a comparison.
 bool has_assignment(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;
@@ -35,7 +35,7 @@ struct Expression::Parser {
     double value;
   };
   mu::Parser parser;
-  std::vector<std::unique_ptr<Used>> used; // the parser keeps their addresses
+  std::vector<std::unique_ptr<Used>> used; // the parser stores pointers to these
 };
 
 Expression::Expression(const std::string& text, const std::vector<std::string>& names, const Location& where)

@@ -1,4 +1,4 @@
-// Formulas of a study file, by muParser: + - * / ^, comparisons, && ||, a ? b : c, and the usual functions.
+// Evaluates formulas of a study file with muParser: + - * / ^, comparisons, && ||, a ? b : c, and the usual functions.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -9,16 +9,16 @@
 
 namespace steplap::study {
 
-/// One thread's: make one for each.
+/// A compiled formula. Not thread-safe: each thread needs its own.
 class Expression {
 public:
-  /// `names`: what the formula may use. Throws ModelError at `where`, with the nearest name for an unknown one.
+  /// `names` are the names that the formula may use. Throws ModelError at `where`, with the most similar name for an unknown one.
   Expression(const std::string& text, const std::vector<std::string>& names, const Location& where);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
   ~Expression();
 
-  /// `values`: of all names, in their order.
+  /// Evaluates the formula. `values` has one entry per name, in their order.
   [[nodiscard]] double operator()(const double* values) const;
 
 private:
@@ -26,7 +26,7 @@ private:
   std::unique_ptr<Parser> parser_;
 };
 
-/// "" if a variable, a response or a limit state may be called that, else what is wrong.
+/// Returns "" if the name is valid for a variable, response or limit state, otherwise the error.
 [[nodiscard]] std::string name_problem(const std::string& name);
 
 } // namespace steplap::study

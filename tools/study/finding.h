@@ -1,4 +1,4 @@
-// What a study answers.
+// Results of a study.
 #pragma once
 
 #include <algorithm>
@@ -8,27 +8,28 @@
 
 namespace steplap::study {
 
-/// A number that a study found. It never stands alone: an interval where there is one, and a status.
+/// A number found by a study, with its confidence interval, if there is one, and its status.
 struct Finding {
   std::string method;   ///< "monte_carlo", "form", ...
-  std::string subject;  ///< variable, response or limit state it is about
+  std::string subject;  ///< variable, response or limit state to which it refers
   std::string quantity; ///< "probability", "beta", "first order", ...
   double value = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
-  long samples = 0;     ///< it took
-  std::string status{}; ///< "" is well; else what is to be known about the number
+  long samples = 0;     ///< number of samples used
+  std::string status{}; ///< "" if valid; otherwise a remark on its reliability
 };
 
-/// How far an answer is to be relied on.
+/// Reliability of an answer.
 enum class Standing { done, not_met, not_trusted };
 [[nodiscard]] const char* name_of(Standing standing);
 
+/// Answer of a study.
 struct Answer {
   std::vector<Finding> findings;
-  std::vector<std::string> notes; ///< lines for people
+  std::vector<std::string> notes; ///< lines for the user
   Standing standing = Standing::done;
 
-  /// To the worse of both.
+  /// Sets the standing to the worse of the present one and `to`.
   void degrade(Standing to) { standing = std::max(standing, to); }
 };
 

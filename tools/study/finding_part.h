@@ -1,26 +1,29 @@
-// What part a finding plays on the page, by the quantity it is of.
+// Describes how a page presents a finding, depending on its quantity.
 #pragma once
 
 #include <string>
 
 namespace steplap::study {
 
+/// Unit of a finding.
 enum class UnitOf {
   none,
-  subject, ///< of what the finding is about, which must be a column of the samples or a measured record
-  quotient ///< of that by the variable's that the quantity names
+  subject, ///< unit of the finding's subject, which must be a column of the samples or a measured record
+  quotient ///< that unit divided by the unit of the variable named in the quantity
 };
 
+/// Presentation of findings with a certain quantity.
 struct FindingPart {
-  std::string role;     ///< what the page does with it
-  std::string quantity; ///< as it begins, followed by the name of a variable if this ends with a blank; as it ends, if this begins with one
+  std::string role;     ///< presentation on the page
+  std::string quantity; ///< text of the quantity: a prefix followed by a variable's name if it ends with a blank; a suffix if it begins
+                        ///< with a blank
   UnitOf unit = UnitOf::none;
-  int digits = 6; ///< shown, where there is no interval
+  int digits = 6; ///< digits shown if there is no interval
 };
 
-/// A finding whose quantity is a variable, and its value a coordinate of a point: the subject is the role and the point's number.
+/// A finding that is a coordinate of a point: the quantity is a variable, the subject consists of the role and the number of the point.
 struct PointRole {
-  std::string method; ///< of the finding
+  std::string method; ///< method of the finding
   std::string role;
 };
 

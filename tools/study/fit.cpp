@@ -29,7 +29,7 @@ std::string in_words(const char* format, double a, double b = 0.0) {
   return text;
 }
 
-// The study as a problem of least squares: residuals over their noise, parameters as shares of their ranges.
+// The fit as a least squares problem: residuals divided by their noise, parameters scaled by their ranges.
 class FitProblem {
 public:
   explicit FitProblem(StudyRun& run) : run_(run), histories_(run.study().histories) {
@@ -59,7 +59,7 @@ public:
   [[nodiscard]] double value(Eigen::Index i, double share) const {
     return share >= 1.0 ? variable(i).range[1] : variable(i).range[0] + share * width(i);
   }
-  /// Is the noise stated, so that residuals are to be as large?
+  /// Returns true if the noise is given, so that the size of the residuals can be tested.
   [[nodiscard]] bool has_noise() const { return histories_.front().noise.has_value(); }
   [[nodiscard]] static double noise_of(const History& h) { return h.noise.value_or(1.0); }
   [[nodiscard]] const std::string& last_reason() const { return reason_; }
@@ -111,7 +111,7 @@ struct Start {
   VectorXd at, residuals;
 };
 
-// Where the study stands, and places anywhere in the ranges; those that have a result, by how well they fit.
+// Evaluates the nominal point and random points in the ranges. Returns those with a result, best fit first.
 std::vector<Start> starts_of(StudyRun& run, const FitProblem& fit) {
   const CounterRandom random(static_cast<std::uint64_t>(run.study().seed), 11);
   std::vector<VectorXd> points{fit.nominal()};
@@ -144,8 +144,8 @@ std::vector<LeastSquaresMinimum> search(StudyRun& run, const FitProblem& fit) {
   return minima;
 }
 
-// Other directions that span the same space, each of as few parameters as can be (Gauss and Jordan, on columns):
-// several combinations that a record does not tell have no order, and any mixture of them is another.
+// Returns another basis of the same space in which each vector contains as few parameters as possible (Gauss-Jordan elimination on
+// columns). Undetermined combinations have no natural order, and any mixture of them is also undetermined.
 Eigen::MatrixXd plainest(Eigen::MatrixXd ways) {
   for (Eigen::Index k = 0; k < ways.cols(); ++k) {
     Eigen::Index row = 0, column = 0;
@@ -158,7 +158,7 @@ Eigen::MatrixXd plainest(Eigen::MatrixXd ways) {
   return ways;
 }
 
-// --- what the minimum says ----------------------------------------------------------------------------------------
+// --- analysis of the minimum ---------------------------------------------------------------------------------------
 
 class FitReport {
 public:
@@ -205,7 +205,7 @@ private:
     answer_.degrade(Standing::not_trusted);
   }
   [[nodiscard]] double deviation(Eigen::Index i) const { return std::sqrt(told_.covariance(i, i)); }
-  // Of a direction that the record does not tell.
+  // Returns true if the record does not determine this direction.
   [[nodiscard]] bool is_untold(Eigen::Index i) const {
     constexpr double k_share = 0.05;
     for (Eigen::Index k = told_.rank; k < fit_.size(); ++k)
@@ -213,7 +213,7 @@ private:
     return false;
   }
 
-  // The sum of squares at both ends of the interval along each direction: what first order says of it must be so.
+  // Evaluates the sum of squares at both ends of the interval along each direction, to check the linearisation.
   void check_ends_of_intervals() {
     std::vector<VectorXd> points;
     for (int k = 0; k < told_.rank; ++k)
@@ -226,7 +226,7 @@ private:
     for (std::size_t j = 0; j < points.size(); ++j) {
       const VectorXd way = points[j] - best_.at;
       const double expected = (best_.jacobian * way).squaredNorm() + 2.0 * (best_.jacobian * way).dot(best_.residuals);
-      // Rounding of the runs makes sums of squares by itself.
+      // Rounding of the runs alone causes a sum of squares.
       if (!(expected > 1e-6 * best_.sum) || expected < 100.0 * fit_.problem().floor) continue;
       const double rise = rows[j].size() > 0 ? (rows[j].squaredNorm() - best_.sum) / expected : std::nan("");
       if (rise > 0.5 && rise < 2.0) continue;
@@ -276,7 +276,7 @@ private:
       }
   }
 
-  // Combinations of parameters that leave the record as it is: changes of all that go together.
+  // Reports combinations of parameters whose simultaneous change does not affect the fit.
   void add_directions() {
     answer_.findings.push_back(finding("", "condition", told_.singular[0] / told_.singular[fit_.size() - 1]));
     const Eigen::MatrixXd untold = plainest(told_.directions.rightCols(fit_.size() - told_.rank));
@@ -302,9 +302,9 @@ private:
     }
   }
 
-  // Residuals that are larger than the noise, or hang together, say that the model does not describe what was measured.
+  // Tests the residuals: if they exceed the noise or are correlated, the model does not describe the measurement.
   void add_residuals() {
-    constexpr double k_sure = 4.0; // standard deviations: one case in 16 000
+    constexpr double k_sure = 4.0; // standard deviations; one case in 16 000
     Eigen::Index place = 0;
     for (const History& h : run_.study().histories) {
       const auto count = static_cast<Eigen::Index>(h.t.size());
@@ -312,7 +312,7 @@ private:
       place += count;
       const double n = static_cast<double>(count), sum = r.squaredNorm();
       Finding f = finding(h.name, "residual, root mean square", std::sqrt(sum / n) * FitProblem::noise_of(h));
-      // Products of neighbours: their sum, of the variance, has the deviation √n where they are independent.
+      // The sum of products of neighbouring residuals, divided by the variance, has the standard deviation √n if they are independent.
       const double products = r.head(count - 1).dot(r.tail(count - 1)), together = sum > 0.0 ? products / sum : 0.0;
       const double share = h.noise ? products / n : together;
       const bool is_exact = sum <= 10.0 * fit_.problem().floor;
@@ -321,7 +321,7 @@ private:
                             "describe the record to its noise, "
                             "and the intervals are too narrow",
                             together);
-      // χ² of n is nearly normal with deviation √(2n).
+      // χ² with n degrees of freedom is approximately normal with standard deviation √(2n).
       else if (h.noise && sum > n + k_sure * std::sqrt(2.0 * n))
         f.status = in_words("residuals are %.3g times the stated noise: the model does not describe the record, or the noise is larger",
                             std::sqrt(sum / n));
@@ -331,8 +331,8 @@ private:
     }
   }
 
-  // Between samples of a run a straight line is off by an eighth of the second difference, which falls with the square
-  // of the step.
+  // Checks the sampling: linear interpolation between samples of a run has an error of an eighth of the second difference, which is
+  // proportional to the square of the step.
   void check_interpolation(const History& h, Eigen::Index place) {
     const auto model =
         std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(), [&](const auto& m) { return m->name == h.model; });
@@ -355,7 +355,7 @@ private:
       distrust("interpolating runs for '" + h.name + "' is off by more than a tenth of its noise; resample the record evenly");
   }
 
-  // Another place that the record cannot tell from the best one.
+  // Reports another minimum that fits equally well.
   void add_other_minima() {
     for (std::size_t k = 1; k < minima_.size(); ++k) {
       const LeastSquaresMinimum& other = minima_[k];
@@ -390,7 +390,7 @@ private:
   Answer answer_;
   Identified told_;
   double freedom_ = 1.0, variance_ = 1.0, quantile_ = 2.0;
-  std::vector<std::string> off_; ///< what is wrong with the interval of a parameter
+  std::vector<std::string> off_; ///< per parameter: problem with its interval
 };
 
 void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
@@ -441,8 +441,8 @@ StudyKind fit_kind() {
   kind.takes_histories = true;
   kind.parts = {{"base", "value", UnitOf::subject},
                 {"moment", "standard deviation", UnitOf::subject, 4},
-                {"residual", "residual", UnitOf::subject, 4}, // of a measured record
-                {"sum of squares", "sum of squares"},         // of residuals over their noise
+                {"residual", "residual", UnitOf::subject, 4}, // unit of a measured record
+                {"sum of squares", "sum of squares"},         // of residuals divided by their noise
                 {"correlation", "correlation", UnitOf::none, 3},
                 {"condition", "condition", UnitOf::none, 3},
                 {"not told", "not told", UnitOf::none, 3},

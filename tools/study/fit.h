@@ -1,13 +1,14 @@
-// The kind "fit": parameters from measured histories by least squares, with what the records tell of them and what not.
+// Study kind "fit": identifies parameters from measured histories by least squares, and tells which parameters the records determine.
 #pragma once
 
 #include "tools/study/study_kind.h"
 
 namespace steplap::study {
 
+/// Settings of a "fit" study.
 struct FitSettings : KindSettings {
-  long starts = 8;       ///< places where the search may begin; it does from the best of them
-  long iterations = 100; ///< of one search
+  long starts = 8;       ///< number of candidate start points; the search starts from the best of them
+  long iterations = 100; ///< limit for one search
   double confidence = 0.95;
 };
 

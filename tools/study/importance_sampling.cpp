@@ -6,7 +6,7 @@ namespace steplap::study {
 
 namespace {
 
-// Where importance sampling draws: normal around each design point, and a wide one around the origin.
+// Sampling density: a mixture of normal densities around each design point and a wide one around the origin.
 class Proposal {
 public:
   Proposal(const std::vector<DesignPoint>& points, const std::vector<std::vector<double>>& more, std::size_t dimension)
@@ -14,7 +14,7 @@ public:
     const std::vector<const DesignPoint*> usable = usable_of(points);
     double nearest = std::numeric_limits<double>::infinity();
     for (const DesignPoint* p : usable) nearest = std::min(nearest, std::abs(p->beta));
-    constexpr double k_too_far = 3.0; // what lies so much further matters little
+    constexpr double k_too_far = 3.0; // points further away by this distance have negligible probability
     for (const DesignPoint* p : usable)
       if (std::abs(p->beta) < nearest + k_too_far) centres_.push_back(p->u);
     centres_.insert(centres_.end(), more.begin(), more.end());
@@ -33,10 +33,10 @@ public:
     }
   }
 
-  /// Nearly nothing is drawn there but by the wide part: a failure there tells of a design point that is not known.
+  /// Returns true if almost only the wide part samples this point. A failure there indicates an unknown design point.
   [[nodiscard]] bool is_stray(const double* u) const { return wide_part(u) * weight(u) > 0.9; }
 
-  /// Density of the standard normal over that of the proposal.
+  /// Returns the ratio of the standard normal density to the sampling density.
   [[nodiscard]] double weight(const double* u) const {
     double sum = wide_part(u);
     for (const auto& c : centres_) {
@@ -48,7 +48,7 @@ public:
   }
 
 private:
-  // Design points; where there are none, places near which the limit state is; else wherever searches have ended.
+  // Centres: design points; if there are none, points near the limit state; otherwise the ends of searches.
   static std::vector<const DesignPoint*> usable_of(const std::vector<DesignPoint>& points) {
     std::vector<const DesignPoint*> usable;
     const auto take = [&](auto is_usable) {
@@ -62,7 +62,7 @@ private:
     return usable;
   }
 
-  // Densities over that of the standard normal.
+  // Returns the densities relative to the standard normal density.
   [[nodiscard]] double wide_part(const double* u) const {
     const double distance = length_of(u, dimension_);
     return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
@@ -74,7 +74,7 @@ private:
   double wide_ = 1.0;
 };
 
-// Weights of the samples that fail and of those that hold; runs without a result are with both, or with neither.
+// Weights of failing and of surviving samples. Runs without a result belong to both or to neither.
 struct Sums {
   WeightedMean fails, fails_or_bad, holds, holds_or_bad;
   void add(const LimitValue& value, double w) {
@@ -103,18 +103,18 @@ public:
   }
 
 private:
-  // The first stage ends with all places known to draw from that it tells of.
+  // The first stage ends when it finds no further centres.
   void run_stages() {
-    // A tenth of the samples there are, within bounds: fewer say little about the scatter, more cost much.
+    // A tenth of the samples, within bounds: fewer do not show the scatter, more are expensive.
     const long first = std::clamp(target_.samples / 10, 100L, 300L);
     do {
       begin();
       draw_until(first);
     } while (!course_.is_over() && (finds_from_stray() || finds_from_heaviest()));
-    if (course_.is_over()) return; // then the first stage is what there is
+    if (course_.is_over()) return; // only the first stage is possible
     is_complement_ = holds_better();
     set();
-    // Fewer than that give an interval of little use, whatever was asked for.
+    // With fewer samples the interval is of little use, whatever accuracy was requested.
     constexpr long k_fewest = 300;
     const long second = std::max(course_.planned(first, e_.cov), k_fewest);
     begin();
@@ -133,7 +133,7 @@ private:
   }
 
   void draw_until(long count) {
-    constexpr std::size_t k_most = 1000; // between two looks at the clock
+    constexpr std::size_t k_most = 1000; // between checks of the clock
     const std::size_t n = limit_.dimension();
     while (sums_.fails.count() < count && !course_.is_over()) {
       const std::size_t block = std::min({std::min(course_.block(), k_most), static_cast<std::size_t>(count - sums_.fails.count()),
@@ -152,7 +152,7 @@ private:
     }
   }
 
-  // Of the failures the stray one that is nearest, and the one of the largest weight.
+  // Keeps the stray failure closest to the origin and the failure with the largest weight.
   void remember(const double* u, std::size_t n, double w) {
     if (w > heaviest_) {
       heaviest_ = w;
@@ -164,7 +164,7 @@ private:
     stray_.assign(u, u + n);
   }
 
-  // Searches from the nearest stray failure. What was drawn until now does not tell of what it finds.
+  // Starts a search at the closest stray failure. Returns true if it found a new design point, which the samples drawn before do not cover.
   bool finds_from_stray() {
     if (stray_.empty() || searches_++ >= k_most_searches) return false;
     const std::vector<double> start = std::move(stray_);
@@ -172,10 +172,10 @@ private:
     return search_again(limit_, start, design_);
   }
 
-  // A failure of many times the usual weight lies where too little is drawn: there is a design point near by that is
-  // not known, or one is drawn around the place itself.
+  // Handles a failure whose weight is many times larger than usual, which is in a region with too few samples. Searches a design point near
+  // it; if none is found, the failure itself becomes a centre. Returns true if there is a new centre.
   bool finds_from_heaviest() {
-    constexpr double k_many = 15.0; // a plane at a distance of 5 has 6
+    constexpr double k_many = 15.0; // ratio; a plane at distance 5 gives 6
     const double hits = static_cast<double>(sums_.fails.hits()),
                  mean = sums_.fails.mean() * static_cast<double>(sums_.fails.count()) / std::max(hits, 1.0);
     if (hits < 10.0 || heaviest_ < k_many * mean || searches_++ >= k_most_searches) return false;
@@ -184,8 +184,8 @@ private:
     return true;
   }
 
-  // Where failing is the rule the probability of holding is the better known one. Both have to have been met often
-  // enough for their scatter to be known.
+  // Returns true if the probability of survival is better known than that of failure. Both must have occurred often enough to estimate
+  // their scatter.
   [[nodiscard]] bool holds_better() const {
     constexpr long k_enough = 20;
     return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();

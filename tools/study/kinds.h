@@ -1,4 +1,4 @@
-// The kinds of study: the one list that a new one is added to.
+// List of all study kinds. New kinds are added in kinds.cpp.
 #pragma once
 
 #include "tools/study/study_kind.h"
@@ -10,9 +10,9 @@ namespace steplap::study {
 
 [[nodiscard]] const std::vector<StudyKind>& study_kinds();
 [[nodiscard]] std::vector<std::string> kind_names();
-/// Null if there is none of that name.
+/// Returns nullptr if there is no kind of that name.
 [[nodiscard]] const StudyKind* find_kind(const std::string& name);
-/// Throws std::logic_error for a study that the reader would not have let pass.
+/// Returns the kind of a study. Throws std::logic_error for a kind that the reader would have rejected.
 [[nodiscard]] const StudyKind& kind_of(const Study& study);
 
 } // namespace steplap::study

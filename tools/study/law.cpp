@@ -24,14 +24,14 @@ namespace steplap::study {
 
 struct JointLaw::Marginal {
   OT::Distribution distribution;
-  // Those that are functions of z in closed form need no inversion.
+  // Distributions that are closed-form functions of z need no inversion.
   enum class Form { general, normal, lognormal } form = Form::general;
   double a = 0.0, b = 1.0, location = 0.0;
 
   [[nodiscard]] double at(double z) const {
     if (form == Form::normal) return a + b * z;
     if (form == Form::lognormal) return location + std::exp(a + b * z);
-    // Both tails to full precision.
+    // Both tails with full precision.
     return z < 0.0 ? distribution.computeQuantile(normal_cdf(z), false)[0] : distribution.computeQuantile(normal_cdf(-z), true)[0];
   }
 };
@@ -61,12 +61,12 @@ Moments moments_of(const Variable& v) {
   return {mean, needed(v, v.standard_deviation, "standard_deviation' or 'cov")};
 }
 
-// Every field that is given has to mean something for the distribution.
+// Checks that every field given is used by the distribution.
 void check_fields(const Variable& v) {
   struct Given {
     const char* name;
     bool is_given;
-    const char* of; ///< distributions that take it
+    const char* of; ///< distributions that use it
   };
   const Given all[] = {{"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
                        {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
@@ -141,11 +141,11 @@ OT::Distribution by_parameters(const Variable& v) {
 
 struct Described {
   OT::Distribution distribution;
-  std::string fit; ///< of a measured one
+  std::string fit; ///< for a measured variable
   bool is_misfit = false;
 };
 
-// Of parameters that each are in their ranges, and make no distribution together.
+// Explains why parameters that are individually valid define no distribution.
 std::string why_there_is_none(const Variable& v) {
   if (!v.measured.empty())
     return "no " + v.distribution + " distribution fits the values of '" + v.measured +
@@ -160,7 +160,7 @@ std::string why_there_is_none(const Variable& v) {
     if (value) given += (given.empty() ? "" : ", ") + std::string(name) + " = " + number_text(*value);
   if (v.lower || v.upper) {
     try {
-      (void)by_parameters(v); // then it is its bounds
+      (void)by_parameters(v); // throws if the parameters alone are invalid; otherwise the bounds are the reason
       return "'lower' and 'upper' leave nothing of a " + v.distribution + " distribution with " + given;
     } catch (const std::exception&) {}
   }
@@ -175,7 +175,7 @@ Described distribution_of(const Variable& v) {
     return {law.distribution, law.text, law.is_misfit};
   } catch (const ModelError&) {
     throw;
-  } catch (const std::exception&) { // a library's: its words are for programmers
+  } catch (const std::exception&) { // messages of the library are for programmers
     complain(v, why_there_is_none(v));
   }
 }
@@ -230,7 +230,7 @@ JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<
       if (is_plain && v.distribution == "lognormal") m.form = Marginal::Form::lognormal;
       if (m.form != Marginal::Form::general) m.a = p[0], m.b = p[1];
       if (m.form == Marginal::Form::lognormal) m.location = p[2];
-      for (const double z : {-3.0, 0.0, 3.0}) // what cannot be computed is told before anything runs
+      for (const double z : {-3.0, 0.0, 3.0}) // tests numerical evaluation before anything runs
         if (std::isnan(m.at(z))) throw std::domain_error("no quantile");
       texts_.push_back(words_of(v, m.distribution, described.fit));
       if (!described.fit.empty()) fits_.push_back({v.name, texts_.back(), described.is_misfit});
@@ -264,8 +264,8 @@ void JointLaw::values_at(const double* u, double* values) const {
 
 namespace {
 
-// Correlation of the values of two marginals whose normal variables have rho0, by Gauss and Legendre's rule over ±8.5
-// standard deviations.
+// Computes the correlation of two variables whose normal variables have correlation rho0, by Gauss-Legendre quadrature over ±8.5 standard
+// deviations.
 class NatafIntegral {
 public:
   template <class A, class B> NatafIntegral(const A& a, const B& b) {
@@ -277,7 +277,7 @@ public:
       w_.push_back(2.0 * k_reach * weights[i] * std::exp(-0.5 * z_.back() * z_.back()) / std::sqrt(2.0 * std::numbers::pi));
     }
     standardise(a, a_);
-    // Of the second at every z that may be met: a fine table is not exact, so it is evaluated where needed.
+    // The second variable is evaluated at every required z, because a table would not be accurate enough.
     b_ = [&b](double z) { return b.at(z); };
     std::vector<double> values;
     for (const double z : z_) values.push_back(b.at(z));
@@ -314,7 +314,7 @@ private:
   double mean_b_ = 0.0, deviation_b_ = 1.0;
 };
 
-// NaN: no correlation of the normal variables gives `rho`.
+// Returns NaN if no correlation of the normal variables gives `rho`.
 double normal_correlation(const NatafIntegral& nataf, double rho) {
   double low = -0.99999, high = 0.99999;
   double below = nataf(low) - rho, above = nataf(high) - rho;

@@ -1,8 +1,8 @@
-// The joint distribution of a study's variables, seen from standard normal space: x_i = F_i⁻¹(Φ(z_i)), z = L u, with
-// u independent standard normal and L Lᵀ the correlations of the normal copula (Nataf's transformation).
+// Joint probability distribution of a study's variables as a function of standard normal variables (Nataf transformation): x_i =
+// F_i⁻¹(Φ(z_i)), z = L u, with u independent standard normal and L Lᵀ the correlation matrix of the normal copula.
 //
-// Distributions are OpenTURNS'. A variable with a range counts as uniform; one without either keeps its value.
-// Not for several threads at a time: samples are drawn by one thread (and drawing is never what takes time).
+// Marginal distributions are those of OpenTURNS. A variable with a range is uniform; one without range and distribution is constant. Not
+// thread-safe.
 #pragma once
 
 #include "tools/study/study.h"
@@ -11,30 +11,31 @@
 
 namespace steplap::study {
 
+/// The joint distribution of all variables of a study.
 class JointLaw {
 public:
-  /// `nominal`: the value of every variable, which those that do not vary keep. Appends what is wrong with
-  /// distributions and correlations to `problems`; the law is of no use then.
+  /// `nominal` are the values of all variables, used for those that are constant. Errors in distributions and correlations are appended to
+  /// `problems`; the object must not be used then.
   JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems);
   JointLaw(JointLaw&&) noexcept;
   ~JointLaw();
 
-  /// Of those that vary: of u.
+  /// Returns the number of random variables, which is the dimension of u.
   [[nodiscard]] std::size_t dimension() const { return random_.size(); }
-  /// Their indices among the study's variables.
+  /// Returns their indices among the study's variables.
   [[nodiscard]] const std::vector<std::size_t>& random() const { return random_; }
   [[nodiscard]] const std::vector<double>& nominal() const { return nominal_; }
 
-  /// All variables at the point u.
+  /// Writes the values of all variables at the point u.
   void values_at(const double* u, double* values) const;
-  /// The value of a varying variable (a place in random()) that is not exceeded with probability p.
+  /// Returns the p-quantile of a random variable, given by its position in random().
   [[nodiscard]] double quantile(std::size_t place, double p) const;
-  /// "lognormal, mean 0.25, standard deviation 0.05", with what a fit found.
+  /// Returns a description: "lognormal, mean 0.25, standard deviation 0.05", with the result of a fit if there is one.
   [[nodiscard]] const std::string& text(std::size_t place) const { return texts_[place]; }
-  /// What was fitted to measurements.
+  /// A distribution fitted to measurements.
   struct Fit {
     std::string variable, text;
-    bool is_misfit = false; ///< the measurements contradict it
+    bool is_misfit = false; ///< true if the measurements contradict it
   };
   [[nodiscard]] const std::vector<Fit>& fits() const { return fits_; }
   [[nodiscard]] bool is_independent() const { return root_.empty(); }
@@ -47,21 +48,22 @@ private:
   std::vector<double> nominal_;
   std::vector<std::string> texts_;
   std::vector<Fit> fits_;
-  std::vector<double> root_; ///< lower triangle, row by row; empty: independent
+  std::vector<double> root_; ///< Cholesky factor L, lower triangle, row by row; empty: independent
 };
 
-/// Of the distribution of a variable that has one: where studies around a point stand. Throws ModelError.
+/// Returns the mean of a variable's distribution, around which local studies are made. Throws ModelError.
 [[nodiscard]] double mean_of(const Variable& variable);
 
-/// Φ and its inverse.
+/// Φ, the standard normal distribution function. Below: its inverse.
 [[nodiscard]] double normal_cdf(double z);
 [[nodiscard]] double normal_quantile(double p);
-/// Bounds of a probability of which `successes` of `trials` were seen (Clopper and Pearson).
+/// Confidence interval of a probability after `successes` in `trials` (Clopper and Pearson).
 struct Interval {
   double low = 0.0, high = 1.0;
 };
+/// Returns the interval for the given confidence, 0 to 1.
 [[nodiscard]] Interval proportion_interval(double successes, double trials, double confidence);
-/// Of Student's distribution.
+/// Returns the p-quantile of Student's distribution.
 [[nodiscard]] double student_quantile(double degrees, double p);
 
 } // namespace steplap::study

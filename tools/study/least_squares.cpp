@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-// Central differences, `times` the problem's step wide. Where a point beside has no residuals, or lies beyond the end
-// of a range, the quotient is one-sided; where neither side has any, the column is not-a-number.
+// Central differences with `times` the problem's step. If a neighbouring point has no residuals or is outside the range, the quotient is
+// one-sided; if neither side has residuals, the column is NaN.
 MatrixXd differences(const LeastSquaresProblem& problem, const VectorXd& at, const VectorXd& here, double times) {
   const Eigen::Index n = at.size();
   std::vector<VectorXd> points;
@@ -39,13 +39,13 @@ MatrixXd differences(const LeastSquaresProblem& problem, const VectorXd& at, con
   return jacobian;
 }
 
-// The problem linearised at a point: R and Qᵀr of the Jacobian's decomposition are all that steps need.
+// The problem linearised at a point. The factor R of the Jacobian and Qᵀr suffice to compute steps.
 struct Linear {
   MatrixXd r;
   VectorXd rhs;
 
   Linear(const MatrixXd& jacobian, const VectorXd& residuals) { std::tie(r, rhs) = triangle_of(jacobian, residuals); }
-  // Marquardt's: each parameter damped by what it does. Those that are `held` stay.
+  // Marquardt's damping, scaled by the effect of each parameter. Parameters that are `held` stay constant.
   [[nodiscard]] VectorXd step(double damping, const std::vector<bool>& held) const {
     const Eigen::Index n = r.cols();
     const double least = 1e-8 * std::max(r.colwise().norm().maxCoeff(), 1e-300);
@@ -62,18 +62,18 @@ struct Linear {
     return steplap::least_squares(whole, target);
   }
   [[nodiscard]] VectorXd gradient() const { return r.transpose() * rhs; }
-  // By how much the sum of squares falls along the step, if the problem were linear.
+  // Returns the decrease of the sum of squares along the step for the linearised problem.
   [[nodiscard]] double gain(const VectorXd& step) const { return rhs.squaredNorm() - (rhs + r * step).squaredNorm(); }
 };
 
-// At an end of its range, and it would go beyond.
+// Returns true if the parameter is at a bound and the step would cross it.
 std::vector<bool> held_by(const VectorXd& at, const VectorXd& gradient) {
   std::vector<bool> held;
   for (Eigen::Index i = 0; i < at.size(); ++i) held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));
   return held;
 }
 
-// Several dampings at once: the best of them goes on.
+// Tries several damping factors in one batch and continues with the best.
 bool try_steps(const LeastSquaresProblem& problem, const Linear& linear, double& damping, LeastSquaresMinimum& m) {
   constexpr double k_parts[] = {1e-4, 1e-2, 0.1, 1.0, 10.0, 1e3};
   const std::vector<bool> held = held_by(m.at, linear.gradient());
@@ -98,8 +98,8 @@ bool try_steps(const LeastSquaresProblem& problem, const Linear& linear, double&
 } // namespace
 
 LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd& start, const VectorXd& residuals) {
-  constexpr double k_close = 1e-8;  // of the variance: a ten-thousandth of a standard deviation is left to go
-  constexpr double k_stuck = 1e-3;  // of the variance: differences do not tell better
+  constexpr double k_close = 1e-8;  // of the variance; the remaining distance is 1e-4 standard deviations
+  constexpr double k_stuck = 1e-3;  // of the variance; difference quotients are not more accurate
   constexpr double k_widest = 1e12; // damping
   LeastSquaresMinimum m;
   m.at = start;
@@ -130,7 +130,7 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
       if (left > k_stuck * m.sum / freedom) m.problem = "the search got stuck: the sum of squares has a kink or a jump there";
       return finish(), m;
     }
-    if (before - m.sum <= 1e-12 * before && left <= k_stuck * m.sum / freedom) { // what is left is rounding
+    if (before - m.sum <= 1e-12 * before && left <= k_stuck * m.sum / freedom) { // the rest is rounding
       m.jacobian = differences(problem, m.at, m.residuals, 1.0);
       return finish(), m;
     }
@@ -141,7 +141,7 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
 }
 
 Identified identify(const LeastSquaresMinimum& minimum, double variance) {
-  constexpr double k_widest = 0.5; // of a range: a standard deviation beyond says that the record tells nothing
+  constexpr double k_widest = 0.5; // of a range; with a larger standard deviation the record does not determine the direction
   Identified told;
   RightSingular singular = right_singular(minimum.jacobian);
   told.singular = std::move(singular.values);

@@ -1,9 +1,8 @@
-// Least squares of residuals that cost a run each: Levenberg's and Marquardt's method with differences as derivatives.
+// Least squares for residuals that cost a simulation each: Levenberg-Marquardt method with difference quotients.
 //
-// Parameters are given as shares of their ranges, 0 to 1, which bound them. Steps of difference follow the error of the
-// runs themselves: h = ∛ε of the parameter's size, where the error of the quotient by curvature, h², meets that by the
-// run, ε/h. Jacobians at h and 2h tell what the derivatives are known to. All that can be asked at once is asked at
-// once.
+// Parameters are scaled to 0 … 1 by their ranges, which are bounds. The difference step is chosen from the error ε of the runs: h = ∛ε of
+// the parameter's size, where the truncation error h² equals the error ε/h due to the runs. The difference of Jacobians with steps h and 2h
+// estimates the error of the derivatives. Independent evaluations are requested in one batch.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,40 +12,42 @@
 
 namespace steplap::study {
 
-/// Residuals at several points; an empty vector where a point has none (its run failed).
+/// Computes the residuals at several points; an empty vector for a point whose run failed.
 using ResidualBatch = std::function<std::vector<Eigen::VectorXd>(const std::vector<Eigen::VectorXd>& points)>;
 
+/// A least squares problem.
 struct LeastSquaresProblem {
   ResidualBatch residuals;
-  Eigen::VectorXd step; ///< of difference, as shares of the ranges
-  double floor = 0.0;   ///< sum of squares that the error of the runs makes by itself
+  Eigen::VectorXd step; ///< difference step, as a fraction of the ranges
+  double floor = 0.0;   ///< sum of squares due to the error of the runs alone
   long iterations = 100;
 };
 
+/// A minimum with its linearisation.
 struct LeastSquaresMinimum {
   Eigen::VectorXd at;
   Eigen::VectorXd residuals;
-  Eigen::MatrixXd jacobian;    ///< by the shares; columns of differences that have no value are not-a-number
-  double jacobian_error = 0.0; ///< Frobenius' norm: jacobian less that of twice the step, by Richardson's rule
-  double sum = 0.0;            ///< of squares
-  std::vector<bool> is_at_end; ///< of its range
-  std::string problem;         ///< empty: the minimum was found
+  Eigen::MatrixXd jacobian;    ///< derivatives with respect to the scaled parameters; columns without a value are NaN
+  double jacobian_error = 0.0; ///< Frobenius norm of the Richardson error estimate from steps h and 2h
+  double sum = 0.0;            ///< sum of squares
+  std::vector<bool> is_at_end; ///< per parameter: true at a bound
+  std::string problem;         ///< empty if a minimum was found
 };
 
-/// From `start`, where there are residuals.
+/// Minimises from `start`, at which the residuals are given.
 [[nodiscard]] LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const Eigen::VectorXd& start,
                                            const Eigen::VectorXd& residuals);
 
-/// What a minimum says about its parameters.
+/// Parameters and directions that a minimum determines.
 struct Identified {
-  Eigen::MatrixXd covariance; ///< of the shares, over the directions that are told
-  Eigen::MatrixXd directions; ///< orthonormal, one a column, by falling singular value
-  Eigen::VectorXd singular;   ///< values of the Jacobian
-  int rank = 0;               ///< directions that are told
+  Eigen::MatrixXd covariance; ///< of the scaled parameters, within the determined directions
+  Eigen::MatrixXd directions; ///< orthonormal columns, in descending order of singular values
+  Eigen::VectorXd singular;   ///< singular values of the Jacobian
+  int rank = 0;               ///< number of determined directions
 };
 
-/// `variance`: of a residual. A direction is told if the Jacobian's singular value is beyond what derivatives are known
-/// to, and its standard deviation is less than half of the range.
+/// Analyses a minimum. `variance` is that of a residual. A direction is determined if the singular value of the Jacobian exceeds the error
+/// of the derivatives and the standard deviation along it is less than half the range.
 [[nodiscard]] Identified identify(const LeastSquaresMinimum& minimum, double variance);
 
 } // namespace steplap::study

@@ -1,4 +1,4 @@
-// The system of limit states as a function of standard normal space: what all methods of reliability ask.
+// The limit states of a study as one function g on standard normal space, used by all reliability methods.
 #pragma once
 
 #include "tools/study/counter_random.h"
@@ -6,37 +6,42 @@
 
 namespace steplap::study {
 
-/// Of one sample.
+/// Value for one sample.
 struct LimitValue {
   double g = 0.0;      ///< negative: failure
-  bool is_bad = false; ///< its run did not reach its end, or is not to be trusted: g says nothing
+  bool is_bad = false; ///< true if the run failed or cannot be trusted; g has no meaning then
 };
 
 struct ReliabilitySettings;
 
+/// The limit function g of a study. It counts failed runs and keeps the failing point closest to the origin.
 class LimitFunction {
 public:
   explicit LimitFunction(StudyRun& run);
 
   [[nodiscard]] std::size_t dimension() const { return run_.law.dimension(); }
-  /// At `points` of standard normal space, one after the other; good until the next call.
+  /// Evaluates `points` of standard normal space, given one after the other. The result is valid until the next call.
   const std::vector<LimitValue>& at(const std::vector<double>& points);
+  /// Evaluates a single point.
   [[nodiscard]] LimitValue at_point(const std::vector<double>& u);
 
   [[nodiscard]] StudyRun& run() { return run_; }
   [[nodiscard]] const Study& study() const { return run_.study(); }
   [[nodiscard]] const ReliabilitySettings& settings() const { return settings_; }
+  /// Returns the number of samples requested so far, by all methods.
   [[nodiscard]] long asked() const { return run_.evaluator.asked(); }
+  /// Returns the name of the system of limit states for findings.
   [[nodiscard]] const std::string& subject() const { return subject_; }
-  [[nodiscard]] long bad() const { return bad_; } ///< met so far
-  /// Of all failing points met so far the nearest to the origin; infinite if there was none.
+  [[nodiscard]] long bad() const { return bad_; } ///< number of bad samples so far
+  /// Returns the smallest distance of a failing point to the origin so far; infinite if there was none.
   [[nodiscard]] double nearest_failure() const { return nearest_; }
+  /// Returns that failing point.
   [[nodiscard]] const std::vector<double>& nearest_point() const { return nearest_point_; }
 
 private:
   StudyRun& run_;
   const ReliabilitySettings& settings_;
-  std::vector<std::size_t> places_; ///< of the system's limit states among the numbers
+  std::vector<std::size_t> places_; ///< indices of the system's limit states among the numbers
   bool is_any_;
   std::string subject_;
   std::vector<double> values_;
@@ -46,7 +51,7 @@ private:
   std::vector<double> nearest_point_;
 };
 
-/// Length of a vector.
+/// Returns the Euclidean length of a vector.
 [[nodiscard]] double length_of(const double* u, std::size_t n);
 
 } // namespace steplap::study

@@ -1,4 +1,4 @@
-// What is asked of a study that was read: its names, its numbers, where its variables and responses lie.
+// Queries of a study that was read: names, numbers, and locations of variables and responses in the models.
 #include "mbd/base/name_pattern.h"
 #include "tools/study/study_reader.h"
 

@@ -1,7 +1,7 @@
-// The border of a region in the plane of two variables, followed as a curve.
+// Traces the zero curve of an expression in the plane of two variables.
 //
-// A grid is looked at first; wherever its lines cross the border the curve is followed in both directions: a step along
-// the tangent, then back to the border across it.
+// A grid is evaluated first. From every crossing of its lines with the curve, the curve is followed in both directions: a step along the
+// tangent, then a search for the curve across it.
 #include "tools/study/map.h"
 
 #include "tools/study/crossing.h"
@@ -27,7 +27,7 @@ FieldTable map_fields() {
   return t;
 }
 
-using Point = std::array<double, 2>; ///< both variables, their ranges as [0, 1]
+using Point = std::array<double, 2>; ///< both variables, scaled by their ranges to [0, 1]
 
 Point along(const Point& p, const Point& direction, double s) { return {p[0] + s * direction[0], p[1] + s * direction[1]}; }
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
@@ -36,7 +36,7 @@ bool is_inside(const Point& p) { return p[0] >= 0.0 && p[0] <= 1.0 && p[1] >= 0.
 struct Border {
   std::vector<Point> points;
   bool is_closed = false;
-  std::string end; ///< not empty: it was lost, not ended at the ranges' ends
+  std::string end; ///< if not empty: reason why the curve was lost before the end of the ranges
 };
 
 class Plane {
@@ -70,7 +70,7 @@ public:
     return values;
   }
 
-  /// The border on the way from p along `direction`, between s = low and s = high.
+  /// Returns the point of the curve on the line from p along `direction`, between s = low and s = high.
   std::optional<double> crossing(const Point& p, const Point& direction, double low, double high) {
     const std::vector<double> g = at({along(p, direction, low), along(p, direction, high)});
     if (std::isnan(g[0]) || std::isnan(g[1]) || (g[0] < 0.0) == (g[1] < 0.0)) return {};
@@ -95,7 +95,7 @@ private:
 };
 
 struct Grid {
-  std::size_t n; ///< points a side
+  std::size_t n; ///< points per side
   std::vector<Point> points;
   std::vector<double> g;
 
@@ -111,7 +111,7 @@ Grid grid_of(Plane& plane, long points) {
   return grid;
 }
 
-// Where the lines of the grid cross the border.
+// Finds the crossings of grid lines with the curve.
 std::vector<Point> seeds_on_grid(Plane& plane, const Grid& grid_points, double tolerance) {
   const std::size_t n = grid_points.n;
   const std::vector<Point>& grid = grid_points.points;
@@ -141,8 +141,8 @@ std::vector<Point> seeds_on_grid(Plane& plane, const Grid& grid_points, double t
   return seeds;
 }
 
-// Points of the grid at which the expression is nearer to zero than at all beside them, with one sign at all: an island
-// may lie there that no line of the grid meets. Of plateaus the first point; those that come nearest first.
+// Finds grid points at which the expression is closer to zero than at all neighbours, all with the same sign: there may be a closed curve
+// that crosses no grid line. Of equal neighbouring points the first is taken. Points closest to zero come first.
 std::vector<std::size_t> hollows_of(const Grid& grid) {
   constexpr std::size_t k_most = 20;
   const auto n = static_cast<long>(grid.n);
@@ -170,10 +170,10 @@ std::vector<std::size_t> hollows_of(const Grid& grid) {
   return hollows;
 }
 
-// Downhill from a hollow, by looks in eight directions that come closer; a point of the border if there is one.
+// Searches from such a point in eight directions with decreasing distance for a point of the curve.
 std::optional<Point> island_at(Plane& plane, Point at, double g, double radius) {
   constexpr int k_rounds = 24, k_ways = 8;
-  constexpr double k_least = 1e-3; // of where it began: what is smaller is not looked for
+  constexpr double k_least = 1e-3; // of the initial distance; smaller closed curves are not searched
   for (const double least = k_least * radius; radius > least;) {
     for (int round = 0; round < k_rounds; ++round) {
       std::vector<Point> around;
@@ -224,8 +224,8 @@ public:
 private:
   static constexpr int k_halvings = 6;
 
-  // A second crossing near by, on a small circle, which is looked at in 16 places. Places beyond the ranges' ends are
-  // drawn back to these, where two of them may enclose p itself: such a crossing is taken if there is no other.
+  // Finds a second crossing on a small circle around p, evaluated at 16 points. Points outside the ranges are moved to their bounds, where
+  // two of them may enclose p itself; such a crossing is used only if there is no other.
   std::optional<Point> tangent_at(const Point& p) {
     constexpr int k_looks = 16;
     const double radius = 0.1 * step_;
@@ -254,10 +254,10 @@ private:
     return second_best;
   }
 
-  // One step; the new point, or nothing where the border is not found within a wedge of ±45 degrees.
+  // Makes one step. Returns nothing if the curve is not found within a sector of ±45 degrees.
   std::optional<Point> step(const Point& p, const Point& tangent, double length) {
     const Point normal{-tangent[1], tangent[0]}, ahead = along(p, tangent, length);
-    double low = -length, high = length; // across, cut off at the ranges' ends
+    double low = -length, high = length; // across the tangent, limited by the ranges
     for (int i = 0; i < 2; ++i) {
       if (normal[i] == 0.0) continue;
       const double a = -ahead[i] / normal[i], b = (1.0 - ahead[i]) / normal[i];
@@ -270,7 +270,7 @@ private:
     return along(ahead, normal, *s);
   }
 
-  // Where the border leaves the ranges: on their edge, near p.
+  // Returns the point at which the curve leaves the ranges, near p.
   std::optional<Point> leave(const Point& p, const Point& tangent) {
     for (int i = 0; i < 2; ++i) {
       const double edge = tangent[i] > 0.0 ? 1.0 : 0.0;
@@ -286,7 +286,7 @@ private:
     return {};
   }
 
-  // Onwards from the last point until the ranges end; true if it comes back to the first.
+  // Continues from the last point to the bounds of the ranges. Returns true if the curve returns to its first point.
   bool go(Border& border, Point tangent) {
     constexpr std::size_t k_longest = 20000;
     const Point start = border.points.front();
@@ -352,8 +352,8 @@ void report(const Border& border, std::size_t number, Plane& plane, StudyRun& ru
   if (!border.end.empty()) answer.degrade(Standing::not_met);
 }
 
-// What may lie between the looks: the largest circle that holds none of them, in the middle of a square of the grid.
-// Islands that something points to are found down to much smaller ones; of one in a plain nothing is known.
+// Reports the size of closed curves that may have been missed: the largest circle between grid points, at the centre of a square. Closed
+// curves indicated by a local minimum are found down to much smaller sizes.
 void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, Answer& answer) {
   const double radius = grid.width() / std::sqrt(2.0);
   Finding f{"map", "island", "unseen radius, of the ranges", radius};
@@ -368,7 +368,7 @@ void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, An
   answer.notes.emplace_back(text);
 }
 
-// To all that evaluates samples the expression is a limit state.
+// Adds the expression as a limit state, so that the evaluator computes it.
 void add_border(LoadedStudy& loaded) {
   const auto& s = settings_of<MapSettings>(loaded.study);
   loaded.study.limit_states.push_back({"border", s.expression, s.where, true});

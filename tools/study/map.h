@@ -1,15 +1,16 @@
-// The kind "map": the curve in the plane of two variables on which an expression is zero.
+// Study kind "map": finds the curve in the plane of two variables on which an expression is zero.
 #pragma once
 
 #include "tools/study/study_kind.h"
 
 namespace steplap::study {
 
+/// Settings of a "map" study.
 struct MapSettings : KindSettings {
-  std::vector<std::string> variables; ///< two
-  std::string expression;             ///< the border is where it is zero
-  double step = 0.02;                 ///< along the border, of the ranges
-  long points = 11;                   ///< a side, of the first look
+  std::vector<std::string> variables; ///< two names
+  std::string expression;             ///< the curve is its zero set
+  double step = 0.02;                 ///< step along the curve, relative to the ranges
+  long points = 11;                   ///< number of points per side of the first grid
   double tolerance = 1e-9;
   bool is_logarithmic = false;
 };

@@ -50,7 +50,7 @@ OT::Distribution fitted(const std::string& kind, const OT::Sample& sample) {
 
 using Pair = std::array<double, 2>;
 
-// Where a function of two numbers is least, by Nelder and Mead's simplex.
+// Minimises a function of two numbers by the Nelder-Mead simplex.
 template <class Function> Pair least_of(const Function& function, const Pair& start, double step) {
   struct Corner {
     Pair at;
@@ -87,7 +87,7 @@ template <class Function> Pair least_of(const Function& function, const Pair& st
   return s[0].at;
 }
 
-// Distributions without ends of their own, by two numbers of any sign.
+// Distributions on the whole axis or half axis, parametrised by two unbounded numbers.
 OT::Distribution unbounded(const std::string& kind, const Pair& p) {
   if (kind == "normal") return OT::Normal(p[0], std::exp(p[1]));
   if (kind == "lognormal") return OT::LogNormal(p[0], std::exp(p[1]));
@@ -107,7 +107,7 @@ Pair beginning(const std::string& kind, const std::vector<double>& values) {
   return {mean, 0.5 * std::log(squares)};
 }
 
-// Probability of lying between the bounds, by the tails that are the smaller ones.
+// Returns the probability between the bounds, computed from the smaller tails.
 double share_within(const Variable& v, const OT::Distribution& whole) {
   if (!v.upper) return whole.computeComplementaryCDF(*v.lower);
   if (!v.lower) return whole.computeCDF(*v.upper);
@@ -116,7 +116,7 @@ double share_within(const Variable& v, const OT::Distribution& whole) {
                      : whole.computeCDF(*v.upper) - below;
 }
 
-// Of what is left between the bounds, all that was measured: the most likely whole.
+// Fits a distribution by maximum likelihood to values that were truncated at the bounds.
 OT::Distribution fitted_within(const Variable& v, const std::vector<double>& values, const OT::Sample& sample) {
   if (v.distribution == "uniform" || v.distribution == "triangular" || v.distribution == "beta")
     complain(v, "a " + v.distribution + " distribution fitted to 'measured' has ends of its own: leave out 'lower' and 'upper'");
@@ -125,9 +125,9 @@ OT::Distribution fitted_within(const Variable& v, const std::vector<double>& val
     complain(v, "a truncated " + v.distribution + " distribution is fitted to values above zero only, and '" + v.measured + "' has others");
   if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values.front(); }))
     complain(v, "all values of '" + v.measured + "' are the same: they have no distribution");
-  constexpr double k_least = 1e-6; // of the whole: tails fall off alike from there on, and its numbers say nothing
+  constexpr double k_least = 1e-6; // of the whole probability; smaller tails look alike and do not determine the parameters
   constexpr double k_impossible = std::numeric_limits<double>::infinity();
-  const auto surprise = [&](const Pair& p) { // −ln of the likelihood
+  const auto surprise = [&](const Pair& p) { // negative log-likelihood
     try {
       const OT::Distribution whole = unbounded(v.distribution, p);
       const double part = share_within(v, whole);
@@ -136,13 +136,13 @@ OT::Distribution fitted_within(const Variable& v, const std::vector<double>& val
       const OT::Sample logs = whole.computeLogPDF(sample);
       for (OT::UnsignedInteger i = 0; i < logs.getSize(); ++i) sum -= logs(i, 0);
       return std::isfinite(sum) ? sum : k_impossible;
-    } catch (const OT::Exception&) { // numbers so far off that there is no such distribution
+    } catch (const OT::Exception&) { // parameters outside the domain of the distribution
       return k_impossible;
     }
   };
   Pair at = beginning(v.distribution, values);
   double step = v.distribution == "normal" || v.distribution == "gumbel" ? 0.5 * std::exp(at[1]) : 0.3;
-  for (int i = 0; i < 3; ++i, step *= 0.3) at = least_of(surprise, at, step); // a simplex may fold up too early
+  for (int i = 0; i < 3; ++i, step *= 0.3) at = least_of(surprise, at, step); // repeated, because a simplex may collapse too early
   return unbounded(v.distribution, at);
 }
 

@@ -16,8 +16,8 @@ FieldTable needs_fields() {
   return t;
 }
 
-// What a model says about looking at its runs names channels that a variant may not have; it changes no motion.
-// Channels that it asks for stay, for responses may be of them; those of the element that is gone go.
+// Removes output tables that may refer to channels which a variant lacks; they do not affect the motion. Requested channels are kept,
+// because responses may use them, except those of the removed element.
 void drop_presentation(Model& model, const std::string& gone = "") {
   std::erase_if(model.tables, [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
   model.plots.clear();
@@ -48,13 +48,13 @@ ElementEntry weld_between(const std::string& name, const std::string& a, const s
   return {&kind, std::move(weld)};
 }
 
-// How far a response is from what it was, of its size then; infinite if it was zero.
+// Returns the relative change of a response; infinite if it was zero.
 double change_of(double before, double after) {
   if (before == after) return 0.0;
   return std::abs(after - before) / std::abs(before);
 }
 
-// A table such as [[core]] may put the element in again.
+// Returns true if a table such as [[core]] would create the element again.
 bool comes_back(const Model& given, const ModelVariant& variant) {
   if (variant.gone.empty()) return false;
   try {
@@ -64,7 +64,7 @@ bool comes_back(const Model& given, const ModelVariant& variant) {
     return std::any_of(whole.elements.begin(), whole.elements.end(),
                        [&](const ElementEntry& e) { return e.element->name == variant.gone; });
   } catch (const ModelError&) {
-    return false; // told by the sample
+    return false; // the sample reports the error
   }
 }
 
@@ -73,7 +73,7 @@ struct Row {
   double change = 0.0;
 };
 
-// All variants of a model, as given; their names are what findings are about.
+// Returns all variants of a model as given. Findings use their names.
 std::vector<ModelVariant> variants_of(const Model& model) {
   std::vector<ModelVariant> variants;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
@@ -103,7 +103,7 @@ std::vector<ModelVariant> variants_of(const Model& model) {
   return variants;
 }
 
-// A variable of its own says which variant runs.
+// Adds a variable that selects the variant.
 void add_variants(LoadedStudy& loaded) {
   if (loaded.models.size() != 1) return;
   loaded.variants = variants_of(loaded.models.front()->given);
@@ -128,7 +128,7 @@ Answer run_needs(StudyRun& run) {
   std::vector<double> points;
   for (std::size_t k = 0; k <= variants.size(); ++k) {
     points.insert(points.end(), run.law.nominal().begin(), run.law.nominal().end());
-    points.back() = static_cast<double>(k); // the variable "variant" is the last
+    points.back() = static_cast<double>(k); // the variable "variant" is the last one
   }
   run.evaluator.expect(static_cast<long>(variants.size() + 1));
   const std::vector<StoredSample>& samples = run.evaluator.evaluate(points);

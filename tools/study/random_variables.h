@@ -1,11 +1,11 @@
-// What kinds that draw samples at random ask of a study's variables.
+// Checks of a study's variables for kinds that draw random samples.
 #pragma once
 
 #include "tools/study/study_reader.h"
 
 namespace steplap::study {
 
-/// That there is a variable that varies at random, and none of which only a list of values is known.
+/// Checks that at least one variable is random and that no variable has only a list of values. Errors are appended to `problems`.
 void check_random(const LoadedStudy& loaded, bool takes_ranges, std::vector<Diagnostic>& problems);
 
 } // namespace steplap::study

@@ -1,7 +1,7 @@
-// Processes of one study, by MPI: rank 0 asks, stores and answers; the others run samples for it.
+// MPI processes of one study: rank 0 requests, stores and evaluates; the others run samples for it.
 //
-// A lone process knows nothing of MPI. Who wants several begins it (tools/study/program/mpi_session.h) and takes of_world(): a library
-// never does.
+// A single process does not use MPI. Programs with several processes initialise MPI (tools/study/program/mpi_session.h) and use of_world();
+// a library never does.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +9,23 @@
 
 namespace steplap::study {
 
+/// The processes of a study, seen from one of them.
 class Ranks {
 public:
-  /// This process alone.
+  /// Represents this process only.
   Ranks() = default;
-  /// All processes of MPI's world; it has been begun, and is ended after the last use.
+  /// Returns all processes of MPI's world. MPI must be initialised, and finalised only after the last use.
   [[nodiscard]] static Ranks of_world();
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] bool is_first() const { return rank_ == 0; }
 
-  /// Processors of this machine that fall to this rank.
+  /// Returns the number of processors of this computer available to this rank.
   [[nodiscard]] int threads() const;
-  /// Everybody's: `data` of the first rank goes to all, whatever its size.
+  /// Copies `data` from rank 0 to all ranks; collective. The sizes may differ before.
   void spread(std::vector<double>& data) const;
-  /// The bytes of all ranks, one after the other, at the first one.
+  /// Returns the bytes of all ranks in order, on rank 0.
   [[nodiscard]] std::vector<std::vector<char>> gather(const std::vector<char>& mine) const;
 
 private:

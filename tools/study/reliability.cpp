@@ -37,7 +37,7 @@ FieldTable reliability_fields() {
 
 const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset"};
 
-constexpr double k_alarm = 0.01; // chance of a false alarm, of all comparisons of a study together
+constexpr double k_alarm = 0.01; // probability of a false alarm over all comparisons of a study
 
 SamplingTarget target_of(const ReliabilitySettings& s) {
   SamplingTarget target;
@@ -70,7 +70,7 @@ public:
       if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_));
       if (method == "importance_sampling") sample_around(target_);
     }
-    if (has_form && estimates_.empty()) { // never alone
+    if (has_form && estimates_.empty()) { // FORM never stands alone
       SamplingTarget check = target_;
       check.cov = std::max(check.cov, 0.1);
       check.samples = std::min(check.samples, 5000L);
@@ -104,7 +104,7 @@ private:
     answer_.degrade(Standing::not_trusted);
   }
 
-  // What speaks against a design point, "" if nothing does.
+  // Returns an objection to a design point; "" if there is none.
   std::string doubt(const DesignPoint& p) const {
     if (p.off_surface >= 1e-4 * std::max(1.0, std::abs(p.beta)))
       return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g), p.off_surface);
@@ -116,16 +116,16 @@ private:
     return "";
   }
 
-  // How many times intervals are held against each other or against a theory: one false alarm in a hundred studies
-  // comes by chance from all of them together (Bonferroni).
+  // Returns the number of comparisons of intervals with each other and with theory. One study in a hundred gives a false alarm by chance
+  // (Bonferroni correction).
   [[nodiscard]] long comparisons() const {
     const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 3 : 0);
     const auto samplings = std::max<long>(1, std::count_if(settings_.methods.begin(), settings_.methods.end(),
                                                            [](const std::string& method) { return method != "form" && method != "sorm"; }));
-    return std::max(1L, samplings * theories + samplings * (samplings - 1)); // of both bounds, among samplings
+    return std::max(1L, samplings * theories + samplings * (samplings - 1)); // both bounds for comparisons between sampling methods
   }
 
-  // What sampling says of a probability by theory: by what factor it is off, with the interval of that.
+  // Compares a probability by theory with sampling: returns a text with the ratio and its interval.
   std::string sampling_doubt(double p, const char* whose) const {
     for (const Estimate& e : estimates_) {
       const Interval test = e.test(run_.study().failed);
@@ -139,7 +139,7 @@ private:
     return text_of("%.3g", p / test.high) + (test.low > 0.0 ? text_of(" to %.3g", p / test.low) : " or more");
   }
 
-  // Whether it is off or not: how well sampling bears a theory out.
+  // Reports the ratio in any case, to show how well sampling confirms the theory.
   void report_factors(const char* method, const std::string& name, double p) {
     for (const Estimate& e : estimates_) {
       if (!e.is_trusted || !std::isfinite(e.cov)) continue;
@@ -227,8 +227,8 @@ private:
     return std::any_of(estimates_.begin(), estimates_.end(), [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
   }
 
-  // Two samplings whose intervals lie apart: one of them has missed something. Both bounds one by one: what runs
-  // without a result leave open between them would hide it.
+  // Reports two sampling methods with disjoint intervals: one of them has missed a failure region. Both bounds are compared separately,
+  // because the difference between them, due to runs without a result, would hide it.
   void compare_estimates() {
     for (std::size_t i = 0; i < estimates_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
@@ -293,7 +293,7 @@ StudyKind reliability_kind() {
   kind.parts = {{"probability", "probability", UnitOf::none, 4},
                 {"beta", "beta", UnitOf::none, 5},
                 {"importance", "importance of "},
-                {"factor", "factor"}}; // of a probability by theory to one by sampling
+                {"factor", "factor"}}; // ratio of a probability by theory to one by sampling
   kind.points = {{"form", "design point"}};
   kind.check = check_reliability;
   kind.run = run_reliability;

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A variable without a path may be of any unit.
+// A variable without a path may have any unit.
 std::string unit_or_none(const std::string& unit) { return unit == "*" ? "" : unit; }
 
 std::string range_text(const Variable& v) {
@@ -24,7 +24,7 @@ std::string range_text(const Variable& v) {
   return text.empty() ? "kept" : text + unit;
 }
 
-// What it is by its distribution: values that are not exceeded with these probabilities.
+// Describes a distribution by its quantiles at fixed probabilities.
 Json quantiles_of(const JointLaw& law, std::size_t place) {
   Json p = Json::array(), x = Json::array();
   constexpr int k_points = 100;
@@ -73,7 +73,7 @@ Json numbers_json(const LoadedStudy& loaded) {
   return json;
 }
 
-// Measured records that a fit compares channels with, where studies have such.
+// Describes measured records with which a fit compares channels, if the study has any.
 template <class AnyStudy> Json history_count_json(const AnyStudy& study) {
   Json json = Json::array();
   if constexpr (requires { study.histories; })

@@ -1,5 +1,5 @@
-// What a store keeps of its study besides names, so that a page can be made of the store alone: units, what each
-// variable and number is, what was asked.
+// Description of a study that is kept in its store, so that a page can be made from the store alone: units, meaning of each variable and
+// number, settings.
 #pragma once
 
 #include "tools/study/law.h"
@@ -9,7 +9,7 @@
 
 namespace steplap::study {
 
-/// JSON, the same for the same study file, whatever runs it.
+/// Returns JSON. It depends on the study file only.
 [[nodiscard]] std::string about_of(const LoadedStudy& loaded, const JointLaw& law);
 
 } // namespace steplap::study

@@ -19,11 +19,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_text = 400000; ///< bytes of the study, of the models
+constexpr std::size_t k_most_text = 400000; ///< bytes of text of the study and of the models
 constexpr std::size_t k_most_reasons = 200; ///< listed
-constexpr std::size_t k_most_growth = 1500; ///< estimates drawn of each method
-constexpr std::size_t k_most_columns = 60;  ///< whose distribution is shown
-constexpr std::size_t k_most_times = 3000;  ///< of a measured record
+constexpr std::size_t k_most_growth = 1500; ///< intermediate estimates per method
+constexpr std::size_t k_most_columns = 60;  ///< columns with a plot of their distribution
+constexpr std::size_t k_most_times = 3000;  ///< points of a measured record
 
 template <class T> std::string base64(const std::vector<T>& values) {
   static const char* const k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -41,18 +41,18 @@ template <class T> std::string base64(const std::vector<T>& values) {
   return text;
 }
 
-// All samples, column by column.
+// All samples by column.
 struct Samples {
   std::vector<ReportColumn> columns;
-  std::vector<std::string> is;             ///< per column: what it is, in words
+  std::vector<std::string> is;             ///< per column: description
   std::vector<std::vector<double>> values; ///< per column
   std::vector<std::uint8_t> status;
-  std::vector<std::uint32_t> reason; ///< place among `reasons`
+  std::vector<std::uint32_t> reason; ///< index in `reasons`
   std::vector<std::string> reasons{""};
   [[nodiscard]] std::size_t size() const { return status.size(); }
 };
 
-// What the store tells of a name; stores of before that was kept tell nothing.
+// Returns the description of a name from the store; nullptr for stores of older versions.
 const Json* entry_of(const Json& list, const std::string& name) {
   if (!list.is_array()) return nullptr;
   for (const Json& entry : list)
@@ -106,7 +106,7 @@ std::vector<std::size_t> columns_of(const Samples& samples, const std::string& r
   return found;
 }
 
-// 2: the run failed, 1: a limit state is negative.
+// Returns 2 if the run failed, 1 if a limit state is negative.
 std::vector<char> classes_of(const Samples& samples) {
   std::vector<char> classes(samples.size(), 0);
   const std::vector<std::size_t> limits = columns_of(samples, "limit state");
@@ -138,7 +138,7 @@ Json samples_json(const Samples& samples, const std::vector<char>& classes, std:
   for (const std::size_t i : chosen) numbers.push_back(static_cast<std::uint32_t>(i + 1));
   json["numbers"] = base64(numbers);
   json["status"] = base64(taken(samples.status, chosen));
-  // Reasons that differ in their digits are many: those of the samples that are shown.
+  // Reasons that differ only in numbers would be too many. Only reasons of shown samples are listed.
   Json reasons = Json::array({""});
   std::map<std::uint32_t, std::uint32_t> places{{0U, 0U}};
   std::vector<std::uint32_t> reason;
@@ -180,7 +180,7 @@ Json tally_json(const std::string& name, const Tally& t) {
       {"histogram", {{"edges", t.histogram.edges}, {"counts", t.histogram.counts}, {"low", t.histogram.low}, {"high", t.histogram.high}}}};
 }
 
-// The texts of the settings that the store tells.
+// Returns the settings described in the store.
 ShownSettings shown_settings(const Json& settings) {
   ShownSettings shown;
   for (const auto& [key, value] : settings.items()) {
@@ -201,7 +201,7 @@ Json distributions_json(const Samples& samples, Drawn drawn) {
     const std::vector<double>& values = samples.values[c];
     if (samples.columns[c].role == "cost") continue;
     if (samples.columns[c].role == "variable" && std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end())
-      continue; // kept
+      continue; // constant variable
     if (json["of"].size() < k_most_columns)
       json["of"].push_back(tally_json(samples.columns[c].name, tally_of(values, drawn == Drawn::independently)));
     else ++left_out;
@@ -215,7 +215,7 @@ Json running_json(const std::string& subject, const char* quantity, const std::s
           {"value", r.value},   {"low", r.low},         {"high", r.high}};
 }
 
-// Of samples drawn one by one: how shares of failures and means settled.
+// For independent samples: convergence of failure fractions and means.
 Json running_estimates(const Samples& samples, const std::string& failed) {
   Json json = Json::array();
   for (const std::size_t c : columns_of(samples, "limit state")) {
@@ -254,14 +254,14 @@ Json findings_json(const std::vector<Finding>& findings, const std::vector<Repor
   return json;
 }
 
-// All that a finding may be about.
+// Returns all subjects of findings.
 std::vector<ReportColumn> named_columns(const Samples& samples, const Json& about) {
   std::vector<ReportColumn> columns = samples.columns;
   for (const Json& h : about["histories"]) columns.push_back({h.value("name", ""), h.value("unit", ""), "history"});
   return columns;
 }
 
-// Estimates as they grew, method by method, in the order of the methods.
+// Returns intermediate estimates by method, in the order of the methods.
 Json growth_json(const std::vector<Finding>& growth) {
   std::vector<std::string> methods;
   std::map<std::string, std::vector<const Finding*>> of;
@@ -288,7 +288,7 @@ Json growth_json(const std::vector<Finding>& growth) {
   return json;
 }
 
-// Reasons that differ by their numbers only are one: the first is told, and how many there are of them.
+// Groups reasons that differ only in numbers: shows the first one and their count.
 Json reasons_json(Store& store) {
   struct Group {
     Store::Reason first;
@@ -324,7 +324,7 @@ Json reasons_json(Store& store) {
           {"more_runs", more}};
 }
 
-// Measured records and what was found to fit them, where stores have such.
+// Returns measured records with the fitted values, if the store has any.
 template <class AnyStore> Json histories_json(AnyStore& store) {
   Json json = Json::array();
   if constexpr (requires { store.histories(); }) {
@@ -354,7 +354,7 @@ std::string shortened(const std::string& text) {
   return text.size() <= k_most_text ? text : text.substr(0, k_most_text) + "\n# … the rest is in the store\n";
 }
 
-// '<' stands in strings only, where JSON has another way to write it.
+// '<' occurs in JSON strings only, where it can be escaped.
 std::string for_script(const std::string& json) {
   std::string safe;
   safe.reserve(json.size());
@@ -381,7 +381,7 @@ Json status_names() {
 
 } // namespace
 
-// Every class gets a third; what one leaves over goes to the others, rare things first.
+// Each class gets a third of the places. Unused places go to other classes, rarest first.
 std::vector<std::size_t> chosen_samples(const std::vector<char>& classes, std::size_t most) {
   std::vector<std::size_t> of[3], chosen;
   for (std::size_t i = 0; i < classes.size(); ++i) of[static_cast<std::size_t>(classes[i])].push_back(i);
@@ -407,7 +407,7 @@ std::string report_data(Store& store, const std::string& store_path, std::size_t
   const Json about = about_in(store);
   const StoreIdentity& identity = store.identity();
   const Samples samples = read_samples(store, about);
-  const StudyKind* kind = find_kind(identity.kind); // none: of another version
+  const StudyKind* kind = find_kind(identity.kind); // nullptr for a kind of another version
   const Drawn drawn = kind && kind->drawn ? kind->drawn(shown_settings(about["settings"])) : Drawn::otherwise;
   const bool is_random_sample = kind && kind->shows_running_means && drawn == Drawn::independently;
   Json json{{"program", std::string("steplap ") + k_version},

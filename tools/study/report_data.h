@@ -1,4 +1,4 @@
-// What the page of a study is made of, as JSON: all of it from the store.
+// Creates the data of a study's page as JSON, from the store only.
 #pragma once
 
 #include "tools/study/store.h"
@@ -9,13 +9,13 @@
 
 namespace steplap::study {
 
-/// JSON that can stand inside a <script> element: no '<' in it. `store_path`: for the command that replays a sample.
-/// Samples take about `budget` bytes: of more than fit, failed runs and failures
-/// are kept rather than others, each evenly, and how many of how many is told.
+/// Returns JSON that can be embedded in a <script> element: it contains no '<'. `store_path` is used in the command that replays a sample.
+/// Samples take about `budget` bytes. If there are more, failed runs and failures are kept first, each evenly thinned, and the number of
+/// samples shown is reported.
 [[nodiscard]] std::string report_data(Store& store, const std::string& store_path, std::size_t budget = 6000000);
 
-/// Which of so many samples a page holds, in their order; `classes`: per sample 2 for a run that failed, 1 for a
-/// failure, 0 for others.
+/// Selects the samples shown on a page, in their order. `classes` has one entry per sample: 2 for a failed run, 1 for a failure, 0
+/// otherwise.
 [[nodiscard]] std::vector<std::size_t> chosen_samples(const std::vector<char>& classes, std::size_t most);
 
 } // namespace steplap::study

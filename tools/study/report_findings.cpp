@@ -21,7 +21,7 @@ std::string unit_of(const std::vector<ReportColumn>& columns, const std::string&
   return column ? column->unit : "";
 }
 
-// "design point 2", "border 1 point 17": the number behind the first word or words.
+// Splits "design point 2", "border 1 point 17": the number follows the first word or words.
 long place_in(const std::string& subject, const std::string& noun) {
   long place = 0;
   if (subject.starts_with(noun + " ")) std::from_chars(subject.data() + noun.size() + 1, subject.data() + subject.size(), place);
@@ -34,12 +34,12 @@ std::string quotient(const std::string& above, const std::string& below) {
          (below.find(' ') == std::string::npos && below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
-// As the quantity begins, or ends where the part begins with a blank.
+// Returns true if the quantity begins with the part's text, or ends with it if that begins with a blank.
 bool is_of(const Finding& f, const FindingPart& part) {
   return part.quantity.front() == ' ' ? f.quantity.ends_with(part.quantity) : f.quantity.starts_with(part.quantity);
 }
 
-// The part, and the unit in SI. What one kind of study says of a quantity holds for all of them.
+// Finds the part and its SI unit. A quantity has the same presentation in all kinds of study.
 void find_part(const Finding& f, const std::vector<ReportColumn>& columns, FindingView& view, int& digits) {
   const ReportColumn* coordinate = find_column(columns, f.quantity);
   for (const StudyKind& kind : study_kinds())
@@ -53,7 +53,7 @@ void find_part(const Finding& f, const std::vector<ReportColumn>& columns, Findi
   for (const StudyKind& kind : study_kinds())
     for (const FindingPart& part : kind.parts) {
       if (!is_of(f, part)) continue;
-      if (part.unit == UnitOf::subject && !find_column(columns, f.subject)) continue; // of another kind's making
+      if (part.unit == UnitOf::subject && !find_column(columns, f.subject)) continue; // defined by another kind
       view.role = part.role;
       digits = part.digits;
       if (part.quantity.back() == ' ') view.variable = f.quantity.substr(part.quantity.size());
@@ -65,7 +65,7 @@ void find_part(const Finding& f, const std::vector<ReportColumn>& columns, Findi
   view.unit = "SI";
 }
 
-// As a C program writes it, but small numbers with an exponent.
+// Formats like printf, but small numbers have an exponent.
 std::string plain(double value, int digits) {
   constexpr double k_small = 1e-3;
   char text[64];
@@ -77,7 +77,7 @@ std::string plain(double value, int digits) {
   return number.erase(number[last] == '.' ? last : last + 1, e - (number[last] == '.' ? last : last + 1));
 }
 
-// "1.8e-04" is "1.8e-4"; no minus before zero.
+// Changes "1.8e-04" to "1.8e-4" and removes the sign of −0.
 std::string tidied(std::string text) {
   if (const auto e = text.find('e'); e != std::string::npos) {
     std::size_t digit = e + 2;
@@ -88,7 +88,7 @@ std::string tidied(std::string text) {
   return text;
 }
 
-// To the place of ten to `last`.
+// Rounds to a multiple of 10^last.
 std::string rounded(double value, int last) {
   constexpr int k_most = 12;
   const double size = std::abs(value);
@@ -96,7 +96,7 @@ std::string rounded(double value, int last) {
   if (size == 0.0) return "0";
   const int first = static_cast<int>(std::floor(std::log10(size)));
   char text[64];
-  const bool is_zero = size < 0.5 * std::pow(10.0, last); // beside its interval
+  const bool is_zero = size < 0.5 * std::pow(10.0, last); // zero relative to its interval
   if (is_zero && last < -k_most) return "0";
   if (!is_zero && (first < -3 || first > 6)) {
     std::snprintf(text, sizeof text, "%.*e", std::clamp(first - last, 0, k_most - 1), value);
@@ -111,7 +111,7 @@ std::string rounded(double value, int last) {
   return tidied(text);
 }
 
-// Of an interval, or of what is known of one, the place of its width's second digit.
+// Finds the power of ten of the second digit of the interval's width, or of the known half of the interval.
 bool last_place(double value, double low, double high, int& last) {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
   const double width = has_low && has_high ? high - low : has_low ? std::abs(value - low) : has_high ? std::abs(high - value) : 0.0;
@@ -139,7 +139,7 @@ FindingView view_of(const Finding& f, const std::vector<ReportColumn>& columns) 
   const UnitPrefix prefix = prefix_for(std::max({finite(f.value), finite(f.low), finite(f.high)}), view.unit);
   const double factor = std::pow(10.0, prefix.exponent), low = factor * f.low, high = factor * f.high;
   view.unit = prefix.text + view.unit;
-  if (view.role == "swing") { // between the ends of a bar, which are no interval
+  if (view.role == "swing") { // the ends of a bar are no confidence interval
     if (std::isfinite(f.value)) view.value = tidied(plain(factor * f.value, digits));
     if (std::isfinite(f.value)) view.interval = tidied(plain(low, 6)) + " to " + tidied(plain(high, 6));
     return view;

@@ -1,4 +1,4 @@
-// Findings as a page shows them: what part each plays, its unit, its digits.
+// Presentation of findings on a page: role, unit and digits of each.
 #pragma once
 
 #include "tools/study/finding.h"
@@ -13,19 +13,20 @@ struct ReportColumn {
   std::string name, unit, role; ///< role: variable, response, limit state, border, cost; history for a measured record
 };
 
+/// A finding prepared for the page.
 struct FindingView {
-  std::string role;            ///< probability, beta, first order, swing, …; "estimate": nothing is known of the quantity
-  std::string variable;        ///< that the quantity is about, "" if about none
-  long place = 0;              ///< of a border or a design point, from 1
-  std::string value, interval; ///< as text, with the unit's prefix; "" for none
-  std::string unit;            ///< with its prefix; "SI" where nothing is known of the quantity
+  std::string role;            ///< probability, beta, first order, swing, …; "estimate" for an unknown quantity
+  std::string variable;        ///< variable to which the quantity refers; "" if none
+  long place = 0;              ///< number of a border or design point, from 1
+  std::string value, interval; ///< formatted with the unit's prefix; "" if not available
+  std::string unit;            ///< with its prefix; "SI" for an unknown quantity
 };
 
-/// The quantity of a finding is what says which part it plays.
+/// Determines the presentation of a finding from its quantity.
 [[nodiscard]] FindingView view_of(const Finding& finding, const std::vector<ReportColumn>& columns);
 
-/// "1.83e-4" for 1.8273e-4 with an interval of 1.5e-4 to 2.2e-4: two digits of the interval's width are written, of
-/// which the first is known to mean something. Without an interval `digits`.
+/// Formats an estimate: "1.83e-4" for 1.8273e-4 with interval 1.5e-4 to 2.2e-4. Two digits of the interval's width are shown; the first of
+/// them is significant. Without an interval `digits` are shown.
 [[nodiscard]] std::string estimate_text(double value, double low, double high, int digits);
 
 } // namespace steplap::study

@@ -21,7 +21,7 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-// "@NAME@" in the template becomes the part of that name; what is put in is not looked at again.
+// Replaces "@NAME@" in the template by the part of that name. Inserted text is not searched again.
 std::string filled(std::string_view page, const std::map<std::string_view, std::string>& parts) {
   std::string text;
   while (!page.empty()) {

@@ -1,4 +1,4 @@
-// The page of a study: one HTML file that needs no other file, no server and no network.
+// Creates the page of a study: one self-contained HTML file.
 #pragma once
 
 #include "tools/study/store.h"
@@ -7,7 +7,7 @@
 
 namespace steplap::study {
 
-/// The same store, read at the same place, makes the same bytes. `store_path` as for report_data().
+/// Returns the page. The same store at the same path gives identical bytes. `store_path` as for report_data().
 [[nodiscard]] std::string report_page(Store& store, const std::string& store_path);
 
 } // namespace steplap::study

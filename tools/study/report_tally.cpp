@@ -9,7 +9,7 @@ namespace {
 
 constexpr double k_confidence = 0.95;
 
-// Takes out what is not finite.
+// Removes values that are not finite.
 void sort_out(std::vector<double>& values, Tally& tally) {
   tally.total = static_cast<long>(values.size());
   for (const double x : values) {
@@ -27,7 +27,7 @@ Curve cumulative_of(const std::vector<double>& sorted, const Tally& tally, bool 
   const double half = std::sqrt(std::log(2.0 / (1.0 - k_confidence)) / (2.0 * n));
   for (std::size_t k = 0, count = std::min(most, sorted.size()); k < count; ++k) {
     std::size_t place = count == 1 ? 0 : k * (sorted.size() - 1) / (count - 1);
-    while (place + 1 < sorted.size() && sorted[place + 1] == sorted[place]) ++place; // the top of a step
+    while (place + 1 < sorted.size() && sorted[place + 1] == sorted[place]) ++place; // upper end of a step
     if (!curve.x.empty() && curve.x.back() == sorted[place]) continue;
     const double reached = static_cast<double>(tally.below) + static_cast<double>(place + 1);
     curve.x.push_back(sorted[place]);
@@ -39,7 +39,7 @@ Curve cumulative_of(const std::vector<double>& sorted, const Tally& tally, bool 
   return curve;
 }
 
-// Widths by Freedman and Diaconis' rule.
+// Returns a histogram with the bin width of Freedman and Diaconis.
 Histogram histogram_of(const std::vector<double>& sorted, bool is_independent) {
   constexpr double k_fewest = 8.0, k_most = 60.0;
   Histogram histogram;
@@ -65,7 +65,7 @@ Histogram histogram_of(const std::vector<double>& sorted, bool is_independent) {
   return histogram;
 }
 
-// Instants, ever further apart, at which an estimate is looked at; the last sample is one.
+// Returns sample counts with increasing distance at which an estimate is shown, including the last.
 bool is_instant(std::size_t count, std::size_t total, double& next) {
   constexpr double k_growth = 1.07;
   if (count != total && static_cast<double>(count) < next) return false;

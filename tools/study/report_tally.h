@@ -1,7 +1,7 @@
-// What a page draws of many samples: how values are distributed, and how a mean settled as samples came in.
+// Statistics of samples for a page: distribution of values, and convergence of a mean.
 //
-// All samples count, however many a page then shows. Bands and intervals are of 95 %; they are given only of samples
-// that were drawn independently of each other.
+// All samples are included, even if the page shows fewer. Bands and intervals have 95 % confidence and are given only for samples drawn
+// independently.
 #pragma once
 
 #include "tools/study/law.h"
@@ -10,39 +10,39 @@
 
 namespace steplap::study {
 
-/// The empirical distribution at some of its steps: share p of values up to x, within a band.
+/// Empirical distribution function at selected steps: fraction p of values up to x, with a confidence band.
 struct Curve {
   std::vector<double> x, p, low, high;
 };
 
-/// Counts between edges, of which there is one more; the intervals of their shares.
+/// Counts between edges (one more edge than counts), with confidence intervals of their fractions.
 struct Histogram {
   std::vector<double> edges;
   std::vector<long> counts;
   std::vector<double> low, high;
 };
 
+/// Statistics of one column of samples.
 struct Tally {
-  long total = 0, missing = 0; ///< runs; those without a value
-  long above = 0, below = 0;   ///< at plus, at minus infinity
-  double mean = 0.0;           ///< of finite values
-  Curve cumulative;            ///< of finite values; p counts the infinite ones, too
-  Histogram histogram;         ///< of finite values
+  long total = 0, missing = 0; ///< number of runs; of runs without a value
+  long above = 0, below = 0;   ///< number of values +∞ and −∞
+  double mean = 0.0;           ///< of the finite values
+  Curve cumulative;            ///< for finite x; p includes infinite values
+  Histogram histogram;         ///< of the finite values
 };
 
-/// The band is Dvoretzky, Kiefer and Wolfowitz's with Massart's constant: the whole distribution lies within it at 95
-/// %. Runs without a value could be anywhere: they widen it on both sides. Not-a-number: no value. At most `most` steps
-/// are kept, evenly in p.
+/// Computes the statistics. The band is that of Dvoretzky, Kiefer and Wolfowitz with Massart's constant: it contains the whole distribution
+/// function with 95 % confidence. Runs without a value (NaN) widen it on both sides. At most `most` steps are kept, evenly in p.
 [[nodiscard]] Tally tally_of(std::vector<double> values, bool is_independent, std::size_t most = 400);
 
-/// An estimate after so many samples.
+/// Estimate as a function of the number of samples.
 struct Running {
   std::vector<double> samples, value, low, high;
 };
-/// Mean of the finite values, with Student's interval.
+/// Returns the mean of the finite values with Student's confidence interval.
 [[nodiscard]] Running running_mean(const std::vector<double>& values);
-/// Share of failures with Clopper and Pearson's interval; `sure` holds 1 for a failure, `possible` also for a run that
-/// may count as one.
+/// Returns the fraction of failures with the Clopper-Pearson interval. `sure` is 1 for a failure; `possible` is 1 for a failure and for a
+/// run that may be one.
 [[nodiscard]] Running running_share(const std::vector<char>& sure, const std::vector<char>& possible);
 
 } // namespace steplap::study

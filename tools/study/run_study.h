@@ -1,4 +1,4 @@
-// A study run from its file to its answer, as the command line does it.
+// Runs a study from its file to its answer, as the command line does.
 #pragma once
 
 #include "tools/study/evaluator.h"
@@ -12,17 +12,18 @@
 
 namespace steplap::study {
 
+/// Options of run_study().
 struct StudyOptions {
-  int threads = 1;                              ///< of this process, at least 1
-  StoreMode mode = StoreMode::run;              ///< what becomes of samples that the store holds already
-  std::function<void(const Pace&)> progress;    ///< told how far the study is, after each batch of samples
-  std::function<std::string()> stop;            ///< asked after each batch; what it says is why the study ends there, "" lets it go on
-  std::function<void(const std::string&)> note; ///< told of what whoever waits may want to know, a sentence
+  int threads = 1;                              ///< number of threads of this process, at least 1
+  StoreMode mode = StoreMode::run;              ///< use of samples that the store already contains
+  std::function<void(const Pace&)> progress;    ///< called after each batch of samples
+  std::function<std::string()> stop;            ///< called after each batch; a text other than "" ends the study and becomes the reason
+  std::function<void(const std::string&)> note; ///< receives messages for the user, one sentence each
 };
 
-/// Runs the study, or goes on with it, and keeps samples and answer in the store at `path`. Of several ranks the first asks and
-/// answers; the others run samples for it and answer nothing. Throws FileError for a store that cannot be used, NumericalFailure for
-/// a study that was stopped, or was to stop at a failed run and did.
+/// Runs or continues a study and stores samples and answer in the store at `path`. Returns the answer on rank 0; other ranks run samples
+/// and return nothing. Throws FileError if the store cannot be used, NumericalFailure if the study was stopped, or if a run failed and the
+/// study is to stop then.
 [[nodiscard]] std::optional<Answer> run_study(const LoadedStudy& loaded, const std::string& path, const Ranks& ranks,
                                               const StudyOptions& options);
 

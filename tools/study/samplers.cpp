@@ -8,7 +8,7 @@ namespace steplap::study {
 
 namespace {
 
-// Of the less probable one of failing and holding. Runs without a result are no information about the probability.
+// Returns the probability of the less probable outcome, failure or survival. Runs without a result carry no information.
 Share counted(double failures, double samples, const SamplingTarget& target) {
   const double p = failures / samples;
   return {p, std::sqrt(p * (1.0 - p) / samples), proportion_interval(failures, samples, target.confidence),

@@ -1,24 +1,24 @@
-// Probabilities by sampling: crude Monte Carlo, importance sampling at design points, directional simulation and subset
-// simulation. Each gives an interval and says what is to be known about it.
+// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, directional simulation and subset simulation.
+// Each returns a confidence interval and a status.
 #pragma once
 
 #include "tools/study/design_points.h"
 
 namespace steplap::study {
 
-/// A probability with what runs without a result make of it: they count as safe for `safe`, as failures for `unsafe`.
+/// A probability. Runs without a result count as safe in `safe` and as failures in `unsafe`.
 struct Estimate {
   std::string method;
   double safe = 0.0, unsafe = 0.0;
   Interval safe_interval, unsafe_interval;
-  Interval safe_test, unsafe_test;                      ///< wider ones, for comparing it with others
-  double cov = std::numeric_limits<double>::infinity(); ///< of the less probable one of failing and holding
+  Interval safe_test, unsafe_test;                      ///< intervals of higher confidence, for comparison with other estimates
+  double cov = std::numeric_limits<double>::infinity(); ///< coefficient of variation of the less probable outcome, failure or survival
   long samples = 0, bad = 0;
   std::string status;
   bool is_target_met = false;
   bool is_trusted = true;
 
-  /// Both, as far as the study counts them.
+  /// Returns the interval for the study's treatment of failed runs. `failed` is "safe", "unsafe", or another word for bounds of both.
   [[nodiscard]] Interval interval(const std::string& failed) const {
     return {failed == "unsafe" ? unsafe_interval.low : safe_interval.low, failed == "safe" ? safe_interval.high : unsafe_interval.high};
   }
@@ -27,30 +27,32 @@ struct Estimate {
   }
 };
 
+/// End criteria of a sampling method.
 struct SamplingTarget {
   double cov = 0.05;
   long samples = 100000;
   std::optional<double> seconds;
   double confidence = 0.95;
-  double test_confidence = 0.99; ///< of the intervals that estimates are compared by
+  double test_confidence = 0.99; ///< confidence of the intervals `safe_test` and `unsafe_test`
 };
 
+/// Crude Monte Carlo: the fraction of failing samples.
 [[nodiscard]] Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target);
-/// Around the design points, of which there is at least one. In two stages: the first, whose samples are not counted,
-/// tells how many the second has to take, so that the estimate does not decide when it is looked at.
+/// Samples around the design points; there must be at least one. Works in two stages: the first, whose samples are not counted, determines
+/// the number of samples of the second. The estimate then does not influence when sampling ends, which would bias it.
 ///
-/// A share of the samples is spread widely: where one of them fails far from all design points a search begins there,
-/// and sampling begins anew around what it finds as well. Where more holds than fails around the design points the
-/// probability of holding is what is found, and the estimate is what is left of one.
+/// A part of the samples is widely spread. If one of them fails far from all design points, a new search begins there, and sampling
+/// restarts with the point found. If survival is less probable than failure around the design points, the probability of survival is
+/// estimated and subtracted from one.
 [[nodiscard]] Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target);
-/// Along rays in random directions, one look at a random place in each of their strata: whether it fails is the
-/// estimate of the stratum, which is right in the mean whatever the shape of the failures. Also in two stages.
+/// Samples along rays in random directions, at one random point in each stratum of the radius. Whether the point fails estimates the
+/// stratum's contribution without bias, for any shape of the failure region. Works in two stages, like importance_sampling().
 [[nodiscard]] Estimate directional(LimitFunction& limit, const SamplingTarget& target);
-/// By levels, each a share of the one before, `repetitions` times over: their scatter makes the interval. Where values
-/// tie, so that no level lies between, what fails is counted.
+/// Uses nested levels, each a given fraction of the previous one, and repeats the whole `repetitions` times; the scatter gives the
+/// interval. If values are equal, so that no further level exists, failures are counted directly.
 [[nodiscard]] Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target);
 
-/// The findings that an estimate makes.
+/// Adds the findings of an estimate to the answer.
 void add_findings(const Estimate& estimate, const LimitFunction& limit, const std::string& failed, Answer& answer);
 
 } // namespace steplap::study

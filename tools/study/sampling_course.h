@@ -1,4 +1,4 @@
-// What all samplings of a probability share: how many samples they ask for at once, when they end, what they say then.
+// Common parts of all sampling methods: batch size, end criteria and status.
 #pragma once
 
 #include "tools/study/samplers.h"
@@ -6,32 +6,35 @@
 
 namespace steplap::study {
 
-/// A mean, or what is left of one, as a probability.
+/// An estimated mean, or its complement to one, as a probability.
 struct Share {
   double p = 0.0, deviation = std::numeric_limits<double>::infinity();
   Interval interval, test;
 };
+/// Converts a mean to a probability; `is_complement`: the mean is the probability of survival.
 [[nodiscard]] Share share_of(const WeightedMean& mean, bool is_complement, const SamplingTarget& target);
 
+/// Progress of one sampling method.
 class SamplingCourse {
 public:
   SamplingCourse(LimitFunction& limit, const SamplingTarget& target);
 
-  /// No sample is left, or the time is up.
+  /// Returns true if no sample is left or the time is over.
   [[nodiscard]] bool is_over() { return is_late() || left() <= 0; }
   [[nodiscard]] bool is_late();
+  /// Returns the number of samples used so far.
   [[nodiscard]] long used() const { return limit_.asked() - before_; }
   [[nodiscard]] long left() const { return target_.samples - used(); }
-  /// Samples asked for at once: a number that hangs on the study alone.
+  /// Returns the number of samples per batch. It depends on the study only.
   [[nodiscard]] std::size_t block() const { return block_; }
 
-  /// Both bounds. The coefficient of variation is that of the less probable one of failing and holding: where nearly
-  /// all samples fail, the probability that one holds is what is hard to know.
+  /// Sets both bounds. The coefficient of variation refers to the less probable outcome: if nearly all samples fail, the probability of
+  /// survival is the uncertain one.
   void set(Estimate& e, const Share& safe, const Share& unsafe) const;
-  /// Keeps the estimate as it grew. The coefficient of variation falls as the root of the number of samples.
+  /// Stores the intermediate estimate. The coefficient of variation is assumed to decrease with the square root of the number of samples.
   void note(Estimate& e);
   void say_why_it_ended(Estimate& e) const;
-  /// How many values have to be drawn in all, judged by `drawn` of them with the coefficient of variation `cov`.
+  /// Returns the total number of values required, given the coefficient of variation `cov` of `drawn` values.
   [[nodiscard]] long planned(long drawn, double cov) const;
 
 private:

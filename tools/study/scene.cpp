@@ -17,12 +17,12 @@
 
 namespace steplap::study {
 
-/// Which ends of a channel's range anybody asks for. `low_below`, where `low` is not asked for: of lows that are less. Of channels
-/// that a response looks at together the outermost end counts alone: they race for it.
+/// Ends of a channel's range that a response needs. `low_below`: if `low` is not requested, only lows below this value matter. If a
+/// response uses several channels, only the outermost extreme matters; the channels then compete ("race").
 struct AskedEnds {
   bool low = false, high = false;
   double low_below = -std::numeric_limits<double>::infinity();
-  std::vector<std::size_t> low_races, high_races; ///< in the runner's count
+  std::vector<std::size_t> low_races, high_races; ///< indices in the runner's count
   void add(const AskedEnds& more) {
     low = low || more.low;
     high = high || more.high;
@@ -36,7 +36,7 @@ namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-// The outermost of all channels that match.
+// Returns the outermost of all matching channels.
 Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   const bool is_low = r.measure == Measure::lowest, is_largest = r.measure == Measure::largest_magnitude;
   Extreme best;
@@ -50,8 +50,8 @@ Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   return best;
 }
 
-// Is the outermost one met beside a singular position of joints, where reactions go with one over the distance? How near a run comes is
-// chance, and one run alone does not tell how far it is off.
+// Returns true if the outermost extreme occurs near a singular position of joints, where reactions are proportional to 1/distance. How near
+// a run comes is accidental, and a single run does not reveal the error.
 bool is_singular(const Response& r, const std::vector<ChannelRange>& ranges) {
   const Extreme extreme = extreme_of(r, ranges);
   return std::any_of(ranges.begin(), ranges.end(), [&](const ChannelRange& range) {
@@ -67,7 +67,7 @@ const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>&
   return nullptr;
 }
 
-// Over the samples written: of curves between them nothing is known here.
+// Evaluates written samples; values between them are unknown here.
 double along(const Response& r, const Trajectory& trajectory) {
   const auto& channels = trajectory.channels();
   const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
@@ -105,15 +105,15 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
   return r.takes_time && !std::isnan(e.value) ? e.t : e.value;
 }
 
-/// How far the channels of a response have come in a run.
+/// Running extremes of the channels of a response.
 struct Race {
   double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
 };
 
 using Races = std::vector<std::shared_ptr<Race>>; // channels of a run refer to them
 
-// Bounds of a value that costs much rule out the ends that nobody asks for: of a channel in a race, those that another one's is
-// beyond even if they go on as they went since they were asked for last.
+// Bounds of expensive channels. They exclude extremes that are not needed: for a channel in a race, values that another channel has already
+// exceeded, even if the channel continues to change at its last rate.
 class AskedBounds {
 public:
   AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const Races& races)
@@ -123,9 +123,9 @@ public:
   }
 
   ValueBounds operator()(const Snapshot& s) {
-    constexpr double k_never = 1e300; // no extreme is beyond it
+    constexpr double k_never = 1e300; // no extreme exceeds it
     const ValueBounds b = bounds_(s);
-    if (s.t >= t_) { // else it is a look back, between two ends of a stretch
+    if (s.t >= t_) { // otherwise a query inside a step
       reach_ = {widened(reach_.low, b.low - last_.low), widened(reach_.high, b.high - last_.high)};
       last_ = b;
       t_ = s.t;
@@ -138,7 +138,7 @@ public:
   }
 
 private:
-  // By how much a bound changes from one end of a stretch to the next, at least half of what it did: where it turns, ends are alike.
+  // Change of a bound between the ends of a step, at least half of the previous one, because both ends are similar near an extremum.
   static double widened(double reach, double change) {
     return std::isfinite(change) ? std::max(std::abs(change), 0.5 * reach) : 0.5 * reach;
   }
@@ -160,7 +160,7 @@ void leave_out_others(Channel& channel, const AskedEnds& ends, const Races& race
   note(ends.high_races, [](Race& race, double value) { return race.highest = std::max(race.highest, value), value; });
 }
 
-// A run is not trusted where a joint has less margin than it needs: beyond 1 its value tells nothing of that.
+// Returns the extremes that decide whether a run can be trusted. For the margin of a joint only values below 1 matter.
 AskedEnds ends_of_trust(const std::string& channel) {
   AskedEnds ends;
   if (channel.ends_with(".margin")) ends.low_below = 1.0;
@@ -169,7 +169,7 @@ AskedEnds ends_of_trust(const std::string& channel) {
 }
 
 void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
-  if (outcome.status != SampleStatus::ok) return; // the first reason is told
+  if (outcome.status != SampleStatus::ok) return; // the first reason is reported
   outcome.status = status;
   outcome.reason = reason;
 }
@@ -193,23 +193,23 @@ Model model_with(const LoadedStudy& loaded, const StudyModel& model, const doubl
   return changed;
 }
 
-// What is the same in all runs of a model. A quarter of a run's time would go into extremes of channels that nobody
-// asks for: only those asked for are made, and those that tell whether a run is to be trusted.
+// Data that all runs of a model share. Extremes of all channels would take a quarter of a run's time, so only those requested are computed,
+// and those that show whether a run can be trusted.
 struct Scene::Runner {
-  /// Number `variable` of the study is set at a path, times what the model has there or as it is.
+  /// Number `variable` of the study, set at a path as it is or multiplied by the model's value.
   struct Setting {
     std::size_t variable;
     double factor;
   };
   const StudyModel& model;
-  bool is_judged = false;                    ///< a response is the verdict, for which criteria may look at any channel
-  std::vector<std::string> channels;         ///< names
-  std::map<std::string, AskedEnds> extremes; ///< of these, those whose extremes are asked for
+  bool is_judged = false;                    ///< a response is the verdict, for which criteria may use any channel
+  std::vector<std::string> channels;         ///< names of the channels
+  std::map<std::string, AskedEnds> extremes; ///< the channels whose extremes are requested
   std::size_t races = 0;
   std::vector<std::string> sampled; ///< patterns
   Sampling sampling;                ///< for histories
   std::vector<Setting> settings;
-  std::vector<double> numbers; ///< for the settings
+  std::vector<double> numbers; ///< values of the settings
   std::unique_ptr<Variants> variants;
 
   Runner(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
@@ -274,7 +274,7 @@ Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
 
 Scene::~Scene() = default;
 
-// The channels of histories at their times, in their places among all.
+// Writes the channels of histories at their times to their positions among all values.
 void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outcome) const {
   std::size_t place = 0;
   for (const History& h : loaded_.study.histories) {
@@ -325,7 +325,7 @@ void Scene::run_system(const Runner& runner, const Model& whole, System& system,
   else worsen(outcome, SampleStatus::gave_up, failure);
 }
 
-// A verdict is that of the command line, with all that weighs on it there: findings, and errors by finer runs where these are cheap.
+// Computes the verdict as the command line does, with findings, and with errors from finer runs if these are cheap.
 void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
   if (!whole.output.channels.empty())
     whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
@@ -342,7 +342,7 @@ void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   try {
     const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
     std::unique_ptr<System> system;
-    std::optional<Model> changed; // the variants' own model does where nothing of it is changed
+    std::optional<Model> changed; // needed only if a variant changes the model
     if (variant == 0) {
       for (std::size_t i = 0; i < runner.settings.size(); ++i)
         runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];

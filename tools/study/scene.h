@@ -1,4 +1,4 @@
-// One sample: the values of the variables put into the models, run, and looked at.
+// Evaluates one sample: sets the variables in the models, runs them and computes the numbers of interest.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -12,38 +12,40 @@
 
 namespace steplap::study {
 
+/// Outcome of a sample's runs. The values are stored and must not change.
 enum class SampleStatus : int {
   ok = 0,
   stopped = 1,     ///< an element ended the run: a joint came apart
-  untrusted = 2,   ///< the run reached its end, but is not to be trusted
-  gave_up = 3,     ///< the computation could not be finished, or not be begun
-  impossible = 4,  ///< the model does not take the values
+  untrusted = 2,   ///< the run is complete but cannot be trusted
+  gave_up = 3,     ///< the computation failed or could not start
+  impossible = 4,  ///< the model rejects the values
   not_a_number = 5 ///< a limit state has no value
 };
 [[nodiscard]] const char* name_of(SampleStatus status);
 
-/// The model with the values of all variables that are set in it, not completed. Throws ModelError.
+/// Returns the model with the values of all variables that are set in it, not completed. Throws ModelError.
 [[nodiscard]] Model model_with(const LoadedStudy& loaded, const StudyModel& model, const double* values);
 
+/// Results of one sample.
 struct Outcome {
   SampleStatus status = SampleStatus::ok;
   std::string reason;
-  std::vector<double> numbers; ///< responses, then limit states; not-a-number where unknown
-  std::vector<double> curve;   ///< at the measured times of all histories, one after the other
-  double error = 0.0;          ///< energy residual, of what was turned over; the largest of the models
-  double evaluations = 0.0;    ///< of the equations of motion
+  std::vector<double> numbers; ///< responses, then limit states; NaN if unknown
+  std::vector<double> curve;   ///< values at the measured times of all histories, one after the other
+  double error = 0.0;          ///< energy residual relative to the energy exchanged; largest over the models
+  double evaluations = 0.0;    ///< evaluations of the equations of motion
   double cpu_seconds = 0.0;
 };
 
-/// Runs samples; one object for each thread.
+/// Runs samples. Each thread needs its own object.
 class Scene {
 public:
   explicit Scene(const LoadedStudy& loaded);
 
-  /// Never throws for what a sample may do.
+  /// Runs a sample. Failures of the sample do not throw; they are part of the outcome.
   void run(const double* values, Outcome& outcome);
 
-  /// Whether all numbers that are formulas of others are what the formulas give, of an outcome that was stored.
+  /// Returns true if all numbers defined by formulas agree with these formulas, for a stored outcome.
   [[nodiscard]] bool is_derived(const std::vector<double>& values, const Outcome& outcome);
 
   ~Scene();
@@ -59,9 +61,9 @@ private:
   void compare(const Runner& runner, const RunResult& result, Outcome& outcome) const;
 
   const LoadedStudy& loaded_;
-  std::vector<std::unique_ptr<Runner>> runners_;                ///< one a model
-  std::vector<std::pair<std::size_t, Expression>> expressions_; ///< of numbers, in their order
-  std::vector<double> values_;                                  ///< variables and numbers
+  std::vector<std::unique_ptr<Runner>> runners_;                ///< one per model
+  std::vector<std::pair<std::size_t, Expression>> expressions_; ///< formulas, with the index of the number that they define
+  std::vector<double> values_;                                  ///< values of variables and numbers
 };
 
 } // namespace steplap::study

@@ -29,7 +29,7 @@ FieldTable sensitivity_fields() {
   return t;
 }
 
-// Numbers of a sample, not-a-number where its run has no result.
+// Returns the numbers of a sample; NaN if its run has no result.
 std::vector<double> numbers_of(const StoredSample& sample, std::size_t count) {
   return sample.outcome.status == SampleStatus::ok ? sample.outcome.numbers : std::vector<double>(count, std::nan(""));
 }
@@ -42,7 +42,7 @@ std::string in_words(const char* format, double a, double b) {
 
 // --- elasticities -------------------------------------------------------------------------------
 
-// The quotients of one response and one variable at steps h, h/2, h/4.
+// Difference quotients of one response with respect to one variable, with steps h, h/2, h/4.
 struct Quotients {
   double central[3], left[3], right[3];
 };
@@ -52,13 +52,13 @@ struct Derivative {
   std::string status;
 };
 
-// Richardson's rule twice over: what its last two values differ by is the error, beside the rounding of the run itself.
+// Applies Richardson extrapolation twice. The error is the difference of the last two values plus rounding of the run.
 Derivative derivative_of(const Quotients& q, double noise) {
   Derivative d;
   const double first = (4.0 * q.central[1] - q.central[0]) / 3.0, second = (4.0 * q.central[2] - q.central[1]) / 3.0;
   d.value = second;
   d.error = std::abs(second - first) + noise;
-  // One-sided quotients of a smooth response come together as fast as the step; across a kink they do not.
+  // For a smooth response the one-sided quotients converge to each other in proportion to the step; at a kink they do not.
   const double gap = std::abs(q.right[0] - q.left[0]), closer = std::abs(q.right[2] - q.left[2]);
   const double size = std::max({std::abs(q.left[2]), std::abs(q.right[2]), 1e-300});
   if (!std::isfinite(d.value)) d.status = "a run beside the point has no result";
@@ -94,7 +94,7 @@ Answer elasticities(StudyRun& run) {
       Quotients q{};
       for (std::size_t level = 0; level < 3; ++level) {
         const double below = numbers_of(rows[1 + 6 * i + 2 * level], count)[r], above = numbers_of(rows[2 + 6 * i + 2 * level], count)[r];
-        // The step as the numbers hold it, not as it was meant.
+        // The step as represented by the floating-point numbers.
         const double left = nominal[i] - rows[1 + 6 * i + 2 * level].values[i], right = rows[2 + 6 * i + 2 * level].values[i] - nominal[i];
         q.central[level] = (above - below) / (left + right);
         q.left[level] = (here - below) / left;
@@ -118,13 +118,14 @@ Answer elasticities(StudyRun& run) {
 
 // --- Morris' screening --------------------------------------------------------------------------
 
-// Values of the variables at a point of the unit cube.
+// Computes the values of the variables at a point of the unit cube.
 void values_at_cube(const StudyRun& run, const std::vector<double>& cube, std::vector<double>& points) {
   const std::size_t n = run.law.dimension();
   std::vector<double> u(n), values(run.law.nominal().size());
-  for (std::size_t d = 0; d < n; ++d) u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // ends of distributions without ends
+  for (std::size_t d = 0; d < n; ++d)
+    u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // limits the tails of unbounded distributions
   run.law.values_at(u.data(), values.data());
-  for (std::size_t d = 0; d < n; ++d) { // ranges have ends
+  for (std::size_t d = 0; d < n; ++d) { // ranges are bounded
     const std::size_t i = run.law.random()[d];
     const Variable& v = run.study().variables[i];
     if (!v.has_distribution()) values[i] = v.range[0] + cube[d] * (v.range[1] - v.range[0]);
@@ -147,15 +148,15 @@ struct Effects {
   }
 };
 
-// Trajectories on a grid of levels; each moves every variable once, by half of the levels, in a random order.
+// Trajectories on a grid of levels. Each changes every variable once, by half the levels, in random order.
 struct Trajectories {
   struct Move {
     std::size_t variable;
     double sign;
   };
-  double jump = 0.0;                    // of a variable, as a share of its range
-  std::vector<double> points;           // values of all variables; one more point than moves in each trajectory
-  std::vector<std::vector<Move>> moves; // in each trajectory
+  double jump = 0.0;                    // change of a variable, as a fraction of its range
+  std::vector<double> points;           // values of all variables; each trajectory has one more point than moves
+  std::vector<std::vector<Move>> moves; // per trajectory
 };
 
 Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& s) {
@@ -168,7 +169,7 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
     std::vector<double> cube(n);
     std::vector<Trajectories::Move> moves(n);
     for (std::size_t d = 0; d < n; ++d) {
-      cube[d] = std::floor(draw(d) * p / 2.0) / (p - 1.0); // lower half; the other half by going down
+      cube[d] = std::floor(draw(d) * p / 2.0) / (p - 1.0); // lower half; the upper half is reached by moves in the other direction
       moves[d] = {d, draw(n + d) < 0.5 ? -1.0 : 1.0};
       if (moves[d].sign < 0.0) cube[d] += jump;
     }
@@ -183,7 +184,7 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
   return drawn;
 }
 
-// Of each number, by each variable. `missing`: how many are not known.
+// Returns the effects for each number and variable. `missing` receives the number of unknown effects.
 std::vector<std::vector<Effects>> effects_of(const Trajectories& drawn, const std::vector<StoredSample>& rows, std::size_t count,
                                              std::size_t n, long& missing) {
   std::vector<std::vector<Effects>> effects(count, std::vector<Effects>(n));

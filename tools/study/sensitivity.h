@@ -1,23 +1,24 @@
-// The kind "sensitivity": how much does each variable matter.
+// Study kind "sensitivity": determines the influence of each variable.
 #pragma once
 
 #include "tools/study/study_kind.h"
 
 namespace steplap::study {
 
+/// Settings of a "sensitivity" study.
 struct SensitivitySettings : KindSettings {
   std::string method = "elasticity"; ///< elasticity, morris, sobol, tornado
-  double difference = 1e-3;          ///< relative step of an elasticity
-  long samples = 1000;               ///< base size of Sobol indices
-  long trajectories = 20;            ///< of Morris
+  double difference = 1e-3;          ///< relative step for elasticities
+  long samples = 1000;               ///< base sample size for Sobol indices
+  long trajectories = 20;            ///< for Morris
   long levels = 8;
   double confidence = 0.95;
 };
 
 [[nodiscard]] StudyKind sensitivity_kind();
 
-/// What a number of a run is known to: by its tolerance; of fixed steps by how events are located, since errors of
-/// steps themselves change smoothly with the variables.
+/// Returns the relative error of a run's results: its tolerance for adaptive methods. For constant steps it is the accuracy of event
+/// location, because the step errors themselves vary smoothly with the variables.
 [[nodiscard]] double run_error_of(const LoadedStudy& loaded);
 
 } // namespace steplap::study

@@ -17,9 +17,9 @@ namespace steplap::study {
 
 namespace {
 
-// Stores of other layouts are refused.
+// Stores with other layouts are rejected.
 constexpr int k_layout = 2;
-constexpr int k_application = 0x73746c70; // "stlp", in the file's head
+constexpr int k_application = 0x73746c70; // "stlp", in the header of the file
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
@@ -105,13 +105,13 @@ void Store::flush() {
   committed_ = now();
 }
 
-// Small batches share a transaction: bringing one to the disk costs some hundredths of a second.
+// Small batches share a transaction, because each commit to disk takes some hundredths of a second.
 void Store::commit_if_due() {
   constexpr double k_due = 0.5; // s
   if (now() - committed_ > k_due) flush();
 }
 
-// A lock of its own: SQLite's would keep readers out, too. The file stays open for as long as the database is.
+// Uses a separate lock file, because SQLite's lock would also exclude readers. The lock file stays open as long as the database.
 void Store::lock() {
   lock_file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_file_ < 0) throw StoreError(path_, "the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
@@ -119,7 +119,8 @@ void Store::lock() {
     throw StoreError(path_, "another process is writing to the store '" + path_ + "': wait for it, or choose another store");
 }
 
-// A process was killed, or the disk was full, while it wrote: what it wrote last is to be taken back, and that is writing.
+// Returns true if a process was killed, or the disk was full, during a write. The incomplete transaction must be rolled back, which
+// requires write access.
 bool Store::is_cut_off() {
   sqlite3_exec(database_, "SELECT 1 FROM sqlite_master LIMIT 1", nullptr, nullptr, nullptr);
   return sqlite3_extended_errcode(database_) == SQLITE_READONLY_ROLLBACK;
@@ -131,20 +132,20 @@ void Store::open(const std::string& path, bool is_writing) {
   else if (!std::filesystem::exists(path)) throw StoreError(path, "there is no store '" + path + "'");
   const int flags = is_writing ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail("opened");
-  if (!is_writing && is_cut_off()) { // puts it in order, which takes back the batch that was not finished
+  if (!is_writing && is_cut_off()) { // opens once for writing, which rolls back the incomplete batch
     sqlite3_close(database_);
     if (sqlite3_open_v2(path.c_str(), &database_, SQLITE_OPEN_READWRITE, nullptr) != SQLITE_OK) fail("opened");
   }
-  constexpr int k_patience = 10000; // ms, while another process reads or writes
+  constexpr int k_patience = 10000; // ms; maximum wait for another process
   sqlite3_busy_timeout(database_, k_patience);
-  // A name that is not there is an error, never a text; what the file itself holds of SQL is not run.
+  // Unknown names are errors and never treated as text; SQL stored in the file is not executed.
   sqlite3_db_config(database_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(database_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
   sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_exec(database_, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
 }
 
-// Nothing was written to it yet, or what was written first was cut off.
+// Returns true if nothing has been written, or if the first write was incomplete.
 bool Store::is_empty() {
   Statement s(*this, "SELECT count(*) FROM sqlite_master");
   return s.step() && s.integer(0) == 0 && pragma("application_id") == 0;
@@ -167,7 +168,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   open(path, true);
   const bool is_there = !is_empty();
   if (mode == StoreMode::restart && is_there) {
-    check_kind(); // never overwrites what is no store
+    check_kind(); // never overwrites a file that is not a store
     for (const char* table : {"sample", "batch", "finding", "growth", "note", "setting", "curve", "history"})
       execute("DROP TABLE IF EXISTS " + quoted(table));
   }
@@ -199,7 +200,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
                        {StoreMode::changed, StoreMode::restart});
     set("study", identity.study);
     set("kind", identity.kind);
-    // What was found is of what was asked before: until it is found anew there is no answer.
+    // Earlier findings belong to the previous version of the study and are removed until they are recomputed.
     for (const char* table : {"growth", "finding", "note"}) execute("DELETE FROM " + quoted(table));
     set("standing", "");
     set("changed", "its samples may be of the study as it was before");
@@ -208,7 +209,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   set("files", files_text(identity));
 }
 
-// Of the files that the store was made of, those that hold something else now; for a message.
+// Returns the files of the store that have changed since, for a message.
 std::string Store::changed_files(const StoreIdentity& now) {
   std::string text;
   const std::string before = setting("files");
@@ -295,7 +296,7 @@ void Store::describe(const std::string& about) {
 
 void Store::hold() {
   execute("BEGIN");
-  read_identity(); // takes the lock, and the size of this instant
+  read_identity(); // takes the lock and reads the current size
 }
 
 void Store::check_kind() {
@@ -389,7 +390,7 @@ void Store::append(const StoredSample* rows, std::size_t count) {
   commit_if_due();
 }
 
-// The batch that is cut gets the fingerprint of what is left of it.
+// Recomputes the fingerprint of a batch from which samples are removed.
 void Store::forget_from(long number) {
   if (number > size_) return;
   begin();

@@ -1,8 +1,7 @@
-// What a study leaves behind: one SQLite file with the study, the models, every sample and every finding.
+// Store of a study: one SQLite file with the study, the models, every sample and every finding.
 //
-// Samples are numbered from 1 in the order in which the study asks for them and are written in transactions, so that
-// those in the file are always the first so many. One process writes. What is opened is looked at as a whole: a store
-// that is damaged is refused (store_check.cpp).
+// Samples are numbered from 1 in the order of requests and are written in transactions, so the file always contains a complete initial
+// sequence. Only one process writes. Opening a store checks all of it; a damaged store is rejected (store_check.cpp).
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -15,47 +14,50 @@ struct sqlite3_stmt;
 
 namespace steplap::study {
 
-/// run: goes on with what is there, unless the study has changed; changed: even then, with those samples that are the
-/// same; restart: drops what is there.
+/// Treatment of an existing store. run: continue, unless the study has changed; changed: continue even then, with the samples that remain
+/// valid; restart: delete all samples.
 enum class StoreMode { run, changed, restart };
 
-/// The store cannot be used: its message says why and what helps. Exit code 2.
+/// Thrown if the store cannot be used, with reason and remedy. Exit code 2.
 class StoreError : public FileError {
 public:
-  /// `helps`: the modes in which the store could be used all the same.
+  /// `helps` are the modes in which the store could still be used.
   StoreError(std::string path, const std::string& message, std::vector<StoreMode> helps = {})
       : FileError(std::move(path), message), helps_(std::move(helps)) {}
 
-  /// Modes in which the store could be used all the same.
+  /// Returns the modes in which the store could still be used.
   [[nodiscard]] const std::vector<StoreMode>& helps() const { return helps_; }
 
 private:
   std::vector<StoreMode> helps_;
 };
 
-/// What a store holds besides samples.
+/// Identity of a study in a store.
 struct StoreIdentity {
-  std::string version; ///< of the program
-  std::string study;   ///< text of the study file, with what it extends
+  std::string version; ///< program version
+  std::string study;   ///< text of the study file, including extended files
   std::string kind;
-  std::string scene;                           ///< all that a sample's numbers depend on: models, variables, responses, limit states
-  std::vector<std::string> variables, numbers; ///< names of columns
-  bool has_curves = false;                     ///< every sample has the values of its run at measured times
-  std::vector<InputFile> files{};              ///< all that the study and its models were read from
+  std::string scene;                           ///< everything that determines a sample's numbers: models, variables, responses, limit
+                                               ///< states
+  std::vector<std::string> variables, numbers; ///< column names
+  bool has_curves = false;                     ///< samples contain the run's values at measured times
+  std::vector<InputFile> files{};              ///< all files from which study and models were read
 };
 [[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
 
+/// A sample in the store.
 struct StoredSample {
   long number = 0;
   std::vector<double> values;
   Outcome outcome;
 };
 
+/// An open store.
 class Store {
 public:
-  /// run: makes the file if there is none; one of another study is refused (StoreError).
+  /// Opens a store for a study, or creates it. A store of another study is rejected (StoreError), depending on `mode`.
   Store(const std::string& path, const StoreIdentity& identity, StoreMode mode);
-  /// For reading what is there, whatever it is of.
+  /// Opens a store for reading, whatever study it contains.
   explicit Store(const std::string& path);
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
@@ -63,38 +65,41 @@ public:
 
   [[nodiscard]] const StoreIdentity& identity() const { return identity_; }
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] long size() const { return size_; } ///< samples
-  /// The study was changed, and not ended since: some samples may be of what it was before.
+  [[nodiscard]] long size() const { return size_; } ///< number of samples
+  /// Returns true if the study was changed and has not been completed since: some samples may belong to the earlier version.
   [[nodiscard]] bool may_hold_others() { return !setting("changed").empty(); }
-  /// Rows number first … first + count − 1, all there.
+  /// Reads rows first … first + count − 1, which must exist.
   void read(long first, long count, std::vector<StoredSample>& rows);
-  /// On the disk within half a second, or with the next call of append(), note() or flush() after that.
+  /// Appends samples. They are on disk after half a second, or at the next append(), note() or flush() after that.
   void append(const StoredSample* rows, std::size_t count);
   void flush();
-  /// Takes out all samples from `number` on.
+  /// Deletes all samples from `number` on.
   void forget_from(long number);
-  /// An estimate as it grew: `place` counts them within the study.
+  /// Stores an intermediate estimate with its consecutive number `place`.
   void note(long place, const Finding& finding);
-  /// Measured records beside what was found to fit them.
+  /// Point of a measured record with the fitted value.
   struct CurvePoint {
     std::string history;
     double t = 0.0, measured = 0.0, fitted = 0.0; ///< s; in the unit of the channel
   };
+  /// Replaces the measured records with their fitted values.
   void set_histories(const std::vector<CurvePoint>& points);
   [[nodiscard]] std::vector<CurvePoint> histories(); ///< empty if there are none
+  /// Replaces findings, notes and standing.
   void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing);
   [[nodiscard]] std::vector<Finding> findings();
+  /// Returns the intermediate estimates.
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
-  [[nodiscard]] std::string setting(const std::string& key); ///< "" if there is none
-  /// Keeps what report_about.h tells of the study, for the page; not part of what the store is of.
+  [[nodiscard]] std::string setting(const std::string& key); ///< "" if it does not exist
+  /// Stores the description made by report_about.h. It is not part of the identity.
   void describe(const std::string& about);
-  /// What is read from now on is of one instant, whatever another process writes.
+  /// Starts a read transaction: later reads see the present contents, whatever another process writes.
   void hold();
-  /// Of the i-th number: how many samples have a value; the one at a place when they are sorted, from 0.
+  /// Returns how many samples have a value for number i. Below: the value at position `place`, from 0, in sorted order.
   [[nodiscard]] long count_of(std::size_t i);
   [[nodiscard]] double order_statistic(std::size_t i, long place);
-  /// Counts of statuses with their most frequent reasons: status, reason, count, first sample.
+  /// Frequency of a status with its most frequent reason and the first sample.
   struct Reason {
     std::string status, reason;
     long count = 0, first = 0;
@@ -102,7 +107,7 @@ public:
   [[nodiscard]] std::vector<Reason> reasons();
 
 private:
-  Store() = default; ///< the others begin with it: what they have opened is closed if they throw
+  Store() = default; ///< delegated to by the others, so that open files are closed if they throw
   struct Statement;
   void open(const std::string& path, bool is_writing);
   bool is_cut_off();
@@ -143,8 +148,8 @@ private:
   int lock_file_ = -1;
   StoreIdentity identity_;
   long size_ = 0;
-  bool is_open_ = false;   ///< a transaction is
-  double committed_ = 0.0; ///< when the last one ended, s
+  bool is_open_ = false;   ///< true within a transaction
+  double committed_ = 0.0; ///< time of the last commit, s
 };
 
 } // namespace steplap::study

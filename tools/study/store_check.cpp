@@ -1,7 +1,7 @@
-// What a store does against damage: fingerprints of all that is written, and a look at all of it when it is opened.
+// Protects a store against damage: fingerprints of all data, and a complete check when it is opened.
 //
-// Samples have a fingerprint for each batch that was appended, everything else one for each row. A store that was
-// damaged, or edited by hand, is refused: it may not tell how far it is still what it was.
+// Samples have one fingerprint per appended batch, all other data one per row. A damaged or manually edited store is rejected, because it
+// is unknown which part is still correct.
 #include "mbd/base/fingerprint.h"
 #include "tools/study/store_statement.h"
 
@@ -95,7 +95,7 @@ long Store::begin_of_batch(long number) {
 
 void Store::check() {
   const bool is_alone = !is_in_transaction();
-  if (is_alone) execute("BEGIN"); // all of one instant, whatever another process writes
+  if (is_alone) execute("BEGIN"); // a consistent state, whatever another process writes
   try {
     check_pages();
     check_settings();

@@ -1,4 +1,4 @@
-// What makes two studies the same, as far as their samples are concerned.
+// Determines whether two studies are the same with respect to their samples.
 #include "mbd/base/number_text.h"
 #include "run/version.h"
 #include "tools/study/store.h"
@@ -9,7 +9,7 @@ namespace steplap::study {
 
 namespace {
 
-// Records are named by what they hold, wherever they lie.
+// Records are identified by their contents, not by their location.
 std::string records_text(const std::vector<InputFile>& files) {
   std::string text;
   for (const InputFile& file : files)

@@ -31,7 +31,7 @@ Store& StoreWriter::store() {
   return store_;
 }
 
-// Memory stays small where samples are found faster than they are written, as those of formulas are.
+// Limits the memory if samples are computed faster than written, as for formulas.
 void StoreWriter::add(Job job, std::size_t samples) {
   constexpr std::size_t k_most_samples = 20000;
   std::unique_lock lock(mutex_);
@@ -49,7 +49,7 @@ void StoreWriter::work() {
     changed_.wait(lock, [this] { return !jobs_.empty() || is_ending_; });
     if (jobs_.empty()) return;
     const Job job = std::move(jobs_.front().first);
-    if (!failure_) { // what comes after a gap is not written
+    if (!failure_) { // after a failed write nothing is written
       lock.unlock();
       write(job);
       lock.lock();

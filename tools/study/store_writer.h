@@ -1,5 +1,5 @@
-// What a study has found goes into its store on a thread of its own, while the next samples run: on sixteen processors writing would
-// else take as long as a fifth of the runs.
+// Writes to the store on a separate thread while further samples run. On sixteen processors, writing on the main thread would add up to a
+// fifth of the time of the runs.
 #pragma once
 
 #include "tools/study/store.h"
@@ -14,19 +14,19 @@
 
 namespace steplap::study {
 
-/// Writes in the order in which it is asked. For one thread's use.
+/// Queue of write operations, executed in order. All calls must come from one thread.
 class StoreWriter {
 public:
   explicit StoreWriter(Store& store);
-  /// Writes what is left. What goes wrong there is not told: call store() before.
+  /// Writes the rest. Errors are lost; call store() before to receive them.
   ~StoreWriter();
   StoreWriter(const StoreWriter&) = delete;
   StoreWriter& operator=(const StoreWriter&) = delete;
 
-  /// As of Store, but later. They throw what writing of before threw, and wait where much is left to write.
+  /// As the functions of Store, but executed later. They throw errors of earlier writing and wait if the queue is long.
   void append(std::vector<StoredSample> rows);
   void note(long place, const Finding& finding);
-  /// The store with all that was asked for in it; nothing is written until the next append() or note(). Throws what writing threw.
+  /// Returns the store after all queued writes; nothing is written until the next append() or note(). Throws errors of writing.
   [[nodiscard]] Store& store();
 
 private:
@@ -36,13 +36,13 @@ private:
   void write(const Job& job);
 
   Store& store_;
-  std::mutex mutex_; ///< of all below
+  std::mutex mutex_; ///< protects everything below
   std::condition_variable changed_;
-  std::deque<std::pair<Job, std::size_t>> jobs_; ///< with its number of samples; the first is being written
-  std::size_t waiting_ = 0;                      ///< samples of all of them
+  std::deque<std::pair<Job, std::size_t>> jobs_; ///< with the number of samples; the first is being written
+  std::size_t waiting_ = 0;                      ///< total number of samples in the queue
   std::exception_ptr failure_;
   bool is_ending_ = false;
-  std::thread thread_; ///< the last: it uses the others
+  std::thread thread_; ///< last member, because the thread uses the others
 };
 
 } // namespace steplap::study

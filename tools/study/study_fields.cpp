@@ -1,4 +1,4 @@
-// The fields of study files but those of their kinds, declared once: the reader and the schema are made of these tables.
+// Declares the fields of study files, except those of study kinds. Reader and schema use these tables.
 #include "tools/study/kinds.h"
 
 namespace steplap::study {

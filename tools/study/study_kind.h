@@ -1,6 +1,7 @@
-// A kind of study, as its own file pair describes it: its table in the study file, what it asks, what pages say of what it finds.
+// Interface of a study kind, implemented by one file pair each: its table in the study file, its computation, and the presentation of its
+// findings.
 //
-// The reader, the schema, the store and the page know kinds only by this; the list of them is in kinds.cpp.
+// Reader, schema, store and page use kinds through this interface only. kinds.cpp lists them.
 #pragma once
 
 #include "tools/study/finding_part.h"
@@ -13,45 +14,46 @@
 
 namespace steplap::study {
 
-/// Whether samples are distributed as the study's variables are: drawn one by one, in a design, or neither (searches,
-/// lines, grids: of these no distribution can be shown).
+/// How samples were drawn from the distributions of the variables: independently, by a design, or otherwise (searches, lines, grids), for
+/// which no distribution can be shown.
 enum class Drawn { independently, by_design, otherwise };
 
-/// What a store tells of a study's settings: for each that is shown its texts; of one that holds no text, none.
+/// Settings of a study as stored for the page: the texts of each shown field; empty if a field is not a text.
 using ShownSettings = std::map<std::string, std::vector<std::string>>;
 
+/// Description and functions of one kind.
 struct StudyKind {
-  std::string name; ///< also of its table
+  std::string name; ///< also the name of its table
   std::string doc;
-  FieldTable fields; ///< of its table
+  FieldTable fields; ///< fields of its table
   std::shared_ptr<KindSettings> (*create)() = nullptr;
-  std::vector<std::string> shown{}; ///< fields of its table that the page tells
-  bool takes_histories = false;     ///< measured records
-  bool draws_jointly = false;       ///< variables are drawn with their correlations, not set one by one
-  bool shows_running_means = false; ///< samples drawn one by one: the page shows how shares of failures and means settled
-  std::vector<FindingPart> parts{}; ///< of its findings, by their quantities
-  std::vector<PointRole> points{};  ///< its findings that are places in the space of the variables
-  /// Adds what the kind needs besides what the file says: limit states, variables, variants of the model.
+  std::vector<std::string> shown{}; ///< fields of its table that the page shows
+  bool takes_histories = false;     ///< true if it uses measured records
+  bool draws_jointly = false;       ///< true if variables are drawn with their correlations, not set one by one
+  bool shows_running_means = false; ///< true if samples are independent: the page shows how failure fractions and means converge
+  std::vector<FindingPart> parts{}; ///< presentation of its findings, by quantity
+  std::vector<PointRole> points{};  ///< findings that are points in the space of the variables
+  /// Adds required data that is not in the file: limit states, variables, variants of the model.
   void (*prepare)(LoadedStudy& loaded) = nullptr;
-  /// Appends what is wrong with the study for this kind; nothing has run.
+  /// Appends errors of the study for this kind to `problems`. Called before anything runs.
   void (*check)(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) = nullptr;
   Answer (*run)(StudyRun& run) = nullptr;
-  /// How samples were drawn, for the page. Not given: otherwise.
+  /// Returns how samples were drawn, for the page. nullptr means Drawn::otherwise.
   Drawn (*drawn)(const ShownSettings& settings) = nullptr;
 
-  /// Its settings are of type T.
+  /// Declares that its settings are of type T.
   template <class T> void holds() {
     create = []() -> std::shared_ptr<KindSettings> { return std::make_shared<T>(); };
   }
 };
 
-/// That one text is all that the setting holds.
+/// Returns true if the setting has exactly this one text.
 [[nodiscard]] inline bool is_only(const ShownSettings& settings, const std::string& key, const std::string& text) {
   const auto found = settings.find(key);
   return found != settings.end() && found->second == std::vector<std::string>{text};
 }
 
-/// The settings as their fields take them: at the address of what was derived from KindSettings.
+/// Returns the address that the field table expects: that of the most derived settings object.
 [[nodiscard]] inline void* fields_of(KindSettings& settings) { return dynamic_cast<void*>(&settings); }
 [[nodiscard]] inline const void* fields_of(const KindSettings& settings) { return dynamic_cast<const void*>(&settings); }
 

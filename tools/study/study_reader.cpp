@@ -44,7 +44,7 @@ std::string kinds_with_histories() {
   return text;
 }
 
-// A key that takes one text as well as a list of them.
+// A key that accepts one text or a list of texts.
 void make_list(Node& table, const std::string& key) {
   Node* node = table.find(key);
   if (!node || node->type != Node::Type::text) return;
@@ -65,7 +65,7 @@ public:
 
   LoadedStudy read() {
     read_header();
-    stop_if_wrong(); // what follows is checked against the models
+    stop_if_wrong(); // later checks use the models
     load_models();
     stop_if_wrong();
     read_array("variable", [this](Node& entry) { read_variable(entry); });
@@ -81,7 +81,7 @@ public:
     check_names();
     const bool are_names_right = problems_.size() == known;
     find_nominal();
-    if (are_names_right) check_expressions(); // what a wrong name makes of them is no mistake of theirs
+    if (are_names_right) check_expressions(); // otherwise expressions would report errors caused by wrong names
     stop_if_wrong();
     check_values();
     stop_if_wrong();
@@ -100,7 +100,7 @@ private:
     throw ModelError(problems_);
   }
 
-  // Fields with their ranges; what is set through optional keys of another type is the table's affair.
+  // Reads the fields with their ranges; keys with several possible types are handled by the table.
   void read_table(const Node& table, const FieldTable& fields, void* object, TableReading reading) {
     const std::size_t before = problems_.size();
     const std::vector<GivenField> given = read_fields(table, fields, object, reading, problems_);
@@ -186,7 +186,7 @@ private:
     read_table(*table, kind.fields, fields_of(*settings), reading);
   }
 
-  // The unit of all paths of a variable, found in the models; "*" if any will do.
+  // Returns the common unit of all paths of a variable, found in the models; "*" if any is accepted.
   std::string unit_of_paths(const Node& entry, Variable& v) {
     const Node* paths = entry.find("path");
     const Node* model = entry.find("model");
@@ -196,7 +196,7 @@ private:
       add(model->where(), "there is no model '" + model->text() + "'" + did_you_mean(model->text(), model_names()));
     if (!paths || paths->type != Node::Type::array || paths->children.empty()) {
       if (const Node* unit = entry.find("unit"); unit && unit->type == Node::Type::text) {
-        if (!parse_quantity("1 " + unit->text(), unit->text()).problem.empty()) // a bare number is none where a unit is wanted
+        if (!parse_quantity("1 " + unit->text(), unit->text()).problem.empty()) // a unit is required, so a number without unit is invalid
           add(unit->where(), "'" + unit->text() + "' is not a unit");
         return unit->text();
       }
@@ -270,7 +270,7 @@ private:
     study_.responses.push_back(std::move(r));
   }
 
-  // `what` is one of the field's choices: the reader of fields has refused others, and then measure stays as it is.
+  // `what` is one of the field's choices: other values have been rejected, and `measure` is then unchanged.
   static void set_measure(Response& r) {
     static const std::map<std::string, Measure> measures = {{"highest", Measure::highest},
                                                             {"lowest", Measure::lowest},
@@ -342,7 +342,7 @@ private:
       Model everything = completed(model.given);
       everything.output.also = {"*"};
       return !channels_of(r, *compile(everything)).empty();
-    } catch (const ModelError&) { // told where the model is read
+    } catch (const ModelError&) { // reported where the model is read
       return false;
     }
   }
@@ -484,7 +484,7 @@ private:
     }
   }
 
-  // That the models take the values: all that are listed, the ends of ranges, the point that studies stand at.
+  // Checks that the models accept the values: all listed ones, the ends of ranges, and the nominal point.
   void check_values() {
     for (std::size_t i = 0; i < study_.variables.size(); ++i) {
       const Variable& v = study_.variables[i];
@@ -522,7 +522,7 @@ private:
   Document document_;
   LoadedStudy loaded_;
   Study& study_ = loaded_.study;
-  const StudyKind* kind_ = nullptr; ///< none before the header was read
+  const StudyKind* kind_ = nullptr; ///< nullptr before the header has been read
   std::vector<std::shared_ptr<StudyModel>> models_;
   std::vector<Diagnostic> problems_;
 };

@@ -1,4 +1,4 @@
-// What a kind of study works with.
+// Objects that a study kind uses when it runs.
 #pragma once
 
 #include "tools/study/evaluator.h"
@@ -8,6 +8,7 @@
 
 namespace steplap::study {
 
+/// Objects of a running study.
 struct StudyRun {
   const LoadedStudy& loaded;
   const JointLaw& law;

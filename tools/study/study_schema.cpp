@@ -11,13 +11,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What a key has to be that is none of the table's: an editor then marks the key, where "false" would have it mark the table.
+// Schema for keys that a table does not have. Unlike "false" it lets editors mark the key instead of the table.
 const Json& no_other_keys() {
   static const Json schema{{"const", "a field that this table has"}};
   return schema;
 }
 
-// Keys that take a text as well as a list of texts.
+// Returns true for keys that accept a text or a list of texts.
 bool takes_one(const std::string& name) { return name == "model" || name == "path"; }
 
 Json properties_of(const FieldTable& fields) {

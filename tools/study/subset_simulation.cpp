@@ -1,12 +1,12 @@
-// Subset simulation (Au and Beck, 2001), several times over: the scatter of independent repetitions makes the interval.
+// Subset simulation (Au and Beck, 2001), repeated independently; the scatter of the repetitions gives the interval.
 //
-// A level is the set of samples below a threshold, strictly, and its probability is the share of samples that are in
-// it: a tenth, or as near to a tenth as values that tie allow. Samples within a level are drawn by chains that begin at
-// those found in it; the next place of a chain is c u + s z with c² + s² = 1 and z standard normal, taken where it is
-// in the level (Papaioannou, Betz, Zwirglmaier and Straub, 2015), which leaves the normal law as it is.
+// A level is the set of samples strictly below a threshold. Its probability is the fraction of samples in it: a tenth, or as close to a
+// tenth as equal values permit. Samples within a level are drawn by Markov chains that start at samples found in it. The proposal of a
+// chain is c u + s z with c² + s² = 1 and z standard normal, accepted if it is in the level (Papaioannou, Betz, Zwirglmaier and Straub,
+// 2015). This preserves the normal distribution.
 //
-// Where most samples have one and the same value, as of a limit state that knows two values only, no level lies
-// between: what fails is counted there.
+// If most samples have the same value, for example of a limit state with only two values, no further level exists. Failures are then
+// counted directly.
 #include "tools/study/reliability.h"
 #include "tools/study/sampling_course.h"
 
@@ -17,32 +17,32 @@ namespace steplap::study {
 
 namespace {
 
-constexpr double k_share = 0.1;   // of a level in the one before
-constexpr double k_least = 1e-30; // beyond it no level arrives
+constexpr double k_share = 0.1;   // probability of a level relative to the previous one
+constexpr double k_least = 1e-30; // smaller probabilities cannot be reached
 
 struct Repetition {
   double probability = 0.0, cov = 0.0;
-  long failures = 0, samples = 0; ///< of the first level, where it was all there was to it; else 0
-  bool is_counted = false;        ///< of the first level, as no level lay between
+  long failures = 0, samples = 0; ///< of the first level, if it was the only one; otherwise 0
+  bool is_counted = false;        ///< failures were counted in the first level, because no further level existed
   std::string problem;
 };
 
-// Threshold of the next level, and how many samples lie below it.
+// Threshold of the next level, and the number of samples below it.
 struct Threshold {
   double g = 0.0;
   std::size_t below = 0;
 };
 
-// Nothing if no level lies between what there is and failure: then what fails is to be counted.
+// Returns nothing if no level exists between the samples and failure; failures are then counted.
 std::optional<Threshold> next_threshold(std::vector<double> g) {
-  constexpr std::size_t k_fewest = 10; // chains: fewer tell of their beginnings, not of the level
+  constexpr std::size_t k_fewest = 10; // chains; fewer depend too much on their start points
   std::sort(g.begin(), g.end());
   const std::size_t n = g.size(), wanted = std::max(static_cast<std::size_t>(k_share * static_cast<double>(n)), k_fewest);
   const auto at = g.begin() + static_cast<long>(wanted);
   const auto first = std::lower_bound(g.begin(), g.end(), *at), past = std::upper_bound(g.begin(), g.end(), *at);
   const auto below = static_cast<std::size_t>(first - g.begin()), up_to = static_cast<std::size_t>(past - g.begin());
   if (2 * below >= wanted) return Threshold{*at, below};
-  if (past != g.end() && 2 * up_to <= n) return Threshold{*past, up_to}; // those that tie are in it
+  if (past != g.end() && 2 * up_to <= n) return Threshold{*past, up_to}; // includes equal values
   const auto failing = static_cast<std::size_t>(std::lower_bound(g.begin(), g.end(), 0.0) - g.begin());
   if (below > failing && below >= k_fewest) return Threshold{*at, below};
   return {};
@@ -80,11 +80,11 @@ public:
   }
 
 private:
-  static constexpr std::uint32_t k_stream = 1000; // and one for each repetition, the same for both bounds, so that
-                                                  // these differ by what runs without a result count as, not by chance
+  static constexpr std::uint32_t k_stream = 1000; // one stream for each repetition, the same for both bounds, so that they differ only by
+                                                  // the treatment of runs without a result
   static Repetition failed(const char* problem) { return {0.0, 0.0, 0, 0, false, problem}; }
 
-  // Runs without a result are the worst there is, or the best.
+  // Runs without a result count as the worst or the best value.
   std::vector<double> values_at(const std::vector<double>& points) {
     constexpr double k_extreme = 1e300;
     std::vector<double> g;
@@ -101,7 +101,7 @@ private:
     chains_ = size_;
   }
 
-  // From all samples below the threshold, all chains at a time: first[i], first[chains + i], ... is the i-th one.
+  // Starts from all samples below the threshold and advances all chains together: first[i], first[chains + i], … is chain i.
   void go_on(const Threshold& level) {
     std::vector<double> u, g;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -127,15 +127,15 @@ private:
         u.insert(u.end(), next.begin(), next.end());
         g.push_back(is_in ? values[i] : g[from + i]);
       }
-      // Steps that are taken in 44 of 100 cases carry chains through a level fastest.
+      // An acceptance rate of 44 % gives the fastest mixing.
       width_ = std::clamp(width_ * std::exp(0.5 * (taken / static_cast<double>(count) - 0.44)), 0.05, 1.0);
     }
     u_ = std::move(u);
     g_ = std::move(g);
   }
 
-  // Square of the coefficient of variation of the share below the threshold: samples of one chain hang together
-  // (Au and Beck's gamma, from the correlation of what is below it along the chains).
+  // Returns the squared coefficient of variation of the fraction below the threshold. Samples of one chain are correlated (Au and Beck's
+  // gamma, from the correlation along the chains).
   [[nodiscard]] double variation(double threshold, double share) const {
     if (share >= 1.0) return 0.0;
     const std::size_t length = size_ / chains_;
@@ -163,7 +163,7 @@ private:
 
 Share with_test(double p, double cov, const Interval& interval, const Interval& test) { return {p, cov * p, interval, test}; }
 
-// The interval is of the logarithm: probabilities of repetitions scatter by factors.
+// The interval is computed for the logarithm, because probabilities of repetitions vary by factors.
 Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) {
   Share nothing;
   nothing.interval = nothing.test = {0.0, 1.0};
@@ -184,7 +184,7 @@ Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) 
   double squares = 0.0, inner = 0.0;
   for (const Repetition& r : all) {
     squares += (r.probability - mean) * (r.probability - mean);
-    inner += std::pow(r.cov * r.probability, 2) / n; // what each says of itself
+    inner += std::pow(r.cov * r.probability, 2) / n; // variance within each repetition
   }
   const double cov = std::sqrt(std::max(squares / (n - 1.0), inner) / n) / mean;
   const auto interval = [&](double confidence) {
@@ -194,8 +194,8 @@ Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) 
   return with_test(mean, cov, interval(target.confidence), interval(target.test_confidence));
 }
 
-// Where all repetitions met nothing, a probability of zero with the bounds of nothing known is an honest answer; where
-// some did, their mean is none.
+// Reports repetitions without a result. If all have none, the estimate, zero with the bounds 0 and 1, is valid. If only some have
+// none, the mean of the others is not an estimate of the probability and is not trusted.
 void add_problems(const std::vector<Repetition>& all, Estimate& e) {
   const auto failed = std::count_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
   if (failed == 0) return;

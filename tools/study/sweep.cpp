@@ -18,9 +18,9 @@ FieldTable sweep_fields() {
   return t;
 }
 
-constexpr std::size_t k_block = 10000; // samples asked for at once: memory does not grow with their number
+constexpr std::size_t k_block = 10000; // samples per request, so that memory does not grow with their number
 
-// The values a variable is swept over.
+// Returns the values over which a variable is swept.
 std::vector<double> levels_of(const StudyRun& run, std::size_t i) {
   const Variable& v = run.study().variables[i];
   if (!v.values.empty()) return v.values;
@@ -37,7 +37,7 @@ std::vector<double> levels_of(const StudyRun& run, std::size_t i) {
   return levels;
 }
 
-// The least and the largest of every number, and where.
+// Minimum and maximum of every number, with their locations.
 class Extent {
 public:
   explicit Extent(std::size_t count) : low_(count), high_(count) {}
@@ -107,7 +107,7 @@ void sweep_grid(const std::vector<std::vector<double>>& levels, Sweeper& sweeper
     for (std::size_t i = 0; i < levels.size(); ++i) point[i] = levels[i][place[i]];
     sweeper.add(point);
     is_over = true;
-    for (std::size_t i = levels.size(); i-- > 0 && is_over;) { // the last variable runs fastest
+    for (std::size_t i = levels.size(); i-- > 0 && is_over;) { // the last variable changes fastest
       is_over = ++place[i] == levels[i].size();
       if (is_over) place[i] = 0;
     }

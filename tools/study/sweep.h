@@ -1,13 +1,14 @@
-// The kind "sweep": values tried one after the other.
+// Study kind "sweep": evaluates given values one after the other.
 #pragma once
 
 #include "tools/study/study_kind.h"
 
 namespace steplap::study {
 
+/// Settings of a "sweep" study.
 struct SweepSettings : KindSettings {
   std::string design = "grid"; ///< grid, list, one_at_a_time
-  long points = 11;            ///< of a range or a distribution's 5 % to 95 %
+  long points = 11;            ///< number of points over a range, or over the 5 % to 95 % quantiles of a distribution
 };
 
 [[nodiscard]] StudyKind sweep_kind();

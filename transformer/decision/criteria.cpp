@@ -14,7 +14,7 @@ namespace steplap::assess {
 
 namespace {
 
-/// What can be asked, the unit of its limit, and whether it takes 'at_most', 'at_least' or no limit.
+/// A quantity for criteria, the unit of its limit, and whether it takes 'at_most', 'at_least' or no limit.
 struct Asked {
   const char* name;
   const char* unit;

@@ -1,9 +1,11 @@
-// What decides about a machine that has arrived: a TOML file of criteria, shipped presets or a user's own.
+// Acceptance criteria for a machine after transport: a TOML file by the user, or one of the presets.
 //
 //   name = "…"  text = "…"  source = "…"
 //   [[criterion]]
 //   name = "3 g"  quantity = "peak"  at_most = "3 gravity"  outcome = "inspect"  tests = ["core insulation resistance"]
-// A criterion that is not met has its outcome; one that cannot be judged leaves the decision open. "energise" is what remains.
+//
+// A criterion that is not met gives its outcome; one that cannot be judged gives "open". The decision is "energise" if all criteria are
+// met.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -15,38 +17,38 @@
 
 namespace steplap::assess {
 
-/// In the order of their weight.
+/// Decisions in ascending severity.
 enum class Decision { energise, open, inspect, send_back };
-/// "energise", "open", "inspect" or "return"
+/// Returns "energise", "open", "inspect" or "return".
 [[nodiscard]] const char* name_of(Decision decision);
 
-/// One thing that is asked.
+/// One criterion.
 struct DecisionCriterion {
   std::string name, quantity;
-  std::string axis = "any";         ///< of the record: "any", "x", "y" or "z"
-  std::string bandwidth = "record"; ///< of a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
+  std::string axis = "any";         ///< axis of the record: "any", "x", "y" or "z"
+  std::string bandwidth = "record"; ///< for a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
   std::string at_most_text, at_least_text;
   std::optional<double> at_most, at_least; ///< SI
-  std::string outcome = "inspect";         ///< if it is not met: "inspect" or "return"
+  std::string outcome = "inspect";         ///< outcome if it is not met: "inspect" or "return"
   std::string text, source;
-  std::vector<std::string> tests; ///< that would show the damage
+  std::vector<std::string> tests; ///< tests that would reveal the damage
   Location where;
 };
 
-/// A file of criteria.
+/// A set of criteria.
 struct DecisionCriteria {
   std::string name, text, source;
-  std::string file; ///< or the name of the preset
-  std::string toml; ///< what was read
+  std::string file; ///< file name, or name of the preset
+  std::string toml; ///< source text
   std::vector<DecisionCriterion> criteria;
 };
 
-/// Reads a file, or a preset by its name. Throws ModelError with all that is wrong, FileError for what is neither.
+/// Reads a file, or a preset by its name. Throws ModelError with all errors, FileError if there is neither.
 [[nodiscard]] DecisionCriteria read_criteria(const std::string& file_or_preset);
-/// The same for text at hand.
+/// As read_criteria(), for a text in memory.
 [[nodiscard]] DecisionCriteria parse_criteria(const std::string& text, const std::string& file_name);
 
-/// A set of criteria that comes with the program.
+/// A set of criteria built into the program.
 struct CriteriaPreset {
   std::string name, toml;
 };

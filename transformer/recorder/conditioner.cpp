@@ -13,7 +13,7 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_block = 65536;
-constexpr double k_on_grid = 1e-6; // of a step: times with six digits behind the first of the step are on the grid
+constexpr double k_on_grid = 1e-6; // of a step; times with six digits after the first time step are on the grid
 
 } // namespace
 
@@ -34,10 +34,10 @@ void Conditioner::begin(const RecordLayout& layout) {
 }
 
 void Conditioner::set_high_pass(const RecordLayout& layout) {
-  // Gain 1/√2 where r⁴ = 1/(√2 − 1), and the low-pass is told by its class: f0 = 2.0775 CFC.
+  // The gain is 1/√2 at r⁴ = 1/(√2 − 1). The low-pass is specified by its class: f0 = 2.0775 CFC.
   const double half = *conditioning_.high_pass / std::sqrt(std::sqrt(1.0 / (std::numbers::sqrt2 - 1.0))),
                frequency_class = half / ChannelFilter::k_ratio;
-  constexpr double k_slowest = 1e-5; // of the rate: what the filter keeps in memory grows as its inverse
+  constexpr double k_slowest = 1e-5; // of the sampling rate; the memory needed by the filter is inversely proportional to it
   if (!(*conditioning_.high_pass >= k_slowest * rate_))
     throw RecordError(layout.file, 0, 0,
                       "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz is too low for a record of " + rounded_text(rate_) +
@@ -72,7 +72,8 @@ void Conditioner::put(double t, const double* a) {
   if (rows_.size() == 4) fill(false);
 }
 
-// Of the monotone cubic at row i: a weighted harmonic mean of the slopes beside it, 0 where they differ in sign; at an end the slope there.
+// Returns the slope of the monotone cubic at row i: a weighted harmonic mean of the adjacent secant slopes, 0 if they differ in sign; at an
+// end the secant slope.
 double Conditioner::slope(std::size_t i, std::size_t axis) const {
   const auto secant = [&](std::size_t k) { return (rows_[k + 1].a[axis] - rows_[k].a[axis]) / (rows_[k + 1].t - rows_[k].t); };
   if (i == 0) return secant(0);
@@ -83,7 +84,7 @@ double Conditioner::slope(std::size_t i, std::size_t axis) const {
   return (w0 + w1) / (w0 / left + w1 / right);
 }
 
-// Of four rows the grid up to the third is known; at the end of a segment all of it.
+// Interpolates the grid up to the third of four rows; at the end of a segment up to its end.
 void Conditioner::fill(bool is_end) {
   if (rows_.empty()) return;
   const double step = 1.0 / rate_;
@@ -117,7 +118,7 @@ void Conditioner::add(double t, const std::array<double, 3>& a) {
   if (times_.size() >= lead_ + std::max(k_block, margin_) + margin_) flush(false);
 }
 
-// Hands on all that the filter has settled for; keeps as much before and after as it needs.
+// Passes on all samples for which the filter has settled. Keeps as many samples before and after as the filter needs.
 void Conditioner::flush(bool is_end) {
   const std::size_t size = times_.size(), end = is_end ? size : size - margin_;
   std::array<std::vector<double>, 3> without_drift;

@@ -1,12 +1,11 @@
-// From samples as they were read to a signal at a constant rate: offset, resampling that keeps its shape, high-pass and low-pass without
+// Converts samples as read to a signal with constant rate: offset, shape-preserving resampling, and high-pass and low-pass filters without
 // phase shift.
 //
-// The high-pass is what a Butterworth low-pass of two poles, run forwards and backwards, leaves out: 1 − 1/(1 + r⁴) = r⁴/(1 + r⁴) is the
-// gain of the high-pass of the same kind, r the ratio of (warped) frequencies.
+// The high-pass is the signal minus a two-pole Butterworth low-pass that is applied forwards and backwards: its gain is 1 − 1/(1 + r⁴) =
+// r⁴/(1 + r⁴), which is that of a Butterworth high-pass applied in the same way, with r the ratio of the (warped) frequencies.
 //
-// Works in blocks, in bounded memory. Samples that lie on the grid of the rate are taken as they are, time and value; between others the
-// signal is the monotone cubic of Fritsch and Butland (SIAM J. Sci. Stat. Comput. 5 (1984) 300), which has no peak that the samples
-// do not have.
+// Works in blocks with bounded memory. Samples on the time grid of the result are kept unchanged. Between samples the signal is the
+// monotone cubic interpolant of Fritsch and Butland (SIAM J. Sci. Stat. Comput. 5 (1984) 300), which adds no peaks.
 #pragma once
 
 #include "transformer/recorder/filter.h"
@@ -19,49 +18,52 @@
 
 namespace steplap {
 
-/// Takes the conditioned signal.
+/// Receives the conditioned signal.
 class SignalSink {
 public:
   virtual ~SignalSink() = default;
   virtual void begin(const RecordLayout& layout, double rate) = 0;
   virtual void begin_segment(std::size_t line) = 0;
-  /// t in s; m/s² for each axis, before and after the filter (the same without one).
+  /// Receives a sample: t in s; m/s² for each axis, before and after the filter (equal if there is no filter).
   virtual void put(double t, const double* plain, const double* filtered) = 0;
   virtual void end_segment() = 0;
 };
 
+/// Parameters of the conditioning.
 struct Conditioning {
   std::array<double, 3> offset{};                     ///< m/s², subtracted from the axes
-  std::optional<double> frequency_class;              ///< CFC in Hz; none: no filter
-  std::optional<double> rate;                         ///< Hz of the result; none: that of the record
-  std::optional<double> high_pass;                    ///< Hz, where its gain is 1/√2; none: none
-  std::vector<std::array<double, 3>> segment_offsets; ///< m/s², subtracted from one segment each; none: nothing is
+  std::optional<double> frequency_class;              ///< channel frequency class (CFC), Hz; none: no filter
+  std::optional<double> rate;                         ///< sampling rate of the result, Hz; none: that of the record
+  std::optional<double> high_pass;                    ///< frequency at which the gain of the high-pass is 1/√2, Hz; none: no high-pass
+  std::vector<std::array<double, 3>> segment_offsets; ///< m/s², subtracted from each segment; empty: nothing is subtracted
 };
 
-/// What the conditioned acceleration, integrated by itself from rest, would have made of a segment.
+/// Velocity and displacement that result if the conditioned acceleration of a segment is integrated from rest.
 struct Drift {
-  double duration = 0.0;                ///< s, of the longest segment
-  std::array<double, 3> velocity{};     ///< m/s at its end
-  std::array<double, 3> displacement{}; ///< m
+  double duration = 0.0;                ///< duration of the longest segment, s
+  std::array<double, 3> velocity{};     ///< at its end, m/s
+  std::array<double, 3> displacement{}; ///< at its end, m
 };
 
+/// Receives samples as read and passes the conditioned signal to a sink.
 class Conditioner : public SampleSink {
 public:
   Conditioner(const Conditioning& conditioning, SignalSink& sink) : conditioning_(conditioning), sink_(sink) {}
 
-  /// Throws RecordError if the rate does not suffice for the class, or is too high for the high-pass.
+  /// Throws RecordError if the sampling rate is too low for the frequency class or too high for the high-pass.
   void begin(const RecordLayout& layout) override;
   void begin_segment(std::size_t line) override;
   void put(double t, const double* a) override;
   void end_segment() override;
 
+  /// Returns the sampling rate of the result, Hz.
   [[nodiscard]] double rate() const { return rate_; }
-  /// Hz up to which the signal is meant: the filter's, else half of the rate.
+  /// Returns the highest frequency that the signal represents, Hz: that of the filter, otherwise half the sampling rate.
   [[nodiscard]] double bandwidth() const { return filter_ ? filter_->bandwidth() : 0.5 * rate_; }
-  /// Samples of the result that lie between those of the record.
+  /// Returns the number of samples of the result that are interpolated.
   [[nodiscard]] std::size_t interpolated() const { return interpolated_; }
   [[nodiscard]] const Drift& drift() const { return drift_; }
-  /// Of each segment the constant acceleration, m/s², without which its velocity ends where it began.
+  /// Returns for each segment its mean acceleration, m/s². If it is subtracted, the velocity at the end equals that at the begin.
   [[nodiscard]] const std::vector<std::array<double, 3>>& segment_means() const { return means_; }
 
 private:
@@ -78,13 +80,13 @@ private:
   Conditioning conditioning_;
   SignalSink& sink_;
   void set_high_pass(const RecordLayout& layout);
-  std::optional<ChannelFilter> filter_, low_; ///< low_: what the high-pass takes away
+  std::optional<ChannelFilter> filter_, low_; ///< `low_`: low-pass whose output the high-pass subtracts
   std::size_t axes_ = 0, margin_ = 0, lead_ = 0, interpolated_ = 0, segment_ = 0;
   double rate_ = 0.0;
-  std::vector<Row> rows_; ///< of the record, few
-  std::size_t next_ = 0;  ///< of the grid
+  std::vector<Row> rows_; ///< samples of the record that interpolation still needs
+  std::size_t next_ = 0;  ///< index on the time grid of the result
   double start_ = 0.0;
-  std::vector<double> times_; ///< of the grid, waiting for the filter
+  std::vector<double> times_; ///< grid times waiting for the filter
   std::array<std::vector<double>, 3> plain_, filtered_;
   Drift drift_, now_;
   std::vector<std::array<double, 3>> means_;

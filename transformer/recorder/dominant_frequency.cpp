@@ -15,11 +15,11 @@ double dominant_frequency(std::span<const double> samples, double rate) {
   if (samples.size() < 8) return 0.0;
   const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
   std::size_t length = 16;
-  while (length < 4 * samples.size()) length *= 2; // zeros after it: lines lie four times as close
+  while (length < 4 * samples.size()) length *= 2; // zero padding makes the spectral lines four times denser
   std::vector<double> in(length, 0.0);
   std::transform(samples.begin(), samples.end(), in.begin(), [&](double x) { return x - mean; });
   std::vector<std::complex<double>> out;
-  Eigen::FFT<double> transform; // Eigen's own (KissFFT)
+  Eigen::FFT<double> transform; // Eigen's own FFT (KissFFT)
   transform.fwd(out, in);
   const auto size_at = [&](std::size_t k) { return std::sqrt(std::norm(out[k])); };
   std::size_t best = 1;

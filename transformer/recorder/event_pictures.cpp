@@ -12,14 +12,14 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_most = 8, k_points = 600; // events; points of a curve: more than the picture is wide
+constexpr std::size_t k_most = 8, k_points = 600; // events; points per curve, more than the picture is wide
 constexpr double k_width = 940.0, k_row = 200.0, k_head = 34.0;
-constexpr std::array<const char*, 3> k_colours = {"#1b6ca8", "#c1440e", "#3c7d3f"}; // told apart without colours, too: by their dashes
+constexpr std::array<const char*, 3> k_colours = {"#1b6ca8", "#c1440e", "#3c7d3f"}; // also distinguishable without colours, by their dashes
 constexpr std::array<const char*, 3> k_dashes = {"", "7 3", "2 3"};
 
 double peak_of(const ShockEvent& event) { return std::abs(event.axes[event.worst].peak); }
 
-/// A frame on the page with its two scales.
+/// A diagram on the page with its two scales.
 struct Frame {
   double left, top, width, height;
   double x0, x1, y0, y1;
@@ -52,7 +52,7 @@ template <class Point> void curve(std::string& out, std::size_t count, std::size
   out += "\"/>\n";
 }
 
-// 1, 2 or 5 times a power of ten: about four of them in the span.
+// Returns a tick distance of 1, 2 or 5 times a power of ten that gives about four ticks.
 double tick_step(double span) {
   const double power = std::pow(10.0, std::floor(std::log10(span / 4.0))), share = span / 4.0 / power;
   return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);
@@ -70,7 +70,7 @@ void ticks(std::string& out, const Frame& f) {
   }
 }
 
-// Decades with both scales logarithmic: the frame holds the logarithms.
+// Draws decades for logarithmic scales; the frame contains logarithms.
 void decades(std::string& out, const Frame& f) {
   line(out, f.left, f.top + f.height, f.left + f.width, f.top + f.height, "#444");
   line(out, f.left, f.top, f.left, f.top + f.height, "#444");
@@ -91,7 +91,7 @@ void EventPictures::add(const ShockEvent& event, const Window& window, const std
   if (drawn_.size() == k_most && peak_of(event) <= peak_of(drawn_.back().event)) return;
   Drawn drawn{event, {}, {}, spectra};
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (2 * count + k_points - 1) / k_points);
-  for (std::size_t from = 0; from < count; from += stride) // of each stretch the sample furthest from zero, so that peaks stay
+  for (std::size_t from = 0; from < count; from += stride) // keeps the sample furthest from zero in each interval, so that peaks remain
     for (std::size_t i = 0; i < event.axes.size(); ++i) {
       const auto begin = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(from),
                  end = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(std::min(count, from + stride));

@@ -1,4 +1,4 @@
-// The greatest events of a record, drawn: waveforms and shock response spectra side by side.
+// Draws the largest events of a record as SVG: waveforms and shock response spectra side by side.
 #pragma once
 
 #include "transformer/recorder/events.h"
@@ -10,12 +10,12 @@
 
 namespace steplap {
 
-/// Keeps what is drawn of the eight greatest events, whatever their number.
+/// Collects the eight largest events.
 class EventPictures {
 public:
-  /// `spectra`: one for each axis.
+  /// Adds an event. `spectra` has one entry for each axis.
   void add(const ShockEvent& event, const Window& window, const std::vector<std::vector<ShockPoint>>& spectra);
-  /// An SVG picture; "" without an event. `bandwidth` of the signal, Hz.
+  /// Returns an SVG image; "" if there are no events. `bandwidth` is that of the signal, Hz.
   [[nodiscard]] std::string svg(const RecordLayout& layout, double bandwidth) const;
 
 private:
@@ -25,7 +25,7 @@ private:
     std::array<std::vector<double>, 3> values; ///< m/s²
     std::vector<std::vector<ShockPoint>> spectra;
   };
-  std::vector<Drawn> drawn_; ///< the greatest first
+  std::vector<Drawn> drawn_; ///< largest first
 };
 
 } // namespace steplap

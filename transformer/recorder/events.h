@@ -1,4 +1,4 @@
-// Shocks in a signal: where it goes beyond a threshold, with what stands before and after, and what each of them was.
+// Finds shocks in a signal, that is, intervals above a threshold with some time before and after, and computes their characteristics.
 #pragma once
 
 #include "transformer/recorder/conditioner.h"
@@ -12,46 +12,51 @@
 
 namespace steplap {
 
+/// Rules by which events are found.
 struct EventRules {
-  double threshold = k_default_threshold;    ///< m/s², of the filtered signal on any axis
-  double before = 0.1, after = 0.3;          ///< s kept before the first and after the last sample beyond the threshold
-  double merge = 0.3;                        ///< s: what follows sooner belongs to the same event
-  std::optional<std::array<double, 3>> each; ///< m/s², thresholds of the axes; none: all have the one above
-  double release = 1.0;                      ///< share of its threshold that each axis stays below before an event begins and after it ends
+  double threshold = k_default_threshold;    ///< m/s², for the filtered signal on any axis
+  double before = 0.1, after = 0.3;          ///< time kept before the first and after the last sample above the threshold, s
+  double merge = 0.3;                        ///< s; a new exceedance within this time belongs to the same event
+  std::optional<std::array<double, 3>> each; ///< thresholds of single axes, m/s²; none: `threshold` for all
+  double release = 1.0;                      ///< fraction of its threshold below which each axis must be before an event begins and after
+                                             ///< it ends
   static constexpr double k_default_threshold = 9.80665;
 };
 
-/// A stretch of signal, samples equally spaced.
+/// An interval of the signal with equidistant samples.
 struct Window {
   double rate = 0.0;                                  ///< Hz
   std::vector<double> times;                          ///< s
   std::array<std::vector<double>, 3> plain, filtered; ///< m/s²
-  std::size_t lead = 0, tail = 0;                     ///< samples at its begin and end that stay below the release; none where it is cut
+  std::size_t lead = 0, tail = 0;                     ///< number of samples at its begin and end below the release level; 0 where the
+                                                      ///< window was cut
 };
 
-/// One axis of an event. All but the two peaks of given classes are of the filtered signal.
+/// One axis of an event. Values refer to the filtered signal, except the two peaks with given frequency class.
 struct AxisEvent {
-  double peak = 0.0, peak_time = 0.0;                         ///< m/s², with its sign; s
-  double duration = 0.0;                                      ///< s around the peak, beyond a tenth of it
-  double velocity_change = 0.0;                               ///< m/s in that time
-  double frequency = 0.0;                                     ///< Hz, where most of the motion is
-  double at_cfc60 = std::numeric_limits<double>::quiet_NaN(); ///< m/s², peak up to 100 Hz; NaN: the rate does not suffice
-  double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< m/s², up to 17 Hz
+  double peak = 0.0, peak_time = 0.0;                         ///< m/s², signed; s
+  double duration = 0.0;                                      ///< duration around the peak above a tenth of it, s
+  double velocity_change = 0.0;                               ///< integral of acceleration over this duration, m/s
+  double frequency = 0.0;                                     ///< dominant frequency, Hz
+  double at_cfc60 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too
+                                                              ///< low
+  double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 10 (up to 17 Hz), m/s²
 };
 
+/// A shock.
 struct ShockEvent {
   std::size_t number = 0, segment = 0; ///< from 1
-  std::size_t line = 0;                ///< of the file, where its segment begins
+  std::size_t line = 0;                ///< line of the file at which the segment begins
   double begin = 0.0, end = 0.0;       ///< s
-  std::size_t worst = 0;               ///< axis of the greatest peak
-  bool goes_on = false;                ///< longer than a window may be: the next event is its continuation
+  std::size_t worst = 0;               ///< index of the axis with the largest peak
+  bool goes_on = false;                ///< true if the event was cut at the longest window; the next event continues it
   std::vector<AxisEvent> axes;
 };
 
-/// What an event was, from its window.
+/// Computes the characteristics of an event from its window.
 [[nodiscard]] ShockEvent describe_event(const Window& window, std::size_t axes);
 
-/// Finds events in a signal as it comes, in bounded memory.
+/// Finds events in a signal that arrives sample by sample, with bounded memory.
 class ShockFinder : public SignalSink {
 public:
   using Found = std::function<void(const ShockEvent& event, const Window& window)>;
@@ -71,9 +76,10 @@ private:
   Found found_;
   std::size_t axes_ = 0, kept_ = 0, count_ = 0, segment_ = 0, line_ = 0;
   std::array<double, 3> thresholds_{};
-  bool is_inside_ = false, is_event_ = false; ///< beyond the release; beyond the threshold as well
+  bool is_inside_ = false, is_event_ = false; ///< above the release level; also above the threshold
   double last_stir_ = 0.0;
-  std::size_t used_ = 0, stirred_ = 0; ///< samples of the window that belong to the event; up to the last beyond the release
+  std::size_t used_ = 0, stirred_ = 0; ///< samples of the window that belong to the event; samples up to the last one above the release
+                                       ///< level
   Window window_;
 };
 

@@ -1,4 +1,4 @@
-// What a file was taken for, said.
+// Describes the layout and the treatment of a recorder's file in text.
 #include "transformer/recorder/fields.h"
 #include "transformer/recorder/reader.h"
 
@@ -30,7 +30,7 @@ void add_axes(const Recording& recording, std::vector<std::string>& lines) {
   }
 }
 
-// Gravity at rest is offered, not applied.
+// Gravity at rest is reported as a suggestion, not subtracted.
 std::string gravity_text(const Recording& recording) {
   double size2 = 0.0;
   std::size_t most = 0;
@@ -67,7 +67,7 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
     if (what.count > 0) lines.push_back(times_text(what, one, several) + said);
   };
   add(facts.gaps, "gap", "gaps", ", the longest " + rounded_text(facts.longest_gap, 4) + " s: the record is split there.");
-  constexpr std::size_t k_told = 5; // holes one by one
+  constexpr std::size_t k_told = 5; // number of gaps listed individually
   for (std::size_t i = 0; i < std::min(k_told, facts.hole_list.size()); ++i) {
     const Hole& hole = facts.hole_list[i];
     lines.push_back(counted(hole.rows, "row is", "rows are") + " missing after " + number_text(hole.t) + " s, before line " +

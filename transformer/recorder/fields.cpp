@@ -105,7 +105,7 @@ std::optional<AccelerationUnit> acceleration_unit(std::string_view text) {
     if (lower == word) return AccelerationUnit{"g", k_gravity};
   for (const char* word : {"mg", "milli-g", "millig", "mgn", "mgal*1000"})
     if (lower == word) return AccelerationUnit{"mg", k_gravity / 1000.0};
-  // The two in the middle of the bytes of "²" in UTF-8 and in Latin-1.
+  // Bytes of "²" in UTF-8 and in Latin-1.
   for (const char* word : {"m/s^2", "m/s2", "m/s**2", "m/s\xC2\xB2", "m/s\xB2", "m/s/s", "m/(s^2)", "m s-2", "m s^-2", "m\xC2\xB7s-2",
                            "ms-2", "ms^-2", "mps2", "m/sec^2", "m/sec2"})
     if (lower == word) return AccelerationUnit{"m/s^2", 1.0};
@@ -146,7 +146,7 @@ Heading heading_of(std::string_view field) {
     if (open > 0) return {std::string(trimmed_blanks(field.substr(0, open))), std::string(unit)};
     return {std::string(trimmed_blanks(field.substr(close + 1))), std::string(unit)};
   }
-  // "ax_mg", "t_ms", "X, g", "X in g"
+  // Recognises units in names: "ax_mg", "t_ms", "X, g", "X in g".
   const auto last = field.find_last_of("_, /");
   if (last != std::string_view::npos && last > 0) {
     const std::string_view unit = field.substr(last + 1);

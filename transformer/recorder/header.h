@@ -1,4 +1,4 @@
-// What stands before a recorder's numbers: lines of keys and values, the family of the recorder, names and units of columns.
+// Interprets the lines before the data of a recorder's file: keys and values, family of the recorder, names and units of columns.
 #pragma once
 
 #include <cstddef>
@@ -10,42 +10,44 @@
 
 namespace steplap {
 
-/// Does the line say something beside the data: begins with #, * or, where ; does not part fields, with ;?
+/// Returns true if the line is a comment: it begins with # or *, or with ; unless ; is the delimiter.
 [[nodiscard]] bool is_comment(std::string_view line, char delimiter);
 
+/// A line before the data.
 struct HeaderLine {
   std::size_t number = 0; ///< from 1
   std::string text;
 };
 
-/// Keys and values of the lines before the data.
+/// Keys and values in the lines before the data.
 struct Metadata {
   struct Value {
     std::size_t line = 0;
-    std::vector<std::string> values; ///< what follows the key, at least one
+    std::vector<std::string> values; ///< text after the key, at least one entry
   };
-  std::map<std::string, Value> entries; ///< by key: lower case, letters and digits only
+  std::map<std::string, Value> entries; ///< by key, reduced to lower case letters and digits
 
-  /// The first of the keys that there is.
+  /// Returns the value of the first of the keys that exists; nullptr if none does.
   [[nodiscard]] const Value* find(std::initializer_list<const char*> keys) const;
 };
-/// Keys are parted from their values by : = ; , or a tab, whichever comes first.
+/// Splits lines into keys and values at the first : = ; , or tab.
 [[nodiscard]] Metadata metadata_of(const std::vector<HeaderLine>& lines);
 
-/// A rate of sampling that the lines give, Hz, with its line; from "SampleRate, 100,Hz", "Sampling interval: 5 ms" and the like.
+/// A sampling rate given in the header, Hz, with its line: "SampleRate, 100,Hz", "Sampling interval: 5 ms" and similar.
 struct SaidRate {
   double hz = 0.0;
   std::size_t line = 0;
 };
+/// Returns the sampling rate given in the header; nothing if there is none.
 [[nodiscard]] std::optional<SaidRate> rate_of(const Metadata& metadata);
 
-/// "Gulf Coast Data Concepts", "MSR", …; "" if no line tells.
+/// Returns the family of the recorder: "Gulf Coast Data Concepts", "MSR", …; "" if unknown.
 [[nodiscard]] std::string family_of(const std::vector<HeaderLine>& lines);
 
-/// "Ax" and "Acc. X" as words: {"ax"}, {"acc", "x"}.
+/// Splits a column name into lower-case words: "Ax" gives {"ax"}, "Acc. X" gives {"acc", "x"}.
 [[nodiscard]] std::vector<std::string> words_of(std::string_view name);
 
-/// What a column is by its name.
+/// Meaning of a column according to its name.
 enum class Role {
   other,
   time,
@@ -65,11 +67,12 @@ enum class Role {
   velocity_change,
   slot
 };
-/// How sure: a name such as "Ax" says more than "X". 0: not of that role.
+/// A role with its confidence: "Ax" has a higher weight than "X". 0: the name does not indicate this role.
 struct NamedRole {
   Role role = Role::other;
   int weight = 0;
 };
+/// Returns the most likely role of a column.
 [[nodiscard]] NamedRole role_of(std::string_view name);
 
 } // namespace steplap

@@ -24,7 +24,7 @@ std::string heading_text(const TableShape& shape, std::size_t column) {
   return column < shape.names.size() && !shape.names[column].empty() ? shown(shape.names[column]) : "column " + std::to_string(column + 1);
 }
 
-// The columns of the axes by the options, "-" turns the sign.
+// Takes the axis columns from the options; "-" reverses the sign.
 std::vector<AxisColumn> chosen_axes(const RecordLayout& layout, const ReadOptions& options) {
   std::vector<AxisColumn> axes;
   const std::pair<char, const std::optional<std::string>*> chosen[] = {{'x', &options.x}, {'y', &options.y}, {'z', &options.z}};
@@ -39,7 +39,7 @@ std::vector<AxisColumn> chosen_axes(const RecordLayout& layout, const ReadOption
   return axes;
 }
 
-// Of several columns that may be the axis the one whose name says most; two that say as much are refused.
+// Adds the column with the highest weight for an axis. Two columns with equal weight are an error.
 void add_named_axis(const RecordLayout& layout, char axis, Role role, std::vector<AxisColumn>& axes) {
   int best = 0;
   std::vector<std::size_t> found;
@@ -75,7 +75,7 @@ std::vector<AxisColumn> named_axes(const RecordLayout& layout) {
   return axes;
 }
 
-// Without names: x, y and z if three columns are left beside a first column of times.
+// Without names the columns are x, y and z if three columns remain after a first column with times.
 std::vector<AxisColumn> unnamed_axes(const RecordLayout& layout, const std::vector<HeaderLine>& head, const ReadOptions& options) {
   const std::size_t width = layout.shape.width, line = head[layout.shape.first_data].number;
   std::vector<std::string_view> fields;
@@ -106,7 +106,7 @@ std::string unit_of_column(const TableShape& shape, std::size_t column, std::str
   return column < shape.units.size() ? shape.units[column] : "";
 }
 
-// ";Accel, 225, 1000, 16, g": rate, counts per unit, range, unit.
+// Interprets ";Accel, 225, 1000, 16, g": rate, counts per unit, range, unit.
 struct SaidScale {
   double counts_per_unit = 0.0;
   AccelerationUnit unit;
@@ -170,7 +170,7 @@ void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<
   axis.factor *= unit->factor;
 }
 
-// Columns named as peaks, and none as an axis: a list of peaks without waveforms.
+// Returns true if columns are named as peaks and none as an axis: the file is then a list of peaks without waveforms.
 bool find_peaks(RecordLayout& layout) {
   PeakColumns& peaks = layout.peaks;
   std::string unit_text, source;

@@ -1,7 +1,7 @@
-// What a recorder's file is taken for: its table, its time, its axes and their units.
+// Determines the layout of a recorder's file: table, time, axes and units.
 //
-// It is found from the head of the file (a megabyte at most), from the options and from nothing else, and holds for the whole file: a row
-// further down that does not fit is refused. What the head leaves open is refused with the name of the option that settles it.
+// The layout is derived from the head of the file (at most a megabyte) and the options only, and applies to the whole file: later rows that
+// do not fit are rejected. If the head is ambiguous, the error message names the option that resolves the ambiguity.
 #pragma once
 
 #include "transformer/recorder/header.h"
@@ -17,48 +17,51 @@
 
 namespace steplap {
 
-/// How a line is parted into fields.
+/// How a line is split into fields.
 struct TableShape {
   char delimiter = ',';
   char decimal = '.';
-  bool joins_pairs = false;                   ///< a decimal comma beside a comma that parts fields: two fields make a number
-  bool has_decimals = true;                   ///< false: the head holds whole numbers only
-  std::size_t first_data = 0;                 ///< index into the head of the first row of numbers
-  std::size_t width = 0;                      ///< fields of a full row
-  std::size_t names_line = 0, units_line = 0; ///< 0: there is none
-  std::vector<std::string> names, units;      ///< as many as columns, or none
+  bool joins_pairs = false;                   ///< decimal commas in a file with comma as delimiter: two fields form one number
+  bool has_decimals = true;                   ///< false if the head contains whole numbers only
+  std::size_t first_data = 0;                 ///< index of the first data row in the head
+  std::size_t width = 0;                      ///< number of fields of a full row
+  std::size_t names_line = 0, units_line = 0; ///< line numbers; 0: none
+  std::vector<std::string> names, units;      ///< one per column, or empty
 
-  /// False if a quote is not closed, or pairs do not come out.
+  /// Splits a line. Returns false if a quote is not closed, or if the number of fields does not form pairs.
   [[nodiscard]] bool split(std::string_view line, std::vector<std::string_view>& fields) const;
 };
+/// Determines delimiter, decimal sign and names of the table. Throws RecordError if they are ambiguous.
 [[nodiscard]] TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
-/// Is it a row of numbers, as far as one sees without knowing its columns?
+/// Returns true if the fields look like a row of data, without knowledge of the columns.
 [[nodiscard]] bool looks_like_row(const std::vector<std::string_view>& fields);
 
+/// Form in which times are given.
 enum class TimeKind { none, number, stamp, date_and_clock };
 
-/// Where time comes from.
+/// Source of the time of samples.
 struct TimeBase {
   TimeKind kind = TimeKind::none;
-  std::size_t column = 0, clock_column = 0; ///< from 0
-  double factor = 1.0;                      ///< s per unit, of numbers
-  bool is_relative = false;                 ///< of numbers: counted from the first row (epoch, days)
+  std::size_t column = 0, clock_column = 0; ///< column indices, from 0
+  double factor = 1.0;                      ///< s per unit, for numbers
+  bool is_relative = false;                 ///< for numbers: count time from the first row (epoch, days)
   unsigned date_order = 1;                  ///< one of DateOrder
-  std::optional<std::size_t> index_column;  ///< counts samples
+  std::optional<std::size_t> index_column;  ///< column that counts samples
   double rate = 0.0;                        ///< Hz
-  std::string text, rate_text, start;       ///< for people; start may be ""
+  std::string text, rate_text, start;       ///< for display; start may be ""
 };
 
+/// A column with the acceleration of one axis.
 struct AxisColumn {
   char axis = 'x';
   std::size_t column = 0;
-  std::string heading; ///< as the file names it, or "column 2"
-  double factor = 1.0; ///< to m/s², sign included
-  std::string unit;    ///< of the file
+  std::string heading; ///< heading in the file, or "column 2"
+  double factor = 1.0; ///< factor to m/s², sign included
+  std::string unit;    ///< as in the file
   std::string unit_source;
 };
 
-/// Columns of a table of peaks; −1: there is none.
+/// Columns of a table of peaks; −1: column does not exist.
 struct PeakColumns {
   std::array<int, 3> axis{-1, -1, -1};
   int magnitude = -1, duration = -1, velocity_change = -1;
@@ -66,26 +69,27 @@ struct PeakColumns {
   std::string unit;
 };
 
+/// Layout of a recorder's file.
 struct RecordLayout {
   std::string file, encoding, family;
   TableShape shape;
   TimeBase time;
-  std::vector<AxisColumn> axes; ///< at most three, in the order x, y, z; none in a table of peaks
+  std::vector<AxisColumn> axes; ///< at most three, in the order x, y, z; empty for a table of peaks
   bool is_peaks = false;
   PeakColumns peaks;
-  bool holds = false; ///< left-out samples keep the value before them
+  bool holds = false; ///< omitted samples repeat the value before them
   std::string hold_reason;
-  std::optional<double> range;    ///< m/s², where the sensor ends
-  std::vector<std::string> notes; ///< whole sentences
+  std::optional<double> range;    ///< range of the sensor, m/s²
+  std::vector<std::string> notes; ///< sentences for the user
 };
 
-/// Throws RecordError for what is ambiguous, unknown or impossible.
+/// Determines the layout. Throws RecordError if it is ambiguous, unknown or impossible.
 [[nodiscard]] RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
 
-/// Used by find_record_layout(): needs shape, axes and family.
+/// Part of find_record_layout(): determines the time base. `layout` must contain shape, axes and family.
 [[nodiscard]] TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata,
                                  const ReadOptions& options, std::vector<std::string>& notes);
-/// Column by name or number from 1.
+/// Returns the index of a column given by name or by number from 1.
 [[nodiscard]] std::size_t column_of(const TableShape& shape, const std::string& name_or_number, const std::string& option,
                                     const std::string& file);
 

@@ -66,7 +66,7 @@ void SignalWriter::begin_segment(std::size_t) {
   ++segments_;
   text_ = std::make_unique<CsvText>(names_);
   rows_ = 0;
-  if (segments_ == 1) { // called signal.csv if it stays alone: held back until that is known
+  if (segments_ == 1) { // a single segment is called signal.csv, so the first file is named only when this is known
     first_ = std::make_unique<PartFile>(folder_ + "/signal.csv", is_overwriting_);
   } else {
     now_ = std::make_unique<PartFile>(path(segments_), is_overwriting_);

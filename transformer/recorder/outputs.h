@@ -1,4 +1,4 @@
-// What a record leaves behind: the cleaned signal as CSV that a `record` signal reads, events and spectra as CSV, all together as JSON.
+// Writes the results for a record: the conditioned signal as CSV for `record` signals, events and spectra as CSV, and everything as JSON.
 #pragma once
 
 #include "transformer/recorder/events.h"
@@ -15,10 +15,10 @@
 
 namespace steplap {
 
-/// A file written piece by piece under a temporary name, which becomes its own when all is there. Without commit() nothing stays.
+/// A file written piece by piece under a temporary name. commit() renames it; without commit() it is removed.
 class PartFile {
 public:
-  /// Throws FileError: it exists and may not be replaced, or cannot be written.
+  /// Throws FileError if the file exists and must not be replaced, or cannot be written.
   PartFile(std::string path, bool is_overwriting);
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
@@ -32,8 +32,8 @@ private:
   std::FILE* file_ = nullptr;
 };
 
-/// Writes the conditioned signal while it comes: signal.csv, or signal_001.csv, signal_002.csv … from the second segment on, because a
-/// `record` signal would draw a straight line across a gap. Nothing is there before commit().
+/// Writes the conditioned signal as it arrives: signal.csv, or one file per segment, signal_001.csv, signal_002.csv …, if there are
+/// several, because a `record` signal would interpolate across a gap. No file appears before commit().
 class SignalWriter : public SignalSink {
 public:
   SignalWriter(std::string folder, bool is_overwriting) : folder_(std::move(folder)), is_overwriting_(is_overwriting) {}
@@ -42,7 +42,7 @@ public:
   void begin_segment(std::size_t line) override;
   void put(double t, const double* plain, const double* filtered) override;
   void end_segment() override;
-  /// Gives the files their names, which it returns.
+  /// Renames the files to their final names and returns these.
   std::vector<std::string> commit();
 
 private:
@@ -58,9 +58,10 @@ private:
   std::size_t rows_ = 0, segments_ = 0;
 };
 
-/// How a window's drift is corrected.
+/// Drift correction of a window.
 enum class DriftCorrection { none, line };
-/// The filtered signal of a window, times from 0. `line`: less a constant acceleration, so that velocity ends where it began.
+/// Returns the filtered signal of a window as CSV, with times from 0. `line` subtracts a constant acceleration so that the velocity at the
+/// end equals that at the begin.
 [[nodiscard]] std::string window_csv(const Window& window, const RecordLayout& layout, DriftCorrection correction);
 
 /// An event with its shock response spectra, one for each axis.
@@ -68,7 +69,7 @@ struct EventResult {
   ShockEvent event;
   std::vector<std::vector<ShockPoint>> spectra;
 };
-/// All that was found.
+/// All results for a record.
 struct RecordResult {
   Recording recording;
   Conditioning conditioning;
@@ -78,10 +79,11 @@ struct RecordResult {
   Drift drift;
   std::vector<EventResult> events;
 };
-/// One row for each event and axis.
+/// Returns CSV text with one row for each event and axis.
 [[nodiscard]] std::string record_events_csv(const RecordResult& result);
-/// One row for each frequency of each event.
+/// Returns CSV text with one row for each frequency of each event.
 [[nodiscard]] std::string spectra_csv(const RecordResult& result);
+/// Returns all results as JSON text.
 [[nodiscard]] std::string record_json(const RecordResult& result);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// What a user settles of a recorder's file that the file does not say, or says wrongly.
+// Options with which a user supplies or corrects information about a recorder's file.
 #pragma once
 
 #include <optional>
@@ -6,27 +6,28 @@
 
 namespace steplap {
 
-enum class IfMissing { refuse, skip, hold };   ///< a field of an axis that is empty or NaN
-enum class IfRepeated { refuse, first, last }; ///< a time that is that of the row before: which of the rows is kept
-enum class IfBackward { refuse, split, drop }; ///< a time before that of the row before
+enum class IfMissing { refuse, skip, hold };   ///< treatment of an empty or NaN field of an axis
+enum class IfRepeated { refuse, first, last }; ///< treatment of a row with the same time as the row before: which of the two rows is kept
+enum class IfBackward { refuse, split, drop }; ///< treatment of a row with a time before that of the row before
 
+/// Options for reading a file. Options that are not given are determined from the file.
 struct ReadOptions {
-  /// Columns by name or by number from 1; a "-" before turns the sign. If any is given, the others are not read.
+  /// Columns by name or by number from 1; a leading "-" reverses the sign. If any is given, axes that are not given are not read.
   std::optional<std::string> x, y, z;
-  std::optional<std::string> time;      ///< column by name or number; "none": there is none
+  std::optional<std::string> time;      ///< column by name or number; "none": the file has no time column
   std::optional<std::string> time_unit; ///< "s", "ms", …, "epoch", "epoch ms", "days"
   std::optional<double> rate;           ///< Hz
-  std::optional<std::string> unit;      ///< of all axes
+  std::optional<std::string> unit;      ///< unit of all axes
   std::optional<double> counts_per_g;
-  std::optional<double> range;   ///< m/s², where the sensor ends; none: as the file says
+  std::optional<double> range;   ///< range of the sensor, m/s²; none: as in the file
   std::optional<char> delimiter; ///< ',', ';', '\t' or ' '
   std::optional<char> decimal;   ///< '.' or ','
   std::optional<unsigned> dates; ///< one of DateOrder
   IfMissing missing = IfMissing::refuse;
   IfRepeated repeated = IfRepeated::refuse;
   IfBackward backward = IfBackward::refuse;
-  bool holds = false; ///< samples that are left out have the value before them
-  double gap = 3.5;   ///< in sampling intervals: what is longer splits the record
+  bool holds = false; ///< omitted samples repeat the value before them
+  double gap = 3.5;   ///< in sampling intervals; longer gaps split the record into segments
 };
 
 } // namespace steplap

@@ -13,13 +13,13 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_hole = 1.5;   // sampling intervals: a longer step lacks a row
-constexpr double k_early = 0.3;  // of an interval: a row that comes sooner than this before its time makes up for one that was late
-constexpr double k_bends = 0.95; // of the range of a sensor: from there on amplifiers bend before they clip
+constexpr double k_hole = 1.5;   // sampling intervals; in a longer step a row is missing
+constexpr double k_early = 0.3;  // of an interval; a row that is earlier than this compensates for a late row before it
+constexpr double k_bends = 0.95; // of a sensor's range, where amplifiers begin to saturate before they clip
 constexpr std::size_t k_head_lines = 5000, k_head_bytes = std::size_t{1} << 20U;
 
-// Samples in a row at the end of an axis' values. A smooth peak comes and goes by single steps of the converter; a clipped one by a
-// jump: three steps at least.
+// Detects clipping: sequences of equal samples at the extreme value of an axis. A smooth peak is entered and left by single steps of the
+// converter, a clipped one by a jump of at least three steps.
 class FlatWatch {
 public:
   void take(double value, std::size_t line) {
@@ -39,7 +39,7 @@ public:
     end_run(0.0);
     facts.least = low_.value;
     facts.greatest = -high_.value;
-    for (const End* end : {&low_, &high_}) { // of both the one further from where the axis rests: a long rest hides no peak
+    for (const End* end : {&low_, &high_}) { // uses the extreme further from rest, because a long rest would hide a peak
       const double value = end == &low_ ? end->value : -end->value;
       if (end->longest >= 3 && end->jump >= 3.0 * step_ &&
           (facts.flat_longest == 0 || std::abs(value - facts.rest) > std::abs(facts.flat_value - facts.rest)))
@@ -48,7 +48,7 @@ public:
   }
 
 private:
-  struct End { ///< of the values, turned so that it is the least
+  struct End { ///< sequence at an extreme; values are negated if necessary so that it is the minimum
     double value = std::numeric_limits<double>::infinity(), jump = 0.0;
     std::size_t longest = 0, line = 0;
   };
@@ -159,11 +159,11 @@ private:
 
   void note_remark() {
     ReadFacts& facts = recording_.facts;
-    facts.last_comment = shown(text_.substr(0, 80)); // of the file, if no row follows
+    facts.last_comment = shown(text_.substr(0, 80)); // last comment of the file if no row follows
     const std::size_t rows = facts.rows + (waiting_ ? 1 : 0);
     const auto is_known = [&](Remark& each) {
       if (each.text != facts.last_comment) return false;
-      each.rows = rows; // one that ends the file counts as its end
+      each.rows = rows; // a comment at the end of the file counts as its end
       return true;
     };
     if (std::any_of(facts.remarks.begin(), facts.remarks.end(), is_known)) return;
@@ -176,33 +176,34 @@ private:
     return sign == std::string_view::npos ? 0 : field.size() - sign - 1;
   }
 
-  // Of the last field that is read.
+  // Records the number of decimals of the last field.
   void note_decimals() {
     const std::string_view last = fields_.size() >= needed_ && needed_ > 0 ? fields_[needed_ - 1] : std::string_view();
     const bool is_first = row_fields_ == 0;
     row_fields_ = fields_.size();
-    if (last.empty() || last.back() < '0' || last.back() > '9') return; // a value is missing
+    if (last.empty() || last.back() < '0' || last.back() > '9') return; // value missing
     const std::size_t now = decimals(last);
     is_fixed_ &= is_first || now == row_decimals_;
     row_decimals_ = now;
   }
 
-  // Of a last line that no line break ends: has it the fields of the header or of the row before, and a number as the last of them?
+  // Returns true if the last line, which has no line break, is complete: it has as many fields as the header or the row before, and a
+  // number as the last field.
   bool is_whole() const {
-    if (fields_.size() > needed_) return true; // a delimiter follows all that is read
+    if (fields_.size() > needed_) return true; // a delimiter follows the last needed field
     if (fields_.size() < std::min(layout_->shape.width, std::max(row_fields_, needed_))) return false;
     const std::string_view last = fields_.back();
     return !last.empty() && last.back() >= '0' && last.back() <= '9' && decimals(last) >= row_decimals_;
   }
 
-  // A whole number, or one of a file whose numbers have now more, now fewer decimals, may have lost digits, and nothing shows it.
+  // Returns true for an integer, or a number in a file with varying numbers of decimals: it may have lost digits without a visible sign.
   bool may_lack_digits() const {
     if (fields_.size() > needed_) return false;
     const std::size_t digits = decimals(fields_.back());
     return digits == 0 || !is_fixed_ || row_fields_ == 0 || digits != row_decimals_;
   }
 
-  // A title, names or units of another block of the file.
+  // Returns true for a title, names or units of another block of the file.
   bool is_text_line() const {
     const std::string_view first = fields_.front();
     if (begins_like_number(first) || first.empty() || looks_like_row(fields_)) return false;
@@ -222,7 +223,7 @@ private:
       fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) +
                                 ". Split the file before it, and read the parts one by one.");
     recording_.facts.blocks.note(line_);
-    if (is_of_full_width) recording_.facts.last_comment = shown(text_.substr(0, 80)); // names and units come again with each block
+    if (is_of_full_width) recording_.facts.last_comment = shown(text_.substr(0, 80)); // names and units are repeated with each block
     else note_remark();
     is_new_block_ = true;
   }
@@ -236,7 +237,7 @@ private:
     const auto comma = field.find(',');
     if (!shape.has_decimals && shape.delimiter != ',' && comma != std::string_view::npos && parse_number(field, ',') &&
         (field.size() - comma != 4 || field.front() == '0')) {
-      shape.decimal = ','; // the first number of the file that is not whole
+      shape.decimal = ','; // first number in the file with decimals
       shape.has_decimals = true;
       return *parse_number(field, ',');
     }
@@ -247,7 +248,7 @@ private:
                     "' is not a finite number. Correct it, or leave the field empty and give --missing skip or hold.");
   }
 
-  // False: the row has no sample.
+  // Returns false if the row contains no sample.
   bool take_axes() {
     ReadFacts& facts = recording_.facts;
     std::size_t missing = 0;
@@ -278,14 +279,14 @@ private:
     return true;
   }
 
-  // A row that is left out has its place in time where times are counted by rows.
+  // Omits a row. The row still counts for the time if times are counted by rows. Returns false.
   bool skip_row() {
     if (is_new_block_ && layout_->time.kind == TimeKind::none && !uses_index_) end_segment(), rows_in_block_ = 0, is_new_block_ = false;
     ++rows_in_block_;
     return false;
   }
 
-  // Of a sensor beside the axes: a row that has one says nothing of accelerations.
+  // Returns true if another sensor has a value in this row; such a row contains no acceleration.
   bool has_other_value() const {
     const TimeBase& time = layout_->time;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -392,7 +393,7 @@ private:
     put(t);
   }
 
-  // A block that begins where the one before ended goes on with it.
+  // A block that begins where the previous one ended continues it.
   void note_block_gap(double passed) {
     ReadFacts& facts = recording_.facts;
     if (passed > 0.0 && passed <= k_hole * step_) return;
@@ -400,7 +401,7 @@ private:
     facts.longest_block_gap = std::max(facts.longest_block_gap, passed > 0.0 ? passed : std::numeric_limits<double>::infinity());
   }
 
-  // Rows are missing, unless the next one comes as much too early: then the clock jitters.
+  // Rows are missing, unless the next row is early by the same amount: then the clock jitters.
   void suspect_hole(double passed) {
     hole_ = Hole{line_, t_, passed, static_cast<std::size_t>(std::lround(passed / step_)) - 1, previous_, values_};
   }
@@ -422,7 +423,7 @@ private:
     previous_ = values_;
     has_previous_ = true;
     if (options_.repeated != IfRepeated::last) return hand_on(t, values_, line_);
-    hand_on_waiting(); // another row of this time may follow
+    hand_on_waiting(); // another row with this time may follow
     waiting_ = {t, values_, line_};
   }
 
@@ -445,7 +446,8 @@ private:
     sink_.put(t, a.data());
   }
 
-  // True: the row replaces nothing and goes on.
+  // Treats a row with the same time as the row before: keeps the first or the last of them, or throws. Returns false, because the row is
+  // no further sample.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
       fail(place, "The time '" + shown(place.substr(0, 40)) +
@@ -541,16 +543,16 @@ private:
   std::string_view text_; ///< the line
   std::vector<std::string_view> fields_;
   std::size_t line_ = 0, needed_ = 0, rows_in_block_ = 0, summed_ = 0;
-  std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the row before: fields, and digits behind the decimal sign of the last
-  bool is_fixed_ = true;                          ///< the last numbers of all rows have as many decimals
+  std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the previous row: number of fields, and decimals of the last field
+  bool is_fixed_ = true;                          ///< true while the last numbers of all rows have equally many decimals
   double step_ = 0.0;                             ///< s
   struct Row {
     double t = 0.0;
     std::array<double, 3> a{};
     std::size_t line = 0;
   };
-  std::optional<Hole> hole_;   ///< suspected, until the next row shows it
-  std::optional<Row> waiting_; ///< of several rows of one time the last is kept
+  std::optional<Hole> hole_;   ///< suspected gap, until the next row confirms it
+  std::optional<Row> waiting_; ///< row that is held back, because of several rows with the same time the last one is kept
   std::array<double, 3> values_{}, previous_{}, sums_{};
   std::array<bool, 3> is_missing_{};
   std::array<FlatWatch, 3> watches_;

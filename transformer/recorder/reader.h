@@ -1,8 +1,8 @@
-// A recorder's file read once, from its first line to its last, in bounded memory: samples go to a sink as they come.
+// Reads a recorder's file once from beginning to end with bounded memory and passes samples to a sink.
 //
-// Accelerations are handed on in m/s² along the record's axes, times in s: those of the file where it counts seconds, else from its
-// first row. A gap, a new block of the file or a step back in time begins a new segment. Nothing is changed in silence: what was
-// left out, held or split is counted in ReadFacts with the first line where it happened.
+// Accelerations are in m/s² along the record's axes. Times are in s: those of the file if it counts seconds, otherwise from its first row.
+// A gap, a new block of the file or a step back in time begins a new segment. Every omission, repetition and split is counted in ReadFacts,
+// with the line of its first occurrence.
 #pragma once
 
 #include "transformer/recorder/layout.h"
@@ -17,37 +17,39 @@
 
 namespace steplap {
 
-/// Takes samples. Times rise within a segment.
+/// Receives samples. Times increase within a segment.
 class SampleSink {
 public:
   virtual ~SampleSink() = default;
-  /// Before the first segment: what the file was taken for.
+  /// Called before the first segment with the layout of the file.
   virtual void begin(const RecordLayout& layout) = 0;
   virtual void begin_segment(std::size_t line) = 0;
-  /// t in s, one acceleration (m/s²) for each axis of the layout.
+  /// Receives a sample: t in s, one acceleration (m/s²) for each axis of the layout.
   virtual void put(double t, const double* a) = 0;
   virtual void end_segment() = 0;
 };
 
-/// How often something happened, and the line of the first.
+/// Number of occurrences with the line of the first.
 struct Counted {
   std::size_t count = 0, line = 0;
+  /// Counts an occurrence in line `at`.
   void note(std::size_t at) {
     if (count++ == 0) line = at;
   }
 };
 
-/// Values of one axis as they were read, m/s².
+/// Statistics of one axis as read, m/s².
 struct AxisFacts {
   double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
   double rest = 0.0;            ///< mean of the first second
-  std::size_t flat_longest = 0; ///< samples in a row at an end of the values, entered or left by a jump: clipped, as it seems
+  std::size_t flat_longest = 0; ///< longest sequence of equal samples at the minimum or maximum, entered or left by a jump, which indicates
+                                ///< clipping
   std::size_t flat_line = 0;
   double flat_value = 0.0;
-  Counted beyond_range; ///< at or beyond the sensor's range, where a line says it
+  Counted beyond_range; ///< samples at or beyond the sensor's range, if the range is known
 };
 
-/// An entry of a table of peaks; what the table does not give is NaN.
+/// An entry of a table of peaks. Values that the table lacks are NaN.
 struct PeakEntry {
   double t = 0.0; ///< s from the first entry
   std::size_t line = 0;
@@ -55,47 +57,49 @@ struct PeakEntry {
   double magnitude = 0.0, duration = 0.0, velocity_change = 0.0; ///< m/s², s, m/s
 };
 
-/// A line among or after the rows that is no row: a comment, or a title.
+/// A line among or after the data rows that is not a row: a comment or a title.
 struct Remark {
   std::size_t line = 0;
-  std::size_t rows = 0; ///< samples before it
+  std::size_t rows = 0; ///< number of samples before it
   std::string text;
 };
 
-/// Rows that are missing within a segment, which goes on over them.
+/// Missing rows within a segment, across which the segment continues.
 struct Hole {
-  std::size_t line = 0;                    ///< of the row after it
-  double t = 0.0, length = 0.0;            ///< s: time of the row before; from there to the row after
-  std::size_t rows = 0;                    ///< that are missing
-  std::array<double, 3> before{}, after{}; ///< m/s², of the rows next to it
+  std::size_t line = 0;                    ///< line of the row after it
+  double t = 0.0, length = 0.0;            ///< s: time of the row before it; time until the row after it
+  std::size_t rows = 0;                    ///< number of missing rows
+  std::array<double, 3> before{}, after{}; ///< values of the rows before and after it, m/s²
 };
 
+/// Statistics of the whole file.
 struct ReadFacts {
-  std::size_t lines = 0, rows = 0, segments = 0; ///< rows: samples handed on, those that were held not counted
+  std::size_t lines = 0, rows = 0, segments = 0; ///< `rows`: samples passed on, except those that ReadOptions::holds filled in
   double first = 0.0, last = 0.0;                ///< s
   double longest_gap = 0.0;                      ///< s
   Counted gaps, holes, block_gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
-  std::size_t cut_line = 0;         ///< the last line, left out because it is cut; 0: it is not
-  std::size_t unended_line = 0;     ///< the last line, if no line break ends it; 0: one does
-  bool is_unended_left_out = false; ///< it was left out, as its last number may lack digits
-  std::string last_comment;         ///< after the last row: a comment, or a line of text
-  double longest_block_gap = 0.0;   ///< s without a sample between two blocks, at most; infinite: their times do not tell
-  std::vector<Remark> remarks;      ///< the first of each text, k_most_listed at most
+  std::size_t cut_line = 0;         ///< number of the last line if it was omitted because it is incomplete; 0 otherwise
+  std::size_t unended_line = 0;     ///< number of the last line if it has no line break; 0 otherwise
+  bool is_unended_left_out = false; ///< true if that line was omitted because its last number may be incomplete
+  std::string last_comment;         ///< comment or text after the last row
+  double longest_block_gap = 0.0;   ///< longest time without samples between two blocks, s; infinite if unknown
+  std::vector<Remark> remarks;      ///< first occurrence of each text, at most k_most_listed
   std::vector<Hole> hole_list;      ///< the first k_most_listed
   static constexpr std::size_t k_most_listed = 100;
   std::array<AxisFacts, 3> axes;
 };
 
+/// Contents of a recorder's file, without its samples.
 struct Recording {
   RecordLayout layout;
   ReadFacts facts;
-  std::vector<PeakEntry> peaks; ///< of a table of peaks
+  std::vector<PeakEntry> peaks; ///< entries of a table of peaks
 };
 
-/// Throws RecordError with line and column for whatever cannot be read or known.
+/// Reads a record. Throws RecordError with line and column if it cannot be read or is ambiguous.
 [[nodiscard]] Recording read_record(LineSource& source, const ReadOptions& options, SampleSink& sink);
 
-/// What the file was taken for and what happened to it, in whole sentences or "key: value" lines for people.
+/// Describes the layout and the treatment of the file in sentences or "key: value" lines.
 [[nodiscard]] std::vector<std::string> facts_text(const Recording& recording);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// A recorder's file that cannot be used as it stands, with its place and the option that settles it.
+// Error in a recorder's file, with its location and the option that resolves it.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -8,13 +8,13 @@
 
 namespace steplap {
 
-/// "FILE:LINE:COLUMN: cause. Remedy." Exit code 2, as for every file that is not what it should be.
+/// Message "FILE:LINE:COLUMN: cause. Remedy." Exit code 2, as for all invalid files.
 class RecordError : public FileError {
 public:
-  /// Line and column count from 1; 0: the file as a whole. `what`: cause and remedy in whole sentences.
+  /// Line and column count from 1; 0 means the whole file. `what` contains cause and remedy as sentences.
   RecordError(const std::string& file, std::size_t line, std::size_t column, const std::string& what);
 
-  /// In bytes of the line, from 1; 0 if the line as a whole is meant.
+  /// Returns the column in bytes, from 1; 0 for the whole line.
   [[nodiscard]] std::size_t column() const { return column_; }
 
 private:

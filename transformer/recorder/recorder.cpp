@@ -6,7 +6,7 @@ namespace steplap {
 
 namespace {
 
-// "z" of "-z".
+// Returns "z" for "-z".
 std::string letter_of(const std::string& axis) { return axis.substr(axis.starts_with('-') ? 1 : 0); }
 
 void check(const Recorder& recorder, const Model& model) {

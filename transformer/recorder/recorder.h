@@ -1,33 +1,34 @@
-// [[recorder]]: where a shock recorder sat on the tank, which way it pointed, and what its record takes the place of.
+// The table [[recorder]]: position and orientation of a shock recorder on the tank, and the elements that its record replaces.
 //
-// A model is one plane: two of the recorder's axes lie in it, each mapped with its sign onto an axis of the marker. The third one may
-// press the sheets of a core. The table
-// changes nothing of a usual run. An assessment drives the marker's body by the recorded acceleration (tools/assess/driven_model.h).
-// Assumes that the body of the marker is rigid from the recorder to where the rest of the machine stands on it.
+// A model shows one plane. Two axes of the recorder lie in it, each assigned with its sign to an axis of the marker; the third one can
+// press on the sheets of a core. The table does not affect an ordinary run. An assessment drives the marker's body with the recorded
+// acceleration (tools/assess/driven_model.h). The body is assumed to be rigid between the recorder and the points where the machine stands
+// on it.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// A recorder as a model file describes it.
+/// A recorder as described in a model file.
 struct Recorder : TableObject {
-  std::string marker;                 ///< where it sat; a marker of a body that can move
+  std::string marker;                 ///< position; a marker of a movable body
   std::string x, y;                   ///< axis of the record along the marker's x and y: "x", "-z", …, or "none"
-  std::string across = "none";        ///< axis of the record out of the plane, from the front of a core's stack to its back
-  std::string plane = "lengthwise";   ///< a word for people
-  std::vector<std::string> replaces;  ///< elements that moved the tank and give way to the record
-  std::string mounted = "lid";        ///< "lid" or "frame": how far a margin can be believed
-  std::string rotation = "held";      ///< of the driven body: "held" or "free"
-  std::string drift = "none";         ///< of each event: "none", or "line": velocity ends where it began
-  double settle = 0.5;                ///< s, run on after each event without a load
-  std::vector<std::string> knows_not; ///< what the model leaves out, for the reader of a decision
+  std::string across = "none";        ///< axis of the record out of the plane, from the front of the core's stack to its back
+  std::string plane = "lengthwise";   ///< name of the plane for display
+  std::vector<std::string> replaces;  ///< elements that moved the tank and are replaced by the record
+  std::string mounted = "lid";        ///< "lid" or "frame": determines how reliable a margin is
+  std::string rotation = "held";      ///< rotation of the driven body: "held" or "free"
+  std::string drift = "none";         ///< drift correction of each event: "none", or "line": the velocity at the end equals that at the
+                                      ///< begin
+  double settle = 0.5;                ///< time simulated after each event without a load, s
+  std::vector<std::string> knows_not; ///< effects that the model leaves out, listed with the decision
 };
 
-/// The table's kind: it checks itself and adds nothing to the model.
+/// Returns the kind of the table. It checks itself and adds nothing to the model.
 [[nodiscard]] const TableKind& recorder_kind();
 
-/// Of the model; nullptr if it has none.
+/// Returns the recorder of the model; nullptr if it has none.
 [[nodiscard]] const Recorder* recorder_of(const Model& model);
 
 } // namespace steplap

@@ -26,7 +26,7 @@ struct Recorder : SignalDefinition {
   std::string file, sha256;
   Text axis;
   std::vector<double> map;
-  Text x, y, z, time, time_unit, unit, delimiter, decimal, dates; // as ReadOptions
+  Text x, y, z, time, time_unit, unit, delimiter, decimal, dates; // as in ReadOptions
   std::optional<double> rate, counts_per_g;
   std::string missing = "refuse", repeated = "refuse", backward = "refuse";
   bool holds = false;
@@ -57,7 +57,7 @@ ReadOptions read_options(const Recorder& r) {
   return o;
 }
 
-// All samples of a file, segment by segment.
+// Stores all samples of a file, segment by segment.
 struct Samples : SampleSink {
   struct Row {
     double t = 0.0;
@@ -80,7 +80,7 @@ struct Samples : SampleSink {
   void end_segment() override {}
 };
 
-// The filtered signal of all segments, and the event that is wanted.
+// Stores the filtered signal of all segments and finds the requested event.
 struct Conditioned : SignalSink {
   std::size_t axes = 0;
   double rate = 0.0;
@@ -101,7 +101,7 @@ struct Conditioned : SignalSink {
   void end_segment() override {}
 };
 
-// "-z": the axis's place in the record and −1.
+// For "-z": index of the axis in the record and the sign −1.
 std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& layout, const std::string& text, const char* field) {
   const char letter = text.back();
   const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return each.axis == letter; });
@@ -110,7 +110,7 @@ std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& la
   return {static_cast<std::size_t>(found - layout.axes.begin()), text.front() == '-' ? -1.0 : 1.0};
 }
 
-// How much of each axis of the record the signal takes.
+// Returns the components of the signal's direction along the axes of the record.
 std::array<double, 3> direction_of(const Recorder& r, const RecordLayout& layout) {
   if (r.axis.has_value() == !r.map.empty()) fail(r, "give 'axis', such as \"x\" or \"-z\", or 'map', the three shares of x, y and z");
   std::array<double, 3> direction{};
@@ -120,7 +120,7 @@ std::array<double, 3> direction_of(const Recorder& r, const RecordLayout& layout
     return direction;
   }
   if (r.map.size() != 3) fail(r, "'map' must have three numbers, the shares of x, y and z, got " + std::to_string(r.map.size()));
-  constexpr double k_rough = 1e-3; // of directions that are typed
+  constexpr double k_rough = 1e-3; // tolerance for typed directions
   const double length = std::sqrt(r.map[0] * r.map[0] + r.map[1] * r.map[1] + r.map[2] * r.map[2]);
   if (std::abs(length - 1.0) > k_rough)
     fail(r, "'map' must be a direction of length 1, got one of length " + rounded_text(length) + "; a scale is 'factor'");
@@ -149,7 +149,7 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
     const auto [k, sign] = axis_of(r, recording.layout, *r.gravity, "gravity");
     offset[k] = sign * k_gravity;
   }
-  constexpr double k_felt = 0.5 * k_gravity; // as the command refuses to list events
+  constexpr double k_felt = 0.5 * k_gravity; // same limit as in the command `record`, which rejects events beyond it
   double felt = 0.0;
   for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) felt += direction[i] * recording.facts.axes[i].rest;
   if (!r.gravity && r.rest.empty() && std::abs(felt) > k_felt)
@@ -158,7 +158,7 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
   return offset;
 }
 
-// What is cut out: an event, or what lies within a stretch of time, of one segment.
+// Cuts out the requested window: an event, or an interval of time within one segment.
 Window window_of(const Recorder& r, const Conditioned& signal, const std::vector<Window>& events) {
   if (r.event) {
     if (r.from || r.to) fail(r, "give 'event' or 'from' and 'to', not both");
@@ -190,7 +190,7 @@ Signal signal_of(const Recorder& r, const Window& window, const std::array<doubl
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < values.size() && direction[i] != 0.0; ++k) values[k] += r.factor * direction[i] * window.filtered[i][k];
   const double begin = window.times.front(), length = window.times.back() - begin;
-  double mean = 0.0; // after which velocity ends as it began
+  double mean = 0.0; // constant acceleration that makes the velocity at the end equal that at the begin
   for (std::size_t k = 1; k < values.size() && r.drift == "line"; ++k)
     mean += 0.5 * (values[k - 1] + values[k]) * (window.times[k] - window.times[k - 1]) / length;
   std::vector<Signal::Piece> pieces(values.size());

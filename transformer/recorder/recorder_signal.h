@@ -1,8 +1,8 @@
-// The signal kind `recorder`: acceleration along one direction from the file of a shock recorder, as reader.h reads it.
+// The signal kind `recorder`: acceleration along one direction from the file of a shock recorder, read as in reader.h.
 //
-// Its fields are the options of the command `record` by their names: what the file does not say is asked for, nothing is guessed.
-// The samples are conditioned (conditioner.h), a window is cut out, its drift corrected as asked; the signal is linear between
-// samples, and 0 outside. Limits: the record is held in memory; a drive by it knows nothing of the recorder's turns.
+// Its fields have the names of the options of the command `record`; missing information is an error, never guessed. The samples are
+// conditioned (conditioner.h), a window is cut out and its drift corrected as requested. The signal is linear between samples and 0
+// outside. The record is held in memory. Rotation of the recorder is not considered.
 #pragma once
 
 #include "mbd/model/signal.h"

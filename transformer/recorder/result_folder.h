@@ -1,4 +1,4 @@
-// The folder of a record's results: all files appear in it together, or none does.
+// Writes the results for a record to a folder, either all files or none.
 #pragma once
 
 #include <filesystem>
@@ -7,20 +7,20 @@
 
 namespace steplap {
 
-/// Files are written to a hidden folder on the same disk and moved at the end.
+/// Collects files in a hidden folder on the same disk and moves them at the end.
 class RecordFolder {
 public:
-  /// Throws FileError: results stand in `folder` that may not be replaced, or it cannot be written.
+  /// Throws FileError if `folder` contains results that must not be replaced, or is not writable.
   RecordFolder(const std::string& folder, bool is_overwriting);
   RecordFolder(const RecordFolder&) = delete;
   RecordFolder& operator=(const RecordFolder&) = delete;
-  /// Without commit() nothing stays, neither a file nor a folder.
+  /// Removes all files and folders created, unless commit() was called.
   ~RecordFolder();
 
-  /// Where files are written until commit().
+  /// Returns the folder for files before commit().
   [[nodiscard]] std::string staging() const { return staging_.string(); }
   [[nodiscard]] std::string path() const { return folder_.string(); }
-  /// Moves the files and returns their names, sorted. An earlier signal in other segments goes, as it would stand beside the new one.
+  /// Moves the files to their folder and returns their names, sorted. Signal files of an earlier run with other segments are removed.
   std::vector<std::string> commit();
 
 private:

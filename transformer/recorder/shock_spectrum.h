@@ -1,8 +1,9 @@
-// Shock response spectrum: the greatest absolute acceleration of an oscillator on a base that moves as recorded, over its natural frequency.
+// Computes the shock response spectrum: the largest absolute acceleration of an oscillator on a moving base as a function of its natural
+// frequency.
 //
-// Smallwood's ramp-invariant recursive filter (Shock and Vibration Bulletin 51, 1981): exact for a base acceleration that is straight
-// between samples. The greatest value is looked for at the samples, so frequencies end at a tenth of the rate, where a peak between
-// two samples is missed by 5 % at most. After the last sample the base is at rest for one period.
+// Uses Smallwood's ramp-invariant recursive filter (Shock and Vibration Bulletin 51, 1981), which is exact for a base acceleration that is
+// linear between samples. The maximum is taken at sample times, so frequencies end at a tenth of the sampling rate, where a peak between
+// two samples is underestimated by at most 5 %. After the last sample the base is at rest for one period.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +12,15 @@
 
 namespace steplap {
 
+/// A point of the spectrum.
 struct ShockPoint {
   double frequency = 0.0;    ///< Hz
-  double acceleration = 0.0; ///< greatest size, in the unit of the samples
+  double acceleration = 0.0; ///< largest magnitude, in the unit of the samples
 };
 
-/// Greatest size of the absolute acceleration of one oscillator. `quality` Q = 1/(2ζ); infinity: undamped.
+/// Returns the largest absolute acceleration of one oscillator, as a magnitude. `quality` is Q = 1/(2ζ); infinity: undamped.
 [[nodiscard]] double shock_response(std::span<const double> samples, double rate, double frequency, double quality);
-/// From the lowest frequency that the length of the samples resolves (1 Hz at least) to a tenth of the rate, twelve to an octave.
+/// Returns twelve points per octave from the lowest frequency that the duration resolves (at least 1 Hz) to a tenth of the sampling rate.
 [[nodiscard]] std::vector<ShockPoint> shock_spectrum(std::span<const double> samples, double rate, double quality = 10.0);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Delimiter, decimal sign, header: what parts the lines of a table.
+// Determines delimiter, decimal sign and header lines of a table.
 #include "transformer/recorder/fields.h"
 #include "transformer/recorder/layout.h"
 #include "transformer/recorder/record_error.h"
@@ -28,7 +28,7 @@ bool has_all_values(const Fields& fields) {
          std::all_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_missing(f) || is_stamp(f); });
 }
 
-// Lines that may be rows: not empty, no comment, begin like a number or a quote.
+// Returns lines that may be rows: not empty, no comment, beginning like a number or a quote.
 bool may_be_row(std::string_view line) {
   line = trimmed_blanks(line);
   if (line.starts_with('"')) line.remove_prefix(1);
@@ -55,11 +55,11 @@ char choose_delimiter(const std::vector<HeaderLine>& head) {
   return 2 * blank_rows > rows ? ' ' : ',';
 }
 
-// Do the numbers of the head tell the decimal sign?
+// Collects evidence for the decimal sign from the numbers in the head.
 struct DecimalSigns {
   std::size_t points = 0, commas = 0;
-  std::size_t comma_line = 0, comma_column = 0, point_line = 0, point_column = 0; ///< the first of each
-  bool may_be_thousands = true;                                                   ///< every comma parts groups of three digits
+  std::size_t comma_line = 0, comma_column = 0, point_line = 0, point_column = 0; ///< first occurrence of each
+  bool may_be_thousands = true; ///< true while every comma separates groups of three digits
 };
 
 bool is_in_thousands(std::string_view number) {
@@ -88,7 +88,7 @@ DecimalSigns decimal_signs(const std::vector<HeaderLine>& head, const TableShape
   return signs;
 }
 
-// A comma parts fields: could pairs of fields be numbers with a decimal comma?
+// Returns true if pairs of comma-separated fields could be numbers with a decimal comma.
 bool may_be_pairs(const std::vector<HeaderLine>& head, const TableShape& shape) {
   Fields fields;
   std::size_t rows = 0;
@@ -109,7 +109,7 @@ bool may_be_pairs(const std::vector<HeaderLine>& head, const TableShape& shape) 
 void settle_decimal(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options, TableShape& shape) {
   const std::size_t line = head[shape.first_data].number;
   const DecimalSigns signs = decimal_signs(head, shape);
-  if (shape.delimiter == ',' && signs.commas == 0) { // else they stand in quotes
+  if (shape.delimiter == ',' && signs.commas == 0) { // otherwise numbers are quoted
     const bool may_join = may_be_pairs(head, shape);
     const bool is_as_named = !shape.names.empty() && shape.names.size() == shape.width;
     if (options.decimal == ',') {
@@ -158,7 +158,8 @@ bool is_units_row(const Fields& fields) {
   return units > 0;
 }
 
-// Words, of which none is a number: names of columns. Where blanks part them a sentence looks alike, so that half of them must be known.
+// Returns true if the fields are names of columns: words, none of which is a number. With blanks as delimiter a sentence looks similar, so
+// half of the words must be known.
 bool is_names_row(const Fields& fields, char delimiter) {
   if (std::any_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_stamp(f); })) return false;
   const auto known = static_cast<std::size_t>(
@@ -166,7 +167,7 @@ bool is_names_row(const Fields& fields, char delimiter) {
   return known > 0 && (delimiter != ' ' || 2 * known >= fields.size());
 }
 
-// Fields such as "s" name a unit as well as a column: units all of them, if no other field names an axis or the like.
+// Returns true if all fields are units and none names an axis or similar. Fields such as "s" can be a unit or a name.
 bool are_only_units(const Fields& fields) {
   return is_units_row(fields) && std::all_of(fields.begin(), fields.end(), [](std::string_view f) {
            const Role role = role_of(heading_of(f).name).role;
@@ -174,7 +175,7 @@ bool are_only_units(const Fields& fields) {
          });
 }
 
-// "; Headers, time, Ax" and "; Time, Ax": what follows the sign of a comment, and the word "Headers".
+// Removes the comment sign and the word "Headers": "; Headers, time, Ax", "; Time, Ax".
 std::string uncommented(std::string_view line) {
   line = trimmed_blanks(line);
   while (!line.empty() && (line.front() == ';' || line.front() == '#' || line.front() == '*')) line.remove_prefix(1);
@@ -190,7 +191,7 @@ void take_names(const Fields& fields, std::vector<std::string>& texts) {
   for (const std::string_view field : fields) texts.emplace_back(field);
 }
 
-// Names and units stand in the last lines before the data, or in the last comments.
+// Searches names and units in the last lines before the data, or in the last comments.
 void find_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row_width, TableShape& shape) {
   Fields fields;
   for (const bool in_comments : {false, true})
@@ -202,7 +203,7 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
       if (!split_fields(text, shape.delimiter, fields) || fields.empty()) continue;
       const std::size_t numbers = static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), is_number));
       const bool is_key =
-          !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos; // "Rate: 100 Hz"
+          !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos; // such as "Rate: 100 Hz"
       if (!in_comments && back == 1 && !is_key && numbers > 0 && 2 * (numbers + 1) >= fields.size() && fields.size() >= row_width)
         throw RecordError(file, line.number, 1,
                           "This line before the first row holds both words and numbers: '" + shown(line.text.substr(0, 40)) +
@@ -215,19 +216,19 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
         take_names(fields, shape.names);
         shape.names_line = line.number;
       } else if (!in_comments && shape.units_line == 0) {
-        break; // a line of another kind: names stand right before the data
+        break; // names directly precede the data, so the search ends at any other line
       }
     }
 }
 
-// Files in blocks say where their rows begin: "*DATA".
+// Files in blocks mark the begin of rows, for example with "*DATA".
 std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
   for (std::size_t i = 0; i < head.size(); ++i)
     if (lower_case(trimmed_blanks(head[i].text)) == "*data") return i + 1;
   return 0;
 }
 
-// A line such as the date of the start looks like a row, but the names of columns come after it.
+// Returns true if a line such as the start date, which looks like a row, is followed by the names of columns.
 bool is_before_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row, const TableShape& shape) {
   Fields fields;
   const auto has_names = [&](std::size_t i) {
@@ -302,7 +303,7 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
                                      "CSV; if another sign parts the columns, give --delimiter.");
   shape.first_data = first;
   static_cast<void>(split_fields(head[first].text, shape.delimiter, fields));
-  while (shape.width > 1 && fields.back().empty()) fields.pop_back(), --shape.width; // a delimiter at the end of rows
+  while (shape.width > 1 && fields.back().empty()) fields.pop_back(), --shape.width; // delimiters at the end of rows
   find_names(head, file, shape.width, shape);
   settle_decimal(head, file, options, shape);
   if (!shape.names.empty()) {

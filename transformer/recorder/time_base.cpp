@@ -1,4 +1,4 @@
-// Where time comes from: which column, in which form and unit, how often was sampled.
+// Determines the time base of a record: column, format, unit and sampling rate.
 #include "transformer/recorder/fields.h"
 #include "transformer/recorder/layout.h"
 #include "transformer/recorder/record_error.h"
@@ -15,13 +15,13 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_year_2200 = 7.258e9;   // s since 1970; nanoseconds since then fit into 64 bits
-constexpr std::size_t k_most_rows = 4000; // of the head that are looked at
+constexpr double k_year_2200 = 7.258e9;   // s since 1970; until then nanoseconds fit into 64 bits
+constexpr std::size_t k_most_rows = 4000; // rows of the head that are examined
 
 /// Fields of one column in the first rows.
 struct ColumnHead {
   std::vector<std::string> texts;
-  std::vector<std::size_t> lines, columns; ///< where they stand
+  std::vector<std::size_t> lines, columns; ///< positions in the file
 };
 
 ColumnHead head_of_column(const std::vector<HeaderLine>& head, const TableShape& shape, std::size_t column) {
@@ -80,7 +80,7 @@ private:
     if (options_.time) {
       base_.column = column_of(shape_, *options_.time, "--time", layout_.file);
       has_time_ = true;
-    } else if (shape_.names.empty()) { // axes are numbered; a stamp in the first column is one
+    } else if (shape_.names.empty()) { // without names axes are found by position, and a date in the first column is the time
       has_time_ = std::none_of(layout_.axes.begin(), layout_.axes.end(), [](const AxisColumn& axis) { return axis.column == 0; });
       const ColumnHead first = head_of_column(head_, shape_, 0);
       if (has_time_ && !first.texts.empty() && parse_number(first.texts.front(), shape_.decimal))
@@ -173,19 +173,19 @@ private:
     settle_unit(unit, source);
   }
 
-  // What numbers of this size often are, offered where the unit is asked for. "": nothing comes to mind.
+  // Returns a suggestion for the unit of numbers of this size; "" if there is none.
   std::string likely_unit() const {
     const double value = numbers_.front();
     const std::pair<double, const char*> epochs[] = {
         {1.0, "epoch"}, {1e-3, "\"epoch ms\""}, {1e-6, "\"epoch us\""}, {1e-9, "\"epoch ns\""}};
     for (const auto& [factor, unit] : epochs)
       if (value * factor > 9.4e8 && value * factor < 2.6e9)
-        return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + "."; // 1999 to 2052
+        return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + "."; // years 1999 to 2052
     return is_size_of_days() ? " Numbers of this size are often the days of a spreadsheet: that is --time-unit days." : "";
   }
-  bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; } // 1954 to 2119
+  bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; } // years 1954 to 2119
 
-  // Which unit the family of the recorder writes, or makes the times agree with the rate that a line says.
+  // Returns the unit used by the recorder's family, or the unit for which the times agree with the sampling rate in the header.
   std::string unit_by_family_or_rate(std::string& source) const {
     source = "the family of the recorder";
     if (layout_.family == "Gulf Coast Data Concepts") return "s";
@@ -222,7 +222,7 @@ private:
     else if (base_.is_relative) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(since_1970 * 1e6)) * 1000) + " UTC";
   }
 
-  // Of the first times, in their own unit: the median of the steps forward.
+  // Returns the median of the forward steps of the first times, in their own unit.
   double typical_step() const {
     std::vector<double> steps;
     for (std::size_t i = 1; i < numbers_.size(); ++i)
@@ -277,8 +277,9 @@ private:
                             ") is none that a recorder has. Give --rate HZ or --time-unit.");
   }
 
-  // Intervals by time over the steps that are no gaps; samples that are counted are believed where some are left out. A step that
-  // lacks rows counts as the intervals that it is long; without such steps the mean is exact even where times are rounded.
+  // Computes the rate from the intervals without gaps, divided by the time that they take. If the file counts samples and some are missing,
+  // the counter is used. A step with missing rows counts as its length in intervals. Without such steps the mean is exact even if times are
+  // rounded.
   std::optional<double> rate_by_times() const {
     const std::vector<double> times = head_times();
     std::vector<double> steps, usual;
@@ -290,7 +291,7 @@ private:
     const double median = usual[usual.size() / 2];
     if (base_.index_column)
       if (const auto rate = rate_by_index(times)) return rate;
-    constexpr double k_hole = 1.5, k_rare = 0.1; // a longer step lacks a row, if few do: else the clock jitters
+    constexpr double k_hole = 1.5, k_rare = 0.1; // longer steps indicate missing rows if they are rare; otherwise the clock jitters
     double regular = 0.0, count = 0.0, all = 0.0;
     for (const double step : steps) {
       if (step <= k_hole * median) regular += step, count += 1.0;

@@ -11,7 +11,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Takes digits from the front; false if there are fewer than `least` or more than `most`.
+// Parses digits at the front. Returns false if there are fewer than `least` or more than `most`.
 bool take_digits(std::string_view& text, std::size_t least, std::size_t most, int& value, std::size_t& count) {
   value = 0;
   for (count = 0; count < text.size() && is_digit(text[count]) && count < most; ++count) value = value * 10 + (text[count] - '0');
@@ -20,7 +20,7 @@ bool take_digits(std::string_view& text, std::size_t least, std::size_t most, in
   return true;
 }
 
-// 1 to 12 if a month's name is at the front, which is taken.
+// Parses a month's name at the front and returns 1 to 12.
 int take_month_name(std::string_view& text) {
   constexpr std::array<const char*, 12> k_months = {"jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"};
   std::size_t letters = 0;
@@ -45,7 +45,7 @@ bool is_day(int year, int month, int day) {
   return year >= 1970 && year < 2200 && month >= 1 && month <= 12 && day >= 1 && day <= days_in(year, month);
 }
 
-// Days since 1970-01-01 of the proleptic Gregorian calendar, counted in eras of 400 years that begin in March.
+// Returns the days since 1970-01-01 in the proleptic Gregorian calendar, by eras of 400 years that begin in March.
 std::int64_t days_since_1970(int year, int month, int day) {
   const int y = month <= 2 ? year - 1 : year, era = y / 400, of_era = y - era * 400;
   const int of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
@@ -54,13 +54,13 @@ std::int64_t days_since_1970(int year, int month, int day) {
 }
 
 struct DateParts {
-  int first = 0, second = 0, third = 0; ///< as they come; a month's name as its number
+  int first = 0, second = 0, third = 0; ///< in the order of the text; a month's name as its number
   std::size_t first_digits = 0, third_digits = 0;
-  int named = 0; ///< which of the first two is a month's name; 0: none
+  int named = 0; ///< position (1 or 2) of a month's name; 0: none
   char separator = 0;
 };
 
-// Takes a date's three parts from the front.
+// Parses the three parts of a date at the front.
 std::optional<DateParts> take_date(std::string_view& text) {
   DateParts parts;
   std::size_t count = 0;
@@ -116,7 +116,7 @@ unsigned orders_of(const DateParts& parts) {
   return orders;
 }
 
-// hh:mm[:ss[.fraction]] [AM|PM] from the front.
+// Parses hh:mm[:ss[.fraction]] [AM|PM] at the front.
 bool take_clock(std::string_view& text, std::int64_t& ns) {
   int hour = 0, minute = 0, second = 0;
   std::size_t count = 0;
@@ -148,7 +148,7 @@ bool take_clock(std::string_view& text, std::int64_t& ns) {
   return true;
 }
 
-// Z, UTC, +hh:mm, +hhmm, +hh; how much the clock is ahead.
+// Parses Z, UTC, +hh:mm, +hhmm, +hh. Returns the offset from UTC.
 bool take_zone(std::string_view& text, std::int64_t& ahead_ns) {
   ahead_ns = 0;
   if (text == "Z" || text == "z" || text == "UTC" || text == "GMT") {
@@ -211,7 +211,7 @@ std::string stamp_text(std::int64_t ns) {
     rest += k_day_ns;
     --days;
   }
-  // The civil date of a day, by the same eras.
+  // Converts days to a date by the same eras.
   const std::int64_t z = days + 719468, era = z / 146097, of_era = z - era * 146097;
   const std::int64_t year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365;
   const std::int64_t of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100), shifted = (5 * of_year + 2) / 153;

@@ -93,7 +93,7 @@ AndrewsResult run_andrews_kkt_ida(AndrewsVariant variant, double tolerance) {
   AndrewsResult result;
   const int flag = IDASolve(memory, end, &t, yv.get(), rv.get(), IDA_NORMAL);
   result.angles = relative_angles(y.data());
-  if (flag < 0) result.angles.fill(1e300); // did not arrive: no error to speak of
+  if (flag < 0) result.angles.fill(1e300); // did not reach the end: the error is meaningless
   require(IDAGetNumSteps(memory, &result.steps), "IDAGetNumSteps");
   result.evaluations = counter.evaluations;
   SUNLinSolFree(solver);

@@ -1,7 +1,7 @@
 #pragma once
 
-// ARKODE's explicit Dormand-Prince 5(4) for the small scenes: run to a time or to
-// the first root, restart after a mode change, count everything.
+// Explicit Dormand-Prince 5(4) of ARKODE for the small scenes: integrates to a given time or to the first root, restarts after a mode
+// change, and counts steps and evaluations.
 
 #include "sundials_handles.h"
 
@@ -13,24 +13,24 @@ struct ArkodeProblem {
   int size = 0;
   ARKRhsFn rates = nullptr;
   void* data = nullptr;
-  int switches = 0; // number of root functions, watched for falling through zero
+  int switches = 0; // number of root functions; an event is a change to a negative value
   ARKRootFn roots = nullptr;
   double longest_step = 0.0; // 0: no bound
 };
 
 class ArkodeRunner {
 public:
-  // y stays the caller's and always holds the state at time().
+  // y belongs to the caller and always contains the state at time().
   ArkodeRunner(const ArkodeProblem& problem, double* y, double tolerance);
   ~ArkodeRunner();
   ArkodeRunner(const ArkodeRunner&) = delete;
   ArkodeRunner& operator=(const ArkodeRunner&) = delete;
 
-  // Advances to the time, or to the first root before it: its slot, else −1.
+  // Advances to the time, or to the first root before it. Returns the index of the root function; −1 if there was no root.
   int advance(double until);
-  // To be called after a change of y or of the modes; 0: the last step again.
+  // Must be called after a change of y or of the modes. 0: start with the last step size.
   void restart(double first_step = 0.0);
-  // Interpolated state at a time within the last step.
+  // Returns the interpolated state at a time within the last step.
   void interpolate(double t, double* y);
   // As advance, but returns after every step, for sampling (−1: no root).
   int step(double until);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What every peer reports: one row per rung of a ladder of settings.
+// Output of every peer: one row per setting.
 
 #include <cstdio>
 #include <string>
@@ -22,7 +22,7 @@ struct Rung {
 // CPU seconds of this thread.
 [[nodiscard]] double cpu_seconds();
 
-// Least CPU time in milliseconds of repeated runs; short runs are repeated more often.
+// Returns the smallest CPU time, ms, of repeated runs; short runs are repeated more often.
 template <class F> [[nodiscard]] double least_ms(F run, double budget_seconds = 0.2) {
   double least = 1e300;
   double spent = 0.0;
@@ -36,13 +36,13 @@ template <class F> [[nodiscard]] double least_ms(F run, double budget_seconds = 
   return 1e3 * least;
 }
 
-// problem,"program",setting,error,cpu_ms,steps,evaluations,events; a program's name may hold commas.
+// Writes the columns problem,"program",setting,error,cpu_ms,steps,evaluations,events. A program's name may contain commas.
 void write_csv(std::FILE* file, const std::vector<Rung>& rungs);
 
 void print_table(const std::vector<Rung>& rungs);
 
-// CPU time at an error, by straight lines in the logarithms between the rungs of
-// the Pareto set; negative if no rung reaches it.
+// Returns the CPU time for a given error, by linear interpolation between logarithms along the Pareto set; negative if no setting reaches
+// it.
 [[nodiscard]] double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, const std::string& program, double error);
 
 // One line per problem and program: CPU time at errors 1e-3, 1e-6, 1e-9.

@@ -1,4 +1,5 @@
-// What a step costs for each body in programs other than steplap, from 10 bodies up.
+// Measures the cost of a step per body in programs other than steplap, from 10 bodies up.
+//
 //   peer_scaling [largest number of bodies, default 10000]
 #include "scaling.h"
 
@@ -13,7 +14,7 @@ using namespace steplap::peers;
 
 namespace {
 
-// Programs of different order agree on where the last body is: h⁴ and rounding over some 1000 steps.
+// Programs with methods of different order must agree on the position of the last body, up to h⁴ and rounding over about 1000 steps.
 constexpr double k_agreement = 1e-6;
 
 struct Table {

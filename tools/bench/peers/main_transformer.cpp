@@ -67,7 +67,7 @@ double error_of(const History& run, const History& reference) {
   return std::max(scaled_error(run, reference, &Outputs::theta1), scaled_error(run, reference, &Outputs::bottom_arrest));
 }
 
-// The two columns that are compared, by name; empty if the file is not there.
+// Returns the two compared columns by name; empty if the file does not exist.
 History read_reference(const std::string& path) {
   History rows;
   std::ifstream file(path);
@@ -141,7 +141,7 @@ void print_events(double tolerance) {
     }
 }
 
-// What one evaluation costs by itself, in the starting mode (stick, feet closed).
+// Prints the cost of one evaluation in the initial mode (sticking, feet closed).
 void print_evaluation_cost() {
   Transformer model(Condition::no_interference);
   State y = model.initial_state();

@@ -15,10 +15,10 @@ struct MechanismResult {
   long steps = 0;
   long evaluations = 0;
   long events = 0;
-  double cpu_ms = 0.0; // set by programs with a costly set-up: the integration alone
+  double cpu_ms = 0.0; // integration only; set by programs with a costly set-up
 };
 
-// B2, N windows: place of B0 after 10 s on the parallelogram branch.
+// B2 with N windows: position of B0 after 10 s on the parallelogram branch.
 struct FourBarExact {
   int windows;
   double x, y;

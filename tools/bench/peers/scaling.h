@@ -1,8 +1,8 @@
 #pragma once
 
-// Scenes of any size, those of bench_scaling: chains of pendulums that fall from the horizontal (uniform rods,
-// 1 m, 1 kg, 0.083 kg m² a rod), and square grids of masses on springs (1 kg, 1 m apart, 10 kN/m, 1 N s/m) that
-// hang from their first row. What a step and an evaluation cost for each body.
+// Scenes of variable size, as in bench_scaling: pendulum chains that fall from the horizontal (uniform rods, 1 m, 1 kg, 0.083 kg m² each),
+// and square grids of masses on springs (1 kg, 1 m apart, 10 kN/m, 1 N s/m) suspended at their first row. Measures the cost of a step and
+// of an evaluation per body.
 
 #include "ladder.h"
 
@@ -16,14 +16,14 @@ constexpr double k_rod_inertia = 0.083;
 constexpr double k_grid_stiffness = 1e4, k_grid_damping = 1.0;
 
 struct ScalingResult {
-  double step_us = 0.0;     // CPU time of a step for each body
-  double evaluations = 0.0; // a step
+  double step_us = 0.0;     // CPU time of a step per body
+  double evaluations = 0.0; // per step
   double probe = 0.0;       // y of the last body at the end, to compare programs
 };
 
 [[nodiscard]] inline int steps_for(int bodies) { return bodies > 6000 ? 3 : 20000 / bodies; }
 
-// Least time of three batches of steps_for(bodies) steps each, as bench_scaling takes it.
+// Returns the smallest time of three batches of steps_for(bodies) steps each, as bench_scaling does.
 template <class Advance> [[nodiscard]] double least_step_us(int bodies, Advance advance) {
   const int steps = steps_for(bodies);
   double least = 1e300;
@@ -36,7 +36,7 @@ template <class Advance> [[nodiscard]] double least_step_us(int bodies, Advance 
   return 1e6 * least / steps / bodies;
 }
 
-// Hand-written: rates of the whole scene, y = positions then velocities.
+// Hand-written scene: rates for y = positions, then velocities.
 class ByHand {
 public:
   virtual ~ByHand() = default;
@@ -45,7 +45,7 @@ public:
   [[nodiscard]] virtual double probe(const double* y) const = 0;
 };
 
-// Absolute coordinates, the pins' forces from a block-tridiagonal system.
+// Absolute coordinates; pin forces from a block-tridiagonal system.
 class ChainByHand : public ByHand {
 public:
   explicit ChainByHand(int rods);
@@ -62,7 +62,7 @@ private:
   std::vector<Block> inverse_;
 };
 
-// Point masses: x and y alone.
+// Point masses with coordinates x and y only.
 class GridByHand : public ByHand {
 public:
   explicit GridByHand(int side) : side_(side) {}

@@ -19,7 +19,7 @@ std::vector<double> ChainByHand::start() const {
   return y;
 }
 
-// Left ends follow the right ends before them:
+// Joint condition: the left end of each rod coincides with the right end of the previous one:
 //   D_i λ_i + U_{i−1} λ_{i−1} + U_i λ_{i+1} = −(ω_i² r_i + ω_{i−1}² r_{i−1}), the first with the weight as well,
 //   U_i = n_i n_iᵀ/J − 1/m, D_i = (1/m + n_i n_iᵀ/J) + the same of the rod before, n = ẑ × r.
 void ChainByHand::rates(const double* y, double* dy) {

@@ -1,5 +1,5 @@
-// The same scenes in Simbody: a tree of pins (its recursive, order-n equations), free planar bodies on springs;
-// its Runge-Kutta-Merson integrator at a fixed step.
+// The scenes of scaling.h in Simbody: a tree of pins (its recursive equations of order n) and free planar bodies on springs, with its
+// Runge-Kutta-Merson integrator at constant step.
 #include "scaling.h"
 
 #include <Simbody.h>

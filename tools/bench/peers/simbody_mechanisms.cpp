@@ -54,7 +54,7 @@ MechanismResult integrate(const Scene& scene, SimTK::State& state, double end, d
     integrator.setFinalTime(end);
     while (integrator.getTime() < end && integrator.stepTo(end) != SimTK::Integrator::EndOfSimulation) {}
   } catch (const std::exception&) {
-    // It gave up on the way: its error at the end is that of the state it reached.
+    // The integrator failed; the error is that of the state reached.
   }
   result.cpu_ms = 1e3 * (cpu_seconds() - start);
   state = integrator.getState();

@@ -36,7 +36,7 @@ private:
 
 [[nodiscard]] inline double* data_of(N_Vector v) { return N_VGetArrayPointer(v); }
 
-// A failure here is a fault of the peer program itself: stop and say where.
+// Stops the program with a message, because a failure here is an error in the peer program.
 inline void require(int flag, const char* what) {
   if (flag >= 0) return;
   std::fprintf(stderr, "SUNDIALS: %s returned %d\n", what, flag);

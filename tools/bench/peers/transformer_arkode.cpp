@@ -12,8 +12,8 @@
 namespace steplap::peers {
 namespace {
 
-// A foot that lifts and lands again within one step would be missed by the sign
-// checks at step ends (the shortest lift of this scene lasts 6.4 ms).
+// Limit of the step, s. A foot that lifts and lands within one step would not be detected at the ends of the step (the shortest lift in
+// this scene lasts 6.4 ms).
 constexpr double k_longest_step = 6e-3;
 
 class Run {
@@ -31,7 +31,7 @@ public:
     require(ARKStepSetRootDirection(memory_, falling.data()), "SetRootDirection");
     require(ARKStepSetMaxStep(memory_, k_longest_step), "SetMaxStep");
     require(ARKStepSetMaxNumSteps(memory_, 1000000), "SetMaxNumSteps");
-    // A function that starts a mode at zero is meant to: no warning.
+    // A function that starts a mode at zero is intended, so its warning is disabled.
     require(ARKStepSetNoInactiveRootWarn(memory_), "SetNoInactiveRootWarn");
   }
   ~Run() { ARKStepFree(&memory_); }
@@ -50,7 +50,7 @@ public:
         if (flag != ARK_ROOT_RETURN) continue;
         handle_event();
         restart();
-        // A restart forgets the stop time; without this the step would smear the kink.
+        // A restart clears the stop time. Without setting it again the step would cross the kink.
         require(ARKStepSetStopTime(memory_, stop), "SetStopTime");
       }
     }

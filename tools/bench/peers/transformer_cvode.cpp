@@ -13,8 +13,8 @@
 namespace steplap::peers {
 namespace {
 
-// A foot that lifts and lands again within one step would be missed by the sign
-// checks at step ends (the shortest lift of this scene lasts 6.4 ms).
+// Limit of the step, s. A foot that lifts and lands within one step would not be detected at the ends of the step (the shortest lift in
+// this scene lasts 6.4 ms).
 constexpr double k_longest_step = 2e-3;
 
 // A restart is of order 1: it needs far smaller steps than the last ones.
@@ -37,7 +37,7 @@ public:
     require(CVodeSetRootDirection(memory_, falling.data()), "SetRootDirection");
     require(CVodeSetMaxStep(memory_, k_longest_step), "SetMaxStep");
     require(CVodeSetMaxNumSteps(memory_, 1000000), "SetMaxNumSteps");
-    // A function that starts a mode at zero is meant to: no warning.
+    // A function that starts a mode at zero is intended, so its warning is disabled.
     require(CVodeSetNoInactiveRootWarn(memory_), "SetNoInactiveRootWarn");
   }
   ~Run() {
@@ -59,7 +59,7 @@ public:
         if (flag != CV_ROOT_RETURN) continue;
         handle_event();
         restart();
-        // A restart forgets the stop time; without this the step would smear the kink.
+        // A restart clears the stop time. Without setting it again the step would cross the kink.
         require(CVodeSetStopTime(memory_, stop), "SetStopTime");
       }
     }

@@ -1,8 +1,6 @@
-// The hand-written transformer with an own integrator: DOP853, PI step control,
-// events located on the dense output. The dense output (three evaluations) is
-// built only where an event is in sight: a switching function has changed sign
-// over the step, its Hermite cubic dips below zero inside, or a stage saw the
-// stick force beyond its bound.
+// Integrates the hand-written transformer with an own DOP853, PI step control and event location on the dense output. The dense output
+// (three evaluations) is built only if an event is possible: a switching function changed sign over the step, its Hermite cubic is negative
+// inside, or the friction force of a stage exceeded the bound of sticking.
 
 #include "dop853_step.h"
 #include "transformer_programs.h"
@@ -41,8 +39,8 @@ public:
   }
 
 private:
-  // The response grows with the eighth power of the step: a guess that is right
-  // within a factor of two for this scene.
+  // Returns an estimate of the first step: the error is proportional to the eighth power of the step. For this scene it is correct within a
+  // factor of two.
   [[nodiscard]] double first_step() const { return 0.02 * std::pow(tolerance_, 0.125); }
 
   void start_mode() {
@@ -68,7 +66,7 @@ private:
     if (model_.sticking()) w.slope[k_friction_upper] = w.slope[k_friction_lower] = 0.0;
   }
 
-  // One accepted step, or the part of it up to its first event. Returns the next size.
+  // One accepted step, or the part of it up to its first event. Returns the size of the next step, s.
   double advance(double stop, double h) {
     auto rates = [this](double t, const double* y, double* f) { model_.rates(t, y, f); };
     const bool last = t_ + 1.01 * h >= stop;
@@ -113,7 +111,7 @@ private:
     return std::min(next, k_after_event * first_step());
   }
 
-  // Could a switching function have reached zero in this step?
+  // Returns true if a switching function may have reached zero in this step.
   bool suspect(const Watch& fresh, double h) {
     bool any = false;
     for (int i = 0; i < k_switches; ++i) {
@@ -132,7 +130,8 @@ private:
     return any;
   }
 
-  // Least value of the Hermite cubic that falls first and rises last, with a margin.
+  // Returns true if the Hermite cubic, which decreases first and increases at the end, has a minimum below a quarter of its smaller end
+  // value: the function itself may then be negative.
   static bool dips(double a, double b, double da, double db) {
     const double c2 = 3.0 * (b - a) - 2.0 * da - db;
     const double c3 = da + db - 2.0 * (b - a);
@@ -164,8 +163,8 @@ private:
     return first;
   }
 
-  // First zero of a falling function in (0, 1], or 2. A function that starts at
-  // zero (its mode has just begun) counts from where it has become positive.
+  // Returns the first zero of a decreasing function in (0, 1], or 2 if there is none. A function that starts at zero (its mode has just
+  // begun) is considered from where it has become positive.
   double slot_crossing(int slot, const Watch& fresh, double h) {
     const bool plain = old_.value[slot] > k_armed && fresh.value[slot] <= 0.0 && old_.slope[slot] < 0.0 && fresh.slope[slot] < 0.0;
     if (plain) return root(slot, 0.0, 1.0, old_.value[slot], fresh.value[slot], h);
@@ -181,7 +180,7 @@ private:
     return 2.0;
   }
 
-  // Illinois. Ends where the guess no longer moves, a little beyond the switch.
+  // Illinois method. Ends when the estimate no longer moves, slightly beyond the zero.
   double root(int slot, double a, double b, double ga, double gb, double h) {
     const double enough = std::max(1e-15, k_root_share * tolerance_);
     double last = b;

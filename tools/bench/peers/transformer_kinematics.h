@@ -1,6 +1,6 @@
 #pragma once
 
-// Where body 1 is and how it moves, seen from body 5, and the gaps of the contacts.
+// Pose and velocity of body 1 relative to body 5, and the gaps of the contacts.
 
 #include "transformer_parameters.h"
 
@@ -10,8 +10,7 @@ struct Turn {
   double sine, cosine, versine; // versine: cos − 1
 };
 
-// The angles of this scene are milliradians: short series are exact to rounding,
-// and unlike divisions they can be evaluated side by side.
+// Angles of this scene are milliradians. Short series are exact to rounding and, unlike divisions, can be evaluated in parallel.
 inline constexpr double k_small = 0.01;
 
 inline Turn turn(double x) {

@@ -25,7 +25,7 @@ State Transformer::initial_state() const {
 
 void Transformer::rates(double t, const double* y, double* dydt) {
   ++evaluations_;
-  // Members are written once, at the end: dydt could alias them for all the compiler knows.
+  // Members are written once, at the end, because the compiler must assume that dydt may alias them.
   const Kinematics k = kinematics(y);
   const double w = y[10];
   const double s4 = y[5];

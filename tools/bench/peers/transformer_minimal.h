@@ -40,7 +40,7 @@ inline constexpr int k_friction_lower = 9; // stick: μN + λ
 inline constexpr int k_foot_switch = 10;
 inline constexpr int k_switches = 11;
 
-// Values of functions that are not watched in the present mode: safely positive.
+// Value of switching functions that are not monitored in the present mode: positive, so that they never fire.
 inline constexpr double k_unwatched = 1.0;
 
 using State = std::array<double, k_states>;
@@ -58,26 +58,26 @@ public:
 
   [[nodiscard]] State initial_state() const;
 
-  // ẏ in the present modes, smooth beyond their ends. In stick it also leaves
-  // the multiplier, and always the feet's normal force, behind.
+  // Computes ẏ in the present modes, smoothly extended beyond their limits. Stores the normal force of the feet and, while sticking, the
+  // multiplier.
   void rates(double t, const double* y, double* dydt);
 
   // Switching functions; forces scaled by 1e5 N, lengths by 1e-3 m, speeds by
   // 0.1 m/s, so that all are of order one. Costs an evaluation in stick only.
   void switches(double t, const double* y, double* g);
-  // The same without those of sticking, which cost an evaluation.
+  // As switches(), but without the functions of sticking, which need an evaluation.
   void kinematic_switches(const double* y, double* g) const;
-  // Those of sticking alone, from the last evaluation.
+  // Only the functions of sticking, from the last evaluation.
   void stick_switches(double* g) const;
   [[nodiscard]] double switch_value(int slot, double t, const double* y);
 
-  // The mode change of one switching function that has reached zero.
+  // Changes the mode for a switching function that has reached zero.
   void cross(int slot, double t, State& y);
 
   [[nodiscard]] bool sticking() const { return friction_ == FrictionMode::stick; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
-  // Least of μN − |λ| seen by the evaluations since the last reset (a hint that
-  // sticking ended inside a step although it holds at both ends).
+  // Returns the smallest μN − |λ| of all evaluations since the last reset. It shows that sticking ended inside a step even if it holds at
+  // both ends.
   [[nodiscard]] double stick_margin() const { return stick_margin_; }
   void reset_stick_margin() { stick_margin_ = 1e300; }
 

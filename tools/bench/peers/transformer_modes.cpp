@@ -1,5 +1,5 @@
-// Contact and friction modes of the hand-written transformer: switching functions,
-// what happens where one reaches zero, and the decision between stick and slip.
+// Contact and friction modes of the hand-written transformer: switching functions, mode changes at their zeros, and the decision between
+// stick and slip.
 
 #include "transformer_kinematics.h"
 
@@ -15,7 +15,7 @@ double Transformer::force_law(int contact, const Kinematics& k, const double* y)
   return -k_stiffness[contact] * effective_gap(contact, k, y) - k_damping[contact] * gap_rate(contact, k, y);
 }
 
-// Rate of s = rx + d tan φ + L sec φ, the tip's place along the floor.
+// Returns the rate of s = rx + d tan φ + L sec φ, the position of the tip along the floor.
 double Transformer::slide_speed(const Kinematics& k) const {
   return k.rxd + k.ryd * k.tan + (k.d + k_place[foot_] * k.sp) * k.sec2 * k.phid;
 }
@@ -78,7 +78,7 @@ double Transformer::switch_value(int slot, double t, const double* y) {
   return side * effective_gap(i, k, y);
 }
 
-// Stick if friction can hold it, else slip the way the missing force leaves open.
+// Chooses stick if friction can hold the load, otherwise slip in the direction of the missing force.
 void Transformer::try_stick(double t, State& y) {
   friction_ = FrictionMode::stick;
   State unused;
@@ -87,7 +87,7 @@ void Transformer::try_stick(double t, State& y) {
   friction_ = lambda_ > 0.0 ? FrictionMode::slip_backward : FrictionMode::slip_forward;
 }
 
-// Decides friction anew after the contact forces have jumped or a foot has switched.
+// Repeats the decision on friction after a jump of the contact forces or a change of the contact foot.
 void Transformer::settle_friction(double t, State& y) {
   const bool touching = contacts_[0] == ContactMode::closed || contacts_[1] == ContactMode::closed;
   if (!touching) {
@@ -108,7 +108,7 @@ void Transformer::cross(int slot, double t, State& y) {
     foot_ = 1 - foot_;
     settle_friction(t, y);
   } else if (slot == k_friction_upper && !sticking()) {
-    // Make s rest exactly, so that sticking starts without a creep of rounding.
+    // Sets the rate of s exactly to zero, so that sticking starts without drift from rounding.
     const Kinematics k = kinematics(y.data());
     y[6] -= slide_speed(k) / (k.c - k.s * k.tan);
     try_stick(t, y);

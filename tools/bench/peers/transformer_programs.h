@@ -13,7 +13,7 @@ struct Happening {
   const char* what;
 };
 
-// Filled when wanted: outputs at 1 ms, 2 ms … 0.8 s, and the events.
+// Filled if requested: outputs at 1 ms, 2 ms … 0.8 s, and the events.
 struct Record {
   std::vector<Outputs> samples;
   std::vector<Happening> happenings;

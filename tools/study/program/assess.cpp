@@ -27,7 +27,8 @@ using Align = TextTable::Align;
 
 constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
 
-// Made before anything is computed, so that hours of work do not end in a folder that cannot be; gone again if nothing came into it.
+// Creates the output folder before hours of computation, so that an invalid folder is reported at once. Removes the folder if it remains
+// empty.
 class OutputFolder {
 public:
   explicit OutputFolder(const fs::path& path) : path_(path) {
@@ -42,7 +43,7 @@ public:
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder() {
     std::error_code ignored;
-    if (is_new_) fs::remove(path_, ignored); // does nothing to a folder with files in it
+    if (is_new_) fs::remove(path_, ignored); // fails if the folder contains files
   }
 
 private:
@@ -117,7 +118,7 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   return options;
 }
 
-// One line on a terminal.
+// Shows the progress in one line on a terminal.
 class AssessProgress {
 public:
   explicit AssessProgress(Console& console) : console_(console) {}
@@ -165,7 +166,7 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
   }
 }
 
-// The greatest, in order of time.
+// Returns the largest events, in order of time.
 std::vector<std::size_t> shown_events(const Assessment& a) {
   const std::size_t most = std::max<std::size_t>(1, k_shown_events / std::max<std::size_t>(1, a.models.size()));
   std::vector<std::size_t> order(a.events.size());
@@ -202,7 +203,7 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
     out << "\nProbability of damage in the voyage: " << percent(a.damage.value) << " (95 %: " << percent(a.damage.low) << " to "
         << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
   for (std::size_t i = 0; i < a.hangs_on.size() && i < k_shown_sentences; ++i) out << a.hangs_on[i] << "\n";
-  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // else the first line says it
+  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // otherwise the first line contains it
   for (const MissingEvidence& missing : a.missing)
     if (a.is_accepted(missing.item)) out << "Accepted (" << name_of(missing.item) << "): " << missing.reason << "\n";
   for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i)

@@ -1,4 +1,4 @@
-// What `steplap assess` does: reads, runs, decides, writes assessment.json, tells it on a screen.
+// Executes `steplap assess`: reads, runs, decides, writes assessment.json and prints the result.
 #pragma once
 
 #include "tools/steplap/assess.h"

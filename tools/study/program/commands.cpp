@@ -36,20 +36,20 @@ std::string default_store(const std::string& file) {
 
 bool is_database(const std::string& file) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return false; // a named pipe would be waited for
+  if (!std::filesystem::is_regular_file(file, ignored)) return false; // a named pipe would block
   std::ifstream stream(file, std::ios::binary);
   char head[16]{};
   return stream.read(head, sizeof head) && std::string(head, 15) == "SQLite format 3";
 }
 
-// A store that cannot be used, with what to type.
+// Reports a store that cannot be used, with the options that help.
 FileError with_options(const StoreError& error) {
   std::string options;
   for (const StoreMode mode : error.helps()) options += mode == StoreMode::changed ? "--changed, " : "--restart, ";
   return {error.path(), options.empty() ? error.what() : error.what() + (" (steplap study run: " + options + "-o)"), error.line()};
 }
 
-// What is given is the study file or the store itself.
+// Returns the store for an argument that names the study file or the store itself.
 std::string store_of(const Options& o) {
   if (is_standard_output(o.file))
     throw UsageError(
@@ -108,7 +108,7 @@ ExitCode run_command_of(const Options& o, const Ranks& ranks, Console& console) 
     loaded = read_study(o.file);
   } catch (const ModelError&) {
     if (ranks.is_first()) throw;
-    return ExitCode::model_error; // said by the first
+    return ExitCode::model_error; // rank 0 has reported the error
   }
   std::optional<Answer> answer;
   {
@@ -205,7 +205,7 @@ Command export_command() {
   return command;
 }
 
-// The run of one sample by the command that runs models, with the values laid over them.
+// Runs one sample with the command for models, with its values as overrides.
 ExitCode replay(const Options& o, Console& console) {
   const LoadedStudy loaded = read_study(o.file);
   Store store(store_of(o));

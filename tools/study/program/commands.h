@@ -1,4 +1,4 @@
-// steplap study: its sub-commands.
+// Sub-commands of `steplap study`.
 #pragma once
 
 #include "tools/steplap/command_line.h"
@@ -6,9 +6,9 @@
 
 namespace steplap::study {
 
-/// run, show, report, export, replay, schema; `ranks` has to outlive them.
+/// Returns run, show, report, export, replay and schema. `ranks` must outlive them.
 [[nodiscard]] std::vector<Command> study_commands(const Ranks& ranks);
-/// The program of these, with its own exit codes.
+/// Returns the program with these commands and its own exit codes.
 [[nodiscard]] Program study_program(const Ranks& ranks);
 
 } // namespace steplap::study

@@ -1,5 +1,5 @@
-// libexec/steplap-study: what `steplap study` runs. A program of its own, so that the libraries of studies cost the
-// other commands nothing at their start.
+// The program libexec/steplap-study, which `steplap study` starts. It is separate so that the other commands need not load the libraries
+// for studies.
 #include "tools/steplap/command_line.h"
 #include "tools/study/program/assess.h"
 #include "tools/study/program/commands.h"

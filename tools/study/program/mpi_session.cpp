@@ -8,7 +8,7 @@ namespace steplap::study {
 
 namespace {
 
-// Set by mpirun and by srun (--mpi=pmix or pmi2) for each process they start.
+// Returns true if an environment variable shows that mpirun or srun (--mpi=pmix or pmi2) has started this process.
 bool has_launcher() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name)) return true;

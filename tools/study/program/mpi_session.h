@@ -1,4 +1,4 @@
-// MPI for as long as one of these lives, where a launcher (mpirun, srun) has started the program.
+// Initialises MPI during its lifetime, if a launcher (mpirun, srun) has started the program.
 #pragma once
 
 #include "tools/study/ranks.h"
@@ -12,7 +12,7 @@ public:
   MpiSession& operator=(const MpiSession&) = delete;
   ~MpiSession();
 
-  /// All processes that the launcher started; without one this process alone.
+  /// Returns all processes that the launcher started; without a launcher this process only.
   [[nodiscard]] const Ranks& ranks() const { return ranks_; }
 
 private:

@@ -14,7 +14,7 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-// Seconds, minutes, hours: as exactly as such a guess deserves.
+// Formats a duration in seconds, minutes or hours, with the accuracy of an estimate.
 std::string span_text(double seconds) {
   constexpr double k_minute = 60.0, k_hour = 3600.0;
   if (seconds < 2.0 * k_minute) return formatted("%.0f s", std::ceil(seconds));

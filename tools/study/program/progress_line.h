@@ -1,5 +1,4 @@
-// One line on a terminal that tells how far a study is: how many samples, how fast, how long still, the running
-// estimate.
+// Shows the progress of a study in one line of a terminal: number of samples, rate, remaining time and the present estimate.
 #pragma once
 
 #include "tools/steplap/console.h"
@@ -9,7 +8,7 @@
 
 namespace steplap::study {
 
-/// "3200 of about 12000 samples, 380 a second, about 23 s left; monte_carlo: probability 2e-03 [1e-03, 4e-03]".
+/// Returns "3200 of about 12000 samples, 380 a second, about 23 s left; monte_carlo: probability 2e-03 [1e-03, 4e-03]".
 [[nodiscard]] std::string progress_text(const Pace& pace);
 
 class ProgressLine {
@@ -17,9 +16,9 @@ public:
   explicit ProgressLine(Console& console) : console_(console) {}
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
-  /// Wipes the line.
+  /// Erases the line.
   ~ProgressLine();
-  /// Nothing where there is no terminal.
+  /// Shows the progress; does nothing without a terminal.
   void operator()(const Pace& pace);
 
 private:

@@ -23,7 +23,7 @@ std::string interval_text(const Finding& f) {
   return "[" + digits(f.low) + ", " + digits(f.high) + "]";
 }
 
-// Reasons that differ by their numbers only are one: the first is told, and how many there are of them.
+// Groups reasons that differ only in numbers: shows the first one and their count.
 void show_reasons(Store& store, std::ostream& out) {
   constexpr std::size_t k_most = 20;
   struct Group {

@@ -1,4 +1,4 @@
-// A store for people: samples, reasons of runs that failed, findings.
+// Prints a store: samples, reasons of failed runs, findings.
 #pragma once
 
 #include "tools/study/store.h"
