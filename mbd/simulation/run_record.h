@@ -84,13 +84,13 @@ struct RunResult {
 
 /// Record to which all legs of a run contribute.
 struct RunRecord {
-  std::unique_ptr<Trajectory> trajectory; ///< never nullptr
-  std::vector<Event> events;              ///< ascending in time
-  std::vector<SlipTie> ties;              ///< the first k_most_ties
+  std::unique_ptr<Trajectory> trajectory;          ///< never nullptr
+  std::vector<Event> events;                       ///< ascending in time
+  std::vector<SlipTie> ties;                       ///< the first k_most_ties
   static constexpr std::size_t k_most_ties = 1000; ///< ties kept
-  std::vector<ExtremesSoFar> growth; ///< ascending in time; extremes of a leg count from its beginning
-  double growth_step = 0.0;          ///< s, least between two of them; 0: none was kept yet
-  long samples = 0;                  ///< taken so far
+  std::vector<ExtremesSoFar> growth;               ///< ascending in time; extremes of a leg count from its beginning
+  double growth_step = 0.0;                        ///< s, least between two of them; 0: none was kept yet
+  long samples = 0;                                ///< taken so far
 };
 
 /// Returns the CPU time of this thread, s.

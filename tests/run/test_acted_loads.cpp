@@ -176,8 +176,8 @@ TEST_CASE("a formula of the time that begins behind the end has not acted") {
     CHECK(report.judgement.verdict == Verdict::open);
     CHECK(has(report, "load_behind_end"));
   }
-  for (const char* const grows : {"min('100 N/s' * t, '250 N')", 
-                                  "t < '0.999 s' ? '0 N' : t < '2 s' ? min('250 N', '5000 N/s' * (t - '0.999 s')) : '0 N'"}) {
+  for (const char* const grows :
+       {"min('100 N/s' * t, '250 N')", "t < '0.999 s' ? '0 N' : t < '2 s' ? min('250 N', '5000 N/s' * (t - '0.999 s')) : '0 N'"}) {
     CAPTURE(grows);
     const Report report = run_of(scene(grows));
     CHECK(report.judgement.verdict == Verdict::open);
