@@ -183,10 +183,9 @@ TEST_CASE("a formula of the time that begins behind the end has not acted") {
     CHECK(report.judgement.verdict == Verdict::open);
     CHECK(has(report, "load_still_grows"));
   }
-  // A harmonic is as large behind the end as before it, whatever its phase at the looks; a ramp without an end has no full size.
+  // A ramp without an end has no full size.
   for (const char* const seen :
-       {"'200 N' * sin('628.318530718 rad/s' * t)", "'90 N' * (sin('70 rad/s' * t) + sin('113 rad/s' * t))", "min('400 N/s' * t, '250 N')",
-        "t > '0.5 s' ? '200 N' : '0 N'", "'100 N/s' * t", "'100 N'", "-'5 N s/m' * rate"}) {
+       {"min('400 N/s' * t, '250 N')", "t > '0.5 s' ? '200 N' : '0 N'", "'100 N/s' * t", "'100 N'", "-'5 N s/m' * rate"}) {
     CAPTURE(seen);
     CHECK(run_of(scene(seen)).judgement.verdict == Verdict::hold);
   }
