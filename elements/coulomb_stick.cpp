@@ -242,6 +242,10 @@ const ElementKind& coulomb_stick_kind() {
         .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_coulomb;
+    k.friction = [](const Element& element) { // the kinetic coefficient is not larger
+      const auto& e = static_cast<const T&>(element);
+      return GivenFriction{"static_friction", e.static_friction, e.source};
+    };
     k.example = R"([[element]]
 name = 'foot'
 kind = 'unilateral_contact'

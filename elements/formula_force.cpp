@@ -88,7 +88,7 @@ private:
 };
 
 /// `Works`: counted as work, otherwise as heat. `Jumps`: a formula contains comparisons, so its force may jump.
-template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup, public StateReader {
+template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup {
 public:
   using Entry = ForceEntry;
   std::vector<Entry> entries;
@@ -132,12 +132,7 @@ public:
 
   void enter_formulas(std::vector<FormulaInMotion>& out) const override {
     for (const Entry& entry : entries)
-      out.push_back({&entry.formula,
-                     [&entry](const Evaluation& e) {
-                       const OwnCoordinate<double> own = entry.own_now(e);
-                       return std::array<double, 2>{own.value, own.rate};
-                     },
-                     entry.unit});
+      out.push_back({&entry.formula, [&entry](const Evaluation& e) { return entry.own_now(e); }, entry.unit});
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) {

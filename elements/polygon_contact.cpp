@@ -470,6 +470,10 @@ const ElementKind& polygon_contact_kind() {
         .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_polygon;
+    k.friction = [](const Element& element) {
+      const auto& e = static_cast<const T&>(element);
+      return GivenFriction{"static_friction", e.static_friction.value_or(0.0), e.source};
+    };
     k.example = R"([[element]]
 name = 'faces'
 kind = 'polygon_contact'

@@ -1,9 +1,9 @@
 #include "run/blows.h"
 
 #include "mbd/base/name_pattern.h"
-#include "mbd/events/blow.h"
 #include "mbd/formula/formula.h"
 #include "mbd/model/action.h"
+#include "run/acting_signals.h"
 #include "run/quantity_text.h"
 
 #include <algorithm>
@@ -16,40 +16,18 @@ namespace steplap {
 
 namespace {
 
-// An element that took part in an impact, with the time.
-struct Blow {
-  std::string element;
-  double t = 0.0; ///< s
-};
-
 // Returns "rope" for "rope.tension".
 std::string owner_of(const std::string& channel) { return channel.substr(0, std::min(channel.rfind('.'), channel.size())); }
 
-// Returns all impacts of a run. Ropes and clutches have a channel with the impulse of their last impact. For joints closed by an action the
-// action's event reports the impact.
-std::vector<Blow> blows_of(const Model& model, const RunResult& result) {
-  std::vector<Blow> blows;
-  for (const ChannelRange& range : result.ranges) {
-    const Channel& channel = *range.channel;
-    if (!channel.name.ends_with(".impulse") || (channel.unit != "N s" && channel.unit != "N m s") || !(range.high.value > 0.0)) continue;
-    Blow blow{owner_of(channel.name), range.high.t};
-    for (const Event& event : result.events)
-      if (event.element == blow.element && !event.detail.empty()) {
-        blow.t = event.t;
-        break;
-      }
-    blows.push_back(std::move(blow));
-  }
-  for (const ElementEntry& entry : model.elements) {
-    const Action* const action = as_action(*entry.element);
-    if (!action) continue;
-    const auto struck = std::find_if(result.events.begin(), result.events.end(), [&](const Event& event) {
-      return event.element == action->name && event.detail.ends_with(k_with_a_blow);
-    });
-    if (struck == result.events.end()) continue;
-    for (const std::string& text : action->steps)
+// Returns all impacts of a run, with the elements that an action closed in place of the action.
+std::vector<RigidBlow> blows_of(const Model& model, const RunResult& result) {
+  std::vector<RigidBlow> blows;
+  for (const RigidBlow& blow : result.blows) {
+    const Action* const action = find_action(model, blow.element);
+    if (!action) blows.push_back(blow);
+    for (const std::string& text : action ? action->steps : std::vector<std::string>{})
       if (const ActionStepText step = action_step(text); step.verb == ActionVerb::hold || step.verb == ActionVerb::set)
-        blows.push_back({step.name, struck->t});
+        blows.push_back({blow.t, step.name});
   }
   return blows;
 }
@@ -57,16 +35,16 @@ std::vector<Blow> blows_of(const Model& model, const RunResult& result) {
 // All bodies and elements that took part in an impact or are connected to such bodies by constraints, with the time of their first impact.
 class Struck {
 public:
-  Struck(const LoadedModel& loaded, const std::vector<Blow>& blows) : model_(loaded.model), system_(*loaded.system) {
+  Struck(const LoadedModel& loaded, const std::vector<RigidBlow>& blows) : model_(loaded.model), system_(*loaded.system) {
     parent_.resize(static_cast<std::size_t>(system_.body_count()));
     std::iota(parent_.begin(), parent_.end(), 0);
     for (int i = 1; i < system_.body_count(); ++i) place_[system_.bodies[i].name] = i;
     for (const Marker& marker : model_.markers)
       if (const auto body = place_.find(marker.body); body != place_.end()) place_.try_emplace(marker.name, int{body->second});
     for (const RowSpec& row : system_.rows) join(row.a, row.b);
-    for (const Blow& blow : blows)
+    for (const RigidBlow& blow : blows)
       for (const int body : bodies_of(blow.element)) join(body, bodies_of(blow.element).front());
-    for (const Blow& blow : blows) {
+    for (const RigidBlow& blow : blows) {
       note(elements_, blow.element, blow.t);
       for (const int body : bodies_of(blow.element)) note(roots_, root(body), blow.t);
     }
@@ -148,7 +126,7 @@ std::optional<double> first_blow_of(const Channel& channel, const Model& model, 
 
 void leave_struck_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result) {
   const Model& model = loaded.model;
-  const std::vector<Blow> blows = judgement.criteria.empty() ? std::vector<Blow>{} : blows_of(model, result);
+  const std::vector<RigidBlow> blows = judgement.criteria.empty() ? std::vector<RigidBlow>{} : blows_of(model, result);
   if (blows.empty()) return;
   const Struck struck(loaded, blows);
   const std::size_t of_elements = judgement.criteria.size() - std::min(judgement.criteria.size(), model.criteria.size());

@@ -111,28 +111,17 @@ template <class Value> std::pair<const Body*, const Body*> extremes_of(const Mod
   return {least, most};
 }
 
-// Checks elements that can give the source of their friction. Tyres are excluded, because their treads can exceed 1, and sheets of cores,
-// which have their own ranges (transformer/core/plausible.h).
+// Checks dry friction of kinds that can state its origin.
 void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
-  const Field* const source = entry.kind->fields.find("source");
-  const Field* worst = nullptr;
-  double most = k_high_friction;
-  for (const Field& field : entry.kind->fields.fields()) {
-    if (!source || field.type != FieldType::number || !field.unit.empty() || field.name.find("friction") == std::string::npos) continue;
-    const FieldValue value = field.get(entry.element.get());
-    const double* const number = std::get_if<double>(&value);
-    if (!number || !(*number > most)) continue;
-    most = *number;
-    worst = &field;
-  }
-  if (!worst) return;
-  const std::string what = entry.kind->name + " '" + entry.element->name + "': '" + worst->name + "' = " + number_text(most);
-  const std::string from = std::get<std::string>(source->get(entry.element.get()));
+  if (!entry.kind->friction) return;
+  const GivenFriction given = entry.kind->friction(*entry.element);
+  if (!(given.coefficient > k_high_friction)) return;
+  const std::string what = entry.kind->name + " '" + entry.element->name + "': '" + given.field + "' = " + number_text(given.coefficient);
   const Location& where = entry.element->where;
-  if (!from.empty())
+  if (!given.source.empty())
     findings.push_back(
-        {"friction_by_source", FindingLevel::note, what + " is beyond what dry contacts usually have. Its source: " + from, where});
-  else if (most < k_implausible_friction)
+        {"friction_by_source", FindingLevel::note, what + " is beyond what dry contacts usually have. Its source: " + given.source, where});
+  else if (given.coefficient < k_implausible_friction)
     findings.push_back(
         warning("high_friction",
                 what + " is high: dry contacts of machines have 0.1 to 0.8. If it is meant, say with 'source' where it comes from", where));

@@ -208,6 +208,10 @@ damping = 10.0
 )";
     k.holds<T>();
     k.compile = compile_band;
+    k.friction = [](const Element& element) {
+      const auto& e = static_cast<const T&>(element);
+      return GivenFriction{"friction", e.friction, e.source};
+    };
     return k;
   }();
   return kind;
@@ -252,6 +256,11 @@ pretension = 50.0
 )";
     k.holds<T>();
     k.compile = compile_belt;
+    k.friction = [](const Element& element) {
+      const auto& e = static_cast<const T&>(element);
+      return e.friction_b > e.friction_a ? GivenFriction{"friction_b", e.friction_b, e.source}
+                                         : GivenFriction{"friction_a", e.friction_a, e.source};
+    };
     return k;
   }();
   return kind;

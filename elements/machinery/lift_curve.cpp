@@ -47,7 +47,7 @@ std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
   return found;
 }
 
-// Halves a turn until the formula is within what its values at the ends and in the middle of each part show.
+// Divides a turn until the enclosure of the formula over each part is close to its values at the ends and in the middle of the part.
 class LobeSearch {
 public:
   explicit LobeSearch(const FormulaTree& tree) : tree_(tree), values_(tree.size()), enclosures_(tree.size()) {
@@ -60,7 +60,7 @@ public:
     least_ = k_least_lobe * (all.high - all.low);
     if (!std::isfinite(least_)) least_ = 0.0;
     halve(0.0, k_turn, 0);
-    // Steps turn by a radian at most: intervals that are hardly shorter need no knots.
+    // Steps turn by at most one radian, so longer or slightly shorter intervals need no knots.
     if (deepest_ < k_shallow) return {};
     if (!knots_.empty()) knots_.push_back(knots_.front() + k_turn);
     return knots_;

@@ -33,7 +33,7 @@
 namespace steplap {
 
 /// All bands and belts, as one force group.
-class SlidingBandGroup final : public ForceGroup, public StateReader {
+class SlidingBandGroup final : public ForceGroup {
 public:
   static constexpr int k_watches = 2;
   static constexpr double k_place = 1e-12; ///< m: accuracy of positions; forces below the corresponding tension are not distinguished from

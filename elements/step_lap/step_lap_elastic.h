@@ -29,7 +29,7 @@ inline constexpr int k_elastic_parted = 2; ///< index of the first of these bits
 }
 
 /// All elastic joints, as one force group.
-class ElasticGripGroup final : public ForceGroup, public StateReader {
+class ElasticGripGroup final : public ForceGroup {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;            ///< limb and active part

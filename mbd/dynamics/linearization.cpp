@@ -155,9 +155,7 @@ void Linearization::add_inner(const InnerJacobian& part) {
 void Linearization::add_states() {
   state_jacobian_.clear();
   for (auto* const entries : {&states_.by_pose, &states_.by_velocity, &states_.by_state, &states_.forces}) entries->clear();
-  for (const auto& group : dynamics_->system().groups)
-    if (const auto* const reader = dynamic_cast<const StateReader*>(group.get()))
-      reader->add_state_jacobian(dynamics_->evaluation(), state_jacobian_);
+  for (const auto& group : dynamics_->system().groups) group->add_state_jacobian(dynamics_->evaluation(), state_jacobian_);
   const std::vector<Motion<double>>& motion = dynamics_->motion();
   for (const StateJacobian::ByMotion& part : state_jacobian_.by_motion) { // as in add_body_block
     const Placement& place = layout_->placements[part.body];

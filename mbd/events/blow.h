@@ -20,9 +20,6 @@
 
 namespace steplap {
 
-/// End of the event text of an action that closed joints with an impact; the energy precedes it.
-inline constexpr std::string_view k_with_a_blow = " J lost in a blow";
-
 /// Sets the ropes at the start of a run: taut if they are at their length and do not shorten, else slack. Returns true if a taut rope
 /// lengthens, which requires take_blow(). Throws ElementFailure if the ends of a rope are further apart than its length.
 [[nodiscard]] bool set_ropes(const System& system, State& state);

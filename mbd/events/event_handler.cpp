@@ -160,6 +160,7 @@ void EventHandler::begin_units(State& state) const {
 }
 
 void EventHandler::start(State& state) {
+  blows_.clear();
   dynamics_.forget_layouts();
   meet_constraints(state);
   dynamics_.rates(state.t, y_.data(), dy_.data());
@@ -167,6 +168,7 @@ void EventHandler::start(State& state) {
   const bool is_any_tight = set_ropes(system_, state);
   if (is_any_tight || turns_against_lock(system_, state)) {
     take_blow(system_, dynamics_, state);
+    note_blows(system_.initial_memory, state);
     modes_.evaluate(state);
     begin_units(state); // the impact changes velocities, on which modes of dampers and formulas depend
   }
@@ -540,14 +542,18 @@ bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_b
   }
 }
 
-// Records ties of friction elements. Ropes have no bound and clutches rarely a relevant one, so both are excluded. Groups that share a load
-// are excluded too, since their event functions are common to all elements.
+void EventHandler::note_blows(const std::vector<double>& memory_before, const State& state) {
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
+    if (was_struck(system_, f, memory_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
+}
+
+// Records ties of friction elements. Ropes and locked clutches have no bound and are excluded. Groups that share a load are excluded too,
+// since their event functions are common to all elements.
 void EventHandler::note_ties(const State& state, const std::vector<double>& watch) {
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
-    return before_[f].phase == FrictionPhase::stick && !friction.never_slips() && !one_sided_row(friction) &&
-           !dynamic_cast<const OneWayLock*>(&friction);
+    return before_[f].phase == FrictionPhase::stick && !friction.never_slips() && blow_slot(friction) < 0;
   };
   const auto began = [&](std::size_t f) { return state.friction[f].phase == FrictionPhase::slip && stuck(f); };
   std::size_t first = 0;
@@ -578,6 +584,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   modes_.begin_event();
   modes_.evaluate(state);
   ties_.clear();
+  blows_.clear();
   const auto sticks = [](const FrictionState& friction) { return friction.phase == FrictionPhase::stick; };
   const bool may_tie = std::count_if(before_.begin(), before_.end(), sticks) > 1;
   if (may_tie) watch_before_ = dynamics_.watch();
@@ -586,7 +593,10 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   const Fired found = fire(state, fired);
   if (fired.size() > 1) hold_relieved(system_, dynamics_, modes_, before_, state);
   if (!fired.empty()) modes_.forget_evaluation();
-  if (found.is_any_tight && strike(state, Blow::ropes, events)) is_contact_changed = true;
+  if (found.is_any_tight) {
+    if (strike(state, Blow::ropes, events)) is_contact_changed = true;
+    note_blows(memory_before_, state);
+  }
   bool is_settled = false; // the state satisfies the rows of its modes
   // The mode problem assumes elements at rest, so the remaining rate of a slip that ended is removed first.
   if (found.is_any_at_rest) {
@@ -612,7 +622,11 @@ void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>&
   memory_before_ = state.memory;
   dynamics_.forget_layouts();
   modes_.begin_event();
-  if (closes_rows) strike(state, Blow::rows, events);
+  blows_.clear();
+  if (closes_rows) {
+    strike(state, Blow::rows, events);
+    note_blows(memory_before_, state);
+  }
   conclude(state, true, false, events);
 }
 

@@ -24,6 +24,12 @@ struct Event {
   [[nodiscard]] bool is_at_start() const { return t == 0.0; }
 };
 
+/// Rigid impact in which an element took part: its impulse is known, its force is not.
+struct RigidBlow {
+  double t = 0.0; ///< s
+  std::string element;
+};
+
 /// Two elements that reach their friction bounds almost at once: one began to slip, the other one stuck close to its bound. Rounding
 /// decides which one slips first.
 struct SlipTie {
@@ -78,6 +84,8 @@ public:
   /// Returns the ties of the last handle(): sticking elements with a utilisation above 1 − k_near_bound.
   [[nodiscard]] const std::vector<SlipTie>& ties() const { return ties_; }
   static constexpr double k_near_bound = 1e-3;
+  /// Returns the ropes and clutches struck in the last start(), handle() or take_over().
+  [[nodiscard]] const std::vector<RigidBlow>& blows() const { return blows_; }
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
@@ -89,6 +97,7 @@ private:
   void fire_friction(State& state, int f, int slot);
   void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
+  void note_blows(const std::vector<double>& memory_before, const State& state);
   void note_ties(const State& state, const std::vector<double>& watch);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
@@ -127,6 +136,7 @@ private:
   std::vector<double> memory_before_;
   std::vector<double> watch_before_; ///< event functions at the start of handle(), if two or more elements stuck
   std::vector<SlipTie> ties_;
+  std::vector<RigidBlow> blows_;
   std::vector<char> is_released_;      ///< per group of LoadSharing
   std::vector<char> has_fired_;        ///< per friction element
   std::vector<Motion<double>> motion_; ///< scratch: motions of the bodies

@@ -121,8 +121,8 @@ public:
   /// Returns true if all pieces and all switch quantities are linear in operands and time.
   [[nodiscard]] bool is_linear() const;
   [[nodiscard]] bool uses_time() const { return uses_time_; }
-  /// May its value rise and fall again within any part of what its operands change by? Several switches together, switches of what is not
-  /// linear, exponentials, powers and quotients of what varies may.
+  /// Returns true if the value may rise and fall again while the operands change arbitrarily little: with several switches, with switches
+  /// of nonlinear quantities, with exponentials, powers and quotients of variables.
   [[nodiscard]] bool may_peak() const;
 
   /// Returns the value for given bits. `values`: scratch for size() numbers. `quantity`: receives the quantity of each switch; those of

@@ -74,6 +74,13 @@ struct Element {
   [[nodiscard]] static const FieldTable& common_fields();
 };
 
+/// The largest coefficient of dry friction that an element gives, and its origin.
+struct GivenFriction {
+  const char* field = ""; ///< field of the coefficient
+  double coefficient = 0.0;
+  std::string source; ///< as the model states it; empty: not stated
+};
+
 /// One kind of element: its fields and its compilation into a system.
 struct ElementKind {
   std::string name;  ///< name in model files, such as "spring_damper"
@@ -93,6 +100,9 @@ struct ElementKind {
   /// For kinds that exert a prescribed force: returns true if the element exerts one in addition to its signals. Null for kinds whose forces
   /// depend on the motion alone.
   bool (*has_constant_load)(const Element& element) = nullptr;
+  /// For kinds whose dry friction can state its origin: returns it. Null for kinds without dry friction, and for tyres and sheets, which have
+  /// ranges of their own.
+  GivenFriction (*friction)(const Element& element) = nullptr;
   /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 

@@ -7,19 +7,20 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-9; // of a step: spans that are not halved
-// Beside the ends of a step the condition may be about to change: there the event is, or was.
+constexpr double k_shortest = 1e-9; // relative to the step: shorter spans are not halved
+// Relative to the step: near its ends a condition changes at an event that is located there, so undecided spans are ignored.
 constexpr double k_beside_end = 1e-6;
-constexpr std::size_t k_most_spans = 4000, k_most_spans_of_force = 200; // of a step
-constexpr double k_half = 0.5;                                          // between false and true
+constexpr std::size_t k_most_spans = 4000, k_most_spans_of_force = 200; // per step
+constexpr double k_half = 0.5;                                          // between false, 0, and true, 1
 constexpr double k_rounded_time = 4.0 * 0x1p-52;
-// Of what three places of a step differ by: a smooth formula goes beyond them by less.
+// Relative to the differences between three places of a step: a smooth formula exceeds their range by less.
 constexpr double k_beyond = 3.0;
-// A change behind this place of the first step behind an event is found by the event finder; a step with an earlier one is cut behind it.
+// The event finder locates changes later than this fraction of the first step after an event. A step with an earlier change is cut at a
+// multiple of its place.
 constexpr double k_found_by_events = 1e-2, k_behind_change = 2.0;
-constexpr double k_smooth = 0.5;      // of what the middle differs from the ends by: what a cubic may be off by
-constexpr double k_least_peak = 1e-3; // of what the formula may do in the step
-constexpr double k_rounding = 1e-9;   // of a force
+constexpr double k_smooth = 0.5;      // largest deviation of the middle from a cubic, relative to its distance from the range of the ends
+constexpr double k_least_peak = 1e-3; // relative to the range of the formula over the step: smaller peaks are ignored
+constexpr double k_rounding = 1e-9;   // relative to the values
 
 double value_of(const MotionOperand& operand, const FormulaInMotion& in_motion, const Snapshot& s) {
   switch (operand.kind) {
@@ -30,8 +31,8 @@ double value_of(const MotionOperand& operand, const FormulaInMotion& in_motion, 
   }
   case MotionOperand::Kind::state: return operand.unit * s.evaluation->inner[operand.inner];
   case MotionOperand::Kind::signal: return operand.signal->value(s.t);
-  case MotionOperand::Kind::own_value: return in_motion.own(*s.evaluation)[0];
-  case MotionOperand::Kind::own_rate: return in_motion.own(*s.evaluation)[1];
+  case MotionOperand::Kind::own_value: return in_motion.own(*s.evaluation).value;
+  case MotionOperand::Kind::own_rate: return in_motion.own(*s.evaluation).rate;
   }
   return 0.0;
 }
@@ -48,8 +49,7 @@ std::vector<FormulaChannel::Leaf> leaves_of(const FormulaInMotion& in_motion) {
 FormulaSearch::FormulaSearch(const System& system, const ActionGroup* group)
     : y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   std::vector<FormulaInMotion> formulas;
-  for (const auto& each : system.groups)
-    if (const auto* const reader = dynamic_cast<const StateReader*>(each.get())) reader->enter_formulas(formulas);
+  for (const auto& group : system.groups) group->enter_formulas(formulas);
   for (const FormulaInMotion& each : formulas)
     if (each.formula->program().may_peak()) add(k_no_action, each);
   has_forces_ = !sought_.empty();

@@ -26,12 +26,14 @@ bool jumps(const std::vector<double>& before, const std::vector<double>& after) 
 }
 
 // The action whose joints close is the last one that has happened.
-void note_blow(std::vector<Event>& events, std::size_t known, double lost) {
-  for (std::size_t i = known; i-- > 0;)
-    if (events[i].kind == EventKind::happens) {
-      events[i].detail += ", " + rounded_text(lost, 4) + std::string(k_with_a_blow);
-      return;
-    }
+void note_blow(RunRecord& record, std::size_t known, double lost) {
+  for (std::size_t i = known; i-- > 0;) {
+    Event& event = record.events[i];
+    if (event.kind != EventKind::happens) continue;
+    event.detail += ", " + rounded_text(lost, 4) + " J lost in a blow";
+    record.blows.push_back({event.t, event.element});
+    return;
+  }
 }
 
 } // namespace
@@ -68,7 +70,8 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
   const std::size_t known = record_->events.size();
   const double dissipated = state_.dissipated;
   handler_.take_over(state_, change.closes_rows(), record_->events);
-  if (change.closes_rows() && jumps(rates, state_.v)) note_blow(record_->events, known, state_.dissipated - dissipated);
+  if (change.closes_rows() && jumps(rates, state_.v)) note_blow(*record_, known, state_.dissipated - dissipated);
+  keep_blows();
   make_parts(before.ledger_.get(), unhurt);
 }
 

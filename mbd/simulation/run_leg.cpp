@@ -47,6 +47,7 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   dynamics_.set_time_limit(next_limit());
   handler_.start(state_);
   handler_.note_start(state_, record_->events);
+  keep_blows();
   make_parts(nullptr, system_.initial_memory);
   if (options_.output_step > 0.0) {
     record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // none are due before the start
@@ -312,6 +313,8 @@ std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired)
   return slots;
 }
 
+void RunLeg::keep_blows() { record_->blows.insert(record_->blows.end(), handler_.blows().begin(), handler_.blows().end()); }
+
 // The integrator still has the step that led to the event.
 void RunLeg::keep_ties(double t) {
   const double before = t - integrator_->t0();
@@ -341,6 +344,7 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
   if (options_.other_slip) handler_.handle(state_, slots_of_other(t, fired), watch_before, record_->events);
   else handler_.handle(state_, fired, watch_before, record_->events);
   if (!handler_.ties().empty()) keep_ties(t);
+  keep_blows();
   energy_.check_settled(state_.t, handler_.settled());
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = record_->events.begin() + static_cast<std::ptrdiff_t>(known);

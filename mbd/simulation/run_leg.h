@@ -80,6 +80,7 @@ private:
   void check_finite();
   void check_holding(double t, const std::vector<double>& watch) const;
   void keep_ties(double t);
+  void keep_blows();
   [[nodiscard]] std::vector<int> slots_of_other(double t, const std::vector<int>& fired) const;
   void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before);
   void pass_stepped();

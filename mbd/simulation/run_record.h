@@ -73,6 +73,7 @@ struct RunResult {
   std::vector<ChannelRange> ranges;       ///< for every channel of the system, if requested
   std::vector<ExtremesSoFar> growth;      ///< of these, at some tens of times spread over the run, if that was asked for
   std::vector<Event> events;              ///< ascending in time
+  std::vector<RigidBlow> blows;           ///< ascending in time; an action that closed joints stands for these
   std::vector<SlipTie> ties;              ///< ascending in time, at most RunRecord::k_most_ties
   RunStatistics statistics;               ///< what it took, and how exact it was
   State final_state;                      ///< at the end, or where the run stopped
@@ -86,6 +87,7 @@ struct RunResult {
 struct RunRecord {
   std::unique_ptr<Trajectory> trajectory;          ///< never nullptr
   std::vector<Event> events;                       ///< ascending in time
+  std::vector<RigidBlow> blows;                    ///< ascending in time
   std::vector<SlipTie> ties;                       ///< the first k_most_ties
   static constexpr std::size_t k_most_ties = 1000; ///< ties kept
   std::vector<ExtremesSoFar> growth;               ///< ascending in time; extremes of a leg count from its beginning

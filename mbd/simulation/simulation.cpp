@@ -93,6 +93,7 @@ RunResult Simulation::result() && {
   result.trajectory = std::move(leg_->record().trajectory);
   result.events = std::move(leg_->record().events);
   result.ties = std::move(leg_->record().ties);
+  result.blows = std::move(leg_->record().blows);
   result.growth = std::move(leg_->record().growth);
   result.stop_reason = leg_->stop_reason();
   if (actions_) result.ended_by = actions_->ended_by();

@@ -18,6 +18,7 @@
 #include "mbd/system/turn_table.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,13 @@ private:
   std::vector<MotionOperand> operands_;
   std::vector<int> bodies_;
   FormulaTree tree_;
+};
+
+/// A formula in the equations of motion, with the values of its names `value` and `rate`; `own` is null if it has no own coordinate.
+struct FormulaInMotion {
+  const MotionFormula* formula = nullptr; ///< owned by its group
+  std::function<OwnCoordinate<double>(const Evaluation& e)> own = nullptr;
+  int unit = -1; ///< index of its mode, the bits of its switches; -1 if it has none
 };
 
 /// Derivatives of an operand by pose and velocity of one body.

@@ -40,7 +40,7 @@ struct StatePlace {
 [[nodiscard]] std::vector<double> start_of_states(SystemBuilder& builder);
 
 /// All own states of a model, as a force group without forces.
-class OwnStateGroup final : public ForceGroup, public StateReader {
+class OwnStateGroup final : public ForceGroup {
 public:
   struct Entry {
     MotionFormula rate;
@@ -57,6 +57,7 @@ public:
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   [[nodiscard]] bool follows_jumps() const override { return true; }
+  [[nodiscard]] bool are_inner_states_stepped() const override { return true; }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
   void enter_formulas(std::vector<FormulaInMotion>& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;

@@ -3,8 +3,6 @@
 
 #include "mbd/system/roles.h"
 
-#include <array>
-#include <functional>
 #include <vector>
 
 namespace steplap {
@@ -32,24 +30,6 @@ struct StateJacobian {
     by_state.clear();
     forces.clear();
   }
-};
-
-class MotionFormula;
-/// A formula in the equations of motion, with the values of its names `value` and `rate`; `own` is null if it has no own coordinate.
-struct FormulaInMotion {
-  const MotionFormula* formula = nullptr; ///< owned by its group
-  std::function<std::array<double, 2>(const Evaluation& e)> own = nullptr;
-  int unit = -1; ///< index of its mode, the bits of its switches; -1 if it has none
-};
-
-/// Additional interface of force groups that read own states. The entries have the same order as long as modes do not change.
-class StateReader {
-public:
-  virtual ~StateReader() = default;
-  /// Adds the derivatives of rates of own states, and of forces by own states, to `out`.
-  virtual void add_state_jacobian(const Evaluation& e, StateJacobian& out) const = 0;
-  /// Appends the formulas that give forces and rates of own states. To be called once all elements are compiled.
-  virtual void enter_formulas(std::vector<FormulaInMotion>& /*out*/) const {}
 };
 
 } // namespace steplap

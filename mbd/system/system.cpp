@@ -395,8 +395,7 @@ int SystemBuilder::add_inner(const ForceGroup& group, double start) {
   const bool is_first =
       system_->inner_elements.empty() || system_->inner_elements.back() != element_; // at most one message for each element
   const auto cannot = [&](const Method& m) { return m.name == integrator && m.is_time_stepping; };
-  const bool is_stepped = dynamic_cast<const OwnStateGroup*>(&group) != nullptr; // own states, which time stepping can integrate
-  if (is_first && !is_stepped && std::any_of(methods().begin(), methods().end(), cannot))
+  if (is_first && !group.are_inner_states_stepped() && std::any_of(methods().begin(), methods().end(), cannot))
     error("'" + integrator +
           "' does not follow what it remembers (the slid distance of an elastic joint, whether a tie has "
           "broken): choose another 'integrator', auto for one");

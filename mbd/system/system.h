@@ -245,7 +245,7 @@ public:
   }
   /// Returns the completed model that is being compiled.
   [[nodiscard]] const Model& model() const { return model_; }
-  /// What is compiled so far: bodies and scales are complete before the first element.
+  /// Returns the system as compiled so far. Its bodies and scales are complete before the first element is compiled.
   [[nodiscard]] const System& compiled() const { return *system_; }
 
   // --- contributions ------------------------------------------------------------------------------

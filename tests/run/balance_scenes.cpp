@@ -295,8 +295,8 @@ BalanceScene swing(Draw& draw) {
   const bool is_driven = draw.coin(), swings = draw.choice(3) > 0;
   const double rate = swings ? sigma : sigma * (1.0 + std::sqrt(0.75)); // ω = σ/2
   BalanceScene scene;
-  // What creeps is at first drawn back by the spring, since a nudge displaces places: with r₁ = 13.9 r₂ it grows as 0.077 exp(r₁ t) then, and has
-  // grown by half the exponent from 5.2 on.
+  // A nudge displaces positions, and the spring at first draws an overdamped block back. With r₁ = 13.9 r₂ the displacement then grows as
+  // 0.077 exp(r₁ t), which reaches half the exponent from 5.2 on.
   const double leg = swings ? leg_of(draw, rate, scene.balances) : std::max(1.0, draw.between(5.5, 12.0) / rate);
   scene.balances = (scene.balances || !swings) && is_driven;
   // Several swings within the leg, so that its growth shows.

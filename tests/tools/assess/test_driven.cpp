@@ -165,7 +165,7 @@ TEST_CASE("the record's third axis presses the sheets of a core as a signal of t
   const VoyageOutcome halved = VoyageRunner(recorded, halves, {}).run({});
   CHECK(halved.summary.unknown == "");
   CHECK(halved.summary.least_margin == doctest::Approx(with_record).epsilon(0.02)); // one sample of 1 ms later
-  // Of the record: the sign counts, and an axis that is in the plane already is refused.
+  // The axis keeps the sign of the record, and an axis that lies in the plane already is refused.
   RecordEvents record;
   for (const char axis : {'x', 'y', 'z'}) record.recording.layout.axes.push_back({axis, 0, "", 1.0, "", ""});
   RecordedEvent event;
