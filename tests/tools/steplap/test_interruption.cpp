@@ -136,3 +136,16 @@ TEST_CASE("keys of thousands of parts are refused, points in quotes are no parts
     CHECK(outcome.err.empty());
   }
 }
+
+TEST_CASE("a working folder that is gone is an error of use, not a fault of the program") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_oscillator);
+  const fs::path before = fs::current_path();
+  fs::create_directory(bench.at("gone"));
+  fs::current_path(bench.at("gone"));
+  fs::remove(bench.at("gone"));
+  const Outcome outcome = steplap_does({"simulate", model, "-o", "out"});
+  fs::current_path(before);
+  CHECK(outcome.code == 2);
+  CHECK(has(outcome.err, "cannot use 'out/a': No such file or directory"));
+}
