@@ -69,7 +69,7 @@ steplap_public_header(accuracy.h "Estimated errors of a run, by finer runs."
 steplap_public_header(verdict.h "Criteria and the verdict on a run."
   mbd/trust/criteria.h mbd/trust/element_judgement.h mbd/trust/judge.h mbd/trust/judgement.h)
 steplap_public_header(judged_run.h "A model from its file to a judged result, with its files, as the command line makes them."
-  run/estimate.h run/failure.h run/finding.h run/loaded_model.h run/overview.h run/report.h run/results.h run/run.h run/run_options.h
+  mbd/base/stop.h run/estimate.h run/failure.h run/finding.h run/loaded_model.h run/overview.h run/report.h run/results.h run/run.h run/run_options.h
   run/second_opinion.h run/version.h run/with_settings.h)
 steplap_public_header(own_element.h "What a kind of element of your own is made of: laws, measures, roles."
   mbd/system/law_group.h mbd/system/measure.h mbd/system/roles.h mbd/trust/element_judgement.h)

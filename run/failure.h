@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mbd/base/diagnostics.h"
+#include "mbd/base/stop.h"
 #include "mbd/model/model.h"
 #include "mbd/system/system.h"
 
@@ -9,13 +10,6 @@
 #include <vector>
 
 namespace steplap {
-
-/// Thrown if the user stops a run (RunOptions::stop).
-class RunStopped : public NumericalFailure {
-public:
-  /// Takes the message.
-  using NumericalFailure::NumericalFailure;
-};
 
 /// Kind of failure that ended a run early.
 enum class FailureKind {

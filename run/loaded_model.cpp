@@ -128,6 +128,8 @@ namespace {
 template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
   try {
     return work();
+  } catch (const RunStopped&) { // says nothing about the pose
+    throw;
   } catch (const NumericalFailure& failure) {
     std::string text = failure_of(failure, loaded.model, *loaded.system, 0.0).text;
     for (const std::string& tips : tipping_over(loaded, loaded.assembled)) text += "; " + tips;

@@ -1,5 +1,6 @@
 #include "run/report.h"
 
+#include "mbd/base/stop.h"
 #include "mbd/trust/judge.h"
 #include "mbd/trust/weighed_errors.h"
 #include "run/blows.h"
@@ -84,6 +85,7 @@ void ask_second_opinion(Report& report, const RunOptions& options) {
 } // namespace
 
 Report report_on(Run run, std::vector<Finding> before, const RunOptions& options) {
+  const StopScope stopping(options.stop);
   Report report;
   report.run = std::move(run);
   const LoadedModel& loaded = *report.run.loaded;
@@ -119,6 +121,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   }
   weigh(report);
   ask_second_opinion(report, options);
+  if (const std::string why = options.stop && !report.run.failure ? options.stop() : ""; !why.empty())
+    add_cap(report.judgement, why + " before all checks of the finished run were made");
   return report;
 }
 

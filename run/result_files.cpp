@@ -7,13 +7,18 @@
 #include "run/drawing.h"
 #include "run/version.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 namespace steplap {
 
@@ -25,6 +30,8 @@ constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml",
 // Files that are later created from the others and are removed when these are replaced.
 constexpr const char* k_report = "report.html";
 constexpr const char* k_partial = "partial_";
+constexpr const char* k_staging = ".steplap-"; // followed by a random part, since processes in containers may have the same number
+constexpr std::chrono::minutes k_locked_within{1};
 
 std::vector<std::string> all_names() {
   std::vector<std::string> names;
@@ -47,6 +54,31 @@ fs::path existing_part(fs::path path) {
   return path;
 }
 
+// Lock of a folder, which ends with its process however that ends. Not held if another process has it, or if the file system has none.
+class FolderLock {
+public:
+  FolderLock() = default;
+  explicit FolderLock(const fs::path& folder) : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {
+    is_held_ = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  }
+  FolderLock(FolderLock&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)), is_held_(std::exchange(other.is_held_, false)) {}
+  FolderLock& operator=(FolderLock&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    std::swap(is_held_, other.is_held_);
+    return *this;
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+  [[nodiscard]] bool is_held() const { return is_held_; }
+
+private:
+  int descriptor_ = -1;
+  bool is_held_ = false;
+};
+
 // A temporary folder next to the target, in which files are collected. The destructor removes it with its contents.
 // The parent folder is also removed if it was created for this and is still empty.
 class Staging {
@@ -57,23 +89,44 @@ public:
     std::error_code error;
     if (fs::create_directories(parent, error)) made_ = parent;
     if (error) fail(folder.string(), error.message());
-    path_ = parent / (".steplap-" + std::to_string(::getpid()));
-    fs::remove_all(path_, error); // left by a process that has ended
-    fs::create_directory(path_, error);
-    if (error) fail(folder.string(), error.message());
+    remove_left(parent);
+    std::string name = (parent / (std::string(k_staging) + "XXXXXX")).string();
+    if (!::mkdtemp(name.data())) fail(folder.string(), std::strerror(errno));
+    outer_ = name;
+    lock_ = FolderLock(outer_);
+    fs::create_directory(path(), error); // with the usual permissions, which the outer folder has not
+    if (error) {
+      remove();
+      fail(folder.string(), error.message());
+    }
   }
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
-  ~Staging() {
+  ~Staging() { remove(); }
+
+  [[nodiscard]] fs::path path() const { return outer_ / "results"; }
+
+private:
+  void remove() {
     std::error_code ignored;
-    fs::remove_all(path_, ignored);
+    fs::remove_all(outer_, ignored);
     if (!made_.empty()) fs::remove(made_, ignored);
   }
 
-  [[nodiscard]] const fs::path& path() const { return path_; }
+  // Removes folders of processes that were killed while they wrote: those without a lock. One that another process has made but not yet
+  // locked is younger than k_locked_within.
+  static void remove_left(const fs::path& parent) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(parent, ignored)) {
+      if (!entry.path().filename().string().starts_with(k_staging) || !entry.is_directory(ignored) || entry.is_symlink(ignored)) continue;
+      const fs::file_time_type changed = entry.last_write_time(ignored);
+      if (ignored || fs::file_time_type::clock::now() - changed < k_locked_within) continue;
+      if (const FolderLock lock(entry.path()); lock.is_held()) fs::remove_all(entry.path(), ignored);
+    }
+  }
 
-private:
-  fs::path path_, made_;
+  FolderLock lock_;
+  fs::path outer_, made_;
 };
 
 // Messages name the path that the user expects.

@@ -1,6 +1,7 @@
 #include "run/run.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/stop.h"
 #include "run/with_settings.h"
 
 #include <stdexcept>
@@ -24,6 +25,7 @@ SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions
 }
 
 Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& options) {
+  const StopScope stopping(options.stop);
   std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   SimulationOptions simulation_asked = simulation_options(*loaded, options);
   simulation_asked.notes_motion = options.estimating != Estimating::never; // needed to decide whether an equilibrium is stable

@@ -7,18 +7,30 @@ namespace steplap {
 
 namespace {
 
-// Returns true for ASCII control characters and for the second byte of U+0080 … U+009F, the control characters of eight-bit terminals.
-bool is_control(std::string_view text, std::size_t i) {
-  const auto c = static_cast<unsigned char>(text[i]);
-  if (c < 0x20 || c == 0x7f) return true;
-  return i > 0 && static_cast<unsigned char>(text[i - 1]) == 0xc2 && c >= 0x80 && c < 0xa0;
+struct Hidden {
+  unsigned code = 0;      // Unicode
+  std::size_t length = 0; // bytes; 0: the character is visible
+};
+
+// Recognises characters that control a terminal (ASCII, U+0080 … U+009F) and those that hide or reorder text: zero-width characters
+// (U+200B … U+200D, U+2060 … U+2064, U+FEFF) and bidirectional controls (U+061C, U+200E, U+200F, U+202A … U+202E, U+2066 … U+2069).
+Hidden hidden_at(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
+  const unsigned first = byte(i);
+  if (first < 0x20 || first == 0x7f) return {first, 1};
+  const unsigned two = (first & 0x1fU) << 6U | (byte(i + 1) & 0x3fU);
+  if ((first & 0xe0U) == 0xc0 && ((two >= 0x80 && two < 0xa0) || two == 0x61c)) return {two, 2};
+  const unsigned three = (first & 0x0fU) << 12U | (byte(i + 1) & 0x3fU) << 6U | (byte(i + 2) & 0x3fU);
+  const bool is_hidden = (three >= 0x200b && three <= 0x200f) || (three >= 0x202a && three <= 0x202e) ||
+                         (three >= 0x2060 && three <= 0x2069) || three == 0xfeff;
+  return (first & 0xf0U) == 0xe0 && is_hidden ? Hidden{three, 3} : Hidden{};
 }
 
 } // namespace
 
 bool has_control_character(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i)
-    if (is_control(text, i)) return true;
+    if (hidden_at(text, i).length > 0) return true;
   return false;
 }
 
@@ -27,7 +39,8 @@ std::string shown(std::string_view text, bool keeps_lines) {
   result.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (!is_control(text, i) || (keeps_lines && c == '\n')) {
+    const Hidden hidden = hidden_at(text, i);
+    if (hidden.length == 0 || (keeps_lines && c == '\n')) {
       result += c;
       continue;
     }
@@ -35,11 +48,11 @@ std::string shown(std::string_view text, bool keeps_lines) {
     else if (c == '\t') result += "\\t";
     else if (c == '\r') result += "\\r";
     else {
-      if (static_cast<unsigned char>(c) >= 0x80) result.pop_back(); // removes the first byte of the two-byte character
-      char code[8];
-      std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      char code[16];
+      std::snprintf(code, sizeof code, hidden.code < 0x100 ? "\\x%02x" : "\\u%04x", hidden.code);
       result += code;
     }
+    i += hidden.length - 1;
   }
   return result;
 }

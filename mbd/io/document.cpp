@@ -1,5 +1,6 @@
 #include "mbd/io/document.h"
 
+#include "mbd/base/limits.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/input_files.h"
 #include "mbd/io/read_input.h"
@@ -185,6 +186,14 @@ private:
   std::vector<std::string> part_names_; // names of both trees
 };
 
+void refuse_long_tables(const Node& node) {
+  if (node.is_table() && node.children.size() > k_most_keys)
+    throw ModelError(node.where_key(), (node.key.empty() ? "the file" : "'" + node.key + "'") + " has " +
+                                           std::to_string(node.children.size()) + " keys, more than the " + std::to_string(k_most_keys) +
+                                           " that a table may have");
+  for (const Node& child : node.children) refuse_long_tables(child);
+}
+
 class Loader {
 public:
   Document load(std::string text, const std::string& file) {
@@ -209,12 +218,14 @@ private:
     chain_.push_back(id);
     names_.push_back(file);
     Node over = parse_toml(source.text, &source.file);
+    refuse_long_tables(over);
     take_format(over, source.file);
     Node base;
     base.file = &source.file;
     if (const Node* extends = over.find("extends")) base = load_base(*extends, file);
     over.erase("extends");
     Merger(document_.problems).merge_root(base, over);
+    refuse_long_tables(base);
     return base;
   }
 

@@ -1,5 +1,6 @@
 #include "mbd/io/repetition.h"
 
+#include "mbd/base/limits.h"
 #include "mbd/base/number_text.h"
 #include "mbd/formula/formula.h"
 #include "mbd/formula/renamed_formula.h"
@@ -15,6 +16,7 @@ namespace steplap {
 namespace {
 
 const char* const k_index = "i";
+constexpr std::size_t k_shown_name = 60; // bytes of a name in a message that is about its length
 
 // Creates the entry of one index.
 class Repetition {
@@ -139,6 +141,13 @@ std::optional<long> repeats(const Node& repeat, const std::string& subject, std:
   return count;
 }
 
+// Size of all texts of an entry, bytes.
+std::size_t text_size(const Node& node) {
+  std::size_t size = node.type == Node::Type::text ? node.text().size() : 0;
+  for (const Node& child : node.children) size += text_size(child);
+  return size;
+}
+
 } // namespace
 
 const std::vector<std::string>& repeated_arrays() {
@@ -164,6 +173,12 @@ void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic
       if (made + static_cast<std::size_t>(*count) > k_most_entries) {
         problems.push_back({repeat->where(),
                             "'repeat' of " + subject + ": with it the model has more than " + std::to_string(k_most_entries) + " entries"});
+        continue;
+      }
+      if (const std::size_t size = text_size(entry) * static_cast<std::size_t>(*count); size > k_most_repeated_text) {
+        problems.push_back({repeat->where(), "'repeat' of " + subject.substr(0, k_shown_name) + ": its texts would have " +
+                                                 std::to_string(size) + " bytes, more than the " + std::to_string(k_most_repeated_text) +
+                                                 " that an entry may make: shorten its name"});
         continue;
       }
       made += static_cast<std::size_t>(*count);

@@ -1,5 +1,6 @@
 #include "mbd/rest/descent.h"
 
+#include "mbd/base/stop.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/rest/finite_forces.h"
 #include "mbd/rest/landing.h"
@@ -274,6 +275,7 @@ bool Descent::advance(VecX step) {
   double low = 0.0, high = whole, slope = 0.0, factor = whole;
   bool is_taken = false;
   for (int trial = 0; trial < k_most_trials; ++trial) {
+    stop_if_asked("in the search for rest");
     bool is_too_far = !move_to(from, factor * step);
     if (!is_too_far) {
       slope = slope_along(step);
@@ -449,6 +451,7 @@ DescentEnd Descent::run() {
   if (!project()) state_.q = given;
   int failures = 0;
   for (iterations_ = 0; iterations_ < most_iterations(n_); ++iterations_) {
+    stop_if_asked("in the search for rest");
     linearise();
     if (iterations_ == 0) yielding_at_start_ = landscape_->count_yielding();
     const VecX newton = landscape_->newton_step();

@@ -1,5 +1,6 @@
 #include "mbd/rest/settling.h"
 
+#include "mbd/base/stop.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
 #include "mbd/integrators/time_stepping.h"
@@ -50,6 +51,7 @@ public:
     double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
     clearance_.look(state_.q);
     for (; found.steps < std::min(most, 1.0 * k_most_steps) && h > k_shortest * longest; ++found.steps) {
+      stop_if_asked("while the machine settled");
       State next = state_;
       if (!can_step(next, h)) {
         h *= 0.25;

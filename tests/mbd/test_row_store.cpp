@@ -104,6 +104,9 @@ TEST_CASE("text fit for a terminal; digits that matter; one is not several") {
               "31m") == "\\x9b31m"); // U+009B: what ESC [ is in one character
   CHECK(has_control_character("\xc2\x9b"));
   CHECK_FALSE(has_control_character("Größe µ"));
+  CHECK_FALSE(has_control_character("– 中 €"));
+  for (const char* const hidden : {"\u200b", "\u202e", "\u2066", "\ufeff", "\u061c"}) CHECK(has_control_character(hidden));
+  CHECK(shown("a\u202eb") == "a\\u202eb"); // would be read from right to left
   CHECK(rounded_text(1.0000000000000001e-11) == "1e-11");
   CHECK(rounded_text(3.5527e-15, 3) == "3.55e-15");
   CHECK(counted(1, "body", "bodies") == "1 body");

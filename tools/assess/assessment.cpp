@@ -1,6 +1,7 @@
 #include "tools/assess/assessment.h"
 
 #include "mbd/base/shown_text.h"
+#include "mbd/base/stop.h"
 #include "run/failure.h"
 #include "tools/assess/hangs_on.h"
 #include "tools/assess/record_evidence.h"
@@ -217,6 +218,7 @@ std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Ass
 }
 
 Assessment assess(const std::vector<std::string>& records, const std::vector<std::string>& models, const AssessmentOptions& options) {
+  const StopScope stopping(options.stop);
   Assessment a;
   read_inputs(records, models, options, a);
   find_unseen(options, a);

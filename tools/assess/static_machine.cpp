@@ -46,6 +46,8 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
     : model_(with_monitors(loaded.model)), system_(compile(model_)), gravity_(system_->gravity) {
   try {
     at_rest_.rest = equilibrium_at_start(*system_, assemble(model_, *system_));
+  } catch (const RunStopped&) { // says nothing about the machine
+    throw;
   } catch (const NumericalFailure& failure) {
     throw NumericalFailure("without any acceleration: " + failure_of(failure, model_, *system_, 0.0).text);
   }
@@ -123,6 +125,8 @@ Probe StaticMachine::probe(const State& start, const Vec2& pull) {
     probe.values = values_at_rest(*system_, found.state);
     probe.rest = std::move(found);
     probe.left = left_of(probe);
+  } catch (const RunStopped&) {
+    throw;
   } catch (const NumericalFailure& failure) {
     probe.failure = failure.what();
     probe.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;

@@ -3,6 +3,7 @@
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/base/stop.h"
 #include "mbd/trust/criteria.h"
 #include "mbd/trust/element_judgement.h"
 #include "run/prominence.h"
@@ -293,6 +294,7 @@ std::string limit_words(const StaticRay& ray, std::size_t limit) {
 }
 
 StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& preset, const StaticProofOptions& options) {
+  const StopScope stopping(options.stop);
   StaticMachine machine(loaded);
   StaticProof proof;
   proof.model = loaded.name;
@@ -305,7 +307,7 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   proof.largest = options.largest;
   const auto ask_whether_to_stop = [&options] {
     if (!options.stop) return;
-    if (const std::string why = options.stop(); !why.empty()) throw NumericalFailure(why);
+    if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why);
   };
   for (const StaticLoad& load : loads_for(preset, options.plane)) {
     ask_whether_to_stop();

@@ -39,6 +39,8 @@ PageReply plain_reply(int status, const std::string& text) { return {status, "te
 PageReply guarded(const std::function<PageReply()>& work) {
   try {
     return work();
+  } catch (const RunStopped&) {
+    return json_reply(superseded_json());
   } catch (const ModelError& error) {
     return json_reply(errors_json(error.diagnostics()));
   } catch (const std::exception& error) {

@@ -135,7 +135,7 @@ private:
 struct LocalServer::Implementation {
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
-  asio::steady_timer timer{io};
+  asio::steady_timer timer{io}, pause{io};
   std::shared_ptr<Shared> shared;
 
   Implementation(unsigned short port, Answer answer) {
@@ -155,12 +155,20 @@ struct LocalServer::Implementation {
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && shared->connections < k_most_connections) {
+      if (error) return accept_later(); // no descriptor is free: at once it would fail again
+      if (shared->connections < k_most_connections) {
         beast::error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         std::make_shared<Connection>(std::move(socket), shared)->read();
       }
       accept();
+    });
+  }
+
+  void accept_later() {
+    pause.expires_after(std::chrono::milliseconds(k_tick));
+    pause.async_wait([this](beast::error_code error) {
+      if (!error) accept();
     });
   }
 

@@ -1,3 +1,4 @@
+#include "mbd/base/limits.h"
 #include "mbd/model/model_path.h"
 #include "mbd/system/instance.h"
 #include "tools/python/bindings.h"
@@ -5,10 +6,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace steplap::python {
@@ -104,12 +108,13 @@ py::tuple samples(const PyModel& model, const std::vector<std::string>& paths, c
   const Model given = given_model(model);
   for (const std::string& path : paths) static_cast<void>(number_of(given, path)); // checks the paths before threads start
   Crew crew{given, model.loaded->path, paths, responses, values.data(), count, results.mutable_data(), verdicts, troubles};
+  if (threads > k_most_threads) throw std::invalid_argument("'threads' may be at most " + std::to_string(k_most_threads));
   Interruption interruption;
   {
     const py::gil_scoped_release unlocked;
     const auto most = std::max(1U, threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency());
     std::vector<std::thread> team;
-    for (unsigned k = 0; k < most; ++k) team.emplace_back([&crew] { crew.work(); });
+    for (std::size_t k = 0; k < std::min<std::size_t>(most, count); ++k) team.emplace_back([&crew] { crew.work(); });
     while (crew.done < count && !crew.is_stopped) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (!interruption.ask().empty()) crew.is_stopped = true;

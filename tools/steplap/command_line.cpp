@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <ostream>
 
 namespace steplap {
@@ -90,6 +91,9 @@ ExitCode report_exception(Console& console) {
     return ExitCode::usage;
   } catch (const FileError& error) {
     log_error(error.what());
+    return ExitCode::usage;
+  } catch (const std::filesystem::filesystem_error& error) { // the working folder or that for temporary files is gone
+    log_error("cannot use '" + error.path1().string() + "': " + error.code().message());
     return ExitCode::usage;
   } catch (const ModelError& error) {
     console.err << error.what() << "\n";

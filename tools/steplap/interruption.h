@@ -1,6 +1,8 @@
 // Handles signals that stop a run, such as Ctrl-C: the run ends and its results so far are saved.
 #pragma once
 
+#include "mbd/base/stop.h"
+
 #include <string>
 
 namespace steplap {
@@ -25,6 +27,8 @@ void end_if_nobody_reads(int descriptor);
 [[nodiscard]] int noted_signal();
 /// Returns the reason to stop, "stopped by SIGINT"; "" if no signal was recorded. Suitable for RunOptions::stop.
 [[nodiscard]] std::string interruption();
+/// Returns a question for RunOptions::stop that is answered by a recorded signal, or `seconds` from now.
+[[nodiscard]] StopQuestion stopped_after(double seconds);
 /// Ends the program by the recorded signal, so that a calling shell loop ends, too. Does nothing if there was none.
 void end_by_noted_signal();
 

@@ -1,5 +1,6 @@
 #include "tools/steplap/record.h"
 
+#include "mbd/base/limits.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
@@ -117,6 +118,9 @@ public:
       if (*conditioning_.rate < layout.time.rate * (1.0 - 1e-9))
         throw UsageError("--resample " + *options_.resample + ": the record has " + rounded_text(layout.time.rate) +
                          " Hz; fewer samples would fold high frequencies into low ones. Keep the rate, and filter with --cfc");
+      if (*conditioning_.rate > k_most_resampling * layout.time.rate)
+        throw UsageError("--resample " + *options_.resample + ": at most " + rounded_text(k_most_resampling) + " times the record's " +
+                         rounded_text(layout.time.rate) + " Hz");
     }
     conditioner_.emplace(conditioning_, sink_);
     conditioner_->begin(layout);

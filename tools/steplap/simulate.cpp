@@ -1,6 +1,7 @@
 #include "tools/steplap/simulate.h"
 
 #include "mbd/base/shown_text.h"
+#include "mbd/io/units.h"
 #include "mbd/model/validate.h"
 #include "run/findings.h"
 #include "run/quantity_text.h"
@@ -35,7 +36,7 @@ struct SimulateOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   std::string output = "out";
-  std::optional<std::string> end, step, integrator, tolerance, output_step, digits;
+  std::optional<std::string> end, step, integrator, tolerance, output_step, digits, time_limit;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false;
 
   /// --set and its short forms.
@@ -66,6 +67,15 @@ struct SimulateOptions {
   [[nodiscard]] bool is_streamed() const { return is_standard_output(output); }
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const { return (std::filesystem::path(output) / loaded.name).string(); }
 };
+
+// Reads "90" or "1.5 min".
+double seconds_of(const std::string& text, const char* option) {
+  const bool is_plain = text.find_first_not_of("0123456789.+-eE") == std::string::npos;
+  const Quantity time = parse_quantity(is_plain ? text + " s" : text, "s");
+  if (!time.problem.empty() || !(time.value > 0.0))
+    throw UsageError(std::string(option) + " '" + text + "': give a time above zero, such as 90 or \"2 min\"");
+  return time.value;
+}
 
 /// A run with the folder of its files.
 struct FinishedRun {
@@ -101,11 +111,11 @@ void check_folders(const SimulateOptions& options, const Models& models) {
                      "overwrite it with --force");
 }
 
-RunOptions run_options(const SimulateOptions& options, const LoadedModel& loaded) {
+RunOptions run_options(const SimulateOptions& options, const LoadedModel& loaded, const StopQuestion& stop) {
   RunOptions run;
   run.estimating = options.is_estimate_left_out ? Estimating::never : options.is_error_estimated ? Estimating::always : Estimating::cheap;
   run.has_second_opinion = options.is_hold_required;
-  run.stop = interruption;
+  run.stop = stop;
   run.note = [&loaded](const Finding& finding) {
     const std::string text = "'" + loaded.path + "': " + text_with_place(finding);
     if (finding.level == FindingLevel::warning) log_warning(text);
@@ -122,11 +132,12 @@ void log_run(const Report& report) {
     log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
 }
 
-FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
+FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const LoadedModel>& loaded, const StopQuestion& stop,
+                    Console& console) {
   log_detail("'" + loaded->name + "': " + counted(static_cast<std::size_t>(loaded->system->body_count() - 1), "body", "bodies") + ", " +
              counted(loaded->system->rows.size(), "constraint row", "constraint rows") + ", " +
              counted(loaded->system->frictions.size(), "joint with friction", "joints with friction"));
-  RunOptions asked = run_options(options, *loaded);
+  RunOptions asked = run_options(options, *loaded, stop);
   std::vector<Finding> before = findings_before(*loaded);
   for (const Finding& finding : before) asked.note(finding);
   Run run;
@@ -180,13 +191,18 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   check_step(options, models);
   check_folders(options, models);
   const InterruptionGuard guard;
+  const StopQuestion stop = options.time_limit ? stopped_after(seconds_of(*options.time_limit, "--time-limit")) : interruption;
   std::vector<FinishedRun> runs;
   ExitCode code = ExitCode::done;
   for (const auto& loaded : models) {
-    if (noted_signal() != 0) break;
+    if (const std::string why = stop(); !why.empty()) {
+      log_error("'" + loaded->path + "' is not run: " + why);
+      code = ExitCode::numerical_failure;
+      break;
+    }
     try {
-      runs.push_back(run_one(options, loaded, console));
-      if (runs.back().report.run.failure) code = ExitCode::numerical_failure;
+      runs.push_back(run_one(options, loaded, stop, console));
+      if (runs.back().report.run.failure || !stop().empty()) code = ExitCode::numerical_failure;
     } catch (const NumericalFailure& failure) { // the run could not even start
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;
@@ -247,6 +263,8 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"--digits", &o->digits, "N|full",
        "digits of the numbers on the screen (default: 3; one more where the first is a 1), or all that are known, with their errors; "
        "files and the tables of -v always have all"},
+      {"--time-limit", &o->time_limit, "T",
+       "stop after this time of computing, s, for all models together: what was computed is saved as after Ctrl-C, with exit code 4"},
       {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
       {"--require-hold", &o->is_hold_required, "",
        "exit code 5 unless the verdict on every run is hold, 4 if a second method, which is run for it, disagrees beyond both "

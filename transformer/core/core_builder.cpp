@@ -3,6 +3,7 @@
 #include "elements/step_lap/step_lap_interface.h"
 #include "elements/step_lap/step_lap_joint.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/validate.h"
 #include "transformer/core/core_dimensions.h"
 #include "transformer/core/core_geometry.h"
 
@@ -474,6 +475,19 @@ struct Yokes {
 
 } // namespace
 
+namespace {
+
+// Returns true if all fields are within their ranges. Dimensions may be computed from such tables only.
+bool is_within_ranges(const TableEntry& entry, const Model& model) {
+  std::vector<Diagnostic> problems;
+  FieldChecker(model, problems).check(entry.kind->fields, entry.table.get(), "", [&entry](const std::string&) {
+    return std::optional(entry.table->where);
+  });
+  return problems.empty();
+}
+
+} // namespace
+
 std::optional<double> yoke_steel(const Model& model, const std::string& active_part) {
   std::vector<Yokes> all;
   for (const TableEntry& entry : model.tables) {
@@ -482,7 +496,7 @@ std::optional<double> yoke_steel(const Model& model, const std::string& active_p
     const std::vector<std::string> names = core->all_limbs();
     const auto is_body = [&](const std::string& name) { return model.find_body(name) != nullptr; };
     if (!is_body(active_part) || !std::all_of(names.begin(), names.end(), is_body)) return {};
-    if (core->is_counted() || !check_dimensions(*core).empty()) return {};
+    if (core->is_counted() || !is_within_ranges(entry, model) || !check_dimensions(*core).empty()) return {};
     const auto is_own = [&](const Yokes& yokes) {
       return has_same_yokes(*yokes.cores.front(), *core) &&
              std::none_of(yokes.cores.begin(), yokes.cores.end(), [&](const Core* other) { return shares_limb(*other, *core); });

@@ -1,5 +1,6 @@
 #include "transformer/recorder/recorder_signal.h"
 
+#include "mbd/base/limits.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/digest.h"
@@ -225,6 +226,9 @@ Signal read_signal(const Recorder& r) {
   if (r.resample && *r.resample < recording.layout.time.rate * (1.0 - 1e-9))
     fail(r, "'resample' is below the record's " + rounded_text(recording.layout.time.rate) +
                 " Hz, which would fold high frequencies into low ones: keep the rate and filter by 'cfc'");
+  if (r.resample && *r.resample > k_most_resampling * recording.layout.time.rate)
+    fail(r, "'resample' may be at most " + rounded_text(k_most_resampling) + " times the record's " +
+                rounded_text(recording.layout.time.rate) + " Hz");
   SignalSink& sink = r.event ? static_cast<SignalSink&>(finder) : signal;
   Conditioner conditioner(conditioning, sink);
   conditioner.begin(recording.layout);

@@ -1,4 +1,6 @@
 // A run that is stopped from outside keeps what it has, and ends as the signal says; sizes that no machine holds are refused.
+#include "mbd/rest/settling.h"
+#include "run/run.h"
 #include "tests/tools/steplap/workbench.h"
 
 #include <doctest/doctest.h>
@@ -10,6 +12,7 @@
 #include <chrono>
 #include <thread>
 
+using namespace steplap;
 using namespace steplap::testing;
 
 namespace {
@@ -63,6 +66,45 @@ TEST_CASE("a run stopped by a signal keeps what was computed") {
   }
 }
 
+TEST_CASE("a time limit ends a run as a signal does, and keeps what was computed") {
+  const Workbench bench;
+  const std::string model = bench.write("long.toml", k_oscillator);
+  const std::vector<std::string> long_run = {"simulate", model,           "-o", bench.at("out"), "--set", "simulation.end=1e6",
+                                             "--set",    "output.step=10"};
+  std::vector<std::string> limited = long_run;
+  limited.insert(limited.end(), {"--time-limit", "0.3"});
+  const Outcome outcome = steplap_does(limited);
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.err, "stopped by the time limit of 0.3 s at t = "));
+  CHECK(fs::exists(bench.at("out") + "/long/partial_trajectory.csv"));
+  std::vector<std::string> late = long_run;
+  late.insert(late.end(), {"--force", "--time-limit", "1 ns"}); // over before the run begins
+  const Outcome none = steplap_does(late);
+  CHECK(none.code == 4);
+  CHECK(has(none.err, "is not run: stopped by the time limit of 1e-09 s"));
+  for (const char* const wrong : {"0", "-1 s", "nan", "soon", "3 kg"}) {
+    std::vector<std::string> refused = long_run;
+    refused.insert(refused.end(), {"--time-limit", wrong});
+    CHECK(steplap_does(refused).code == 2);
+  }
+}
+
+// Both searches ask before each of their steps, so a question that is answered at once ends them before they move anything.
+TEST_CASE("the search for rest stops when asked") {
+  const Workbench bench;
+  std::string text = k_bouncer;
+  text.replace(text.find("[simulation]\n"), 13, "[simulation]\ninitial = \"equilibrium\"\n");
+  const auto loaded = load_model(bench.write("falls.toml", text));
+  RunOptions options;
+  int asked = 0;
+  options.stop = [&asked] { return ++asked > 1 ? std::string("stopped by the test") : std::string(); };
+  CHECK_THROWS_WITH_AS((void)run_model(loaded, options), doctest::Contains("stopped by the test in the search for rest"), RunStopped);
+  const State start = loaded->assembled;
+  const StopQuestion now = [] { return std::string("stopped by the test"); };
+  const StopScope scope(now);
+  CHECK_THROWS_AS((void)settle_in_time(*loaded->system, start), RunStopped);
+}
+
 TEST_CASE("a trajectory beyond the limit is refused before the run, and its size told") {
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_oscillator);
@@ -93,4 +135,17 @@ TEST_CASE("keys of thousands of parts are refused, points in quotes are no parts
     CHECK(outcome.code == 0);
     CHECK(outcome.err.empty());
   }
+}
+
+TEST_CASE("a working folder that is gone is an error of use, not a fault of the program") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_oscillator);
+  const fs::path before = fs::current_path();
+  fs::create_directory(bench.at("gone"));
+  fs::current_path(bench.at("gone"));
+  fs::remove(bench.at("gone"));
+  const Outcome outcome = steplap_does({"simulate", model, "-o", "out"});
+  fs::current_path(before);
+  CHECK(outcome.code == 2);
+  CHECK(has(outcome.err, "cannot use 'out/a': No such file or directory"));
 }

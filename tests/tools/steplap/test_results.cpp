@@ -6,6 +6,13 @@
 
 #include <doctest/doctest.h>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+
 using namespace steplap;
 using namespace steplap::testing;
 
@@ -38,6 +45,26 @@ TEST_CASE("names in CSV headers are quoted where they must be") {
   const Run run = run_model(load_model(bench.write("a.toml", text)));
   CHECK(has(trajectory_csv(*run.result.trajectory), ",\"front, \"\"left\"\".force [N]\""));
   CHECK(events_csv({{0.25, "a,b", EventKind::opens}}) == "t [s],element,event\n0.25,\"a,b\",opens\n");
+}
+
+// Processes in two containers on one share may have the same number. A lock tells which of them still writes.
+TEST_CASE("folders of other processes that write are left, those of killed ones removed") {
+  const Workbench bench;
+  const std::string running = bench.at(".steplap-" + std::to_string(getpid())), killed = bench.at(".steplap-killed"),
+                    starting = bench.at(".steplap-starting");
+  for (const std::string& folder : {running, killed, starting}) {
+    fs::create_directory(folder);
+    std::ofstream(folder + "/trajectory.csv") << "t [s]\n";
+  }
+  for (const std::string& folder : {running, killed}) fs::last_write_time(folder, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const int lock = open(running.c_str(), O_RDONLY | O_DIRECTORY);
+  REQUIRE(flock(lock, LOCK_EX | LOCK_NB) == 0);
+  write_results(bench.at("run"), {{"summary.json", "1"}}, false);
+  close(lock);
+  CHECK(fs::exists(running + "/trajectory.csv"));
+  CHECK(fs::exists(starting + "/trajectory.csv")); // made just now: its owner may not have locked it yet
+  CHECK_FALSE(fs::exists(killed));
+  CHECK(text_of(bench.at("run") + "/summary.json") == "1");
 }
 
 TEST_CASE("results are written as a whole or not at all") {

@@ -183,6 +183,16 @@ TEST_CASE("words of libraries never reach the user") {
     }
 }
 
+// 100 000 threads would take 5 GB before the first sample.
+TEST_CASE("more threads than the limit are refused by an error that names it") {
+  StudyBench bench;
+  const std::string text = reliability("monte_carlo", "x - 3");
+  const Outcome refused = bench.run(text, {"--threads", "100000"});
+  CHECK(refused.code == 2);
+  CHECK(has(refused.err, "--threads takes a whole number from 1 to 1024, not '100000'"));
+  CHECK(bench.run(text, {"--threads", "2"}).code != 2);
+}
+
 TEST_CASE("help tells the exit codes of studies") {
   const Outcome outcome = study_does({"--help"});
   CHECK(outcome.code == 0);

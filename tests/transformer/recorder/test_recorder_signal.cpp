@@ -121,6 +121,7 @@ TEST_CASE("what a record leaves open is asked for") {
   CHECK(has(problem(plain, {{"axis", text("x")}, {"event", 4L}}), "'event' is 4"));
   CHECK(has(problem(plain, {{"axis", text("x")}, {"from", 7.0}}), "no two samples"));
   CHECK(has(problem(plain, {{"axis", text("x")}, {"resample", 50.0}}), "'resample' is below"));
+  CHECK(has(problem(plain, {{"axis", text("x")}, {"resample", 1e9}}), "'resample' may be at most 100 times the record's"));
   CHECK(has(problem(plain, {{"axis", text("x")}, {"sha256", text("00")}}), "SHA-256"));
   CHECK(has(problem(gap, {{"axis", text("x")}}), "2 segments"));
   CHECK(problem(gap, {{"axis", text("x")}, {"from", 8.0}}) == "");

@@ -1,6 +1,7 @@
 #include "tools/study/program/assess.h"
 
 #include "mbd/base/event_kind.h"
+#include "mbd/base/limits.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
 #include "run/quantity_text.h"
@@ -8,10 +9,10 @@
 #include "tools/assess/assumed_pulse.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/text_table.h"
+#include "tools/study/program/whole_number.h"
 #include "transformer/recorder/fields.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -53,13 +54,8 @@ private:
 
 fs::path output_folder(const AssessOptions& o) { return o.output.value_or("out/assessment"); }
 
-long whole_number(const std::optional<std::string>& text, const char* option, long least, long otherwise) {
-  if (!text) return otherwise;
-  long value = 0;
-  const auto [end, status] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (status != std::errc() || end != text->data() + text->size() || value < least)
-    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + *text + "'");
-  return value;
+long number_or(const std::optional<std::string>& text, const char* option, long least, long otherwise) {
+  return text ? whole_number(*text, option, least) : otherwise;
 }
 
 std::vector<Evidence> accepted_evidence(const AssessOptions& options) {
@@ -110,9 +106,9 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   if (o.budget) options.budget = number_of(o.budget, "--budget", 0.0, ", in s");
   options.criteria = o.criteria.value_or("acceptance-3g");
   if (o.is_estimate_left_out) options.estimating = Estimating::never;
-  options.sampling.samples = whole_number(o.samples, "--samples", 0, options.sampling.samples);
-  options.sampling.seed = static_cast<std::uint64_t>(whole_number(o.seed, "--seed", 0, 1));
-  options.sampling.threads = static_cast<int>(std::min(whole_number(o.threads, "--threads", 1, 0), 1024L));
+  options.sampling.samples = number_or(o.samples, "--samples", 0, options.sampling.samples);
+  options.sampling.seed = static_cast<std::uint64_t>(number_or(o.seed, "--seed", 0, 1));
+  options.sampling.threads = o.threads ? static_cast<int>(whole_number(*o.threads, "--threads", 1, k_most_threads)) : 0;
   options.sampling.store = (output_folder(o) / "samples.sqlite").string();
   options.stop = interruption;
   return options;

@@ -1,5 +1,6 @@
 #include "tools/study/program/commands.h"
 
+#include "mbd/base/limits.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
@@ -11,10 +12,10 @@
 #include "tools/study/export.h"
 #include "tools/study/program/progress_line.h"
 #include "tools/study/program/show.h"
+#include "tools/study/program/whole_number.h"
 #include "tools/study/report_page.h"
 #include "tools/study/run_study.h"
 
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -57,14 +58,6 @@ std::string store_of(const Options& o) {
   return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file);
 }
 
-long whole_number(const std::string& text, const char* option, long least) {
-  long value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || value < least)
-    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + text + "'");
-  return value;
-}
-
 std::string page_of(const std::string& store) { return std::filesystem::path(store).replace_extension(".html").string(); }
 
 std::string page_text(const std::string& path) {
@@ -80,7 +73,7 @@ ExitCode code_of(Standing standing) {
 StudyOptions study_options(const Options& o, const Ranks& ranks, ProgressLine& line) {
   if (o.is_restarted && o.is_changed) throw UsageError("--restart and --changed exclude each other");
   StudyOptions options;
-  options.threads = o.threads ? static_cast<int>(whole_number(*o.threads, "--threads", 1)) : ranks.threads();
+  options.threads = o.threads ? static_cast<int>(whole_number(*o.threads, "--threads", 1, k_most_threads)) : ranks.threads();
   options.mode = o.is_restarted ? StoreMode::restart : o.is_changed ? StoreMode::changed : StoreMode::run;
   options.progress = std::ref(line);
   options.note = [](const std::string& text) { log_info(text); };

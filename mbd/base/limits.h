@@ -1,0 +1,20 @@
+// Limits of what a computation may be asked for. Whoever asks for more gets an error that names the limit.
+#pragma once
+
+#include <cstddef>
+
+namespace steplap {
+
+/// Largest number of threads of a study, an assessment or samples; each takes some 50 MB.
+inline constexpr long k_most_threads = 1024;
+
+/// Largest factor by which the rate of a record may be raised. Steps between samples a tenth as long as needed would be 10.
+inline constexpr double k_most_resampling = 100.0;
+
+/// Largest number of keys in a table of a model file, such as [parameters]. Keys are searched one by one: reading 10 000 takes 0.5 s.
+inline constexpr std::size_t k_most_keys = 10'000;
+
+/// Largest size of the texts that one repeated entry may make, bytes: 200 for each of the most entries.
+inline constexpr std::size_t k_most_repeated_text = 20'000'000;
+
+} // namespace steplap
