@@ -228,3 +228,18 @@ TEST_CASE("what slides comes to rest where the stop bears what friction does not
         CHECK(asked.value(probe, "deck.friction") == doctest::Approx(-sign * 1000.0 * mu * k_g).epsilon(1e-4));
       }
 }
+
+// A block on feet 2 b apart, its centre of gravity h above them, tips at b/h g if friction holds. EN 12195-1 asks for 0.6 g sideways of
+// what may tip. The feet sink by micrometres, so tipping starts within 1e-4 of b/h, far less than the distance of 0.58 and 0.62 from 0.6.
+TEST_CASE("the road asks for 0.6 g to both sides of a load that may tip") {
+  StaticProofOptions transverse;
+  transverse.plane = Plane::transverse;
+  for (const double b : {0.55, 0.58}) {
+    const StaticProof tips = prove_statically(*machine(block_on_deck(b, 1.0, 0.8)), static_preset("road"), transverse);
+    CHECK(tips.verdict == Verdict::reject);
+    REQUIRE(tips.cases.size() == 4);
+    for (const StaticCase& load : tips.cases)
+      CHECK((load.verdict == Verdict::hold) == (load.load.name.find("tipping") == std::string::npos));
+  }
+  CHECK(prove_statically(*machine(block_on_deck(0.62, 1.0, 0.8)), static_preset("road"), transverse).verdict == Verdict::hold);
+}
