@@ -76,9 +76,9 @@ struct Element {
 
 /// The largest coefficient of dry friction that an element gives, and its origin.
 struct GivenFriction {
-  const char* field = ""; ///< field of the coefficient
-  double coefficient = 0.0;
-  std::string source; ///< as the model states it; empty: not stated
+  const char* field = "";   ///< field of the coefficient
+  double coefficient = 0.0; ///< static friction [1]
+  std::string source;       ///< as the model states it; empty: not stated
 };
 
 /// One kind of element: its fields and its compilation into a system.
