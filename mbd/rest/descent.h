@@ -14,8 +14,6 @@
 #include "mbd/rest/clearance.h"
 #include "mbd/rest/landscape.h"
 
-#include <numbers>
-
 namespace steplap {
 
 enum class DescentEnd {
@@ -31,11 +29,6 @@ public:
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
-  /// Sets the displacement, in sizes of the model, and the rotation, rad, from which a body counts as moving without end.
-  void set_reach(double lengths, double turn) {
-    far_ = lengths;
-    many_turns_ = turn;
-  }
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< size of the model, m
@@ -97,10 +90,8 @@ private:
   std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
   double residual_ = 0.0;
-  double far_ = 1e4;                            ///< sizes of the model; beyond it a body counts as moving without end
-  double many_turns_ = 40.0 * std::numbers::pi; ///< the same for rotations, rad
-  std::vector<Hold> hold_;                      ///< per friction element
-  std::vector<char> left_out_;                  ///< per friction row: dependent on other sticking rows and left out
+  std::vector<Hold> hold_;     ///< per friction element
+  std::vector<char> left_out_; ///< per friction row: dependent on other sticking rows and left out
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;
   double driving_force_ = 0.0;

@@ -5,7 +5,6 @@
 #include "mbd/rest/admissible_rest.h"
 #include "mbd/rest/indifference.h"
 #include "mbd/rest/ramped_rest.h"
-#include "mbd/rest/rest_increment.h"
 #include "mbd/rest/settling.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
@@ -34,8 +33,6 @@ constexpr double k_tipped = 0.75;  // rad of rotation from which a body counts a
 constexpr int k_most_shared = 150; // coordinates of the largest model for which all distributions of friction are examined
 // Share of the size of the model: contacts that slid further, resisted by friction alone, did not stand.
 constexpr double k_stands = 1e-2;
-constexpr double k_slid = 1e-9;      // share of the size of the model; rows of sticking friction are met to 1e-12 m
-constexpr double k_most_moved = 1.0; // sizes of the model, rad: a body that moves further in one increment has left its place
 
 std::string rounded(double value) {
   char text[40];
@@ -71,14 +68,7 @@ std::string unstable_text(const System& system, const MotionPart& nudge) {
   return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
 }
 
-// Failure that releasing the damped machine cannot cure: a joint that friction holds in the plane is overloaded, or the machine has left
-// its place.
-class GivesWay : public ElementFailure {
-public:
-  using ElementFailure::ElementFailure;
-};
-
-enum class LoadHistory { any, increment };
+enum class LoadHistory { any, ramped };
 
 class RestSearch {
 public:
@@ -95,10 +85,8 @@ public:
     if (system_.body_count() <= 1) return at_rest();
     try {
       return search();
-    } catch (const GivesWay&) {
-      throw;
     } catch (const ElementFailure& none) {
-      if (system_.units.empty() && system_.frictions.empty()) throw;
+      if (history_ == LoadHistory::ramped || (system_.units.empty() && system_.frictions.empty())) throw;
       return settled(none);
     }
   }
@@ -109,19 +97,16 @@ private:
     state_ = start_;
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     start_drives(system_, state_);
-    const bool is_increment = history_ == LoadHistory::increment;
-    const Settling settling =
-        is_increment ? settle_in_time(system_, with_drives_held(), k_most_moved) : settle_in_time(system_, with_drives_held());
+    const Settling settling = settle_in_time(system_, with_drives_held());
     if (!settling.is_tried)
       throw ElementFailure(std::string(none.what()) + "; the scene is too large to be let go and damped", none.elements());
     const std::string tried = std::string(none.what()) + "; let go and strongly damped, it does not come to rest either (" +
                               std::to_string(settling.steps) + " time steps)";
-    if (!settling.rest) throw ElementFailure(is_increment ? none.what() : tried, none.elements());
+    if (!settling.rest) throw ElementFailure(tried, none.elements());
     const int iterations = result_.iterations;
     State rest = *settling.rest;
     rest.memory = held_memory(rest);
     state_ = rest;
-    if (is_increment) check_increment();
     // A body that slid away did not stand, whatever its final pose.
     if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
         slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
@@ -137,44 +122,6 @@ private:
       throw ElementFailure(tried, none.elements());
     }
   }
-  // Returns the largest displacement of a friction's rows since the start; 0 for friction without load there.
-  [[nodiscard]] double slid_since_start(int f) const {
-    const FrictionUnit& unit = system_.frictions[f];
-    if (start_.friction[f].phase != FrictionPhase::stick || unit.friction->never_slips()) return 0.0;
-    std::vector<Motion<double>> before, now;
-    place_bodies(start_.q, state_.v, before);
-    place_bodies(state_.q, state_.v, now);
-    double most = 0.0;
-    for (int r = 0; r < unit.friction->dimension(); ++r) {
-      const RowSpec& row = unit.friction->rows(start_.friction[f])[r];
-      most = std::max(most, std::abs(evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value));
-    }
-    return most;
-  }
-  // Throws if a joint that friction holds in the plane slipped, because its sliding is not followed, or if friction of contacts slid far in
-  // this increment, because then nothing else held the body.
-  void check_increment() const {
-    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-      const double slid = slid_since_start(f);
-      if (system_.frictions[f].friction->dimension() > 1 && slid > k_slid * length_)
-        throw GivesWay("no static equilibrium: '" + name_of(f) + "' slips", {name_of(f)});
-      if (slid > k_stands * length_ && is_of_contacts(f)) {
-        const RowSpec& row = *system_.frictions[f].friction->rows(start_.friction[f]);
-        const int body = row.a == k_ground ? row.b : row.a;
-        throw ElementFailure("no static equilibrium: '" + name_of(f) + "' cannot hold, and '" + system_.bodies[body].name + "' slides",
-                             {name_of(f), system_.bodies[body].name});
-      }
-    }
-  }
-  // Throws if this equilibrium is far from the start or was reached past an unstable one: the machine has then left its place.
-  void check_place() const {
-    if (!result_.left.empty())
-      throw GivesWay("the pose balances, but a nudge of " + part_text(system_, result_.left.front()) + " leaves it", {});
-    if (result_.turned != 0.0) throw GivesWay("'" + system_.bodies[result_.turned_body].name + "' tips over", {});
-    for (std::size_t i = 3; i < start_.q.size(); ++i)
-      if (std::abs(state_.q[i] - start_.q[i]) > k_most_moved * (i % 3 < 2 ? length_ : 1.0))
-        throw GivesWay("'" + system_.bodies[i / 3].name + "' leaves its place", {system_.bodies[i / 3].name});
-  }
   // Returns the memory with the drives' original values and the friction anchors of `rest`.
   [[nodiscard]] std::vector<double> held_memory(const State& rest) const {
     std::vector<double> memory = rest.memory;
@@ -187,7 +134,6 @@ private:
   Equilibrium search() {
     while (true) {
       Descent descent(system_, state_, algebra_);
-      if (history_ == LoadHistory::increment) descent.set_reach(k_most_moved, k_most_moved);
       const DescentEnd end = descent.run();
       result_.iterations += descent.iterations();
       result_.residual = descent.residual();
@@ -200,14 +146,11 @@ private:
       for (Slip& slip : slips_) slip.is_new = false;
       yielding_ = descent.yielding();
       if (end != DescentEnd::rest && tighten_long()) continue;
-      if (end == DescentEnd::runs_away && history_ == LoadHistory::increment)
-        throw GivesWay("no static equilibrium: " + part_text(system_, descent.runaway()) + " leaves its place", {});
       if (end != DescentEnd::rest) fail(descent, end);
       if (let_flow()) continue;
       find_margins(descent);
       if (change_ropes()) continue;
       if (overloads_.empty()) break;
-      if (history_ == LoadHistory::increment && !result_.is_settled) fail_overloaded();
       if (result_.is_settled || !share_anew(descent)) let_go(); // a settled machine has distributed its load on the way
     }
     check_slides();
@@ -220,18 +163,12 @@ private:
       state_.friction[f].phase = FrictionPhase::stick;
       anchor_friction(system_, state_, f);
     }
-    if (history_ == LoadHistory::increment) {
-      for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
-        if (slid_since_start(f) > k_slid * length_) result_.slid.push_back(f);
-    } else {
-      for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
-    }
-    result_.hangs_on_way = history_ == LoadHistory::any && (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
+    for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
+    result_.hangs_on_way = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
     note_drives();
     result_.state = state_;
     result_.state.v = start_.v;
     note_tipping();
-    if (history_ == LoadHistory::increment) check_place();
     for (std::size_t i = 3; i < start_.q.size(); ++i)
       if (i % 3 < 2) result_.moved = std::max(result_.moved, std::abs(state_.q[i] - start_.q[i]));
     return std::move(result_);
@@ -415,7 +352,7 @@ private:
   // Sticking forces depend on the history of loading. Looks for another admissible distribution of forces that holds the machine, and
   // returns true if there is one.
   bool share_anew(const Descent& descent) {
-    if (was_shared_anew_ || history_ == LoadHistory::increment) return false;
+    if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
     // The search over all distributions uses dense algebra, which takes hours in large models. There friction slides until it sticks.
     if (3 * (system_.body_count() - 1) > k_most_shared) {
       is_too_large_ = true;
@@ -477,14 +414,6 @@ private:
     const int body = row.a == k_ground ? row.b : row.a;
     throw SlidAway("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
                    {name_of(slip.friction), system_.bodies[body].name}, slip);
-  }
-  [[noreturn]] void fail_overloaded() const {
-    const Overload& worst =
-        *std::max_element(overloads_.begin(), overloads_.end(), [](const Overload& a, const Overload& b) { return a.used < b.used; });
-    const std::string text =
-        "no static equilibrium: '" + name_of(worst.friction) + "' would have to hold " + rounded(worst.used) + " times what it can";
-    if (system_.frictions[worst.friction].friction->dimension() > 1) throw GivesWay(text, {name_of(worst.friction)});
-    throw ElementFailure(text, {name_of(worst.friction)});
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
@@ -608,8 +537,8 @@ Equilibrium find_equilibrium(const System& system, const State& start, RestAlgeb
   return RestSearch(system, start, algebra).run();
 }
 
-Equilibrium rest_after_increment(const System& system, const State& start) {
-  return RestSearch(system, start, RestAlgebra::by_size, LoadHistory::increment).run();
+Equilibrium find_ramped_rest(const System& system, const State& start) {
+  return RestSearch(system, start, RestAlgebra::by_size, LoadHistory::ramped).run();
 }
 
 } // namespace steplap

@@ -19,9 +19,6 @@ constexpr double k_first = 1e-4; // displacement of the first step, relative to 
 // Largest displacement of a step, relative to the size of the model, and largest rotation, rad.
 constexpr double k_move = 0.05, k_turn = 0.1;
 constexpr double k_balanced = 1e-9; // share of the initial accelerations; the remaining imbalance is left to Newton's method
-// Largest growth of the acceleration in one step. Creeping, it falls, or grows gradually where the machine leaves an unstable pose. In a long
-// step, whose contacts and friction are linearised at its start, the machine can jump far from the rest that it is close to.
-constexpr double k_most_growth = 2.0;
 constexpr double k_shortest = 1e-5; // share of the longest step; time stepping takes steps below a tenth of it for rounding
 constexpr double k_touch = 64.0;    // in roundings of the largest coordinate
 constexpr double k_on_rows = 1e-12; // m, rad
@@ -31,9 +28,9 @@ constexpr double k_most_work = 4e8;
 
 class Settler {
 public:
-  Settler(const System& system, const State& start, double most_moved)
-      : system_(system), dynamics_(system), stepping_(system), start_(start), state_(start), most_moved_(most_moved),
-        scene_(scale_of(system, start)), clearance_(system, k_touch * k_epsilon * scene_.reach) {
+  Settler(const System& system, const State& start)
+      : system_(system), dynamics_(system), stepping_(system), state_(start), scene_(scale_of(system, start)),
+        clearance_(system, k_touch * k_epsilon * scene_.reach) {
     const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), start.t);
     dynamics_.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
     dynamics_.use_coordinates(Coordinates::absolute);
@@ -51,8 +48,7 @@ public:
       found.rest = state_;
       return found;
     }
-    const double first = std::sqrt(k_first * scene_.length / reference_);
-    double h = first, longest = first, last = std::numeric_limits<double>::infinity(); // last: acceleration in the last step, m/s²
+    double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
     clearance_.look(state_.q);
     for (; found.steps < std::min(most, 1.0 * k_most_steps) && h > k_shortest * longest; ++found.steps) {
       stop_if_asked("while the machine settled");
@@ -67,16 +63,8 @@ public:
         h *= std::isfinite(size) && size > 1.0 ? std::max(0.1, 0.7 / std::sqrt(size)) : 0.25;
         continue;
       }
-      const double acceleration = acceleration_of(way, h);
-      if (h > first && acceleration > k_most_growth * last) {
-        clearance_.look(state_.q);
-        h *= 0.25;
-        continue;
-      }
-      last = acceleration;
       state_ = next;
-      if (has_left()) break;
-      if (acceleration <= k_balanced * reference_) {
+      if (acceleration_of(way, h) <= k_balanced * reference_) {
         found.rest = state_;
         break;
       }
@@ -113,11 +101,6 @@ private:
       way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];
     return way;
   }
-  [[nodiscard]] bool has_left() const {
-    for (std::size_t i = 3; i < state_.q.size(); ++i)
-      if (std::abs(state_.q[i] - start_.q[i]) > most_moved_ * (i % 3 < 2 ? scene_.length : 1.0)) return true;
-    return false;
-  }
   // Returns the size of a displacement; 1 is the largest one permitted in a step.
   [[nodiscard]] double size_of(const VecX& way) const {
     double size = 0.0;
@@ -145,9 +128,7 @@ private:
   const System& system_;
   Dynamics dynamics_;
   TimeStepping stepping_;
-  const State& start_;
   State state_;
-  const double most_moved_;
   SceneScale scene_;
   Clearance clearance_;
   double reference_ = 0.0;
@@ -155,6 +136,6 @@ private:
 
 } // namespace
 
-Settling settle_in_time(const System& system, const State& start, double most_moved) { return Settler(system, start, most_moved).run(); }
+Settling settle_in_time(const System& system, const State& start) { return Settler(system, start).run(); }
 
 } // namespace steplap

@@ -10,7 +10,6 @@
 #include "mbd/rest/tangent.h"
 #include "mbd/system/system.h"
 
-#include <limits>
 #include <optional>
 
 namespace steplap {
@@ -21,9 +20,7 @@ struct Settling {
   bool is_tried = true; ///< false: the model is too large
 };
 
-/// Runs from `start`, with drives held and zero velocities. The limit of work is a number of steps. The search ends without a rest if a
-/// body has moved further than `most_moved`, in sizes of the model and in radians.
-[[nodiscard]] Settling settle_in_time(const System& system, const State& start,
-                                      double most_moved = std::numeric_limits<double>::infinity());
+/// Runs from `start`, with drives held and zero velocities. The limit of work is a number of steps.
+[[nodiscard]] Settling settle_in_time(const System& system, const State& start);
 
 } // namespace steplap

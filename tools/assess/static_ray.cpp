@@ -30,7 +30,7 @@ public:
     const double g = machine_.gravity().norm();
     const double first = k_first_step * (g > 0.0 ? std::min(g, most_) : most_);
     for (double a = std::min(first, most_);; a = std::min(most_, std::max(a + first, a * k_growth))) {
-      Point high = at(low, a);
+      Point high = at(a);
       if (!high.probe.rest) {
         end_between(low, high);
         break;
@@ -46,7 +46,7 @@ public:
   }
 
 private:
-  [[nodiscard]] Point at(const Point& low, double a) { return {a, machine_.ramped_from(low.probe, a * direction_)}; }
+  [[nodiscard]] Point at(double a) { return {a, machine_.ramped(a * direction_)}; }
 
   void note(std::size_t w, double a, double error) {
     is_reached_[w] = 1;
@@ -71,10 +71,8 @@ private:
     return first;
   }
 
-  // Bisects between a point at which `is_good` is true and one at which it is false. Every pull is followed from the first of them: an
-  // increment from a pull near the limit can change forces by less than an equilibrium leaves unbalanced, and would then rest beyond it.
+  // Bisects between a point at which `is_good` is true and one at which it is false.
   template <class IsGood> void close_in(Point& low, Point& high, std::optional<std::size_t> only, const IsGood& is_good) {
-    const Point from = low;
     Point before = low;
     for (int i = 0; i < k_most_probes; ++i) {
       const double width = high.a - low.a, enough = k_width * high.a;
@@ -85,7 +83,7 @@ private:
         if (guess > low.a && guess < high.a) next = i % 3 == 0 ? guess - aside : guess + aside;
       }
       if (!(next > low.a && next < high.a)) next = low.a + 0.5 * width;
-      Point middle = at(from, next);
+      Point middle = at(next);
       if (is_good(middle.probe)) {
         before = std::move(low);
         low = std::move(middle);
