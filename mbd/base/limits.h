@@ -1,4 +1,4 @@
-// Limits of what a computation may be asked for. Whoever asks for more gets an error that names the limit.
+// Limits of inputs whose cost grows without bound. Input beyond one is refused by an error that names the limit.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@ namespace steplap {
 /// Largest number of threads of a study, an assessment or samples; each takes some 50 MB.
 inline constexpr long k_most_threads = 1024;
 
-/// Largest factor by which the rate of a record may be raised. Steps between samples a tenth as long as needed would be 10.
+/// Largest factor by which the rate of a record may be raised. Ten samples for each of the record already interpolate it smoothly.
 inline constexpr double k_most_resampling = 100.0;
 
 /// Largest number of keys in a table of a model file, such as [parameters]. Keys are searched one by one: reading 10 000 takes 0.5 s.

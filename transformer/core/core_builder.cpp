@@ -473,10 +473,6 @@ struct Yokes {
   }
 };
 
-} // namespace
-
-namespace {
-
 // Returns true if all fields are within their ranges. Dimensions may be computed from such tables only.
 bool is_within_ranges(const TableEntry& entry, const Model& model) {
   std::vector<Diagnostic> problems;

@@ -92,9 +92,7 @@ TEST_CASE("a time limit ends a run as a signal does, and keeps what was computed
 // Both searches ask before each of their steps, so a question that is answered at once ends them before they move anything.
 TEST_CASE("the search for rest stops when asked") {
   const Workbench bench;
-  std::string text = k_bouncer;
-  text.replace(text.find("[simulation]\n"), 13, "[simulation]\ninitial = \"equilibrium\"\n");
-  const auto loaded = load_model(bench.write("falls.toml", text));
+  const auto loaded = load_model(bench.write("falls.toml", k_bouncer), {"simulation.initial=equilibrium"});
   RunOptions options;
   int asked = 0;
   options.stop = [&asked] { return ++asked > 1 ? std::string("stopped by the test") : std::string(); };
