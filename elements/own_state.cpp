@@ -43,7 +43,7 @@ void compile_state(const Element& element, SystemBuilder& builder) {
   start.inner = inner.data();
   FormulaProgram::Bits bits{0, 0};
   entry.rate.find_bits(start, {}, bits);
-  if (!std::isfinite(entry.rate.value<double>(start, {}, SignalsNow{0.0}, bits.values, nullptr)))
+  if (!std::isfinite(entry.rate.value<double>(start, {}, NumericSignalEvaluator{0.0}, bits.values, nullptr)))
     return builder.error(
         "'rate' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.rate, start, {});

@@ -43,7 +43,7 @@ public:
     std::shared_ptr<const Outlines> outlines;
     double stiffness = 0.0, dissipation = 0.0;
     bool has_friction = false;
-    int link = 0, unit = 0, watch = 0, contact = 0;
+    int link = 0, unit = 0, first_event = 0, contact = 0;
   };
   std::vector<Entry> entries;
 
@@ -54,8 +54,8 @@ public:
       const UnitMode mode = e.mode[entry.unit];
       const Approach now = approach(placed, relative(m, placed.centre));
       const double sign = mode == k_contact_open ? 1.0 : -1.0;
-      e.watch[entry.watch] = sign * now.gap;
-      e.watch_rate[entry.watch] = sign * now.rate;
+      e.event_value[entry.first_event] = sign * now.gap;
+      e.event_derivative[entry.first_event] = sign * now.rate;
       e.contact_force[entry.contact] = 0.0;
       if (mode == k_contact_open) continue;
       BodyForce& sum = e.link_force[entry.link];
@@ -115,11 +115,11 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
+  void register_turns(TurnTable& turns) const override {
     for (const Entry& entry : entries) turns.add_all({entry.a, entry.b});
   }
   // For friction on a face of a, corners of b are needed in the axes of a.
-  void enter_links(LinkTable& links) override {
+  void register_links(LinkTable& links) override {
     for (Entry& entry : entries) {
       entry.link = links.add(entry.a, entry.b);
       if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
@@ -144,10 +144,10 @@ public:
   }
   // Returns the first unit in which one outline lies within the other. Its depth is then at least the smaller width, so shallower contacts
   // are skipped.
-  [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& watch,
+  [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& event_value,
                                     const std::function<const Motion<double>*()>& motion) const override {
     for (const Entry& entry : entries) {
-      if (modes[entry.unit] == k_contact_open || watch[entry.watch] < entry.outlines->narrowest) continue;
+      if (modes[entry.unit] == k_contact_open || event_value[entry.first_event] < entry.outlines->narrowest) continue;
       const Placed<double, Motion<double>> placed(*entry.outlines, motion()[entry.a], motion()[entry.b]);
       if (overlap_force(placed.a, placed.b, RelativeVelocity<double>{}, entry.stiffness, 0.0).is_swallowed) return entry.unit;
     }
@@ -159,7 +159,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int, UnitMode mode, int, const Evaluation&) const override {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
-  [[nodiscard]] EventKind transition(UnitMode, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode, UnitMode to) const override {
     return to == k_contact_open ? EventKind::opens : EventKind::closes;
   }
 
@@ -244,10 +244,10 @@ public:
 
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
-  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
     return false; // the contact point has branches of its own
   }
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+  [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const HoldingPlace& place = places[state.foot];
     const Heights h = heights(placed, place.face);
@@ -255,7 +255,7 @@ public:
     const double face_left = own - 2.0 * best; // both terms are negative while pressed
     return k_dead_band + std::min(face_left, left_of(h, place));
   }
-  void change_place(const Evaluation& e, FrictionState& state) const override {
+  void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const Separation s = separation_of(placed.a, placed.b);
     const Heights h = heights(placed, s.face);

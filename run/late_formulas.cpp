@@ -49,7 +49,7 @@ public:
       if (system.element_names[static_cast<std::size_t>(system.units[u].element)] == element) units_.push_back(u);
     y_.resize(static_cast<std::size_t>(system.largest_dimension()));
     dy_.resize(y_.size());
-    dynamics_.set_time_limit(std::numeric_limits<double>::infinity());
+    dynamics_.set_left_limit_time(std::numeric_limits<double>::infinity());
   }
 
   std::vector<double> values(double t) {

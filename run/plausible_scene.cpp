@@ -195,7 +195,7 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   return findings;
 }
 
-std::vector<Finding> implausible_sizes(const LoadedModel& loaded) {
+std::vector<Finding> magnitude_warnings(const LoadedModel& loaded) {
   const Model& model = loaded.model;
   std::vector<Finding> findings;
   for (const Body& body : model.bodies) {

@@ -60,7 +60,7 @@ void set_free_lengths(Group::Entry& entry, const std::optional<double>& pretensi
 int add(Group& group, Group::Entry entry, SystemBuilder& builder) {
   entry.inner = builder.add_inner(group, 0.0);
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, Group::k_watches);
+  builder.add_unit(group, Group::k_event_count);
   return static_cast<int>(group.entries.size()) - 1;
 }
 

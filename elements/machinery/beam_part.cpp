@@ -75,7 +75,7 @@ public:
   std::vector<Entry> entries;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e); }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
     add_forces_to(e);
     return true;
   }
@@ -105,7 +105,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_links(LinkTable& links) override {
+  void register_links(LinkTable& links) override {
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] PartState<double> now(int i, const Evaluation& e) const {
@@ -114,7 +114,7 @@ public:
   }
 
 private:
-  template <class S> void add_forces_to(Evaluated<S>& e) const {
+  template <class S> void add_forces_to(EvaluationData<S>& e) const {
     for (const Entry& entry : entries) {
       const PartState<S> p = state_of(entry, e.link_motion[entry.link], Origin{});
       const PartWrench<S> w = wrench_of(entry, p);

@@ -24,7 +24,7 @@ struct CamEntry {
   double zero = 0.0; ///< φ for θ_cam = θ_b
   KelvinVoigtContact law = {};
   bool holds = false;
-  int unit = 0, watch = 0;
+  int unit = 0, first_event = 0;
 
   [[nodiscard]] std::array<int, 3> bodies() const { return {a, b, cam}; }
 };
@@ -75,7 +75,8 @@ public:
       const CamGap<double> gap = gap_now(entry, e.motion);
       const UnitMode mode = mode_of(entry, e);
       const double f = entry.law.force(gap.value, gap.rate, mode);
-      if (!entry.holds) entry.law.watch(gap.value, gap.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      if (!entry.holds)
+        entry.law.event_value(gap.value, gap.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
       e.dissipation += (entry.law.elastic_force(gap.value, mode) - f) * gap.rate;
       if (f == 0.0) continue;
       const std::array<int, 3> bodies = entry.bodies();
@@ -108,7 +109,7 @@ public:
     for (const Entry& entry : entries)
       for (const int body : entry.bodies()) is_used[body] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
+  void register_turns(TurnTable& turns) const override {
     for (const Entry& entry : entries) {
       turns.add(entry.a, entry.b, turning_of(entry.measure));
       turns.add(entry.cam, entry.b);
@@ -119,19 +120,19 @@ public:
     const Entry& entry = entry_at(element);
     if (entry.holds) return k_contact_pressed;
     const CamGap<double> gap = gap_now(entry, e.motion);
-    return entry.law.mode_at(gap.value, gap.rate);
+    return entry.law.initial_mode(gap.value, gap.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const Entry& entry = entry_at(element);
     const CamGap<double> gap = gap_now(entry, e.motion);
     return entry.law.next_mode(mode, slot, gap.value, gap.rate, rounding_of(entry, gap, e));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const Entry& entry = entry_at(element);
     const CamGap<double> gap = gap_now(entry, e.motion);
-    return entry.law.is_surely_positive(mode, slot, gap.value, rounding_of(entry, gap, e));
+    return entry.law.is_armed_at_entry(mode, slot, gap.value, rounding_of(entry, gap, e));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override { return KelvinVoigtContact::transition(from, to); }
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override { return KelvinVoigtContact::event_kind(from, to); }
 
 private:
   [[nodiscard]] const Entry& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
@@ -220,7 +221,7 @@ void compile_cam(const Element& element, SystemBuilder& builder) {
   const double now = CamGroup::gap_now(entry, &builder.reference(0)).value;
   entry.law = {e.stiffness, e.damping, now - e.gap};
   group.entries.push_back(std::move(entry));
-  if (!e.holds) builder.add_unit(group, KelvinVoigtContact::k_watches);
+  if (!e.holds) builder.add_unit(group, KelvinVoigtContact::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const auto at = [&group, i](const Snapshot& s) { return CamGroup::gap_now(group.entries[static_cast<std::size_t>(i)], s.motion); };
   builder.add_channel("gap", "m", {"between follower and cam", "negative: pressed in"},

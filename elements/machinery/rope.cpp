@@ -35,7 +35,7 @@ struct RopePart {
 // rope's length, because a part of zero length has no direction.
 class RopeGroup final : public ForceGroup {
 public:
-  static constexpr int k_watches = KelvinVoigtContact::k_watches + 1, k_on_pulley = KelvinVoigtContact::k_watches;
+  static constexpr int k_event_count = KelvinVoigtContact::k_event_count + 1, k_on_pulley = KelvinVoigtContact::k_event_count;
   static constexpr double k_run_in = 1e-3; ///< relative to the given length of a part
 
   struct Entry {
@@ -43,7 +43,7 @@ public:
     KelvinVoigtContact law;
     double fixed_length = 0.0; ///< length of parts within one body, m
     std::string name;
-    int unit = 0, watch = 0;
+    int unit = 0, first_event = 0;
   };
   struct Way {
     double length = 0.0, rate = 0.0;
@@ -92,9 +92,10 @@ public:
       const Way way = way_of(entry, e.motion);
       const UnitMode mode = e.mode[entry.unit];
       const double f = entry.law.force(-way.length, -way.rate, mode);
-      entry.law.watch(-way.length, -way.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
-      const bool is_watched = mode == k_contact_pressed && entry.parts.size() > 1;
-      e.watch[entry.watch + k_on_pulley] = is_watched ? least_left(entry, way.length + entry.law.offset, e.motion).length : 1.0;
+      entry.law.event_value(-way.length, -way.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
+      const bool is_monitored = mode == k_contact_pressed && entry.parts.size() > 1;
+      e.event_value[entry.first_event + k_on_pulley] =
+          is_monitored ? least_left(entry, way.length + entry.law.offset, e.motion).length : 1.0;
       e.dissipation -= (entry.law.elastic_force(-way.length, mode) - f) * way.rate;
       if (f == 0.0) continue;
       for (const RopePart& part : entry.parts) {
@@ -137,13 +138,13 @@ public:
     for (const Entry& entry : entries)
       for (const RopePart& part : entry.parts) is_used[part.a] = is_used[part.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
+  void register_turns(TurnTable& turns) const override {
     for (const Entry& entry : entries)
       for (const RopePart& part : entry.parts) turns.add(part.a, part.b, turning_of(part.measure));
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const Way way = way_of(entries[element], e.motion);
-    return entries[element].law.mode_at(-way.length, -way.rate);
+    return entries[element].law.initial_mode(-way.length, -way.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const Entry& entry = entries[element];
@@ -154,13 +155,13 @@ public:
     }
     return entry.law.next_mode(mode, slot, -way.length, -way.rate, rounding_of(entry, e.motion));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const Entry& entry = entries[element];
-    return entry.law.is_surely_positive(mode, slot, -way_of(entry, e.motion).length, rounding_of(entry, e.motion));
+    return entry.law.is_armed_at_entry(mode, slot, -way_of(entry, e.motion).length, rounding_of(entry, e.motion));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;
-    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::transition(from, to);
+    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::event_kind(from, to);
   }
 
 private:
@@ -320,7 +321,7 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   entry.law = {*e.stiffness, e.damping, -length};
   RopeGroup& group = builder.group<RopeGroup>();
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, RopeGroup::k_watches);
+  builder.add_unit(group, RopeGroup::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("length", "m", "length of the way over its points",
                       [&group, i](const Snapshot& s) { return RopeGroup::way_of(group.entries[i], s.motion).length; });

@@ -126,19 +126,19 @@ void SlidingBandGroup::check(const Entry& entry, const Flow<double>& flow) {
     throw ElementFailure("'" + entry.name + "' has come off its drum: its free parts meet no longer there", {entry.name});
 }
 
-void SlidingBandGroup::watch(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e) {
-  double* const watch = e.watch + entry.watch;
-  double* const rate = e.watch_rate + entry.watch;
+void SlidingBandGroup::event_value(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e) {
+  double* const event_value = e.event_value + entry.first_event;
+  double* const rate = e.event_derivative + entry.first_event;
   const double sum = flow.stretch[0] + flow.stretch[1], growth = flow.rate[0] + flow.rate[1];
   rate[0] = rate[1] = std::numeric_limits<double>::quiet_NaN();
-  if (!is_taut(mode)) return whole(entry).watch(-sum, -growth, contact_mode(mode), watch, rate);
+  if (!is_taut(mode)) return whole(entry).event_value(-sum, -growth, contact_mode(mode), event_value, rate);
   if (mode == k_sticks) {
     const double slack = slack_of(entry, flow);
-    watch[0] = flow.ratio * flow.resting[0] - flow.resting[1] + slack;
-    watch[1] = flow.ratio * flow.resting[1] - flow.resting[0] + slack;
+    event_value[0] = flow.ratio * flow.resting[0] - flow.resting[1] + slack;
+    event_value[1] = flow.ratio * flow.resting[1] - flow.resting[0] + slack;
   } else {
-    watch[0] = mode == k_to_second ? flow.slip : -flow.slip;
-    watch[1] = sum + entry.time * growth;
+    event_value[0] = mode == k_to_second ? flow.slip : -flow.slip;
+    event_value[1] = sum + entry.time * growth;
   }
 }
 
@@ -147,7 +147,7 @@ void SlidingBandGroup::add_forces(Evaluation& e) const {
     const UnitMode mode = e.mode[entry.unit];
     const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], mode);
     check(entry, flow);
-    watch(entry, flow, mode, e);
+    event_value(entry, flow, mode, e);
     e.inner_rate[entry.inner] = flow.slip;
     if (!is_taut(mode)) {
       const double sum = flow.stretch[0] + flow.stretch[1];
@@ -176,7 +176,7 @@ double SlidingBandGroup::inner_energy(const Motion<double>* motion, const double
 
 // A loose band: the rate of s follows the motion only within the error of the method, so s is corrected. A taut band at rest beyond its
 // bound has slid until it is at the bound, as required in an equilibrium.
-double SlidingBandGroup::settle_inner(const Evaluation& e, double* inner) const {
+double SlidingBandGroup::project_inner(const Evaluation& e, double* inner) const {
   double dissipated = 0.0;
   for (const Entry& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
@@ -199,7 +199,7 @@ double SlidingBandGroup::settle_inner(const Evaluation& e, double* inner) const 
   return dissipated;
 }
 
-double SlidingBandGroup::enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const {
+double SlidingBandGroup::jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const {
   const Entry& entry = entries[static_cast<std::size_t>(element)];
   if (is_taut(to)) return 0.0;
   double& s = inner[entry.inner];
@@ -244,7 +244,7 @@ void SlidingBandGroup::mark_bodies(std::vector<char>& is_used) const {
     for (const int body : entry.bodies()) is_used[body] = 1;
 }
 
-void SlidingBandGroup::enter_turns(TurnTable& turns) const {
+void SlidingBandGroup::register_turns(TurnTable& turns) const {
   for (const Entry& entry : entries)
     for (const Part& part : entry.parts) turns.add(entry.drum, part.end, turning_of(part.measure));
 }
@@ -278,7 +278,7 @@ double SlidingBandGroup::rounding_of(const Entry& entry, const Evaluation& e, co
 UnitMode SlidingBandGroup::initial_mode(int element, const Evaluation& e) const {
   const Entry& entry = entries[static_cast<std::size_t>(element)];
   const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], k_sticks);
-  const UnitMode mode = whole(entry).mode_at(-(flow.stretch[0] + flow.stretch[1]), -(flow.rate[0] + flow.rate[1]));
+  const UnitMode mode = whole(entry).initial_mode(-(flow.stretch[0] + flow.stretch[1]), -(flow.rate[0] + flow.rate[1]));
   if (mode != k_contact_pressed) return mode == k_contact_open ? k_loose : k_let_go;
   return mode_by_ratio(entry, flow);
 }
@@ -294,20 +294,20 @@ UnitMode SlidingBandGroup::next_mode(int element, UnitMode mode, int slot, const
   };
   if (!is_taut(mode)) return of_contact(law.next_mode(contact_mode(mode), slot, value, rate, rounding));
   // Both bounds coincide at zero tension.
-  const bool is_without = law.raw(value, rate) <= rounding;
+  const bool is_without = law.unclamped_force(value, rate) <= rounding;
   if (is_without || (mode != k_sticks && slot == 1)) return of_contact(law.next_mode(k_contact_pressed, 0, value, rate, rounding));
   if (mode == k_sticks) return slot == 0 ? k_to_second : k_to_first;
   return k_sticks;
 }
 
-bool SlidingBandGroup::is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const {
+bool SlidingBandGroup::is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const {
   if (is_taut(mode)) return false;
   const Entry& entry = entries[static_cast<std::size_t>(element)];
   const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], mode);
-  return whole(entry).is_surely_positive(contact_mode(mode), slot, -(flow.stretch[0] + flow.stretch[1]), rounding_of(entry, e, flow));
+  return whole(entry).is_armed_at_entry(contact_mode(mode), slot, -(flow.stretch[0] + flow.stretch[1]), rounding_of(entry, e, flow));
 }
 
-EventKind SlidingBandGroup::transition(UnitMode from, UnitMode to) const {
+EventKind SlidingBandGroup::event_kind(UnitMode from, UnitMode to) const {
   if (is_taut(from) && is_taut(to)) {
     if (to == k_sticks) return EventKind::sticks;
     return to == k_to_second ? EventKind::slips_forward : EventKind::slips_backward;

@@ -35,7 +35,7 @@ namespace steplap {
 /// All bands and belts, as one force group.
 class SlidingBandGroup final : public ForceGroup {
 public:
-  static constexpr int k_watches = 2;
+  static constexpr int k_event_count = 2;
   static constexpr double k_place = 1e-12; ///< m: accuracy of positions; forces below the corresponding tension are not distinguished from
                                            ///< the bound
   static constexpr UnitMode k_loose = 0, k_let_go = 1, k_sticks = 2, k_to_second = 3, k_to_first = 4;
@@ -59,7 +59,7 @@ public:
     bool is_belt = false;
     double far_sign = -1.0; ///< sign for the belt's other wheel
     std::string name;
-    int inner = 0, unit = 0, watch = 0;
+    int inner = 0, unit = 0, first_event = 0;
 
     [[nodiscard]] std::array<int, 3> bodies() const { return {drum, parts[0].end, parts[1].end}; }
   };
@@ -86,16 +86,16 @@ public:
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override;
-  double settle_inner(const Evaluation& e, double* inner) const override;
-  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override;
+  double project_inner(const Evaluation& e, double* inner) const override;
+  double jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const override;
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_turns(TurnTable& turns) const override;
+  void register_turns(TurnTable& turns) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override;
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
 
 private:
   [[nodiscard]] static KelvinVoigtContact whole(const Entry& entry) { return {1.0, entry.time, 0.0}; }
@@ -108,7 +108,7 @@ private:
   }
   [[nodiscard]] static double rounding_of(const Entry& entry, const Evaluation& e, const Flow<double>& flow);
   static void check(const Entry& entry, const Flow<double>& flow);
-  static void watch(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e);
+  static void event_value(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e);
 };
 
 } // namespace steplap

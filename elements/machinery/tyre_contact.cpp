@@ -97,29 +97,29 @@ void TyreGroup::add_forces(Evaluation& e) const {
   for (const Entry& entry : entries) {
     const UnitMode mode = e.mode[entry.unit], contact = contact_of(mode);
     const WheelMotion<double> w = entry.measure.at(e.link_motion[entry.link], Origin{});
-    double* const watch = e.watch + entry.watch;
-    std::fill_n(e.watch_rate + entry.watch, k_watches, std::numeric_limits<double>::quiet_NaN());
-    entry.press.watch(w.gap.value, w.gap.rate, contact, watch, e.watch_rate + entry.watch);
+    double* const event_value = e.event_value + entry.first_event;
+    std::fill_n(e.event_derivative + entry.first_event, k_event_count, std::numeric_limits<double>::quiet_NaN());
+    entry.press.event_value(w.gap.value, w.gap.rate, contact, event_value, e.event_derivative + entry.first_event);
     const double normal = entry.press.force(w.gap.value, w.gap.rate, contact);
     const TreadState<double> t = tread_at(entry, w, e.inner[entry.inner], normal, mode);
     e.contact_force[entry.contact] = normal;
     e.inner_rate[entry.inner] = w.tread.rate - t.rate;
     e.dissipation += (entry.press.elastic_force(w.gap.value, contact) - normal) * w.gap.rate + t.force * w.slip_rate -
                      entry.tread.stiffness * t.bent * t.rate;
-    watch[2] = watch[3] = watch[4] = watch[5] = 1.0;
+    event_value[2] = event_value[3] = event_value[4] = event_value[5] = 1.0;
     if (contact != k_contact_pressed) continue;
     apply_force(e.link_force[entry.link], w.gap, normal);
     apply_force(e.link_force[entry.link], w.tread, -t.force);
     const UnitMode sliding = sliding_of(mode);
     if (sliding == k_adheres) {
-      watch[2] = t.most - t.trial;
-      watch[3] = t.most + t.trial;
+      event_value[2] = t.most - t.trial;
+      event_value[3] = t.most + t.trial;
     } else {
-      watch[2] = (sliding == k_slides_forward ? t.trial : -t.trial) - t.most;
+      event_value[2] = (sliding == k_slides_forward ? t.trial : -t.trial) - t.most;
     }
     const double through = turns_forward(mode) ? -w.rolling : w.rolling;
-    watch[4] = through + k_met + rate_rounding(w.tread, e.motion[entry.a], e.motion[entry.b]);
-    watch[5] = turns_fast(mode) ? through - entry.tread.slow() : entry.tread.slow() - through;
+    event_value[4] = through + k_met + rate_rounding(w.tread, e.motion[entry.a], e.motion[entry.b]);
+    event_value[5] = turns_fast(mode) ? through - entry.tread.slow() : entry.tread.slow() - through;
   }
 }
 
@@ -180,7 +180,7 @@ void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobia
   }
 }
 
-void TyreGroup::start_inner(const Motion<double>* motion, double* inner) const {
+void TyreGroup::relax_inner(const Motion<double>* motion, double* inner) const {
   for (const Entry& entry : entries) inner[entry.inner] = wheel_at(entry, motion).tread.value;
 }
 
@@ -188,11 +188,11 @@ void TyreGroup::mark_bodies(std::vector<char>& is_used) const {
   for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
-void TyreGroup::enter_turns(TurnTable& turns) const {
+void TyreGroup::register_turns(TurnTable& turns) const {
   for (const Entry& entry : entries) turns.add(entry.a, entry.b, Turning{moves_by_turning(entry.measure.centre), true});
 }
 
-void TyreGroup::enter_links(LinkTable& links) {
+void TyreGroup::register_links(LinkTable& links) {
   for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
@@ -216,7 +216,7 @@ void TyreGroup::add_gaps(const Motion<double>* motion, std::vector<GapBounds>& o
 UnitMode TyreGroup::initial_mode(int element, const Evaluation& e) const {
   const Entry& entry = entries[element];
   const WheelMotion<double> w = measured(element, e);
-  return mode_with(entry, w, e.inner[entry.inner], entry.press.mode_at(w.gap.value, w.gap.rate));
+  return mode_with(entry, w, e.inner[entry.inner], entry.press.initial_mode(w.gap.value, w.gap.rate));
 }
 
 UnitMode TyreGroup::next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const {
@@ -235,17 +235,17 @@ UnitMode TyreGroup::next_mode(int element, UnitMode mode, int slot, const Evalua
   return mode_of(contact, slot == 2 ? k_slides_forward : k_slides_backward, turning);
 }
 
-bool TyreGroup::is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const {
+bool TyreGroup::is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const {
   if (slot > 1) return false;
   const Entry& entry = entries[element];
   const WheelMotion<double> w = measured(element, e);
-  return entry.press.is_surely_positive(contact_of(mode), slot, w.gap.value, value_rounding(w.gap, e.motion[entry.a], e.motion[entry.b]));
+  return entry.press.is_armed_at_entry(contact_of(mode), slot, w.gap.value, value_rounding(w.gap, e.motion[entry.a], e.motion[entry.b]));
 }
 
-WatchKind TyreGroup::watch_kind(int slot) const { return slot == 4 ? WatchKind::rate : WatchKind::exact; }
+EventTolerance TyreGroup::event_tolerance(int slot) const { return slot == 4 ? EventTolerance::velocity : EventTolerance::none; }
 
-EventKind TyreGroup::transition(UnitMode from, UnitMode to) const {
-  if (contact_of(from) != contact_of(to)) return KelvinVoigtContact::transition(contact_of(from), contact_of(to));
+EventKind TyreGroup::event_kind(UnitMode from, UnitMode to) const {
+  if (contact_of(from) != contact_of(to)) return KelvinVoigtContact::event_kind(contact_of(from), contact_of(to));
   if (sliding_of(from) == sliding_of(to)) return EventKind::none;
   return sliding_of(to) == k_adheres ? EventKind::sticks : sliding_in(to);
 }

@@ -24,7 +24,7 @@ public:
     KelvinVoigtContact law;
     std::string name;
     double shortest = 0.0; ///< m: a shorter straight part has vanished, and its direction is rounding
-    int unit = 0, watch = 0;
+    int unit = 0, first_event = 0;
   };
   std::vector<Entry> entries;
 
@@ -43,7 +43,7 @@ public:
       check(entry, part);
       const UnitMode mode = e.mode[entry.unit];
       const double f = entry.law.force(m.value, m.rate, mode);
-      entry.law.watch(m.value, m.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      entry.law.event_value(m.value, m.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
       e.dissipation += (entry.law.elastic_force(m.value, mode) - f) * m.rate;
       if (f == 0.0) continue;
       add_at(e.force[entry.a], m.lever_a, f * m.direction);
@@ -64,26 +64,26 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
+  void register_turns(TurnTable& turns) const override {
     for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const auto m = measured(entries[element], e.motion);
-    return entries[element].law.mode_at(m.value, m.rate);
+    return entries[element].law.initial_mode(m.value, m.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const Entry& entry = entries[element];
     const auto m = measured(entry, e.motion);
     return entry.law.next_mode(mode, slot, m.value, m.rate, rounding_of(entry, m, e));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const Entry& entry = entries[element];
     const auto m = measured(entry, e.motion);
-    return entry.law.is_surely_positive(mode, slot, m.value, rounding_of(entry, m, e));
+    return entry.law.is_armed_at_entry(mode, slot, m.value, rounding_of(entry, m, e));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;
-    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::transition(from, to);
+    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::event_kind(from, to);
   }
 
 private:
@@ -134,7 +134,7 @@ void compile_wound_rope(const Element& element, SystemBuilder& builder) {
   const double free = e.slack.value_or(0.0) - e.pretension.value_or(0.0) / e.stiffness;
   entry.law = {e.stiffness, e.damping, -free};
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, KelvinVoigtContact::k_watches);
+  builder.add_unit(group, KelvinVoigtContact::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("length", "m", "length of its straight part", [&group, i](const Snapshot& s) {
     const WoundRopeGroup::Entry& own = group.entries[i];

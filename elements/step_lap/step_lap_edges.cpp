@@ -85,10 +85,10 @@ void EdgeGroup::add_forces(Evaluation& e) const {
       apply_force(e.link_force[entry.link], two, p.force[1]);
     }
     const double closing = mode == k_bed_open ? 1.0 : -1.0, filling = mode == k_bed_whole ? -1.0 : 1.0;
-    e.watch[entry.watch] = closing * gaps.least;
-    e.watch_rate[entry.watch] = closing * gaps.least_rate;
-    e.watch[entry.watch + 1] = filling * gaps.most;
-    e.watch_rate[entry.watch + 1] = filling * gaps.most_rate;
+    e.event_value[entry.first_event] = closing * gaps.least;
+    e.event_derivative[entry.first_event] = closing * gaps.least_rate;
+    e.event_value[entry.first_event + 1] = filling * gaps.most;
+    e.event_derivative[entry.first_event + 1] = filling * gaps.most_rate;
   }
 }
 
@@ -121,7 +121,7 @@ void EdgeGroup::mark_bodies(std::vector<char>& is_used) const {
   for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
-void EdgeGroup::enter_links(LinkTable& links) {
+void EdgeGroup::register_links(LinkTable& links) {
   for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
@@ -145,7 +145,7 @@ UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation&
   return is_pressed(gaps.least, gaps.least_rate, slot == 0) ? k_bed_partly : k_bed_open;
 }
 
-EventKind EdgeGroup::transition(UnitMode from, UnitMode to) const {
+EventKind EdgeGroup::event_kind(UnitMode from, UnitMode to) const {
   if (from == k_bed_open) return EventKind::closes;
   return to == k_bed_open ? EventKind::opens : EventKind::passes_kink;
 }

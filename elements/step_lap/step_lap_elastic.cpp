@@ -133,8 +133,8 @@ double follow_direction(const ElasticGripGroup::Entry& entry, const Evaluation& 
 void ElasticGripGroup::add_forces(Evaluation& e) const {
   for (const Entry& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
-    double* const watch = e.watch + entry.watch;
-    watch[0] = watch[1] = watch[2] = 1.0;
+    double* const event_value = e.event_value + entry.first_event;
+    event_value[0] = event_value[1] = event_value[2] = 1.0;
     if (is_apart(mode)) continue;
     const Motion<double>& m = e.link_motion[entry.link];
     const double* const p = e.inner + entry.inner;
@@ -145,7 +145,7 @@ void ElasticGripGroup::add_forces(Evaluation& e) const {
     on_limb.fy -= force[1];
     on_limb.m -= force[2];
     if (elastic_state(mode) == k_elastic_holds) {
-      watch[0] = friction.spare(e, slid_at(p), force);
+      event_value[0] = friction.spare(e, slid_at(p), force);
       continue;
     }
     const StepLapFriction::Flow flow = is_following(mode) ? friction.flow_along(e, slid_at(p), force, direction(p), rate)
@@ -153,9 +153,9 @@ void ElasticGripGroup::add_forces(Evaluation& e) const {
     Vec3::Map(e.inner_rate + entry.inner) = flow.rate;
     Vec3::Map(e.inner_rate + entry.inner + k_direction) = k_direction_length * flow.turning;
     e.dissipation += force.dot(flow.rate);
-    watch[0] = flow.speed;
-    watch[2] = is_following(mode) ? 1.0 - flow.roundness / k_blunt : flow.roundness / k_sharp - 1.0;
-    watch[1] = std::min(friction.parting(e, slid_at(p), mode >> k_elastic_parted), friction.grip_beyond_last(e, slid_at(p)));
+    event_value[0] = flow.speed;
+    event_value[2] = is_following(mode) ? 1.0 - flow.roundness / k_blunt : flow.roundness / k_sharp - 1.0;
+    event_value[1] = std::min(friction.parting(e, slid_at(p), mode >> k_elastic_parted), friction.grip_beyond_last(e, slid_at(p)));
   }
 }
 
@@ -165,7 +165,7 @@ double ElasticGripGroup::inner_energy(const Motion<double>* motion, const double
   return sum;
 }
 
-double ElasticGripGroup::enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const {
+double ElasticGripGroup::jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const {
   const Entry& entry = entries[element];
   double* const p = inner + entry.inner;
   if (is_apart(to)) {
@@ -279,7 +279,7 @@ void ElasticGripGroup::add_state_jacobian(const Evaluation& e, StateJacobian& ou
   }
 }
 
-double ElasticGripGroup::settle_inner(const Evaluation& e, double* inner) const {
+double ElasticGripGroup::project_inner(const Evaluation& e, double* inner) const {
   double dissipated = 0.0;
   for (const Entry& entry : entries) {
     double* const p = inner + entry.inner;
@@ -289,7 +289,7 @@ double ElasticGripGroup::settle_inner(const Evaluation& e, double* inner) const 
   return dissipated;
 }
 
-void ElasticGripGroup::start_inner(const Motion<double>* motion, double* inner) const {
+void ElasticGripGroup::relax_inner(const Motion<double>* motion, double* inner) const {
   for (const Entry& entry : entries) {
     const Pose now = entry.friction->pose_of(motion);
     Vec3::Map(inner + entry.inner) = Vec3(now.x, now.y, now.theta);
@@ -300,7 +300,7 @@ void ElasticGripGroup::mark_bodies(std::vector<char>& is_used) const {
   for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
-void ElasticGripGroup::enter_links(LinkTable& links) {
+void ElasticGripGroup::register_links(LinkTable& links) {
   for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
@@ -325,7 +325,7 @@ UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const
   return parted << k_elastic_parted | (is_any_left ? elastic_state(mode) : k_elastic_apart);
 }
 
-EventKind ElasticGripGroup::transition(UnitMode from, UnitMode to) const {
+EventKind ElasticGripGroup::event_kind(UnitMode from, UnitMode to) const {
   if (is_apart(to)) return EventKind::comes_apart;
   const UnitMode before = from >> k_elastic_parted, now = to >> k_elastic_parted;
   if (before != now) return (now & ~before) != 0 ? EventKind::loses_interface : EventKind::meets_interface;

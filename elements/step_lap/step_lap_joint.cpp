@@ -221,7 +221,7 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   builder.add_inner(group, reference.theta);
   for (int i = 0; i < 4; ++i) builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
-  builder.add_unit(group, ElasticGripGroup::k_watches);
+  builder.add_unit(group, ElasticGripGroup::k_event_count);
   friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);
   return true;
 }
@@ -295,7 +295,7 @@ EdgeGroup::Entry& bed_of(EdgeCorner& corner, const EdgeLine& line, double cleara
   if (corner.beds.empty()) corner.middle = 0.5 * (line.ends[0] + line.ends[1]);
   corner.beds.push_back(static_cast<int>(group.entries.size()));
   group.entries.push_back(entry);
-  builder.add_unit(group, EdgeGroup::k_watches);
+  builder.add_unit(group, EdgeGroup::k_event_count);
   return group.entries.back();
 }
 

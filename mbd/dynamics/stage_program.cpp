@@ -85,11 +85,11 @@ void StageProgram::give_up() {
   is_hopeless_ = tapes_ >= k_most_tapes;
 }
 
-bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all) {
+bool StageProgram::run(double t, const double* y, double* dy, double* event_value, double* event_derivative, bool all) {
   double* of_signal = time_inputs_.data() + time_count_;
-  for (const TimeInput& signal : traced_.signals) *of_signal++ = signal.at(t);
-  arrays_.outputs[0] = watch;
-  arrays_.outputs[1] = watch_rate;
+  for (const SignalInput& signal : traced_.signals) *of_signal++ = signal.at(t);
+  arrays_.outputs[0] = event_value;
+  arrays_.outputs[1] = event_derivative;
   if (!code_->run(y, arrays_, dy, all)) {
     note_failure();
     return false;
@@ -139,8 +139,9 @@ bool StageProgram::has_found(const StageFound& found) const {
   const auto are_same = [&is_same](const std::vector<int>& slots, const double* x) {
     return std::all_of(slots.begin(), slots.end(), [&](int slot) { return is_same(x[slot]); });
   };
-  return std::all_of(found.dy, found.dy + coordinate_count_ + inner_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
-         are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
+  return std::all_of(found.dy, found.dy + coordinate_count_ + inner_count_ + 2, is_same) &&
+         are_same(traced_.event_values, found.event_value) && are_same(traced_.event_derivatives, found.event_derivative) &&
+         are_same(traced_.wrenches, found.friction_force) &&
          smallest_pivot_in(traced_.outputs.data() + traced_.usual_outputs()) == found.smallest_pivot;
 }
 

@@ -15,7 +15,7 @@
 
 namespace steplap {
 
-/// Relative pivot below which stages are evaluated without code. Integrators need the smallest pivot of a step (Dynamics::lowest_pivot) if
+/// Relative pivot below which stages are evaluated without code. Integrators need the smallest pivot of a step (Dynamics::least_pivot) if
 /// it is below 2e-2, and stages by code do not compute it.
 inline constexpr double k_traced_pivot = 2.5e-2;
 
@@ -29,7 +29,7 @@ enum class StageCode : std::uint8_t {
 /// Results of an evaluation without code.
 struct StageFound {
   const double* dy; ///< accelerations, rates of inner states, dissipated power and power of loads
-  const double *watch, *watch_rate, *friction_force;
+  const double *event_value, *event_derivative, *friction_force;
   double smallest_pivot;
 };
 
@@ -46,7 +46,7 @@ public:
   /// Computes accelerations, rates of inner states, powers and event functions at coordinates, rates and inner states y. Returns false if
   /// the stage must be evaluated without code; the outputs are then undefined. `all`: also computes the data for can_look(), put_wrenches()
   /// and smallest_pivot().
-  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
+  [[nodiscard]] bool run(double t, const double* y, double* dy, double* event_value, double* event_derivative, bool all);
   /// can_look() returns true if the event functions of merged joints can be computed from a stage by code. put_wrenches() then writes the
   /// wrenches of these joints at the last run().
   [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }

@@ -84,9 +84,9 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
   dynamics.set_state(loose);
   dynamics.pack(loose, y.data());
   dynamics.rates(loose.t, y.data(), dy.data());
-  Dynamics::Candidates answer;
+  Dynamics::ModeProblem answer;
   for (const int f : struck.elements) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
-  dynamics.respond(answer, dy.data());
+  dynamics.compute_mode_problem(answer, dy.data());
   struck.acceleration = answer.acceleration;
   const auto n = static_cast<Eigen::Index>(struck.elements.size());
   const MatX a = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(answer.compliance.data(), n, n);
@@ -104,7 +104,7 @@ void meet(Dynamics& dynamics, State& state) {
   dynamics.set_state(state);
   dynamics.pack(state, y.data());
   dynamics.project(state.t, y.data(), k_projection_tolerance);
-  dynamics.close_velocities(state.t, y.data());
+  dynamics.project_velocities(state.t, y.data());
   dynamics.unpack(state.t, y.data(), state);
 }
 

@@ -55,7 +55,7 @@ void ExplicitPair::refuse_shorter_than_rounding(double h) const {
                            " s: the motion becomes singular there, or the tolerance is too small");
 }
 
-bool ExplicitPair::bears_look(Dynamics& dynamics) {
+bool ExplicitPair::dense_output_is_accurate(Dynamics& dynamics) {
   if (is_crossing_ || is_inside_known_) return true;
   const double inside = error_inside(dynamics);
   return inside <= 1.0 || !withdraw(dynamics, h_ * shorter(inside));
@@ -88,7 +88,7 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   if (h == 0.0) return h_tried;
   h_ = h;
   t1_ = t0_ + h_;
-  begin_watch_nodes();
+  begin_event_nodes();
   const double error = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data());
   is_crossing_ = error <= 1.0;
   const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
@@ -116,15 +116,15 @@ void ExplicitPair::prepare_try() {
   // Two equal steps instead of a long one followed by a tiny one.
   h_ = attempt_.is_last ? left : (2.0 * h > left ? 0.5 * left : h);
   t1_ = attempt_.is_last ? t_limit_ : t0_ + h_;
-  begin_watch_nodes();
+  begin_event_nodes();
   attempt_.passage->begin_try();
   is_crossing_ = is_inside_known_ = false;
 }
 
 bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
   const double pivot = dynamics.smallest_pivot();
-  is_beside_singular_ = approach_.is_beside(dynamics.lowest_pivot());
-  if (are_looks_expected()) inside = error_inside(dynamics);
+  is_beside_singular_ = approach_.is_beside(dynamics.least_pivot());
+  if (are_dense_evaluations_expected()) inside = error_inside(dynamics);
   if (inside > 1.0) return false;
   before_.error = control_.previous_error;
   const double factor = control_.factor(std::max(try_error_, inside), attempt_.is_retry);
@@ -135,7 +135,7 @@ bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
 }
 
 bool ExplicitPair::conclude_try(Dynamics& dynamics) {
-  if (!attempt_.has_tried_crossing && approach_.is_ahead(dynamics.lowest_pivot())) [[unlikely]] {
+  if (!attempt_.has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
     attempt_.has_tried_crossing = true;
     const double h_next = cross_singularity(dynamics, attempt_.left);
     if (h_next == 0.0 && try_finish_step(dynamics)) {

@@ -23,7 +23,7 @@ public:
   void begin_step(Dynamics& dynamics, double t_limit) override;
   void make_try(Dynamics& dynamics) override { try_error_ = try_step(dynamics); }
   [[nodiscard]] bool conclude_try(Dynamics& dynamics) override;
-  [[nodiscard]] bool bears_look(Dynamics& dynamics) final;
+  [[nodiscard]] bool dense_output_is_accurate(Dynamics& dynamics) final;
   void dense(Dynamics& dynamics, double theta, double* out) final;
   [[nodiscard]] double stability_share(Dynamics& dynamics) final { return is_crossing_ ? 0.0 : share_of_stability(dynamics); }
 

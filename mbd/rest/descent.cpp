@@ -326,8 +326,8 @@ void Descent::follow_friction(const std::vector<double>& from) {
       anchor_friction(system_, state_, f, statics_.motion().data());
       hold_[f] = Hold::sticks;
     } else {
-      const bool is_displaced = element.watch_place(statics_.evaluation(), friction) < 0.0;
-      if (is_displaced) element.change_place(statics_.evaluation(), friction);
+      const bool is_displaced = element.contact_point_event(statics_.evaluation(), friction) < 0.0;
+      if (is_displaced) element.switch_contact_point(statics_.evaluation(), friction);
       if (friction.phase == FrictionPhase::apart) continue;
       friction.phase = FrictionPhase::stick;
       if (is_displaced || hold_[f] != Hold::sticks) anchor_friction(system_, state_, f, statics_.motion().data());

@@ -35,7 +35,7 @@ public:
       : system_(system), dynamics_(system), stepping_(system), start_(start), state_(start), most_moved_(most_moved),
         scene_(scale_of(system, start)), clearance_(system, k_touch * k_epsilon * scene_.reach) {
     const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), start.t);
-    dynamics_.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
+    dynamics_.set_left_limit_time(limit == system.breakpoints.end() ? system.drives_end : *limit);
     dynamics_.use_coordinates(Coordinates::absolute);
     stepping_.hold_time(start.t);
   }
@@ -61,7 +61,7 @@ public:
         h *= 0.25;
         continue;
       }
-      const VecX way = way_to(next);
+      const VecX way = displacement_to(next);
       const double size = std::max(size_of(way), 1.0 / clearance_.share(way));
       if (!(size <= 1.0) || !passes_nothing(next, way)) {
         h *= std::isfinite(size) && size > 1.0 ? std::max(0.1, 0.7 / std::sqrt(size)) : 0.25;
@@ -107,7 +107,7 @@ private:
     return false;
   }
 
-  [[nodiscard]] VecX way_to(const State& next) const {
+  [[nodiscard]] VecX displacement_to(const State& next) const {
     VecX way(scene_.scale.size());
     for (Eigen::Index k = 0; k < way.size(); ++k)
       way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];

@@ -174,7 +174,7 @@ private:
 void ExtremeFinder::pass_between(double t, const Snapshot& snapshot) {
   Site site(*this, t - t_, nullptr, nullptr);
   formulas_->arrive(snapshot);
-  formulas_->search_straight(t_, t - t_, site);
+  formulas_->search_linear_step(t_, t - t_, site);
 }
 
 void ExtremeFinder::finish(const Snapshot& snapshot) {
@@ -475,19 +475,19 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
   // Evaluates, at an end of the stretch, the channels that their bounds had excluded there.
-  const auto look_at_end = [&](int node) {
+  const auto stored_sample = [&](int node) {
     const auto is_missing = [&](std::size_t c) { return screened_slot_[c] >= 0 && std::isnan(node_[node][c]); };
     if (std::none_of(open_.begin(), open_.end(), is_missing)) return;
     const Snapshot snapshot = look(NodePolynomial::theta(node), integrator, dynamics);
     for (const std::size_t c : open_)
       if (is_missing(c)) take(c, t_ + NodePolynomial::theta(node) * (t1_ - t_), snapshot, node_[node].data());
   };
-  look_at_end(0);
+  stored_sample(0);
   const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
     if (level == 1)
-      for (const int node : {0, k_last}) look_at_end(node);
+      for (const int node : {0, k_last}) stored_sample(node);
     if (wanted > 1 << level) continue; // oscillating loads between the nodes would be missed
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
     check_tops(level, integrator, dynamics);

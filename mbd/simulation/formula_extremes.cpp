@@ -132,7 +132,7 @@ void FormulaExtremes::search(double t, double h, ExtremeSite& site) {
     if (!is_known || has_looked_ || is_worth_looking(sought, site)) look_for(sought, site);
 }
 
-void FormulaExtremes::search_straight(double t, double h, ExtremeSite& site) {
+void FormulaExtremes::search_linear_step(double t, double h, ExtremeSite& site) {
   if (is_empty()) return;
   t_ = t;
   h_ = h;

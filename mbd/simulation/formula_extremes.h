@@ -53,7 +53,7 @@ public:
   /// Searches the stretch of length h from t. Precondition: begin() or pass() at its start, arrive() at its end.
   void search(double t, double h, ExtremeSite& site);
   /// As search(), with linear interpolation between the ends, as between the ends of time steps.
-  void search_straight(double t, double h, ExtremeSite& site);
+  void search_linear_step(double t, double h, ExtremeSite& site);
   /// Makes the end of this stretch, of length h, the start of the next one.
   void pass(double h);
   /// Returns by how much the minimum and maximum of a channel may lie beyond those found; 0 for channels that are not formulas.

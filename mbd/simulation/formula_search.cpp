@@ -49,7 +49,7 @@ std::vector<FormulaChannel::Leaf> leaves_of(const FormulaInMotion& in_motion) {
 FormulaSearch::FormulaSearch(const System& system, const ActionGroup* group)
     : y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   std::vector<FormulaInMotion> formulas;
-  for (const auto& force : system.groups) force->enter_formulas(formulas);
+  for (const auto& force : system.groups) force->register_formulas(formulas);
   for (const FormulaInMotion& each : formulas)
     if (each.formula->program().may_peak()) add(k_no_action, each);
   has_forces_ = !sought_.empty();

@@ -43,7 +43,7 @@ public:
     is_behind_event_ = true;
   }
   /// Returns a place in the last step, as a fraction of it, where a formula is outside its band; 1 if there is none. `is_armed` has a flag per
-  /// action; null: none is armed. Precondition: Integrator::bears_look().
+  /// action; null: none is armed. Precondition: Integrator::dense_output_is_accurate().
   [[nodiscard]] double place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed);
   /// Returns the first time, s, at which it could not be decided whether a condition was true for less than 1e-9 of a step.
   [[nodiscard]] const std::optional<double>& undecided() const { return undecided_; }

@@ -65,7 +65,8 @@ public:
   void break_off();
 
 private:
-  void make_parts(const PowerLedger* before, const std::vector<double>& unhurt); // `unhurt`: memory before the impulses at the start
+  void project_and_set_up(const PowerLedger* before,
+                          const std::vector<double>& unhurt); // `unhurt`: memory before the impulses at the start
   void finish_extremes();
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
@@ -78,11 +79,11 @@ private:
   void record_sample(double t);
   void keep_ledger(double t);
   void check_finite();
-  void check_holding(double t, const std::vector<double>& watch) const;
+  void check_holding(double t, const std::vector<double>& event_value) const;
   void keep_ties(double t);
   void keep_blows();
   [[nodiscard]] std::vector<int> slots_of_other(double t, const std::vector<int>& fired) const;
-  void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before);
+  void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* event_value_before);
   void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
   [[nodiscard]] bool pass_storm(double t, std::size_t known);

@@ -21,7 +21,7 @@ bool turns_with_slips(const Channel& channel) {
 // Returns true if a slip is so slow that its law is regularised and no longer has a direction.
 bool is_slip_ending(const State& state) {
   return std::any_of(state.friction.begin(), state.friction.end(), [](const FrictionState& friction) {
-    return friction.phase == FrictionPhase::slip && !friction.is_starting && friction.stage != 0;
+    return friction.phase == FrictionPhase::slip && !friction.is_onset && friction.onset_stage != 0;
   });
 }
 

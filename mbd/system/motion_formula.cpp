@@ -85,7 +85,7 @@ private:
     return {place.back(), dimension.powers};
   }
 
-  static std::array<double, 3> powers_of(const std::string& unit) {
+  static std::array<double, 3> dimension_exponents(const std::string& unit) {
     const auto known = dimension_of(unit);
     return known ? known->powers : std::array<double, 3>{};
   }
@@ -110,10 +110,10 @@ private:
 
   Made find(const std::string& name) {
     MotionOperand operand;
-    if (name == "value" && asked_.own_value != "-") return enter(operand, powers_of(asked_.own_value));
+    if (name == "value" && asked_.own_value != "-") return enter(operand, dimension_exponents(asked_.own_value));
     if (name == "rate" && asked_.own_rate != "-") {
       operand.kind = MotionOperand::Kind::own_rate;
-      return enter(operand, powers_of(asked_.own_rate));
+      return enter(operand, dimension_exponents(asked_.own_rate));
     }
     constexpr std::string_view k_channel = ".value"; // suffix of a state's channel in `[[channel]]` formulas
     const OwnState* state = find_own_state(builder_.model(), name);
@@ -123,7 +123,7 @@ private:
       const StatePlace place = place_of_state(builder_, *state);
       operand.inner = place.inner;
       operand.unit = place.unit;
-      return enter(operand, powers_of(state->unit));
+      return enter(operand, dimension_exponents(state->unit));
     }
     const Parameters& parameters = builder_.model().parameters;
     if (const auto parameter = parameters.find(name)) {
@@ -147,7 +147,7 @@ private:
     const std::string owner = name.substr(0, point), part = point == std::string::npos ? "" : name.substr(point + 1);
     const auto coordinate = static_cast<int>(std::find(k_coordinates.begin(), k_coordinates.end(), part) - k_coordinates.begin());
     if (coordinate < 6) {
-      const std::array<double, 3> powers = powers_of(k_coordinate_units[static_cast<std::size_t>(coordinate)]);
+      const std::array<double, 3> powers = dimension_exponents(k_coordinate_units[static_cast<std::size_t>(coordinate)]);
       if (const Body* const body = model.find_body(owner); body && !body->fixed) return of_body(builder_.body(owner), coordinate, powers);
       const bool is_marker = std::any_of(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == owner; });
       if (is_marker && part.size() <= 2) return of_marker(builder_.marker(owner), coordinate, powers);
@@ -187,7 +187,7 @@ private:
     operand.row = measured->measure;
     operand.zero = measured->zero;
     operand.is_rate = measured->is_rate;
-    return enter(operand, powers_of(channel.unit));
+    return enter(operand, dimension_exponents(channel.unit));
   }
 
   Made of_channel(const DefinedChannel& channel) {
@@ -254,7 +254,7 @@ MotionFormula::MotionFormula(SystemBuilder& builder, const MotionFormulaText& te
 void MotionFormula::find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const {
   auto& room = motion_formula::Room<double>::kept();
   room.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, NumericSignalEvaluator{e.t}, room.operands.data());
   (void)program().find_bits(room.operands.data(), e.t, bits, room.values.data());
 }
 
@@ -263,7 +263,7 @@ double MotionFormula::differentiate(const Evaluation& e, const OwnCoordinate<dou
   auto& duals = motion_formula::Room<Chunk>::kept();
   room.grow(operands_.size(), 1);
   duals.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, NumericSignalEvaluator{e.t}, room.operands.data());
   double value = 0.0;
   const std::size_t count = operands_.size();
   for (std::size_t first = 0; first == 0 || first < count; first += k_chunk) {
@@ -283,7 +283,7 @@ std::vector<double> MotionFormula::gains(const Evaluation& e, const OwnCoordinat
   auto& duals = motion_formula::Room<Chunk>::kept();
   room.grow(operands_.size(), 1);
   duals.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, NumericSignalEvaluator{e.t}, room.operands.data());
   std::vector<double> gains(static_cast<std::size_t>(program().switch_count()), 0.0);
   std::vector<Chunk> quantity(gains.size());
   for (std::size_t k = 0; k < operands_.size(); ++k) {
@@ -347,7 +347,7 @@ std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluatio
   return scales;
 }
 
-void MotionFormula::enter_turns(TurnTable& turns) const {
+void MotionFormula::register_turns(TurnTable& turns) const {
   constexpr int k_angle = 2; // index of the angle among a body's coordinates
   const bool is_linear = !is_valid() || program().is_linear();
   for (const MotionOperand& operand : operands_) {

@@ -26,19 +26,19 @@ struct Alone {
 Alone evaluate_alone(const ForceGroup& share, const System& system, const Snapshot& s) {
   struct Scratch {
     std::vector<BodyForce> force;
-    std::vector<double> contact_force, watch, watch_rate, inner_rate;
+    std::vector<double> contact_force, event_value, event_derivative, inner_rate;
   };
   thread_local Scratch scratch;
   scratch.force.resize(std::max<std::size_t>(scratch.force.size(), static_cast<std::size_t>(system.links.slot_count())));
   scratch.contact_force.resize(std::max(scratch.contact_force.size(), static_cast<std::size_t>(system.contact_count)));
-  scratch.watch.resize(std::max(scratch.watch.size(), static_cast<std::size_t>(system.watch_count)));
-  scratch.watch_rate.resize(scratch.watch.size());
+  scratch.event_value.resize(std::max(scratch.event_value.size(), static_cast<std::size_t>(system.event_count)));
+  scratch.event_derivative.resize(scratch.event_value.size());
   scratch.inner_rate.resize(std::max(scratch.inner_rate.size(), static_cast<std::size_t>(system.inner_count())));
   Evaluation e = *s.evaluation;
   e.force = e.link_force = scratch.force.data();
   e.contact_force = scratch.contact_force.data();
-  e.watch = scratch.watch.data();
-  e.watch_rate = scratch.watch_rate.data();
+  e.event_value = scratch.event_value.data();
+  e.event_derivative = scratch.event_derivative.data();
   e.inner_rate = scratch.inner_rate.data();
   e.dissipation = e.work = 0.0;
   share.add_forces(e);

@@ -227,7 +227,7 @@ private:
     values_[at(step)].reg = static_cast<std::int8_t>(r);
   }
 
-  void free_register_of(Value& v) {
+  void release_register_if_dead(Value& v) {
     const bool goes = v.next == k_never && v.reg >= 0; // both cases are equally frequent, so branches are avoided
     free_ |= std::uint32_t{goes} << (v.reg & 31);
     v.reg = static_cast<std::int8_t>(goes ? -1 : v.reg);
@@ -307,8 +307,8 @@ private:
 
   // Frees the registers of operands that are not used any more.
   void let_operands_go(const TapeStep& s) {
-    free_register_of(values_[at(s.a)]);
-    if (takes_two(s.operation)) free_register_of(values_[at(s.b)]);
+    release_register_if_dead(values_[at(s.a)]);
+    if (takes_two(s.operation)) release_register_if_dead(values_[at(s.b)]);
     free_ |= std::exchange(passing_, 0u);
   }
 
@@ -393,7 +393,7 @@ private:
         store(r, to);
       }
       v.next = call.next[k];
-      free_register_of(v);
+      release_register_if_dead(v);
       free_slot_of(v);
     }
     let_registers_go();
@@ -444,7 +444,7 @@ private:
     v.next = next_[p].result;
     if (p > stores_)
       for (std::int32_t k = v.output; k != k_none; k = next_output_[at(k)]) store_output(v, r, k);
-    free_register_of(v);
+    release_register_if_dead(v);
   }
 
   void store_output(Value& v, int r, std::int32_t k) {
@@ -474,7 +474,7 @@ private:
       v.next = output_next_[k];
       if (v.reg >= 0) store_output(v, v.reg, static_cast<std::int32_t>(k));
       else copy_output(v, static_cast<std::int32_t>(k));
-      free_register_of(v);
+      release_register_if_dead(v);
       free_slot_of(v);
     }
   }

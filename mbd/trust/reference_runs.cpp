@@ -72,8 +72,8 @@ RunResult EvaluationBudget::simulate(const System& system, const State& initial,
   try {
     for (long steps = 0; simulation.advance(); ++steps)
       if (steps % k_steps_between_looks == 0 && static_cast<double>(simulation.statistics().evaluations) > most)
-        throw EstimateTooDear("given up after " + number_text(std::min(most_of_run, most_)) +
-                              " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
+        throw EvaluationBudgetExceeded("given up after " + number_text(std::min(most_of_run, most_)) +
+                                       " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
   } catch (const NumericalFailure&) {
     count(simulation.statistics());
     throw;

@@ -89,7 +89,7 @@ Builder crowd(const Kind& kind, int blocks, std::mt19937& generator) {
   return builder;
 }
 
-SchurSolver factored(const Scene& scene, SchurSolver::Hubs hubs, double shift = 0.0) {
+SchurSolver factored(const Scene& scene, SchurSolver::HubElimination hubs, double shift = 0.0) {
   SchurSolver solver;
   solver.analyze(scene.rows, static_cast<int>(scene.rows.size()), {}, hubs);
   solver.factor(scene.rows, shift);
@@ -120,7 +120,8 @@ TEST_CASE("constraint equations with hubs: against a dense factorisation, and ot
         const double condition = eigen.eigenvalues()[a.rows() - 1] / std::max(1e-300, eigen.eigenvalues()[0]);
         if (condition > 1e6) continue;
         ++compared;
-        const SchurSolver with = factored(scene, SchurSolver::Hubs::apart), without = factored(scene, SchurSolver::Hubs::as_others);
+        const SchurSolver with = factored(scene, SchurSolver::HubElimination::apart),
+                          without = factored(scene, SchurSolver::HubElimination::as_others);
         const VecX right = VecX::Random(a.rows()), x = solved(with, scene, right), y = solved(without, scene, right);
         if (!are_same(x, y)) ++apart;
         // Rounding of a factorisation, and the two digits of which B may be smaller than A.
@@ -143,8 +144,8 @@ TEST_CASE("constraint equations with hubs: against a dense factorisation, and ot
 TEST_CASE("constraint equations with hubs: what is not for them is solved as if there were none, to the bit") {
   std::mt19937 generator(32);
   const auto check_same = [](const Scene& scene, double shift) {
-    const SchurSolver with = factored(scene, SchurSolver::Hubs::apart, shift),
-                      without = factored(scene, SchurSolver::Hubs::as_others, shift);
+    const SchurSolver with = factored(scene, SchurSolver::HubElimination::apart, shift),
+                      without = factored(scene, SchurSolver::HubElimination::as_others, shift);
     const VecX right = scene.matrix() * VecX::Random(static_cast<Eigen::Index>(scene.rows.size()));
     CHECK(are_same(solved(with, scene, right), solved(without, scene, right)));
     CHECK(with.is_singular() == without.is_singular());
@@ -172,7 +173,7 @@ TEST_CASE("constraint equations with hubs: by turns with numbers that are not fo
   std::mt19937 generator(33);
   const Scene scene = crowd({}, 100, generator).scene();
   SchurSolver solver;
-  solver.analyze(scene.rows, 100, {}, SchurSolver::Hubs::apart);
+  solver.analyze(scene.rows, 100, {}, SchurSolver::HubElimination::apart);
   const VecX right = VecX::Random(100);
   solver.factor(scene.rows);
   const VecX first = solved(solver, scene, right);

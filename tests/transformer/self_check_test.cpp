@@ -47,20 +47,22 @@ public:
   [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& s, const double* wrench, double* normal) const override {
     return real_->gauge(e, s, wrench, normal);
   }
-  void watch_stick(const Evaluation& e, const FrictionState& s, const double* wrench, double* watch) const override {
-    if (fault_ == Fault::blind_watch) watch[0] = watch[1] = 1.0;
-    else real_->watch_stick(e, s, wrench, watch);
+  void stick_events(const Evaluation& e, const FrictionState& s, const double* wrench, double* event_value) const override {
+    if (fault_ == Fault::blind_watch) event_value[0] = event_value[1] = 1.0;
+    else real_->stick_events(e, s, wrench, event_value);
   }
-  void begin_slip(const Evaluation& e, FrictionState& s, const double* wrench) const override { real_->begin_slip(e, s, wrench); }
+  void set_onset_direction(const Evaluation& e, FrictionState& s, const double* wrench) const override {
+    real_->set_onset_direction(e, s, wrench);
+  }
   // Where it begins to move the mode problem is asked how it goes on.
-  void watch_slip(const Evaluation&, const FrictionState&, const double* rate, double* watch) const override {
-    watch[0] = 1e-9 - std::abs(rate[0]);
-    watch[1] = 1.0;
+  void slip_events(const Evaluation&, const FrictionState&, const double* rate, double* event_value) const override {
+    event_value[0] = 1e-9 - std::abs(rate[0]);
+    event_value[1] = 1.0;
   }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& s, const double* a, const double* b,
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState& s, const double* a, const double* b,
                                           bool is_kinetic) const override {
-    FrictionBlock block = real_->solve_block(e, s, a, b, is_kinetic);
-    if (fault_ == Fault::deaf_mode_problem) block.is_inside = true;
+    BlockSolution block = real_->solve_block(e, s, a, b, is_kinetic);
+    if (fault_ == Fault::deaf_mode_problem) block.sticks = true;
     return block;
   }
 
