@@ -90,8 +90,8 @@ private:
 /// `Works`: counted as work, otherwise as heat. `Jumps`: a formula contains comparisons, so its force may jump.
 template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup {
 public:
-  using Entry = ForceEntry;
-  std::vector<Entry> entries;
+  using ElementData = ForceEntry;
+  std::vector<ElementData> entries;
   static constexpr bool k_does_work = Works;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e, NumericSignalEvaluator{e.t}); }
@@ -102,7 +102,7 @@ public:
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Gradient g(entry, e);
       PairJacobian& turning = out.emplace_back(); // derivative of direction and levers at constant value
       turning.a = entry.a;
@@ -118,7 +118,7 @@ public:
     }
   }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Gradient g(entry, e);
       const auto& operands = entry.formula.operands();
       for (std::size_t i = 0; i < operands.size(); ++i) {
@@ -131,17 +131,17 @@ public:
   }
 
   void register_formulas(std::vector<FormulaInMotion>& out) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       out.push_back({&entry.formula, [&entry](const Evaluation& e) { return entry.own_now(e); }, entry.unit});
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       is_used[entry.a] = is_used[entry.b] = 1;
       for (const int body : entry.formula.bodies()) is_used[body] = 1;
     }
   }
   void register_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       if (entry.is_following) turns.add_all({entry.a, entry.b});
       else turns.add(entry.a, entry.b, turning_of(entry.row));
       if (entry.row.kind == MeasureKind::angle && !entry.formula.program().is_linear()) turns.add(entry.a, entry.b);
@@ -149,7 +149,7 @@ public:
     }
   }
   void register_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
@@ -165,7 +165,7 @@ public:
   [[nodiscard]] EventKind event_kind(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
   [[nodiscard]] double force_of(int i, const Evaluation& e) const {
-    const Entry& entry = entries[i];
+    const ElementData& entry = entries[i];
     return entry.formula.value<double>(e, entry.own_now(e), NumericSignalEvaluator{e.t}, entry.bits(e), nullptr);
   }
 
@@ -178,7 +178,7 @@ private:
     double value = 0.0;
     std::vector<double>& slopes; ///< by operand; valid until the next Gradient is made
 
-    Gradient(const Entry& entry, const Evaluation& e) : slopes(room()) {
+    Gradient(const ElementData& entry, const Evaluation& e) : slopes(room()) {
       if (slopes.size() < entry.formula.operands().size()) slopes.resize(entry.formula.operands().size());
       const MeasureValue<D12> m = entry.measure(seeded(e.motion[entry.a], 0), seeded(e.motion[entry.b], 3));
       own = entry.own(m);
@@ -198,7 +198,7 @@ private:
 
   template <class S, class AtTime> void add_forces_to(EvaluationData<S>& e, const AtTime& at_time) const {
     S quantity[k_most_switches];
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const MeasureValue<S> m = entry.measure(e.link_motion[entry.link], Origin{});
       const SwitchBits bits = entry.bits(e);
       preset_quantities(entry.formula.program().switch_count(), bits, quantity);

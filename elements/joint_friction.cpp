@@ -106,7 +106,7 @@ public:
   }
   [[nodiscard]] bool record_friction(TracedEvaluation& e, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
                                      TapeNumber* event_value) const override {
-    const TapeNumber now = signal ? greatest_of(TapeNumber(0.0), e.of_time({signal})) : TapeNumber(1.0);
+    const TapeNumber now = signal ? greatest_of(TapeNumber(0.0), e.record_signal_input({signal})) : TapeNumber(1.0);
     if (rate) {
       wrench[0] = sliding_force(rate[0], state, now);
       event_value[0] = state.sign * rate[0];

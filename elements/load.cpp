@@ -50,7 +50,8 @@ public:
   }
   [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
     for (const LoadEntry& entry : entries)
-      add<TapeNumber>(entry, load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.of_time({signal}); }), e);
+      add<TapeNumber>(entry, load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.record_signal_input({signal}); }),
+                      e);
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }

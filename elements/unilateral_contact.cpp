@@ -41,7 +41,7 @@ template <class Group> void damp(Group& group, const UnilateralContact& e, const
 template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
   using Group = EndedContactGroup<Law>;
   Group& group = builder.group<Group>();
-  typename Group::Entry entry;
+  typename Group::ElementData entry;
   entry.a = g.a;
   entry.b = g.b;
   entry.gap = g.gap;

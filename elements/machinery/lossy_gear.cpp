@@ -34,7 +34,7 @@ class MeshGroup final : public ForceGroup {
 public:
   static constexpr UnitMode k_forwards = 0, k_backwards = 1;
   std::vector<MeshEntry> entries;
-  using Entry = MeshEntry;
+  using ElementData = MeshEntry;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e); }
   [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
@@ -43,11 +43,11 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += 0.5 * entry.k * entry.twist(motion) * entry.twist(motion);
+    for (const ElementData& entry : entries) sum += 0.5 * entry.k * entry.twist(motion) * entry.twist(motion);
     return sum;
   }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const int bodies[3] = {entry.a, entry.b, entry.carrier};
       const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0}; // ∂δ by the three angles; the moments are −M times these
       for (int row = 0; row < 3; ++row)
@@ -65,7 +65,7 @@ public:
     }
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
   }
   void register_turns(TurnTable&) const override {} // nothing to add: a gear is linear in its angles
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
@@ -78,7 +78,7 @@ public:
 
 private:
   template <class S> void add_forces_to(EvaluationData<S>& e) const {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const S couple = entry.couple(e.motion), rate = entry.rate(e.motion);
       e.force[entry.a].m -= couple;
       e.force[entry.b].m += entry.ratio * couple;

@@ -48,7 +48,7 @@ public:
     double free = 0.0;     ///< elongation of the measure at zero load, m
     double shortest = 0.0; ///< shortest length, m; below it the part does not exist
   };
-  struct Entry {
+  struct ElementData {
     int drum = k_ground;
     std::array<Part, 2> parts;
     double time = 0.0; ///< τ, s
@@ -73,15 +73,15 @@ public:
     S slip{0.0};                                      ///< ṡ
   };
 
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
-  [[nodiscard]] static Flow<double> flow_of(const Entry& entry, const Motion<double>* motion, double s, UnitMode mode);
+  [[nodiscard]] static Flow<double> flow_of(const ElementData& entry, const Motion<double>* motion, double s, UnitMode mode);
   [[nodiscard]] Flow<double> flow_now(int i, const Evaluation& e) const {
     return flow_of(entries[static_cast<std::size_t>(i)], e.motion, e.inner[entries[static_cast<std::size_t>(i)].inner],
                    e.mode[entries[static_cast<std::size_t>(i)].unit]);
   }
   /// Returns the s for which both parts have the same tension.
-  [[nodiscard]] static double balanced(const Entry& entry, const Flow<double>& flow, double s);
+  [[nodiscard]] static double balanced(const ElementData& entry, const Flow<double>& flow, double s);
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
@@ -98,17 +98,17 @@ public:
   [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
 
 private:
-  [[nodiscard]] static KelvinVoigtContact whole(const Entry& entry) { return {1.0, entry.time, 0.0}; }
+  [[nodiscard]] static KelvinVoigtContact whole(const ElementData& entry) { return {1.0, entry.time, 0.0}; }
   [[nodiscard]] static bool is_taut(UnitMode mode) { return mode >= k_sticks; }
   [[nodiscard]] static UnitMode contact_mode(UnitMode mode);
-  [[nodiscard]] static UnitMode mode_by_ratio(const Entry& entry, const Flow<double>& flow);
+  [[nodiscard]] static UnitMode mode_by_ratio(const ElementData& entry, const Flow<double>& flow);
   /// Returns the force, N, by which the tensions may exceed the ratio, so that a slide that has decayed to rounding sticks.
-  [[nodiscard]] static double slack_of(const Entry& entry, const Flow<double>& flow) {
+  [[nodiscard]] static double slack_of(const ElementData& entry, const Flow<double>& flow) {
     return k_place * (1.0 + flow.ratio) * (entry.parts[0].stiffness + entry.parts[1].stiffness);
   }
-  [[nodiscard]] static double rounding_of(const Entry& entry, const Evaluation& e, const Flow<double>& flow);
-  static void check(const Entry& entry, const Flow<double>& flow);
-  static void event_value(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e);
+  [[nodiscard]] static double rounding_of(const ElementData& entry, const Evaluation& e, const Flow<double>& flow);
+  static void check(const ElementData& entry, const Flow<double>& flow);
+  static void event_value(const ElementData& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e);
 };
 
 } // namespace steplap

@@ -87,7 +87,7 @@ struct TieLaw {
 
 template <class Measure> class TieGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     Measure measure;
     TieLaw law;
@@ -95,10 +95,10 @@ public:
     bool stops = false;
     int link = 0, unit = 0, first_event = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const UnitMode mode = e.mode[entry.unit];
       const auto m = entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
       entry.law.event_value(m.value, m.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
@@ -109,40 +109,40 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       if (entry.inner < 0) sum += entry.law.energy(value(entry, motion));
     return sum;
   }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       if (entry.inner >= 0 && inner[entry.inner] == 0.0) sum += entry.law.energy(value(entry, motion));
     return sum;
   }
   double jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const override {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     if (to != k_broken) return 0.0;
     inner[entry.inner] = 1.0;
     return entry.law.energy(value(entry, e.motion));
   }
   [[nodiscard]] bool ends_run_in(int element, UnitMode to) const override { return to == k_broken && entries[element].stops; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       add_pair_jacobian(
           entry.a, entry.b, entry.measure, e,
           [&](const Dual<12>& v, const Dual<12>& rate) { return entry.law.force(v, rate, e.mode[entry.unit]); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
   void register_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
+    for (const ElementData& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
   void register_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     if (entry.inner >= 0 && e.inner[entry.inner] != 0.0) return k_broken;
     const auto m = measured(element, e);
     return entry.law.initial_mode(m.value, m.rate);
@@ -162,7 +162,7 @@ public:
     return to == k_pulls || to == k_presses ? EventKind::force_returns : EventKind::force_reaches_zero;
   }
   [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
   /// Returns the force, tension positive.
@@ -175,7 +175,7 @@ private:
   [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
     return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
   }
-  static double value(const Entry& entry, const Motion<double>* motion) {
+  static double value(const ElementData& entry, const Motion<double>* motion) {
     return entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value;
   }
 };
@@ -183,7 +183,7 @@ private:
 template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, int b, const Measure& measure) {
   constexpr double k_never = -std::numeric_limits<double>::infinity();
   const double n = static_cast<double>(e.count), k = n * e.stiffness, c = n * e.damping;
-  typename TieGroup<Measure>::Entry entry;
+  typename TieGroup<Measure>::ElementData entry;
   entry.a = a;
   entry.b = b;
   entry.measure = measure;

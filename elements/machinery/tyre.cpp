@@ -73,7 +73,7 @@ void compile_tyre(const Element& element, SystemBuilder& builder) {
   auto road = std::make_shared<const Road>(e.road.empty() ? Road() : Road(e.road));
   if (!fits(*road, e.radius, builder)) return;
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
-  TyreGroup::Entry entry;
+  TyreGroup::ElementData entry;
   entry.a = a.body;
   entry.b = b.body;
   entry.measure = {a.point, b.point, builder.direction(b, {1.0, 0.0}), e.radius, std::move(road)};

@@ -77,7 +77,7 @@ template <class S> struct TreadState {
 /// All tyres, as one force group.
 class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     WheelMeasure measure;
     KelvinVoigtContact press; ///< law for the distance of the centre
@@ -86,7 +86,7 @@ public:
     int link = 0, unit = 0, first_event = 0, contact = 0;
   };
   static constexpr int k_event_count = 6; ///< two of the contact, two of the tread, one for the direction of rotation, one for its speed
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>* motion) const override;

@@ -43,14 +43,14 @@ public:
     double length = 0.0;    ///< m
   };
   /// One bed.
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground; ///< limb and active part
     double clearance = 0.0;         ///< m, of all its lines
     std::vector<Line> lines;
     int link = 0, unit = 0, first_event = 0;
   };
   static constexpr int k_event_count = 2;
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>* motion) const override;

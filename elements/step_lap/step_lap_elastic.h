@@ -31,7 +31,7 @@ inline constexpr int k_elastic_parted = 2; ///< index of the first of these bits
 /// All elastic joints, as one force group.
 class ElasticGripGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;            ///< limb and active part
     const StepLapFriction* friction = nullptr; ///< belongs to the system, which owns both
     /// Index of the first of seven numbers: p (3), direction of slip (3), and 1 after it has come apart.
@@ -39,7 +39,7 @@ public:
     int link = 0, unit = 0, first_event = 0;
   };
   static constexpr int k_event_count = 3; ///< bound or flow; separation of interfaces; sharpness of the corner
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }

@@ -237,8 +237,8 @@ void Dynamics::take_time_inputs(double t, double* into) {
   if (!layout_->driven_rows.empty()) take_row_inputs(*layout_, state_->memory.data(), t, into);
 }
 
-// Computes rates, powers and event functions by machine code; with `all` also the data for look_by_code() and defer_byproducts(). Returns
-// false, without any change, if no code is valid here.
+// Computes rates, powers and event functions by machine code; with `all` also the data for evaluate_joint_events_by_code() and
+// defer_byproducts(). Returns false, without any change, if no code is valid here.
 bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
@@ -270,10 +270,10 @@ void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, 
     if (run_code(t, y, dy, false)) return; // where code is valid no loads are shared
     evaluate_stage_without_code(t, y, dy);
     evaluate_rigid_joint_events_if_near_limit(dy, always);
-  } else if (may_look_by_code() && run_code(t, y, dy, true)) {
+  } else if (may_evaluate_joint_events_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();
     defer_byproducts(program, t, y);
-    (void)look_by_code(program, t);
+    (void)evaluate_joint_events_by_code(program, t);
   } else {
     rates(t, y, dy);
     evaluate_rigid_joint_events_if_near_limit(dy, always);
@@ -282,7 +282,7 @@ void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, 
 }
 
 void Dynamics::evaluate_end(double t, const double* y, double* dy) {
-  if (!may_look_by_code() || !run_code(t, y, dy, true)) {
+  if (!may_evaluate_joint_events_by_code() || !run_code(t, y, dy, true)) {
     rates(t, y, dy);
     evaluate_rigid_joint_events(dy);
     return;
@@ -291,16 +291,16 @@ void Dynamics::evaluate_end(double t, const double* y, double* dy) {
   defer_byproducts(program, t, y);
   if (!layout_->has_rigid_joint_events) return;
   was_merged_near_ = is_merged_near_;
-  is_merged_near_ = look_by_code(program, t);
+  is_merged_near_ = evaluate_joint_events_by_code(program, t);
 }
 
-bool Dynamics::may_look_by_code() const {
+bool Dynamics::may_evaluate_joint_events_by_code() const {
   const StageProgram* const program = stage_programs_.now();
-  return program && program->is_ready() && program->can_look() && !sharing();
+  return program && program->is_ready() && program->has_joint_wrenches() && !sharing();
 }
 
 // After a stage by code: computes the event functions of merged joints. Returns true if one is near its limit.
-bool Dynamics::look_by_code(const StageProgram& program, double t) {
+bool Dynamics::evaluate_joint_events_by_code(const StageProgram& program, double t) {
   // A stick in a cluster is judged by its wrench, the time and the friction state.
   evaluation_.t = std::min(t, time_cap_);
   program.put_wrenches(friction_force_);

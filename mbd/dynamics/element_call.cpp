@@ -73,7 +73,7 @@ std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
 
 // Time is always an argument, so that no call has only constant arguments.
 void ElementCall::take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
-  take(e.of_time({&clock_signal()}), own_.t);
+  take(e.record_signal_input({&clock_signal()}), own_.t);
   for (const int slot : slots_of(is_used)) take(e.motion[slot], motion_[static_cast<std::size_t>(slot)]);
   for (std::size_t i = 0; i < inner_.size(); ++i) take(e.inner[i], inner_[i]);
 }

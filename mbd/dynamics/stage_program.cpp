@@ -15,7 +15,7 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
   family_ = tape_family(key());
   stages_ = family_->made();
-  look_for_candidate();
+  find_candidate();
 }
 
 // Hash that identifies a layout with its modes, and the scene by its sizes.
@@ -33,7 +33,7 @@ std::uint64_t StageProgram::key() const {
   return hash;
 }
 
-void StageProgram::look_for_candidate() {
+void StageProgram::find_candidate() {
   if (choice_ == StageCode::when_it_pays && !tape_code_ && tapes_ == 0 && !is_hopeless_) candidate_ = family_->coded();
 }
 
@@ -45,7 +45,7 @@ bool StageProgram::is_of(const State& state) const {
                     });
 }
 
-void StageProgram::look_for_code() {
+void StageProgram::adopt_code() {
   if (code_ || !tape_code_ || !tape_code_->code()) return;
   const MachineCode& made = *tape_code_->code();
   const double *const inputs = traced_.inputs.data(), *const constants = traced_.tape.constants.data();
@@ -63,7 +63,7 @@ void StageProgram::look_for_code() {
 bool StageProgram::makes_what_was_traced(const MachineCode& made) const {
   const Tape& tape = traced_.tape;
   std::size_t size[CodeArrays::k_more + 1] = {};
-  for (const OutputPlace& p : tape.places) size[p.array] = std::max(size[p.array], static_cast<std::size_t>(p.place) + 1);
+  for (const OutputLocation& p : tape.places) size[p.array] = std::max(size[p.array], static_cast<std::size_t>(p.place) + 1);
   std::vector<double> found(size[0] + size[1] + size[2] + size[3]);
   double* const begin[] = {found.data(), found.data() + size[0], found.data() + size[0] + size[1], found.data() + found.size() - size[3]};
   const CodeArrays arrays{tape.constants.data(), traced_.inputs.data() + tape.first_inputs, {begin[1], begin[2], begin[3]}};
@@ -104,7 +104,7 @@ void StageProgram::count_stage() {
   family_->count_evaluation();
   if (!tape_code_) return;
   tape_code_->count_uses(1);
-  look_for_code();
+  adopt_code();
 }
 
 void StageProgram::put_wrenches(double* friction_force) const {
@@ -168,7 +168,7 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   tape_code_ = known ? known : shared_code(traced_.tape);
   if (!known) family_->keep(tape_code_);
   if (choice_ == StageCode::at_once) tape_code_->make();
-  look_for_code();
+  adopt_code();
 }
 
 void StagePrograms::enter(Layout& layout, const State& state, LayoutStore& kept) {
@@ -176,8 +176,8 @@ void StagePrograms::enter(Layout& layout, const State& state, LayoutStore& kept)
       std::find_if(layout.programs.begin(), layout.programs.end(), [&state](const auto& program) { return program->is_of(state); });
   if (known != layout.programs.end()) {
     now_ = known->get();
-    now_->look_for_code();
-    now_->look_for_candidate();
+    now_->adopt_code();
+    now_->find_candidate();
     return;
   }
   now_ = nullptr;

@@ -41,15 +41,15 @@ public:
   [[nodiscard]] bool is_of(const State& state) const;
 
   /// Takes over machine code that has been made since, if it reproduces the recorded stage bit by bit.
-  void look_for_code();
+  void adopt_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// Computes accelerations, rates of inner states, powers and event functions at coordinates, rates and inner states y. Returns false if
-  /// the stage must be evaluated without code; the outputs are then undefined. `all`: also computes the data for can_look(), put_wrenches()
-  /// and smallest_pivot().
+  /// the stage must be evaluated without code; the outputs are then undefined. `all`: also computes the data for has_joint_wrenches(),
+  /// put_wrenches() and smallest_pivot().
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* event_value, double* event_derivative, bool all);
-  /// can_look() returns true if the event functions of merged joints can be computed from a stage by code. put_wrenches() then writes the
-  /// wrenches of these joints at the last run().
-  [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
+  /// has_joint_wrenches() returns true if the event functions of merged joints can be computed from a stage by code. put_wrenches() then
+  /// writes the wrenches of these joints at the last run().
+  [[nodiscard]] bool has_joint_wrenches() const { return traced_.has_wrenches; }
   void put_wrenches(double* friction_force) const;
   /// Returns Layout::smallest_pivot() at the last run(), bit-identical.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(rest_.data()); }
@@ -63,7 +63,7 @@ public:
   /// Counts a stage evaluated without code.
   void count_stage();
   /// To be called when modes recur: looks for code made for such a tape in the meantime.
-  void look_for_candidate();
+  void find_candidate();
   /// Records the stage evaluated last, at t, y and time_inputs(), and checks the tape against its results. `live` as for trace_rates().
   void record(const System& system, const State& state, const Evaluation& live, double t, const double* y, const StageFound& found);
 

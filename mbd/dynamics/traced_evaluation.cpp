@@ -259,7 +259,7 @@ private:
     if (!traced.has_wrenches || !layout_.has_rigid_joint_events) return;
     lack_.assign(system_.bodies.size(), {});
     find_lacks(system_, layout_, motion_.data(), force_.data(), cluster_accelerations(), multiplier_.data(), lack_.data());
-    place_edges(system_, layout_, state_, edges_);
+    compute_edge_geometry(system_, layout_, state_, edges_);
     hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const TapeNumber* along) {
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
       for (int r = 0; r < 3; ++r) {
@@ -287,7 +287,7 @@ private:
     }
   }
 
-  static void put_out(const TapeNumber& x, OutputPlace place, TracedRates& traced) {
+  static void put_out(const TapeNumber& x, OutputLocation place, TracedRates& traced) {
     TapeNumber::output(x);
     traced.outputs.push_back(value_of(x));
     traced.tape.places.push_back(place);

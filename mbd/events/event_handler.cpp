@@ -517,7 +517,7 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
 }
 
 // Returns slots that a jump made negative, of units that follow jumps. A unit that has already switched in this event does not switch back.
-std::vector<int> EventHandler::carried(const std::vector<double>& before) const {
+std::vector<int> EventHandler::slots_made_negative_by_jump(const std::vector<double>& before) const {
   std::vector<int> slots = fallen(before, dynamics_.event_value());
   std::erase_if(slots, [this](int slot) {
     const int u = unit_of_slot_[slot];
@@ -530,7 +530,7 @@ std::vector<int> EventHandler::carried(const std::vector<double>& before) const 
 // consequence, and so on. The state is evaluated in the previous modes, and switches are repeated until none follows. Each comparison
 // switches once at most, so this ends.
 bool EventHandler::follow_jumps(State& state, const std::vector<double>* event_value_before, std::vector<Event>& events) {
-  bool is_any = event_value_before && switch_units(state, carried(*event_value_before), events);
+  bool is_any = event_value_before && switch_units(state, slots_made_negative_by_jump(*event_value_before), events);
   const auto has_jumped = [this] {
     for (std::size_t slot = 0; slot < has_switched_.size(); ++slot)
       if (has_switched_[slot] != 0 && system_.units[unit_of_slot_[slot]].group->has_discontinuous_events()) return true;
@@ -540,7 +540,7 @@ bool EventHandler::follow_jumps(State& state, const std::vector<double>* event_v
   for (;;) {
     const std::vector<double> before = dynamics_.event_value();
     modes_.evaluate(state);
-    if (!switch_units(state, carried(before), events)) return is_any;
+    if (!switch_units(state, slots_made_negative_by_jump(before), events)) return is_any;
     is_any = true;
   }
 }
@@ -552,7 +552,7 @@ void EventHandler::note_blows(const std::vector<double>& memory_before, const St
 
 // Records ties of friction elements. Ropes and locked clutches have no bound and are excluded. Groups that share a load are excluded too,
 // since their event functions are common to all elements.
-void EventHandler::note_ties(const State& state, const std::vector<double>& event_value) {
+void EventHandler::record_simultaneous_slips(const State& state, const std::vector<double>& event_value) {
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
@@ -614,7 +614,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
     }
   }
   conclude(state, is_contact_changed || fired.empty(), is_settled, events); // at a breakpoint a signal may begin or cease to press
-  if (may_tie) note_ties(state, event_value_before_);
+  if (may_tie) record_simultaneous_slips(state, event_value_before_);
 }
 
 // Elements that were inactive have their initial mode and do not stick. Modes and phases of all are decided here.

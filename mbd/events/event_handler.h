@@ -32,7 +32,7 @@ struct RigidBlow {
 
 /// Two elements that reach their friction bounds almost at once: one began to slip, the other one stuck close to its bound. Rounding
 /// decides which one slips first.
-struct SlipTie {
+struct SimultaneousSlip {
   double t = 0.0;     ///< time at which `slips` began to slip, s
   std::string slips;  ///< element that began to slip
   std::string sticks; ///< element that stuck before and after
@@ -82,7 +82,7 @@ public:
   [[nodiscard]] const double* packed() const { return modes_.packed(); }
   [[nodiscard]] const double* rates() const { return modes_.rates(); }
   /// Returns the ties of the last handle(): sticking elements with a utilisation above 1 − k_near_bound.
-  [[nodiscard]] const std::vector<SlipTie>& ties() const { return ties_; }
+  [[nodiscard]] const std::vector<SimultaneousSlip>& ties() const { return ties_; }
   static constexpr double k_near_bound = 1e-3;
   /// Returns the ropes and clutches struck in the last start(), handle() or take_over().
   [[nodiscard]] const std::vector<RigidBlow>& blows() const { return blows_; }
@@ -92,13 +92,13 @@ private:
   void meet_constraints(State& state);
   void begin_units(State& state) const;
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
-  [[nodiscard]] std::vector<int> carried(const std::vector<double>& before) const;
+  [[nodiscard]] std::vector<int> slots_made_negative_by_jump(const std::vector<double>& before) const;
   bool follow_jumps(State& state, const std::vector<double>* event_value_before, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
   void note_blows(const std::vector<double>& memory_before, const State& state);
-  void note_ties(const State& state, const std::vector<double>& event_value);
+  void record_simultaneous_slips(const State& state, const std::vector<double>& event_value);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
@@ -135,7 +135,7 @@ private:
   std::vector<FrictionState> before_; ///< friction states at the start of handle()
   std::vector<double> memory_before_;
   std::vector<double> event_value_before_; ///< event functions at the start of handle(), if two or more elements stuck
-  std::vector<SlipTie> ties_;
+  std::vector<SimultaneousSlip> ties_;
   std::vector<RigidBlow> blows_;
   std::vector<char> is_released_;      ///< per group of LoadSharing
   std::vector<char> has_fired_;        ///< per friction element

@@ -38,7 +38,7 @@ double ExplicitPair::shorter(double error) const {
 
 void ExplicitPair::note_end(double pivot) {
   ++steps_;
-  before_.approach = approach_;
+  saved_control_.approach = approach_;
   approach_.note_end(pivot);
 }
 
@@ -50,7 +50,7 @@ double ExplicitPair::error_inside(Dynamics& dynamics) {
 }
 
 void ExplicitPair::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_))
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }
@@ -65,8 +65,8 @@ bool ExplicitPair::withdraw(Dynamics& dynamics, double h) {
   if (is_crossing_) return false;
   --steps_;
   ++rejections_;
-  approach_ = before_.approach;
-  control_.previous_error = before_.error;
+  approach_ = saved_control_.approach;
+  control_.previous_error = saved_control_.error;
   next_h_ = h;
   refuse_shorter_than_rounding(next_h_);
   dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
@@ -126,7 +126,7 @@ bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
   is_beside_singular_ = approach_.is_beside(dynamics.least_pivot());
   if (are_dense_evaluations_expected()) inside = error_inside(dynamics);
   if (inside > 1.0) return false;
-  before_.error = control_.previous_error;
+  saved_control_.error = control_.previous_error;
   const double factor = control_.factor(std::max(try_error_, inside), attempt_.is_retry);
   // If the limit has cut the step, the next one may still have the planned length.
   next_h_ = h_ < attempt_.h ? std::max(attempt_.h, h_ * factor) : h_ * factor;

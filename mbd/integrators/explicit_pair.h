@@ -105,11 +105,11 @@ private:
   bool is_inside_known_ = false;    ///< the dense output of the step made has been checked
   bool is_beside_singular_ = false; ///< the step made is near a singular position
   /// Control data before the step made, restored if it is withdrawn.
-  struct Before {
+  struct SavedControl {
     SingularApproach approach;
     double error = 1e-4;
   };
-  Before before_;
+  SavedControl saved_control_;
 };
 
 } // namespace steplap

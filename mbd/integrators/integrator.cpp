@@ -182,7 +182,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
   // If no step is short enough, the failure itself is more informative than a message about the step length.
-  const bool is_shortest = h_ < k_shortest_try * time_size(t0_, system_);
+  const bool is_shortest = h_ < k_shortest_try * rounding_time_scale(t0_, system_);
   try {
     finish_step(dynamics);
     return true;

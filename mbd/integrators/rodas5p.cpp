@@ -72,8 +72,8 @@ protected:
     if (is_crossing_) return false;
     --steps_;
     ++rejections_;
-    approach_ = before_.approach;
-    control_.previous_error = before_.error;
+    approach_ = saved_control_.approach;
+    control_.previous_error = saved_control_.error;
     next_h_ = h;
     refuse_shorter_than_rounding(h);
     dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
@@ -105,11 +105,11 @@ private:
   SingularApproach approach_;
   bool is_crossing_ = false; ///< the step made is a crossing
   /// Control data before the step made, restored if it is withdrawn.
-  struct Before {
+  struct SavedControl {
     SingularApproach approach;
     double error = 1e-4;
   };
-  Before before_;
+  SavedControl saved_control_;
 };
 
 // Computes ∂F/∂t at (t0, y0) from five points forward (order 4).
@@ -259,7 +259,7 @@ bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
 
 void Rodas5p::note_end(const Dynamics& dynamics) {
   ++steps_;
-  before_.approach = approach_;
+  saved_control_.approach = approach_;
   approach_.note_end(dynamics.layout().active.empty() ? 1.0 : dynamics.smallest_pivot());
 }
 
@@ -292,7 +292,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     }
     if (error <= 1.0) error = std::max(error, error_of_powers());
     if (error <= 1.0) {
-      before_.error = control_.previous_error;
+      saved_control_.error = control_.previous_error;
       const double factor = control_.factor(error, is_retry);
       next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
       return note_end(dynamics);
@@ -304,7 +304,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
 }
 
 void Rodas5p::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_))
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }

@@ -123,7 +123,7 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
         const int k = 3 * row.cluster[side] + c;
         right_[k] += w[k] * row.g[side][c];
       }
-    stages_.respond(right_.data(), &response_[r * n2]);
+    stages_.solve_for_forces(right_.data(), &response_[r * n2]);
   }
   for (std::size_t i = 0; i < rows; ++i)
     for (int side = 0; side < 2; ++side)

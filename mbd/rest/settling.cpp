@@ -53,7 +53,7 @@ public:
     }
     const double first = std::sqrt(k_first * scene_.length / reference_);
     double h = first, longest = first, last = std::numeric_limits<double>::infinity(); // last: acceleration in the last step, m/s²
-    clearance_.look(state_.q);
+    clearance_.measure(state_.q);
     for (; found.steps < std::min(most, 1.0 * k_most_steps) && h > k_shortest * longest; ++found.steps) {
       stop_if_asked("while the machine settled");
       State next = state_;
@@ -69,7 +69,7 @@ public:
       }
       const double acceleration = acceleration_of(way, h);
       if (h > first && acceleration > k_most_growth * last) {
-        clearance_.look(state_.q);
+        clearance_.measure(state_.q);
         h *= 0.25;
         continue;
       }
@@ -101,9 +101,9 @@ private:
   }
 
   [[nodiscard]] bool passes_nothing(const State& next, const VecX& way) {
-    clearance_.look(next.q);
+    clearance_.measure(next.q);
     if (clearance_.keeps_sides(way)) return true;
-    clearance_.look(state_.q);
+    clearance_.measure(state_.q);
     return false;
   }
 

@@ -79,7 +79,7 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
 bool RunLeg::is_action_due(std::size_t known) {
   if (!actions_ || is_over()) return false;
   const bool is_stepped = integrator_->stepped_state() != nullptr;
-  is_interrupted_ = actions_->look(*group_, system_, state_, is_stepped, std::span(record_->events).subspan(known));
+  is_interrupted_ = actions_->update(*group_, system_, state_, is_stepped, std::span(record_->events).subspan(known));
   return is_interrupted_;
 }
 

@@ -23,7 +23,7 @@ namespace {
 // progress of the motion.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
-constexpr long k_steps_between_looks = 1L << 16;
+constexpr long k_steps_between_checks = 1L << 16;
 // Relative amount by which a sticking joint may exceed its limit. The mode problem determines wrenches to 1e-9 of the capacities, and
 // events are located to rounding; a thousand times that is an error.
 constexpr double k_held_beyond = 1e-6;
@@ -260,17 +260,17 @@ void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
 
 // Throws if the steps have become so small that the run would never end.
 void RunLeg::guard_against_crawl() {
-  if (integrator_->steps() < next_look_) return;
-  const double t = integrator_->t1(), passed = t - last_look_;
-  const bool is_first = next_look_ == 0;
-  next_look_ = integrator_->steps() + k_steps_between_looks;
-  last_look_ = t;
+  if (integrator_->steps() < next_progress_check_) return;
+  const double t = integrator_->t1(), passed = t - last_progress_check_;
+  const bool is_first = next_progress_check_ == 0;
+  next_progress_check_ = integrator_->steps() + k_steps_between_checks;
+  last_progress_check_ = t;
   if (is_first) return;
-  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_looks);
+  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_checks);
   if (!(needed > k_most_steps)) return;
   std::ostringstream message;
-  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed << " s; the rest would take " << needed
-          << " steps. Something is far stiffer or faster than the run is long: '" << integrator_->name()
+  message << "the last " << k_steps_between_checks << " steps to t = " << t << " s passed " << passed << " s; the rest would take "
+          << needed << " steps. Something is far stiffer or faster than the run is long: '" << integrator_->name()
           << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
   throw NumericalFailure(message.str());
 }
@@ -299,7 +299,7 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
 // At the tie of options_.other_slip: the slot of `sticks` that is nearest to its bound instead of those of `slips`. The equal run met the
 // tie at the same instant to the last bit.
 std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired) const {
-  const SlipTie& tie = *options_.other_slip;
+  const SimultaneousSlip& tie = *options_.other_slip;
   if (t != tie.t) return fired;
   std::vector<int> slots = fired;
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
@@ -318,7 +318,7 @@ void RunLeg::keep_blows() { record_->blows.insert(record_->blows.end(), handler_
 // The integrator still has the step that led to the event.
 void RunLeg::keep_ties(double t) {
   const double before = t - integrator_->t0();
-  for (SlipTie tie : handler_.ties()) {
+  for (SimultaneousSlip tie : handler_.ties()) {
     if (record_->ties.size() >= RunRecord::k_most_ties) return;
     for (const FrictionUnit& unit : system_.frictions)
       if (before > 0.0 && system_.element_names[unit.element] == tie.sticks)
@@ -358,7 +358,7 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
 
 // `evaluations`: number of evaluations when the step was made. If there were none since, `dynamics_` is at the end of the step. (An
 // adaptive method may have used it for other purposes.)
-void RunLeg::look_for_extremes(long evaluations, bool is_last) {
+void RunLeg::update_extremes(long evaluations, bool is_last) {
   if (!extremes_) return;
   const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
   extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
@@ -458,7 +458,7 @@ bool RunLeg::pass_step() {
   }
   const double t1 = integrator_->t1();
   keep_ledger(t1);
-  look_for_extremes(evaluations, t1 >= limit);
+  update_extremes(evaluations, t1 >= limit);
   sample_until(t1);
   handler_.clear_fresh();
   if (t1 >= limit && limit < options_.end) {

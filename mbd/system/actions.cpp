@@ -10,7 +10,7 @@ template <class S> OwnCoordinate<S> no_coordinate() { return {S(0.0), S(0.0)}; }
 
 template <class S, class AtTime> void ActionGroup::event_value(EvaluationData<S>& e, const AtTime& at_time) const {
   S quantity[k_most_switches];
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     if (entry.unit < 0) continue;
     const MotionFormula& formula = *entry.trigger.formula;
     const SwitchBits bits = e.mode[entry.unit];
@@ -28,13 +28,13 @@ bool ActionGroup::record_forces(TracedEvaluation& e) const {
 }
 
 void ActionGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     if (entry.trigger.formula)
       for (const int body : entry.trigger.formula->bodies()) is_used[body] = 1;
 }
 
 void ActionGroup::register_turns(TurnTable& turns) const {
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     if (entry.trigger.formula) entry.trigger.formula->register_turns(turns);
 }
 
@@ -49,7 +49,7 @@ UnitMode ActionGroup::next_mode(int element, UnitMode mode, int slot, const Eval
 }
 
 bool ActionGroup::holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const {
-  const Entry& entry = entries[action];
+  const ElementData& entry = entries[action];
   if (entry.trigger.time) return state.t >= *entry.trigger.time;
   if (!entry.trigger.formula) return false;
   Evaluation e;

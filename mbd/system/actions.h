@@ -40,14 +40,14 @@ struct ActionTrigger {
 /// All actions of a model, in the order of the file. Applies no forces.
 class ActionGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     std::string name, text; ///< text: all steps, for messages
     ActionTrigger trigger;
     std::vector<ActionStep> steps;
     bool is_once = true, is_armed = true;
     int unit = -1, first_event = 0; ///< mode and event functions of a comparison
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
   std::shared_ptr<const Model> model;                    ///< completed model with the values at the start of a run
   std::optional<std::vector<std::string>> channels = {}; ///< channels that were requested; not given: all
   /// Changes made to the system after compilation, such as added channels. They are repeated for the systems that actions create.

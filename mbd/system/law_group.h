@@ -87,7 +87,7 @@ struct NoGaps {};
 template <class Measure, class Law>
 class LawGroup final : public ForceGroup, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     Measure measure;
     Law law;
@@ -96,7 +96,7 @@ public:
     int first_event = 0; ///< index of its first event function
     int contact = 0;     ///< index of its normal force
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e); }
   [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
@@ -106,12 +106,12 @@ public:
 
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += energy_of(entry, motion);
+    for (const ElementData& entry : entries) sum += energy_of(entry, motion);
     return sum;
   }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const auto law = [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode_of(entry, e)); };
       const Dual<12> f = add_pair_jacobian(entry.a, entry.b, entry.measure, e, law, out);
       if constexpr (Law::k_is_contact) {
@@ -122,24 +122,24 @@ public:
   }
 
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
 
   void register_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       turns.add(entry.a, entry.b, turning_of(entry.measure));
       if constexpr (std::is_same_v<Measure, AngleMeasure> && requires { entry.law.knots(); })
         for (TurnKnots& knots : entry.law.knots()) turns.add(entry.a, entry.b, std::move(knots));
     }
   }
   void register_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
   /// Overrides GapSource::add_gaps() if the law is a contact.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
     if constexpr (Law::k_is_contact)
-      for (const Entry& entry : entries) {
+      for (const ElementData& entry : entries) {
         out.push_back(gap_bounds(entry.measure, entry.law.offset, motion[entry.a], motion[entry.b]));
         out.back().a = entry.a;
         out.back().b = entry.b;
@@ -175,7 +175,7 @@ public:
 
   /// Returns value and rate of one element's measure, for channels.
   [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
   [[nodiscard]] double force_of(int element, const Evaluation& e) const {
@@ -189,12 +189,12 @@ private:
   }
   template <class S> STEPLAP_INLINE void add_forces_to(EvaluationData<S>& e) const {
     S dissipation{0.0}; // in a register: a sum in memory would serialise the elements
-    for (const Entry& entry : entries) dissipation += add_force_to(entry, e);
+    for (const ElementData& entry : entries) dissipation += add_force_to(entry, e);
     e.dissipation += dissipation;
   }
 
   /// Returns the dissipated power, W.
-  template <class S> STEPLAP_INLINE static S add_force_to(const Entry& entry, EvaluationData<S>& e) {
+  template <class S> STEPLAP_INLINE static S add_force_to(const ElementData& entry, EvaluationData<S>& e) {
     const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
     const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));
     if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
@@ -209,11 +209,11 @@ private:
     return (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
   }
 
-  static double energy_of(const Entry& entry, const Motion<double>* motion) {
+  static double energy_of(const ElementData& entry, const Motion<double>* motion) {
     return entry.law.energy(entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value);
   }
 
-  template <class S> static UnitMode mode_of(const Entry& entry, const EvaluationData<S>& e) {
+  template <class S> static UnitMode mode_of(const ElementData& entry, const EvaluationData<S>& e) {
     if constexpr (Law::k_event_count > 0) return e.mode[entry.unit];
     return 0;
   }

@@ -41,7 +41,7 @@ public:
 
   FormulaTree run() {
     const Formula formula(asked_.text, subject_, {});
-    const Made whole = add(formula);
+    const TypedNode whole = add(formula);
     const bool is_zero =
         formula.tree().size() == 1 && formula.tree().front().op == FormulaOp::number && formula.tree().front().number == 0.0;
     const auto wanted = dimension_of(asked_.unit);
@@ -58,13 +58,13 @@ public:
   }
 
 private:
-  struct Made {
+  struct TypedNode {
     int node = 0;
     std::array<double, 3> powers{};
   };
 
-  Made add(const Formula& formula) {
-    std::vector<Made> operands;
+  TypedNode add(const Formula& formula) {
+    std::vector<TypedNode> operands;
     std::vector<std::string> units;
     for (const std::string& name : formula.names()) {
       operands.push_back(operand(name));
@@ -90,7 +90,7 @@ private:
     return known ? known->powers : std::array<double, 3>{};
   }
 
-  Made enter(const MotionOperand& operand, const std::array<double, 3>& powers) {
+  TypedNode enter(const MotionOperand& operand, const std::array<double, 3>& powers) {
     FormulaNode node;
     node.op = FormulaOp::operand;
     node.operand = static_cast<int>(made_.operands_.size());
@@ -100,15 +100,15 @@ private:
   }
 
   // Returns the operand for a name; the same name always gives the same operand.
-  Made operand(const std::string& name) {
+  TypedNode operand(const std::string& name) {
     const auto known = std::find_if(names_.begin(), names_.end(), [&](const auto& entry) { return entry.first == name; });
     if (known != names_.end()) return known->second;
-    const Made made = find(name);
+    const TypedNode made = find(name);
     names_.emplace_back(name, made);
     return made;
   }
 
-  Made find(const std::string& name) {
+  TypedNode find(const std::string& name) {
     MotionOperand operand;
     if (name == "value" && asked_.own_value != "-") return enter(operand, dimension_exponents(asked_.own_value));
     if (name == "rate" && asked_.own_rate != "-") {
@@ -141,7 +141,7 @@ private:
     return find_moving(name);
   }
 
-  Made find_moving(const std::string& name) {
+  TypedNode find_moving(const std::string& name) {
     const Model& model = builder_.model();
     const std::size_t point = name.rfind('.');
     const std::string owner = name.substr(0, point), part = point == std::string::npos ? "" : name.substr(point + 1);
@@ -160,7 +160,7 @@ private:
         "; a formula here may hold places, angles and velocities of bodies, markers and measures, states, parameters and t");
   }
 
-  Made of_body(int body, int coordinate, const std::array<double, 3>& powers) {
+  TypedNode of_body(int body, int coordinate, const std::array<double, 3>& powers) {
     MotionOperand operand;
     operand.kind = MotionOperand::Kind::coordinate;
     operand.body = body;
@@ -168,7 +168,7 @@ private:
     return enter(operand, powers);
   }
 
-  Made of_marker(const CompiledMarker& marker, int coordinate, const std::array<double, 3>& powers) {
+  TypedNode of_marker(const CompiledMarker& marker, int coordinate, const std::array<double, 3>& powers) {
     MotionOperand operand;
     operand.kind = MotionOperand::Kind::measure;
     operand.row = row_of(marker.body, k_ground, AxisMeasure{marker.point, Vec2::Zero(), Vec2::Unit(coordinate % 3)});
@@ -176,7 +176,7 @@ private:
     return enter(operand, powers);
   }
 
-  Made of_measure(const Channel& channel) {
+  TypedNode of_measure(const Channel& channel) {
     const MeasuredValue* const measured = measured_by(channel);
     if (!measured)
       throw std::invalid_argument(subject_ + ": '" + channel.name +
@@ -190,10 +190,10 @@ private:
     return enter(operand, dimension_exponents(channel.unit));
   }
 
-  Made of_channel(const DefinedChannel& channel) {
+  TypedNode of_channel(const DefinedChannel& channel) {
     if (depth_ == k_deepest_channel) throw std::invalid_argument(subject_ + ": channel '" + channel.name + "' leads back to itself");
     ++depth_;
-    const Made made = add(Formula(channel.expression, "channel '" + channel.name + "'", channel.place("expression")));
+    const TypedNode made = add(Formula(channel.expression, "channel '" + channel.name + "'", channel.place("expression")));
     --depth_;
     return made;
   }
@@ -218,7 +218,7 @@ private:
   MotionFormula& made_;
   std::string subject_;
   FormulaTree tree_;
-  std::vector<std::pair<std::string, Made>> names_;
+  std::vector<std::pair<std::string, TypedNode>> names_;
   int depth_ = 0;
 };
 

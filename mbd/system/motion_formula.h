@@ -138,7 +138,7 @@ struct NumericSignalEvaluator {
 };
 struct TracedSignalEvaluator {
   TracedEvaluation& e;
-  TapeNumber operator()(const Signal& signal) const { return e.of_time({&signal}); }
+  TapeNumber operator()(const Signal& signal) const { return e.record_signal_input({&signal}); }
 };
 
 // ---------------------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ bool OwnStateGroup::record_forces(TracedEvaluation& e) const {
 
 template <class S, class AtTime> void OwnStateGroup::add_rates(EvaluationData<S>& e, const AtTime& at_time) const {
   S quantity[k_most_switches];
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const SwitchBits bits = entry.unit < 0 ? 0 : e.mode[entry.unit];
     preset_quantities(entry.rate.program().switch_count(), bits, quantity);
     const S rate = entry.rate.value(e, OwnCoordinate<S>{}, at_time, bits, quantity);
@@ -95,7 +95,7 @@ template <class S, class AtTime> void OwnStateGroup::add_rates(EvaluationData<S>
 
 void OwnStateGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) const {
   static thread_local std::vector<double> derivatives;
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const auto& operands = entry.rate.operands();
     derivatives.resize(std::max(derivatives.size(), operands.size()));
     (void)entry.rate.differentiate(e, k_no_coordinate, entry.unit < 0 ? 0 : e.mode[entry.unit], derivatives.data());
@@ -113,16 +113,16 @@ void OwnStateGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) 
 }
 
 void OwnStateGroup::register_formulas(std::vector<FormulaInMotion>& out) const {
-  for (const Entry& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit});
+  for (const ElementData& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit});
 }
 
 void OwnStateGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     for (const int body : entry.rate.bodies()) is_used[body] = 1;
 }
 
 void OwnStateGroup::register_turns(TurnTable& turns) const {
-  for (const Entry& entry : entries) entry.rate.register_turns(turns);
+  for (const ElementData& entry : entries) entry.rate.register_turns(turns);
 }
 
 UnitMode OwnStateGroup::initial_mode(int element, const Evaluation& e) const {

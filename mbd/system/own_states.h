@@ -42,14 +42,14 @@ struct StatePlace {
 /// All own states of a model, as a force group without forces.
 class OwnStateGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     MotionFormula rate;
     StatePlace place;
     int unit = -1;       ///< index of its mode; −1: the formula has no switches
     int first_event = 0; ///< index of its first event function
     std::vector<SwitchScale> switches = {};
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
   int first_inner = -1; ///< first index in State::inner, the others follow; −1: not yet assigned
 
   void add_forces(Evaluation& e) const override;

@@ -19,11 +19,11 @@ namespace {
 constexpr const char* k_whole = "whole";
 
 // Power dissipated and supplied by one element at a snapshot.
-struct Alone {
+struct ElementPower {
   double dissipation = 0.0, work = 0.0;
 };
 
-Alone evaluate_alone(const ForceGroup& share, const System& system, const Snapshot& s) {
+ElementPower evaluate_element_power(const ForceGroup& share, const System& system, const Snapshot& s) {
   struct Scratch {
     std::vector<BodyForce> force;
     std::vector<double> contact_force, event_value, event_derivative, inner_rate;
@@ -237,7 +237,7 @@ void RequestedChannels::add_share(const Share& share) {
     Integrand integrand;
     integrand.power = [self, givers, frictions](const Snapshot& s) {
       double power = 0.0;
-      for (const ForceGroup* group : givers) power += evaluate_alone(*group, *self, s).dissipation;
+      for (const ForceGroup* group : givers) power += evaluate_element_power(*group, *self, s).dissipation;
       for (const std::size_t f : frictions) power += power_of_friction(*self, f, s);
       return power;
     };
@@ -255,7 +255,7 @@ void RequestedChannels::add_share(const Share& share) {
     Integrand integrand;
     integrand.power = [self, workers, driven](const Snapshot& s) {
       double power = 0.0;
-      for (const ForceGroup* group : workers) power += evaluate_alone(*group, *self, s).work;
+      for (const ForceGroup* group : workers) power += evaluate_element_power(*group, *self, s).work;
       for (const std::size_t r : driven) power += s.row_force[r] * evaluate_row<false>(self->rows[r], s.motion).rate;
       return power;
     };

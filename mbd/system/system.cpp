@@ -215,16 +215,16 @@ namespace {
 // A contact that does not act: always open, zero normal force.
 class InactiveContacts final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int contact = 0, unit = 0, first_event = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) e.contact_force[entry.contact] = 0.0;
+    for (const ElementData& entry : entries) e.contact_force[entry.contact] = 0.0;
   }
   [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
-    for (const Entry& entry : entries) e.contact_force[entry.contact] = TapeNumber(0.0);
+    for (const ElementData& entry : entries) e.contact_force[entry.contact] = TapeNumber(0.0);
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }

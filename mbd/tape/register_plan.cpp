@@ -27,7 +27,7 @@ public:
       : tape_(tape), rules_(rules), values_(tape.steps.size()), free_(rules.registers == 32 ? ~0u : (1u << rules.registers) - 1) {
     arrange(order);
     list_outputs();
-    look_at_steps();
+    visit_steps();
     find_next_uses();
   }
 
@@ -101,7 +101,7 @@ private:
   }
 
   OperandPlace place_of_output(std::int32_t k) {
-    const OutputPlace to = tape_.places.empty() ? OutputPlace{0, k} : tape_.places[at(k)];
+    const OutputLocation to = tape_.places.empty() ? OutputLocation{0, k} : tape_.places[at(k)];
     plan_.arrays |= 1u << static_cast<unsigned>(to.array);
     return {OperandPlace::Kind::output, static_cast<std::int8_t>(to.array), to.place};
   }
@@ -109,10 +109,10 @@ private:
   static OperandPlace place(OperandPlace::Kind kind, std::int32_t index) { return {kind, 0, index}; }
 
   // Inputs and constants are in memory; sine and cosine of the same argument are computed together.
-  void look_at_steps() {
+  void visit_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
-      if (s.operation == TapeOperation::call) look_at_call(i);
+      if (s.operation == TapeOperation::call) visit_call(i);
       if (is_given(s.operation)) values_[i].home = place_of_given(s);
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
@@ -127,7 +127,7 @@ private:
   }
 
   // All calls share the slots of arguments. Results have slots of their own, since they may be used later.
-  void look_at_call(std::size_t i) {
+  void visit_call(std::size_t i) {
     const TapeStep& s = tape_.steps[i];
     Call& call = calls_[static_cast<std::int32_t>(i)];
     call.arguments = arguments_of(tape_, s);

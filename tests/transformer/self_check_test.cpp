@@ -71,11 +71,11 @@ private:
   Fault fault_;
 };
 
-struct Scene {
+struct CheckedModel {
   Model model;
   std::unique_ptr<System> system;
 
-  explicit Scene(const std::string& text) : model(parse_model(text, "scene.toml", transformer_catalog())), system(compile(model)) {}
+  explicit CheckedModel(const std::string& text) : model(parse_model(text, "scene.toml", transformer_catalog())), system(compile(model)) {}
   void make(Fault fault) {
     std::unique_ptr<FrictionElement>& friction = system->frictions.front().friction;
     friction = std::make_unique<Faulty>(std::move(friction), fault);
@@ -89,10 +89,10 @@ TEST_CASE("a joint that goes on holding below a margin of 1 stops the run, and i
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4"}) {
     CAPTURE(method);
     const std::string text = pulled("step = 1e-3\nintegrator = \"" + std::string(method) + "\"");
-    REQUIRE(Scene(text).run().events.size() == 1); // as it should be: it slips
-    CHECK(Scene(text).run().events.front().t == doctest::Approx(k_onset).epsilon(1e-8));
+    REQUIRE(CheckedModel(text).run().events.size() == 1); // as it should be: it slips
+    CHECK(CheckedModel(text).run().events.front().t == doctest::Approx(k_onset).epsilon(1e-8));
 
-    Scene deaf(text);
+    CheckedModel deaf(text);
     deaf.make(Fault::deaf_mode_problem);
     Simulation simulation(*deaf.system, deaf.system->initial_state(), options_of(deaf.model));
     std::string message;
@@ -109,18 +109,18 @@ TEST_CASE("a joint that goes on holding below a margin of 1 stops the run, and i
 }
 
 TEST_CASE("joints that are only monitored, and those that a model lets slip, are no contradiction") {
-  const Scene monitored(pulled("", "mode = \"monitor\""));
+  const CheckedModel monitored(pulled("", "mode = \"monitor\""));
   const RunResult beyond = monitored.run();
   CHECK(beyond.final_state.t == 0.5);
   const Judgement judgement = judge(monitored.model, *monitored.system, beyond, "");
   CHECK(judgement.distrust.empty());
   CHECK(judgement.verdict == Verdict::inspect); // it would slip
-  const Scene real(pulled(""));
+  const CheckedModel real(pulled(""));
   CHECK(judge(real.model, *real.system, real.run(), "").distrust.empty());
 }
 
 TEST_CASE("a joint that is said to hold with a margin below 1 leaves the verdict open") {
-  Scene blind(pulled(""));
+  CheckedModel blind(pulled(""));
   blind.make(Fault::blind_watch);
   const RunResult result = blind.run();
   REQUIRE(result.events.empty());
@@ -134,7 +134,7 @@ namespace {
 
 // A run to `end`, judged as if its finer run had pulled with `finer_peak` instead of the peak of 100 N.
 std::string distrust_of(const std::string& end, const std::string& peak, const std::string& finer_peak) {
-  Scene mine(pulled("", "", peak)), other(pulled("", "", finer_peak));
+  CheckedModel mine(pulled("", "", peak)), other(pulled("", "", finer_peak));
   SimulationOptions options = options_of(mine.model);
   options.end = std::stod(end);
   const RunResult run = simulate(*mine.system, mine.system->initial_state(), options);

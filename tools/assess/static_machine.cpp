@@ -34,7 +34,7 @@ Model with_monitors(Model model) {
 
 } // namespace
 
-void Probe::extend(std::vector<double> next) {
+void Probe::append_equilibrium(std::vector<double> next) {
   if (low.empty()) low = high = next;
   for (std::size_t i = 0; i < next.size(); ++i) {
     if (!(next[i] >= low[i])) low[i] = next[i]; // NaN is the worst
@@ -63,7 +63,7 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
     throw NumericalFailure("without any acceleration: " + failure_of(failure, model_, *system_, 0.0).text);
   }
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
-  at_rest_.extend(values_at_rest(*system_, at_rest_.rest->state));
+  at_rest_.append_equilibrium(values_at_rest(*system_, at_rest_.rest->state));
   find_watches();
   at_rest_.left = left_of(at_rest_);
 }
@@ -130,7 +130,7 @@ Probe StaticMachine::probe(const State& start, const Vec2& before, const Vec2& p
   Probe probe;
   probe.pull = pull;
   questions.forces = [this](const Equilibrium& rest) { return forces_at(rest); };
-  questions.on_rest = [this, &probe](const Equilibrium& rest) { probe.extend(values_at_rest(*system_, rest.state)); };
+  questions.on_rest = [this, &probe](const Equilibrium& rest) { probe.append_equilibrium(values_at_rest(*system_, rest.state)); };
   try {
     probe.rest = find_ramped_rest(*system_, start, {gravity_ + before, gravity_ + pull}, questions);
     probe.left = left_of(probe);

@@ -46,7 +46,7 @@ struct Probe {
   std::vector<double> low, high; ///< extremes of `values` on the path; NaN once a value was NaN
 
   /// Adds the values of the next equilibrium on the path.
-  void extend(std::vector<double> next);
+  void append_equilibrium(std::vector<double> next);
 };
 
 /// A model prepared for statics under different pulls.
