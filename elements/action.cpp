@@ -33,8 +33,8 @@ class ActionReader {
 public:
   ActionReader(const Action& action, SystemBuilder& builder) : action_(action), builder_(builder) {}
 
-  std::optional<ActionGroup::Entry> entry() {
-    ActionGroup::Entry entry;
+  std::optional<ActionGroup::ElementData> entry() {
+    ActionGroup::ElementData entry;
     entry.name = action_.name;
     entry.is_once = action_.once;
     entry.is_armed = action_.armed;
@@ -256,7 +256,7 @@ void compile_action(const Element& element, SystemBuilder& builder) {
     group.model = std::make_shared<Model>(builder.model());
     group.channels = builder.wanted_channels();
   }
-  std::optional<ActionGroup::Entry> entry = ActionReader(static_cast<const Action&>(element), builder).entry();
+  std::optional<ActionGroup::ElementData> entry = ActionReader(static_cast<const Action&>(element), builder).entry();
   if (!entry) return;
   if (entry->trigger.time && *entry->trigger.time > 0.0) builder.add_breakpoint(*entry->trigger.time);
   const int switch_count = entry->trigger.formula ? entry->trigger.formula->program().switch_count() : 0;

@@ -4,7 +4,7 @@
 // bodies separate. The force f, N, acts on body a along ∂δ/∂q; f > 0 is compression.
 //
 //   KelvinVoigtContact   f = max(0, −kδ − cδ̇)             default; the force never pulls
-//   LiteralContact       f = −kδ − cδ̇                     as in the paper; f < 0 is possible just before opening
+//   AdhesiveKelvinVoigtContact       f = −kδ − cδ̇                     as in the paper; f < 0 is possible just before opening
 //   HuntCrossleyContact  f = max(0, k|δ|ⁿ (1 − αδ̇))       damping proportional to the elastic force
 //
 // each for δ < 0; f = 0 for δ ≥ 0. Every law dissipates (elastic_force − f) δ̇. Source: docs/explanation/physics.md, section 2.
@@ -13,8 +13,9 @@
 // Within a mode the force is smooth, also a little beyond the mode's limit, where the stages of a step may lie before the event is
 // located. A max() in a formula is therefore not evaluated; the change from pressed to released or open replaces it.
 //
-// Each law has k_watches event functions, the arguments `watch` and `watch_rate` of watch(), the latter NaN where no cheap formula
-// exists. S is double, a dual number or Traced. `rounding` is the absolute rounding error of `value`, m (mbd/system/rounding.h).
+// Each law has k_event_count event functions, the arguments `event_value` and `event_derivative` of event_value(), the latter NaN where no
+// cheap formula exists. S is double, a dual number or Traced. `rounding` is the absolute rounding error of `value`, m
+// (mbd/system/rounding.h).
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -30,14 +31,16 @@ namespace steplap {
 /// measured, exceeds the rounding of δ. Otherwise, and always for c = 0, pressed changes directly to open. The modes therefore depend
 /// continuously on c as c → 0.
 struct KelvinVoigtContact {
-  static constexpr int k_watches = 2;
+  static constexpr int k_event_count = 2;
   static constexpr bool k_is_contact = true;
   double k = 0.0, c = 0.0, offset = 0.0; ///< N/m, N s/m, m
 
   /// −kδ − cδ̇, the force without the max().
-  template <class S> [[nodiscard]] S raw(const S& value, const S& rate) const { return S(-k) * (value - S(offset)) - S(c) * rate; }
+  template <class S> [[nodiscard]] S unclamped_force(const S& value, const S& rate) const {
+    return S(-k) * (value - S(offset)) - S(c) * rate;
+  }
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
-    return mode == k_contact_pressed ? raw(value, rate) : S(0);
+    return mode == k_contact_pressed ? unclamped_force(value, rate) : S(0);
   }
   template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode mode) const {
     return mode == k_contact_open ? S(0.0) : -k * (value - offset);
@@ -46,44 +49,44 @@ struct KelvinVoigtContact {
     const double closed = std::min(0.0, value - offset);
     return 0.5 * k * closed * closed;
   }
-  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
+  [[nodiscard]] UnitMode initial_mode(double value, double rate) const {
     if (value - offset >= 0.0) return k_contact_open;
-    return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
+    return unclamped_force(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
   }
   /// open: δ. pressed: −kδ − cδ̇. released: −δ, at which it opens, and kδ + cδ̇, at which the force returns.
-  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
+  template <class S> void event_value(const S& value, const S& rate, UnitMode mode, S* event_value, S* event_derivative) const {
     const S gap = value - offset;
     if (mode == k_contact_open) {
-      watch[0] = gap;
-      watch_rate[0] = rate;
-      watch[1] = 1.0;
+      event_value[0] = gap;
+      event_derivative[0] = rate;
+      event_value[1] = 1.0;
     } else if (mode == k_contact_pressed) {
-      watch[0] = raw(value, rate);
-      watch_rate[0] = std::numeric_limits<double>::quiet_NaN();
-      watch[1] = 1.0;
+      event_value[0] = unclamped_force(value, rate);
+      event_derivative[0] = std::numeric_limits<double>::quiet_NaN();
+      event_value[1] = 1.0;
     } else {
-      watch[0] = -gap;
-      watch_rate[0] = -rate;
-      watch[1] = -raw(value, rate);
+      event_value[0] = -gap;
+      event_derivative[0] = -rate;
+      event_value[1] = -unclamped_force(value, rate);
     }
   }
   /// Mode after event function `slot` has become negative. A closing contact is pressed if δ̇ ≤ 0, whatever the sign of −kδ − cδ̇: δ is
   /// zero up to rounding there, so for c = 0 the sign of the force is rounding too.
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
-    const bool is_closed = is_surely_closed(value, rounding);
+    const bool is_closed = penetrates_beyond_rounding(value, rounding);
     if (mode == k_contact_open) {
-      if (rate <= 0.0 || raw(value, rate) >= 0.0) return k_contact_pressed;
+      if (rate <= 0.0 || unclamped_force(value, rate) >= 0.0) return k_contact_pressed;
       return is_closed ? k_contact_released : k_contact_open;
     }
     if (mode == k_contact_pressed) return is_closed && c * rate > k * rounding ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }
   /// True only for −δ of a contact that has just been released. Every other event function starts at zero up to rounding.
-  [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
-    return mode == k_contact_released && slot == 0 && is_surely_closed(value, rounding);
+  [[nodiscard]] bool is_armed_at_entry(UnitMode mode, int slot, double value, double rounding) const {
+    return mode == k_contact_released && slot == 0 && penetrates_beyond_rounding(value, rounding);
   }
-  [[nodiscard]] bool is_surely_closed(double value, double rounding) const { return offset - value > rounding; }
-  static EventKind transition(UnitMode from, UnitMode to) {
+  [[nodiscard]] bool penetrates_beyond_rounding(double value, double rounding) const { return offset - value > rounding; }
+  static EventKind event_kind(UnitMode from, UnitMode to) {
     if (to == k_contact_open) return EventKind::opens;
     if (from == k_contact_open) return EventKind::closes;
     return to == k_contact_released ? EventKind::force_reaches_zero : EventKind::force_returns;
@@ -91,8 +94,8 @@ struct KelvinVoigtContact {
 };
 
 /// f = −kδ − cδ̇ for δ < 0, the paper's law (2), (4). The damper may pull before the contact opens, so there is no mode `released`.
-struct LiteralContact {
-  static constexpr int k_watches = 1;
+struct AdhesiveKelvinVoigtContact {
+  static constexpr int k_event_count = 1;
   static constexpr bool k_is_contact = true;
   double k = 0.0, c = 0.0, offset = 0.0; ///< N/m, N s/m, m
 
@@ -106,17 +109,17 @@ struct LiteralContact {
     const double closed = std::min(0.0, value - offset);
     return 0.5 * k * closed * closed;
   }
-  [[nodiscard]] UnitMode mode_at(double value, double) const { return value - offset < 0.0 ? k_contact_pressed : k_contact_open; }
+  [[nodiscard]] UnitMode initial_mode(double value, double) const { return value - offset < 0.0 ? k_contact_pressed : k_contact_open; }
   /// open: δ. pressed: −δ.
-  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
+  template <class S> void event_value(const S& value, const S& rate, UnitMode mode, S* event_value, S* event_derivative) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
-    watch[0] = sign * (value - offset);
-    watch_rate[0] = sign * rate;
+    event_value[0] = sign * (value - offset);
+    event_derivative[0] = sign * rate;
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int, double, double, double) const {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
-  static EventKind transition(UnitMode, UnitMode to) { return to == k_contact_open ? EventKind::opens : EventKind::closes; }
+  static EventKind event_kind(UnitMode, UnitMode to) { return to == k_contact_open ? EventKind::opens : EventKind::closes; }
 };
 
 /// f = max(0, k|δ|ⁿ (1 − αδ̇)) for δ < 0 (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440).
@@ -125,7 +128,7 @@ struct LiteralContact {
 /// past either side of a round body. If they all had zero force there, the error estimate of the step would be zero, and the step
 /// would be accepted.
 struct HuntCrossleyContact {
-  static constexpr int k_watches = 2;
+  static constexpr int k_event_count = 2;
   static constexpr bool k_is_contact = true;
   double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0; ///< k in N/mⁿ, n, α in s/m, m
 
@@ -137,23 +140,23 @@ struct HuntCrossleyContact {
   [[nodiscard]] double energy(double value) const {
     return value < offset ? k * portable::pow(offset - value, exponent + 1.0) / (exponent + 1.0) : 0.0;
   }
-  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
+  [[nodiscard]] UnitMode initial_mode(double value, double rate) const {
     if (value - offset >= 0.0) return k_contact_open;
     return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
   }
   /// open: δ. pressed: −δ and 1 − αδ̇. released: −δ and αδ̇ − 1.
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
+  void event_value(double value, double rate, UnitMode mode, double* event_value, double* event_derivative) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
-    watch[0] = sign * (value - offset);
-    watch_rate[0] = sign * rate;
-    watch[1] = mode == k_contact_open ? 1.0 : (mode == k_contact_pressed ? 1.0 : -1.0) * (1.0 - alpha * rate);
+    event_value[0] = sign * (value - offset);
+    event_derivative[0] = sign * rate;
+    event_value[1] = mode == k_contact_open ? 1.0 : (mode == k_contact_pressed ? 1.0 : -1.0) * (1.0 - alpha * rate);
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double rate, double) const {
     if (mode == k_contact_open) return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
     if (slot == 0) return k_contact_open;
     return mode == k_contact_pressed ? k_contact_released : k_contact_pressed;
   }
-  static EventKind transition(UnitMode from, UnitMode to) { return KelvinVoigtContact::transition(from, to); }
+  static EventKind event_kind(UnitMode from, UnitMode to) { return KelvinVoigtContact::event_kind(from, to); }
 
 private:
   /// depthⁿ, continued as an odd function.

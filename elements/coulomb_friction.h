@@ -30,11 +30,11 @@ public:
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override { return &feet[state.foot]; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[feet[0].a] = is_used[feet[0].b] = 1; }
-  template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
+  template <class S> [[nodiscard]] S normal_force(const EvaluationData<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
   /// Returns N, continued to negative values, as for laws of motion: a step may continue slightly beyond the end of a contact force before
   /// this is detected, and a kink there would make the step as inaccurate as the time of its end. Not continued for friction above 1, which
   /// would amplify a force that is negative by rounding.
-  template <class S> [[nodiscard]] S smooth_normal_force(const Evaluated<S>& e) const {
+  template <class S> [[nodiscard]] S smooth_normal_force(const EvaluationData<S>& e) const {
     return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
@@ -47,52 +47,56 @@ public:
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return mu_static * normal_force(e) * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_bounds<double>(e, wrench, watch);
+  void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
+    bound_events<double>(e, wrench, event_value);
   }
-  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
-                                    Traced* watch) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation& e, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
+                                     TapeNumber* event_value) const override {
     if (rate) {
       wrench[0] = sliding_force(e, state);
-      watch[0] = state.sign * rate[0];
-      watch[1] = 1.0;
+      event_value[0] = state.sign * rate[0];
+      event_value[1] = 1.0;
     } else {
-      watch_bounds(e, wrench, watch);
+      bound_events(e, wrench, event_value);
     }
-    watch[2] = turn_to_other_foot(e, state);
+    event_value[2] = turn_to_other_foot(e, state);
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override { return turn_to_other_foot(e, state); }
-  void change_place(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
+  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
+    return turn_to_other_foot(e, state);
+  }
+  void switch_contact_point(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
   // Contact dampers convert velocity errors to normal force errors, and friction with μ > 1 amplifies them. Velocities must then be
   // accurate enough for the resulting acceleration to be small compared with k_floor_acceleration. Otherwise the contact chatters: errors
   // alone would remove and restore a normal force below the tolerance, whose friction still moves the body.
-  [[nodiscard]] bool turns_with_slip(const FrictionState&) const override { return mu_kinetic > 1.0 && damping > 0.0; }
+  [[nodiscard]] bool depends_on_slip_direction(const FrictionState&) const override { return mu_kinetic > 1.0 && damping > 0.0; }
   [[nodiscard]] SlipScale slip_scale(const Evaluation&, const FrictionState&, const double*) const override {
     SlipScale scale;
     scale.lever = lever;
     if (mu_kinetic > 1.0 && damping > 0.0) scale.speed = k_floor_acceleration * mass / ((mu_kinetic - 1.0) * damping);
     return scale;
   }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
     return block_within((is_kinetic ? mu_kinetic : mu_static) * normal_force(e), a[0], b[0]);
   }
 
 private:
-  template <class S> [[nodiscard]] S sum_of_forces(const Evaluated<S>& e) const {
+  template <class S> [[nodiscard]] S sum_of_forces(const EvaluationData<S>& e) const {
     S sum{0.0};
     for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];
     return sum;
   }
-  template <class S> [[nodiscard]] S sliding_force(const Evaluated<S>& e, const FrictionState& state) const {
+  template <class S> [[nodiscard]] S sliding_force(const EvaluationData<S>& e, const FrictionState& state) const {
     return -mu_kinetic * smooth_normal_force(e) * state.sign;
   }
-  template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
-    steplap::watch_bounds<S>(mu_static * smooth_normal_force(e), wrench[0], watch);
+  template <class S> void bound_events(const EvaluationData<S>& e, const S* wrench, S* event_value) const {
+    steplap::bound_events<S>(mu_static * smooth_normal_force(e), wrench[0], event_value);
   }
-  template <class S> [[nodiscard]] S turn_to_other_foot(const Evaluated<S>& e, const FrictionState& state) const {
+  template <class S> [[nodiscard]] S turn_to_other_foot(const EvaluationData<S>& e, const FrictionState& state) const {
     if (!has_two_feet) return 1.0;
     S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
     if (level != 0.0) turn = turn - S(level);

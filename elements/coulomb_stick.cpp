@@ -23,10 +23,10 @@ class SegmentFriction final : public CoulombFriction {
 public:
   SegmentMeasure segment;
 
-  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
     return false; // the contact point has branches of its own
   }
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+  [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Pair<double> p = segment.place(e.motion[feet[0].a], e.motion[feet[0].b]);
     const auto part = static_cast<SegmentPart>(state.foot);
     if (part == SegmentPart::from) return k_end_dead_band - p.x;
@@ -34,7 +34,7 @@ public:
     if ((part == SegmentPart::right) != (p.y < 0.0)) return -1.0; // switches only after the contact has been open
     return k_end_dead_band + std::min(p.x, segment.length - p.x);
   }
-  void change_place(const Evaluation& e, FrictionState& state) const override {
+  void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
     state.foot = static_cast<std::uint32_t>(segment.part(e.motion[feet[0].a], e.motion[feet[0].b]));
   }
 };

@@ -16,13 +16,13 @@ inline constexpr UnitMode k_contact_off = 3;
 
 template <class Law> class EndedContactGroup final : public ForceGroup, public GapSource {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     GapMeasure gap;
     Law law;
     double low = 0.0, high = 0.0; ///< range of the coordinate along the face, from point_b, m
     int inner = 0;                ///< inner state: 1 while off
-    int link = 0, unit = 0, watch = 0, contact = 0;
+    int link = 0, unit = 0, first_event = 0, contact = 0;
 
     [[nodiscard]] SlideMeasure slide() const { return {gap.point_a, gap.point_b, gap.normal, gap.axis, gap.is_axis_in_a}; }
     [[nodiscard]] bool is_on_face(double along) const { return along >= low && along <= high; }
@@ -31,31 +31,31 @@ public:
       return gap.at<false, double>(at_a, at_b).value < law.offset && !is_on_face(slide().template at<false, double>(at_a, at_b).value);
     }
   };
-  static constexpr int k_watches = Law::k_watches + 1;
-  std::vector<Entry> entries;
+  static constexpr int k_event_count = Law::k_event_count + 1;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) add_force(entry, e);
+    for (const ElementData& entry : entries) add_force(entry, e);
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       if (inner[entry.inner] == 0.0) sum += entry.law.energy(gap(entry, motion).value);
     return sum;
   }
-  void start_inner(const Motion<double>* motion, double* inner) const override {
-    for (const Entry& entry : entries) inner[entry.inner] = entry.is_off_at(motion[entry.a], motion[entry.b]) ? 1.0 : 0.0;
+  void relax_inner(const Motion<double>* motion, double* inner) const override {
+    for (const ElementData& entry : entries) inner[entry.inner] = entry.is_off_at(motion[entry.a], motion[entry.b]) ? 1.0 : 0.0;
   }
-  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override {
-    const Entry& entry = entries[element];
+  double jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const override {
+    const ElementData& entry = entries[element];
     const bool was_carried = inner[entry.inner] == 0.0;
     inner[entry.inner] = to == k_contact_off ? 1.0 : 0.0;
     // A foot that comes from the open side has no elastic energy.
     return to == k_contact_off && was_carried ? entry.law.energy(gap(entry, e.motion).value) : 0.0;
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const UnitMode mode = law_mode(e.mode[entry.unit]);
       const Dual<12> f = add_pair_jacobian(
           entry.a, entry.b, entry.gap, e, [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode); },
@@ -65,16 +65,16 @@ public:
     }
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.gap));
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.gap));
   }
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       out.push_back(gap_bounds(entry.gap, entry.law.offset, motion[entry.a], motion[entry.b]));
       out.back().a = entry.a;
       out.back().b = entry.b;
@@ -82,23 +82,23 @@ public:
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const auto m = measured(element, e);
-    return closed_mode(element, e, entries[element].law.mode_at(m.value, m.rate));
+    return closed_mode(element, e, entries[element].law.initial_mode(m.value, m.rate));
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     if (mode == k_contact_off) return k_contact_open;
-    if (slot == Law::k_watches) return k_contact_off;
+    if (slot == Law::k_event_count) return k_contact_off;
     const auto m = measured(element, e);
     const UnitMode next = entries[element].law.next_mode(mode, slot, m.value, m.rate, rounding_of(element, m, e));
     return mode == k_contact_open ? closed_mode(element, e, next) : next;
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    if (mode == k_contact_off || slot == Law::k_watches) return false;
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    if (mode == k_contact_off || slot == Law::k_event_count) return false;
     const auto m = measured(element, e);
-    return steplap::is_surely_positive(entries[element].law, mode, slot, m.value, rounding_of(element, m, e));
+    return steplap::is_armed_at_entry(entries[element].law, mode, slot, m.value, rounding_of(element, m, e));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
     const UnitMode was = law_mode(from), is = law_mode(to);
-    return was == is ? EventKind::none : Law::transition(was, is);
+    return was == is ? EventKind::none : Law::event_kind(was, is);
   }
 
   [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const { return gap(entries[element], e.motion); }
@@ -107,7 +107,7 @@ public:
     return entries[element].law.force(m.value, m.rate, law_mode(e.mode[entries[element].unit]));
   }
   [[nodiscard]] double along_of(int element, const Evaluation& e) const {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     return along(entry, e.motion[entry.a], e.motion[entry.b]).value;
   }
 
@@ -115,41 +115,41 @@ private:
   [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
     return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
   }
-  static void add_force(const Entry& entry, Evaluation& e) {
+  static void add_force(const ElementData& entry, Evaluation& e) {
     const Motion<double>& a = e.link_motion[entry.link];
     const auto m = entry.gap.template at<false, double>(a, Origin{});
     const UnitMode mode = e.mode[entry.unit], of_law = law_mode(mode);
-    watch(entry, m, along(entry, a, Origin{}), mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+    event_value(entry, m, along(entry, a, Origin{}), mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
     const double f = entry.law.force(m.value, m.rate, of_law);
     e.contact_force[entry.contact] = f;
     if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
     e.dissipation += (entry.law.elastic_force(m.value, of_law) - f) * m.rate;
   }
   static UnitMode law_mode(UnitMode mode) { return mode == k_contact_off ? k_contact_open : mode; }
-  static MeasureValue<double> gap(const Entry& entry, const Motion<double>* motion) {
+  static MeasureValue<double> gap(const ElementData& entry, const Motion<double>* motion) {
     return entry.gap.template at<false, double>(motion[entry.a], motion[entry.b]);
   }
-  template <class B> static MeasureValue<double> along(const Entry& entry, const Motion<double>& a, const B& b) {
+  template <class B> static MeasureValue<double> along(const ElementData& entry, const Motion<double>& a, const B& b) {
     return entry.slide().template at<false, double>(a, b);
   }
   [[nodiscard]] UnitMode closed_mode(int element, const Evaluation& e, UnitMode mode) const {
     if (mode == k_contact_open) return mode;
     return e.inner[entries[element].inner] == 0.0 && entries[element].is_on_face(along_of(element, e)) ? mode : k_contact_off;
   }
-  static void watch(const Entry& entry, const MeasureValue<double>& m, const MeasureValue<double>& at, UnitMode mode, double* watch,
-                    double* rate) {
-    std::fill_n(watch, k_watches, 1.0);
-    std::fill_n(rate, k_watches, std::numeric_limits<double>::quiet_NaN());
+  static void event_value(const ElementData& entry, const MeasureValue<double>& m, const MeasureValue<double>& at, UnitMode mode,
+                          double* event_value, double* rate) {
+    std::fill_n(event_value, k_event_count, 1.0);
+    std::fill_n(rate, k_event_count, std::numeric_limits<double>::quiet_NaN());
     if (mode == k_contact_off) {
-      watch[0] = entry.law.offset - m.value;
+      event_value[0] = entry.law.offset - m.value;
       rate[0] = -m.rate;
       return;
     }
-    entry.law.watch(m.value, m.rate, mode, watch, rate);
+    entry.law.event_value(m.value, m.rate, mode, event_value, rate);
     if (mode == k_contact_open) return;
     const double before = at.value - entry.low, after = entry.high - at.value;
-    watch[Law::k_watches] = std::min(before, after);
-    rate[Law::k_watches] = before < after ? at.rate : -at.rate;
+    event_value[Law::k_event_count] = std::min(before, after);
+    rate[Law::k_event_count] = before < after ? at.rate : -at.rate;
   }
 };
 

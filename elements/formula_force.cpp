@@ -40,8 +40,8 @@ struct ForceEntry {
   double zero = 0.0; ///< for an angle: that of the markers
   std::vector<SwitchScale> switches = {};
   int link = 0;
-  int unit = -1; ///< index of its mode; −1: the formula has no switches
-  int watch = 0; ///< index of its first event function
+  int unit = -1;       ///< index of its mode; −1: the formula has no switches
+  int first_event = 0; ///< index of its first event function
 
   template <class S, class B> [[nodiscard]] STEPLAP_INLINE MeasureValue<S> measure(const Motion<S>& m, const B& of_b) const {
     if (is_following) return FollowingMeasure{row.point_a, row.direction}.at(m, of_b);
@@ -49,7 +49,7 @@ struct ForceEntry {
   }
   template <class S> [[nodiscard]] OwnCoordinate<S> own(const MeasureValue<S>& m) const { return {m.value - S(zero), m.rate}; }
   [[nodiscard]] OwnCoordinate<double> own_now(const Evaluation& e) const { return own(measure(e.motion[a], e.motion[b])); }
-  template <class S> [[nodiscard]] SwitchBits bits(const Evaluated<S>& e) const { return unit < 0 ? 0 : e.mode[unit]; }
+  template <class S> [[nodiscard]] SwitchBits bits(const EvaluationData<S>& e) const { return unit < 0 ? 0 : e.mode[unit]; }
 };
 
 /// Derivatives of the forces on a and b by the motions of other bodies.
@@ -90,19 +90,19 @@ private:
 /// `Works`: counted as work, otherwise as heat. `Jumps`: a formula contains comparisons, so its force may jump.
 template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup {
 public:
-  using Entry = ForceEntry;
-  std::vector<Entry> entries;
+  using ElementData = ForceEntry;
+  std::vector<ElementData> entries;
   static constexpr bool k_does_work = Works;
 
-  void add_forces(Evaluation& e) const override { add_forces_to(e, SignalsNow{e.t}); }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
-    add_forces_to<Traced>(e, SignalsTraced{e});
+  void add_forces(Evaluation& e) const override { add_forces_to(e, NumericSignalEvaluator{e.t}); }
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
+    add_forces_to<TapeNumber>(e, TracedSignalEvaluator{e});
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Gradient g(entry, e);
       PairJacobian& turning = out.emplace_back(); // derivative of direction and levers at constant value
       turning.a = entry.a;
@@ -118,7 +118,7 @@ public:
     }
   }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Gradient g(entry, e);
       const auto& operands = entry.formula.operands();
       for (std::size_t i = 0; i < operands.size(); ++i) {
@@ -130,26 +130,26 @@ public:
     }
   }
 
-  void enter_formulas(std::vector<FormulaInMotion>& out) const override {
-    for (const Entry& entry : entries)
+  void register_formulas(std::vector<FormulaInMotion>& out) const override {
+    for (const ElementData& entry : entries)
       out.push_back({&entry.formula, [&entry](const Evaluation& e) { return entry.own_now(e); }, entry.unit});
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       is_used[entry.a] = is_used[entry.b] = 1;
       for (const int body : entry.formula.bodies()) is_used[body] = 1;
     }
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) {
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) {
       if (entry.is_following) turns.add_all({entry.a, entry.b});
       else turns.add(entry.a, entry.b, turning_of(entry.row));
       if (entry.row.kind == MeasureKind::angle && !entry.formula.program().is_linear()) turns.add(entry.a, entry.b);
-      entry.formula.enter_turns(turns);
+      entry.formula.register_turns(turns);
     }
   }
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
@@ -160,13 +160,13 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     return next_bits(entries[element].formula, mode, slot, e, entries[element].own_now(e));
   }
-  [[nodiscard]] bool follows_jumps() const override { return true; } // signals may jump, even if the formula does not
-  [[nodiscard]] WatchKind watch_kind(int) const override { return Jumps ? WatchKind::exact : WatchKind::rate; }
-  [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
+  [[nodiscard]] bool has_discontinuous_events() const override { return true; } // signals may jump, even if the formula does not
+  [[nodiscard]] EventTolerance event_tolerance(int) const override { return Jumps ? EventTolerance::none : EventTolerance::velocity; }
+  [[nodiscard]] EventKind event_kind(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
   [[nodiscard]] double force_of(int i, const Evaluation& e) const {
-    const Entry& entry = entries[i];
-    return entry.formula.value<double>(e, entry.own_now(e), SignalsNow{e.t}, entry.bits(e), nullptr);
+    const ElementData& entry = entries[i];
+    return entry.formula.value<double>(e, entry.own_now(e), NumericSignalEvaluator{e.t}, entry.bits(e), nullptr);
   }
 
 private:
@@ -178,7 +178,7 @@ private:
     double value = 0.0;
     std::vector<double>& slopes; ///< by operand; valid until the next Gradient is made
 
-    Gradient(const Entry& entry, const Evaluation& e) : slopes(room()) {
+    Gradient(const ElementData& entry, const Evaluation& e) : slopes(room()) {
       if (slopes.size() < entry.formula.operands().size()) slopes.resize(entry.formula.operands().size());
       const MeasureValue<D12> m = entry.measure(seeded(e.motion[entry.a], 0), seeded(e.motion[entry.b], 3));
       own = entry.own(m);
@@ -196,14 +196,15 @@ private:
     }
   };
 
-  template <class S, class AtTime> void add_forces_to(Evaluated<S>& e, const AtTime& at_time) const {
+  template <class S, class AtTime> void add_forces_to(EvaluationData<S>& e, const AtTime& at_time) const {
     S quantity[k_most_switches];
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const MeasureValue<S> m = entry.measure(e.link_motion[entry.link], Origin{});
       const SwitchBits bits = entry.bits(e);
       preset_quantities(entry.formula.program().switch_count(), bits, quantity);
       const S f = entry.formula.value(e, entry.own(m), at_time, bits, quantity);
-      if (entry.unit >= 0) watch_switches(bits, quantity, entry.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
+      if (entry.unit >= 0)
+        switch_events(bits, quantity, entry.switches, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
       apply_force(e.link_force[entry.link], m, f);
       if constexpr (Works) e.work += f * m.rate;
       else e.dissipation -= f * m.rate;
@@ -282,7 +283,7 @@ void compile_formula_force(const Element& element, SystemBuilder& builder) {
   const OwnCoordinate<double> own = entry.own_now(start);
   FormulaProgram::Bits bits{0, 0};
   entry.formula.find_bits(start, own, bits);
-  if (!std::isfinite(entry.formula.value<double>(start, own, SignalsNow{0.0}, bits.values, nullptr)))
+  if (!std::isfinite(entry.formula.value<double>(start, own, NumericSignalEvaluator{0.0}, bits.values, nullptr)))
     return builder.error(
         "'formula' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.formula, start, own);

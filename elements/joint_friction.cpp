@@ -101,24 +101,26 @@ public:
     normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
     return normal[0] * wrench[0];
   }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_bounds<double>(holds * share(e.t), wrench[0], watch);
+  void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
+    bound_events<double>(holds * share(e.t), wrench[0], event_value);
   }
-  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
-                                    Traced* watch) const override {
-    const Traced now = signal ? greatest_of(Traced(0.0), e.of_time({signal})) : Traced(1.0);
+  [[nodiscard]] bool record_friction(TracedEvaluation& e, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
+                                     TapeNumber* event_value) const override {
+    const TapeNumber now = signal ? greatest_of(TapeNumber(0.0), e.record_signal_input({signal})) : TapeNumber(1.0);
     if (rate) {
       wrench[0] = sliding_force(rate[0], state, now);
-      watch[0] = state.sign * rate[0];
-      watch[1] = 1.0;
+      event_value[0] = state.sign * rate[0];
+      event_value[1] = 1.0;
     } else {
-      watch_bounds<Traced>(holds * now, wrench[0], watch);
+      bound_events<TapeNumber>(holds * now, wrench[0], event_value);
     }
-    watch[2] = 1.0;
+    event_value[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
     return block_within(share(e.t) * (is_kinetic ? sliding_bound(sliding_rate(e)) : holds), a[0], b[0]);
   }

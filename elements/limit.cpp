@@ -17,7 +17,7 @@ namespace {
 constexpr UnitMode k_between = 0, k_lower = 1, k_upper = 3;
 
 struct StopsLaw {
-  static constexpr int k_watches = 2;
+  static constexpr int k_event_count = 2;
   static constexpr bool k_is_contact = false;
   KelvinVoigtContact lower, upper; ///< the upper stop acts on the coordinate with reversed sign
 
@@ -39,21 +39,21 @@ struct StopsLaw {
     return is_upper(mode) ? -upper.elastic_force(-value, contact_mode(mode)) : lower.elastic_force(value, contact_mode(mode));
   }
   [[nodiscard]] double energy(double value) const { return lower.energy(value) + upper.energy(-value); }
-  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
-    if (const UnitMode mode = lower.mode_at(value, rate); mode != k_contact_open) return stop_mode(mode, false);
-    return stop_mode(upper.mode_at(-value, -rate), true);
+  [[nodiscard]] UnitMode initial_mode(double value, double rate) const {
+    if (const UnitMode mode = lower.initial_mode(value, rate); mode != k_contact_open) return stop_mode(mode, false);
+    return stop_mode(upper.initial_mode(-value, -rate), true);
   }
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
+  void event_value(double value, double rate, UnitMode mode, double* event_value, double* event_derivative) const {
     if (mode != k_between) {
-      watch_rate[1] = std::numeric_limits<double>::quiet_NaN(); // rate of a force, or of nothing
-      if (is_upper(mode)) upper.watch(-value, -rate, contact_mode(mode), watch, watch_rate);
-      else lower.watch(value, rate, contact_mode(mode), watch, watch_rate);
+      event_derivative[1] = std::numeric_limits<double>::quiet_NaN(); // rate of a force, or of nothing
+      if (is_upper(mode)) upper.event_value(-value, -rate, contact_mode(mode), event_value, event_derivative);
+      else lower.event_value(value, rate, contact_mode(mode), event_value, event_derivative);
       return;
     }
-    watch[0] = value - lower.offset;
-    watch_rate[0] = rate;
-    watch[1] = -value - upper.offset;
-    watch_rate[1] = -rate;
+    event_value[0] = value - lower.offset;
+    event_derivative[0] = rate;
+    event_value[1] = -value - upper.offset;
+    event_derivative[1] = -rate;
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
     const bool is_up = mode == k_between ? slot == 1 : is_upper(mode);
@@ -61,15 +61,15 @@ struct StopsLaw {
     const double v = is_up ? -value : value, r = is_up ? -rate : rate;
     return stop_mode(stop.next_mode(contact_mode(mode), mode == k_between ? 0 : slot, v, r, rounding), is_up);
   }
-  [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
+  [[nodiscard]] bool is_armed_at_entry(UnitMode mode, int slot, double value, double rounding) const {
     const bool is_up = is_upper(mode);
-    return mode != k_between && (is_up ? upper : lower).is_surely_positive(contact_mode(mode), slot, is_up ? -value : value, rounding);
+    return mode != k_between && (is_up ? upper : lower).is_armed_at_entry(contact_mode(mode), slot, is_up ? -value : value, rounding);
   }
-  static EventKind transition(UnitMode from, UnitMode to) {
+  static EventKind event_kind(UnitMode from, UnitMode to) {
     if (to == k_between) return EventKind::leaves_stop;
     if (from == k_between || is_upper(from) != is_upper(to))
       return is_upper(to) ? EventKind::reaches_upper_stop : EventKind::reaches_lower_stop;
-    return KelvinVoigtContact::transition(contact_mode(from), contact_mode(to));
+    return KelvinVoigtContact::event_kind(contact_mode(from), contact_mode(to));
   }
 };
 
@@ -80,7 +80,7 @@ LawGroup<Measure, StopsLaw>& add(SystemBuilder& builder, int a, int b, const Mea
   using Group = LawGroup<Measure, StopsLaw>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
-  builder.add_unit(group, StopsLaw::k_watches);
+  builder.add_unit(group, StopsLaw::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("value", is_angle ? "rad" : "m",
                       {"of the coordinate that is limited, from where its stops count", "as the coordinate counts"},

@@ -48,9 +48,10 @@ public:
   void add_forces(Evaluation& e) const override {
     for (const LoadEntry& entry : entries) add(entry, load_at(entry, e), e);
   }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
     for (const LoadEntry& entry : entries)
-      add<Traced>(entry, load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.of_time({signal}); }), e);
+      add<TapeNumber>(entry, load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.record_signal_input({signal}); }),
+                      e);
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
@@ -76,13 +77,13 @@ public:
     for (const LoadEntry& entry : entries) is_used[entry.body] = 1;
   }
 
-  void enter_turns(TurnTable& turns) const override {
+  void register_turns(TurnTable& turns) const override {
     for (const LoadEntry& entry : entries)
       if (entry.is_in_body || moves_by_turning(entry.point)) turns.add(entry.body, k_ground);
   }
 
 private:
-  template <class S> static void add(const LoadEntry& entry, const AppliedLoad<S>& load, Evaluated<S>& e) {
+  template <class S> static void add(const LoadEntry& entry, const AppliedLoad<S>& load, EvaluationData<S>& e) {
     const Motion<S>& body = e.motion[entry.body];
     BodyForceOf<S>& sum = e.force[entry.body];
     const S moment = cross(load.lever, load.force) + load.couple;

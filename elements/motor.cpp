@@ -14,14 +14,14 @@ struct InputsOf {
   const Evaluation& e;
 
   double operator()(const Signal& effort) const { return e.force_of(effort); }
-  double operator()(const TimeInput& target) const { return target.at(e.t); }
+  double operator()(const SignalInput& target) const { return target.at(e.t); }
 };
 
 struct TracedInputsOf {
   TracedEvaluation& e;
 
-  Traced operator()(const Signal& effort) const { return e.of_time({&effort}); }
-  Traced operator()(const TimeInput& target) const { return e.of_time(target); }
+  TapeNumber operator()(const Signal& effort) const { return e.record_signal_input({&effort}); }
+  TapeNumber operator()(const SignalInput& target) const { return e.record_signal_input(target); }
 };
 
 struct MotorLaw {
@@ -38,7 +38,7 @@ struct MotorLaw {
     const bool is_reverse = droop != 0.0 && stall < 0.0; // its no-load speed is in the other direction
     S f = S(stall) * (is_reverse ? S(1) + S(droop) * rate : S(1) - S(droop) * rate);
     if (proportional == 0.0 && derivative == 0.0) return f;
-    const auto wanted = target ? at_time(TimeInput{target}) : 0.0, wanted_rate = target ? at_time(TimeInput{target, true}) : 0.0;
+    const auto wanted = target ? at_time(SignalInput{target}) : 0.0, wanted_rate = target ? at_time(SignalInput{target, true}) : 0.0;
     f += S(proportional) * (S(wanted + start) - value) + S(derivative) * (S(wanted_rate) - rate);
     return f;
   }
@@ -46,44 +46,44 @@ struct MotorLaw {
 
 template <class Measure> class MotorGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int a, b;
     Measure measure;
     MotorLaw law;
     int link = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
   static constexpr bool k_does_work = true;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e, InputsOf{e}); }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
-    add_forces_to<Traced>(e, TracedInputsOf{e});
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
+    add_forces_to<TapeNumber>(e, TracedInputsOf{e});
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       add_pair_jacobian(
           entry.a, entry.b, entry.measure, e, [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e); },
           out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] MeasureValue<double> measured(int i, const Evaluation& e) const {
-    const Entry& entry = entries[i];
+    const ElementData& entry = entries[i];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
 
 private:
-  template <class S, class AtTime> void add_forces_to(Evaluated<S>& e, const AtTime& at_time) const {
-    for (const Entry& entry : entries) {
+  template <class S, class AtTime> void add_forces_to(EvaluationData<S>& e, const AtTime& at_time) const {
+    for (const ElementData& entry : entries) {
       const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
       const S f = entry.law.force_by(m.value, m.rate, at_time);
       apply_force(e.link_force[entry.link], m, f);

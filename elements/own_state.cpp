@@ -35,7 +35,8 @@ std::string unit_of_rate(const OwnState& state) {
 void compile_state(const Element& element, SystemBuilder& builder) {
   const auto& state = static_cast<const OwnState&>(element);
   OwnStateGroup& group = builder.group<OwnStateGroup>();
-  OwnStateGroup::Entry entry{MotionFormula(builder, {state.rate, "rate", unit_of_rate(state), "-", "-"}), place_of_state(builder, state)};
+  OwnStateGroup::ElementData entry{MotionFormula(builder, {state.rate, "rate", unit_of_rate(state), "-", "-"}),
+                                   place_of_state(builder, state)};
   if (!entry.rate.is_valid()) return;
   const std::vector<double> inner = start_of_states(builder);
   Evaluation start;
@@ -43,7 +44,7 @@ void compile_state(const Element& element, SystemBuilder& builder) {
   start.inner = inner.data();
   FormulaProgram::Bits bits{0, 0};
   entry.rate.find_bits(start, {}, bits);
-  if (!std::isfinite(entry.rate.value<double>(start, {}, SignalsNow{0.0}, bits.values, nullptr)))
+  if (!std::isfinite(entry.rate.value<double>(start, {}, NumericSignalEvaluator{0.0}, bits.values, nullptr)))
     return builder.error(
         "'rate' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.rate, start, {});

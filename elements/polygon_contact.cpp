@@ -38,24 +38,24 @@ template <class S, class B> struct Placed {
 
 class PolygonGroup final : public ForceGroup, public GapSource, public SwallowingContacts {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     std::shared_ptr<const Outlines> outlines;
     double stiffness = 0.0, dissipation = 0.0;
     bool has_friction = false;
-    int link = 0, unit = 0, watch = 0, contact = 0;
+    int link = 0, unit = 0, first_event = 0, contact = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Motion<double>& m = e.link_motion[entry.link];
       const Placed<double, Origin> placed(*entry.outlines, m, Origin{});
       const UnitMode mode = e.mode[entry.unit];
       const Approach now = approach(placed, relative(m, placed.centre));
       const double sign = mode == k_contact_open ? 1.0 : -1.0;
-      e.watch[entry.watch] = sign * now.gap;
-      e.watch_rate[entry.watch] = sign * now.rate;
+      e.event_value[entry.first_event] = sign * now.gap;
+      e.event_derivative[entry.first_event] = sign * now.rate;
       e.contact_force[entry.contact] = 0.0;
       if (mode == k_contact_open) continue;
       BodyForce& sum = e.link_force[entry.link];
@@ -78,7 +78,7 @@ public:
 
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);
       if (separation_of(placed.a, placed.b).gap < 0.0)
         sum += 2.0 * entry.stiffness * overlap_force(placed.a, placed.b, RelativeVelocity<double>{}, entry.stiffness, 0.0, true).volume;
@@ -87,7 +87,7 @@ public:
   }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       PairJacobian& j = out.emplace_back();
       j.a = entry.a;
       j.b = entry.b;
@@ -113,14 +113,14 @@ public:
   }
 
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) turns.add_all({entry.a, entry.b});
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) turns.add_all({entry.a, entry.b});
   }
   // For friction on a face of a, corners of b are needed in the axes of a.
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) {
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) {
       entry.link = links.add(entry.a, entry.b);
       if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
     }
@@ -128,7 +128,7 @@ public:
   // Adds the gap, the distance of the other body from a face that separates both; no pair of points is closer. A half-plane has no corners,
   // so its reach extends to its points near the other body.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);
       GapBounds& bounds = out.emplace_back();
       bounds.a = entry.a;
@@ -144,10 +144,10 @@ public:
   }
   // Returns the first unit in which one outline lies within the other. Its depth is then at least the smaller width, so shallower contacts
   // are skipped.
-  [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& watch,
+  [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& event_value,
                                     const std::function<const Motion<double>*()>& motion) const override {
-    for (const Entry& entry : entries) {
-      if (modes[entry.unit] == k_contact_open || watch[entry.watch] < entry.outlines->narrowest) continue;
+    for (const ElementData& entry : entries) {
+      if (modes[entry.unit] == k_contact_open || event_value[entry.first_event] < entry.outlines->narrowest) continue;
       const Placed<double, Motion<double>> placed(*entry.outlines, motion()[entry.a], motion()[entry.b]);
       if (overlap_force(placed.a, placed.b, RelativeVelocity<double>{}, entry.stiffness, 0.0).is_swallowed) return entry.unit;
     }
@@ -159,7 +159,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int, UnitMode mode, int, const Evaluation&) const override {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
-  [[nodiscard]] EventKind transition(UnitMode, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode, UnitMode to) const override {
     return to == k_contact_open ? EventKind::opens : EventKind::closes;
   }
 
@@ -169,7 +169,7 @@ public:
   };
   /// Returns the gap with its rate, the velocity of the corner against the face.
   [[nodiscard]] Approach measured(int element, const Evaluation& e) const {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
     const Placed<double, Motion<double>> placed(*entry.outlines, a, b);
     RelativeVelocity<double> velocity;
@@ -183,7 +183,7 @@ private:
   // one outline lies completely within the other, it pushes outwards along the shortest way, as much as for a corner of that depth. Stages
   // of a step that is too long may leave the contact, pass a thin part, or end below the ground. Without this force they would see no
   // force, and the error estimate of the step would be zero. No step ends in such a state (first_swallowed()).
-  static void bring_back(const Entry& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
+  static void bring_back(const ElementData& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
     const Pair<double> f = (-entry.stiffness * now.gap * std::abs(now.gap)) * now.normal;
     sum.fx += f.x;
     sum.fy += f.y;
@@ -195,7 +195,7 @@ private:
     return {Pair<double>{m.vx, m.vy} - m.omega * perp(centre), m.omega};
   }
   template <class S, class B>
-  static OverlapForce<S> force(const Entry& entry, const Placed<S, B>& placed, const RelativeVelocity<S>& velocity) {
+  static OverlapForce<S> force(const ElementData& entry, const Placed<S, B>& placed, const RelativeVelocity<S>& velocity) {
     return overlap_force(placed.a, placed.b, velocity, entry.stiffness, entry.dissipation);
   }
   // The rate of the gap is the velocity of the corner relative to the material point of the other body at the same position, whichever body
@@ -244,10 +244,10 @@ public:
 
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
-  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
     return false; // the contact point has branches of its own
   }
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+  [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const HoldingPlace& place = places[state.foot];
     const Heights h = heights(placed, place.face);
@@ -255,7 +255,7 @@ public:
     const double face_left = own - 2.0 * best; // both terms are negative while pressed
     return k_dead_band + std::min(face_left, left_of(h, place));
   }
-  void change_place(const Evaluation& e, FrictionState& state) const override {
+  void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const Separation s = separation_of(placed.a, placed.b);
     const Heights h = heights(placed, s.face);
@@ -386,7 +386,7 @@ bool check(const PolygonContact& e, SystemBuilder& builder) {
   return !is_bad;
 }
 
-void add_friction(const PolygonContact& e, const PolygonGroup::Entry& entry, SystemBuilder& builder) {
+void add_friction(const PolygonContact& e, const PolygonGroup::ElementData& entry, SystemBuilder& builder) {
   auto friction = std::make_unique<PolygonFriction>();
   friction->outlines = entry.outlines;
   friction->a = entry.a;
@@ -420,7 +420,7 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
       is_plane ? half_plane(e.normal.value_or(Vec2(0.0, 1.0)), builder.marker(e.b)) : outline_of(e.outline_b, e.b, "outline_b", builder);
   if (!a || !b) return;
   PolygonGroup& group = builder.group<PolygonGroup>();
-  PolygonGroup::Entry entry;
+  PolygonGroup::ElementData entry;
   entry.a = builder.marker(e.a).body;
   entry.b = builder.marker(e.b).body;
   const double narrowest = is_plane ? width_of(*a) : std::min(width_of(*a), width_of(*b));

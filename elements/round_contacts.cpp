@@ -14,7 +14,7 @@ LawGroup<Measure, Law>& add(int a, int b, const Measure& measure, const Law& law
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
-  builder.add_unit(group, Law::k_watches);
+  builder.add_unit(group, Law::k_event_count);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"},

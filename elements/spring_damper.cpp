@@ -43,7 +43,7 @@ template <class Measure, class Law> void add(SystemBuilder& builder, int a, int 
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({a, b, measure, law});
-  if constexpr (Law::k_watches > 0) builder.add_unit(group, Law::k_watches);
+  if constexpr (Law::k_event_count > 0) builder.add_unit(group, Law::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const bool is_angle = std::is_same_v<Measure, AngleMeasure>;
   const RowSpec row = row_of(a, b, measure);

@@ -11,7 +11,7 @@ namespace steplap {
 
 /// f = −k (value − free) − c·rate.
 struct LinearSpring {
-  static constexpr int k_watches = 0;
+  static constexpr int k_event_count = 0;
   static constexpr bool k_is_contact = false;
   double k = 0.0, c = 0.0, free = 0.0;
 
@@ -25,7 +25,7 @@ struct LinearSpring {
 /// Linear spring and damper with a dead band of half_gap on both sides of the free length, within which the force is zero. Outside,
 /// elongation is measured from the edge of the band. Modes: 0 below, 1 inside, 2 above the band.
 struct GapSpring {
-  static constexpr int k_watches = 2;
+  static constexpr int k_event_count = 2;
   static constexpr bool k_is_contact = false;
   double k = 0.0, c = 0.0, free = 0.0, half_gap = 0.0;
 
@@ -42,22 +42,22 @@ struct GapSpring {
     const double beyond = std::max(0.0, std::abs(value - free) - half_gap);
     return 0.5 * k * beyond * beyond;
   }
-  [[nodiscard]] UnitMode mode_at(double value, double) const {
+  [[nodiscard]] UnitMode initial_mode(double value, double) const {
     const double e = value - free;
     return e < -half_gap ? 0 : (e > half_gap ? 2 : 1);
   }
-  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
+  template <class S> void event_value(const S& value, const S& rate, UnitMode mode, S* event_value, S* event_derivative) const {
     const S low = value - (free - half_gap), high = (free + half_gap) - value;
-    watch[0] = mode == 0 ? -low : (mode == 1 ? low : -high);
-    watch_rate[0] = mode == 1 ? rate : (mode == 0 ? -rate : rate);
-    watch[1] = mode == 1 ? high : S(1.0);
-    watch_rate[1] = mode == 1 ? -rate : S(0.0);
+    event_value[0] = mode == 0 ? -low : (mode == 1 ? low : -high);
+    event_derivative[0] = mode == 1 ? rate : (mode == 0 ? -rate : rate);
+    event_value[1] = mode == 1 ? high : S(1.0);
+    event_derivative[1] = mode == 1 ? -rate : S(0.0);
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double, double) const {
     if (mode != 1) return 1;
     return slot == 0 ? 0 : 2;
   }
-  static EventKind transition(UnitMode, UnitMode to) { return to == 1 ? EventKind::enters_gap : EventKind::closes_gap; }
+  static EventKind event_kind(UnitMode, UnitMode to) { return to == 1 ? EventKind::enters_gap : EventKind::closes_gap; }
 };
 
 /// Piecewise linear function y(x), extrapolated with the slopes at its ends.
@@ -207,7 +207,7 @@ private:
 
 /// f = −T(value − free) − D(rate) with smooth curves T, D. It has a single mode and no events.
 struct SmoothSpring {
-  static constexpr int k_watches = 0;
+  static constexpr int k_event_count = 0;
   static constexpr bool k_is_contact = false;
   SmoothCurve spring, damper;
   double free = 0.0, count = 1.0;
@@ -230,8 +230,8 @@ struct SmoothSpring {
 /// only, so that the cost of a step does not depend on the length of the tables. Segments are extended by the rounding errors of value and
 /// rate: a coordinate held by joints varies by rounding, and if it were exactly at a kink the kink would be passed endlessly.
 struct TabulatedSpring {
-  static constexpr int k_watches = 4;
-  static constexpr bool k_watches_beyond_rounding = true;
+  static constexpr int k_event_count = 4;
+  static constexpr bool k_has_events_beyond_rounding = true;
   static constexpr bool k_is_contact = false;
   PiecewiseLinear spring, damper;
   double free = 0.0, count = 1.0;
@@ -249,27 +249,28 @@ struct TabulatedSpring {
     return -count * spring.value(S(value - free), spring_segment(mode));
   }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
-  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
+  [[nodiscard]] UnitMode initial_mode(double value, double rate) const {
     return mode_of(spring.segment_at(value - free), damper.segment_at(rate));
   }
-  static WatchKind watch_kind(int slot) { return slot < 2 ? WatchKind::place : WatchKind::rate; }
+  static EventTolerance event_tolerance(int slot) { return slot < 2 ? EventTolerance::position : EventTolerance::velocity; }
   template <class S>
-  void watch(const S& value, const S& rate, UnitMode mode, const S& value_known_to, const S& rate_known_to, S* watch, S* watch_rate) const {
+  void event_value(const S& value, const S& rate, UnitMode mode, const S& value_known_to, const S& rate_known_to, S* event_value,
+                   S* event_derivative) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
     const S e = value - free;
-    watch[0] = e - spring.low(s) + value_known_to;
-    watch[1] = spring.high(s) - e + value_known_to;
-    watch[2] = rate - damper.low(d) + rate_known_to;
-    watch[3] = damper.high(d) - rate + rate_known_to;
-    watch_rate[0] = rate;
-    watch_rate[1] = -rate;
+    event_value[0] = e - spring.low(s) + value_known_to;
+    event_value[1] = spring.high(s) - e + value_known_to;
+    event_value[2] = rate - damper.low(d) + rate_known_to;
+    event_value[3] = damper.high(d) - rate + rate_known_to;
+    event_derivative[0] = rate;
+    event_derivative[1] = -rate;
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
     const bool is_above = slot == 1 || slot == 3;
     return slot < 2 ? mode_of(spring.segment_beyond(s, is_above, value - free), d) : mode_of(s, damper.segment_beyond(d, is_above, rate));
   }
-  static EventKind transition(UnitMode, UnitMode) { return EventKind::passes_kink; }
+  static EventKind event_kind(UnitMode, UnitMode) { return EventKind::passes_kink; }
 };
 
 } // namespace steplap

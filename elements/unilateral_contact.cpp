@@ -15,7 +15,7 @@ LawGroup<Measure, Law>& add(const ContactGeometry& g, const Measure& measure, co
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
   group.entries.push_back({g.a, g.b, measure, law});
-  builder.add_unit(group, Law::k_watches);
+  builder.add_unit(group, Law::k_event_count);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"},
@@ -41,7 +41,7 @@ template <class Group> void damp(Group& group, const UnilateralContact& e, const
 template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
   using Group = EndedContactGroup<Law>;
   Group& group = builder.group<Group>();
-  typename Group::Entry entry;
+  typename Group::ElementData entry;
   entry.a = g.a;
   entry.b = g.b;
   entry.gap = g.gap;
@@ -51,7 +51,7 @@ template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g,
   const bool is_off = entry.is_off_at(builder.reference(g.a), builder.reference(g.b));
   entry.inner = builder.add_inner(group, is_off ? 1.0 : 0.0);
   group.entries.push_back(entry);
-  builder.add_unit(group, Group::k_watches);
+  builder.add_unit(group, Group::k_event_count);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("gap", "m", "δ, negative while closed or off",
@@ -103,12 +103,12 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   const double c = n * e.damping; // a restitution sets it when the joints are known
   const KelvinVoigtContact kelvin_voigt{k, c, offset};
   if (e.ends) {
-    if (e.law == "literal") add_ended(g, *e.ends, LiteralContact{k, c, offset}, builder);
+    if (e.law == "literal") add_ended(g, *e.ends, AdhesiveKelvinVoigtContact{k, c, offset}, builder);
     else if (e.law == "hunt_crossley") add_ended(g, *e.ends, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
     else damp(add_ended(g, *e.ends, kelvin_voigt, builder), e, g, builder);
     return;
   }
-  if (e.law == "literal") add(g, g.gap, LiteralContact{k, c, offset}, builder);
+  if (e.law == "literal") add(g, g.gap, AdhesiveKelvinVoigtContact{k, c, offset}, builder);
   else if (e.law == "hunt_crossley") add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
   else if (g.gap.is_axis_in_a) damp(add(g, g.gap, kelvin_voigt, builder), e, g, builder);
   else // forces along n through p_A and through the tip have the same line of action

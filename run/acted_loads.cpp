@@ -146,15 +146,15 @@ private:
   // Returns true if the largest value of the signal comes after the time `from` at which it begins to act.
   static bool is_at_full_size(double from, const LoadPart& part) {
     constexpr double k_nearly = 0.99; // fraction of the maximum; sampling may miss the peak by less
-    constexpr int k_looks = 16;       // samples in each piece
+    constexpr int k_samples = 16;     // samples in each piece
     std::vector<double> times{part.course.begins, from};
     for (const double t : part.signal->breakpoints())
       if (t > part.course.begins && t <= part.course.ends) times.push_back(t);
     std::sort(times.begin(), times.end());
     double all = 0.0, behind = 0.0;
     for (std::size_t i = 0; i + 1 < times.size(); ++i)
-      for (int k = 0; k < k_looks; ++k) {
-        const double t = times[i] + (times[i + 1] - times[i]) * (k + 0.5) / k_looks, size = std::abs(part.signal->value(t));
+      for (int k = 0; k < k_samples; ++k) {
+        const double t = times[i] + (times[i + 1] - times[i]) * (k + 0.5) / k_samples, size = std::abs(part.signal->value(t));
         all = std::max(all, size);
         if (t >= from) behind = std::max(behind, size);
       }

@@ -16,7 +16,7 @@ namespace {
 std::unordered_set<std::string> names_after(const ActionGroup* group, const Model& model, ActionVerb verb) {
   std::unordered_set<std::string> names;
   if (!group) return names;
-  for (const ActionGroup::Entry& entry : group->entries)
+  for (const ActionGroup::ElementData& entry : group->entries)
     for (const ActionStep& step : entry.steps)
       if (step.verb == verb)
         names.insert(verb == ActionVerb::arm ? group->entries[static_cast<std::size_t>(step.target)].name
@@ -45,7 +45,7 @@ std::vector<Finding> idle_actions(const LoadedModel& loaded) {
            entry.kind->name + " '" + entry.element->name + "' does not act from the start, and no [[action]] holds it: it has no effect",
            entry.element->where});
   if (!group) return findings;
-  for (const ActionGroup::Entry& entry : group->entries) {
+  for (const ActionGroup::ElementData& entry : group->entries) {
     const Location& where = place_of(model, entry.name);
     if (!entry.is_armed && !armed.contains(entry.name))
       findings.push_back({"never_armed", FindingLevel::warning,
@@ -67,7 +67,7 @@ std::vector<Finding> actions_that_wait(const LoadedModel& loaded, const RunResul
     if (event.kind == EventKind::happens) happened.insert(std::string(event.element));
   std::string names;
   std::size_t count = 0;
-  for (const ActionGroup::Entry& entry : group->entries) {
+  for (const ActionGroup::ElementData& entry : group->entries) {
     if (happened.contains(entry.name)) continue;
     names += (count++ == 0 ? "'" : ", '") + entry.name + "'";
   }

@@ -33,9 +33,9 @@ std::vector<RigidBlow> blows_of(const Model& model, const RunResult& result) {
 }
 
 // All bodies and elements that took part in an impact or are connected to such bodies by constraints, with the time of their first impact.
-class Struck {
+class ImpactParticipants {
 public:
-  Struck(const LoadedModel& loaded, const std::vector<RigidBlow>& blows) : model_(loaded.model), system_(*loaded.system) {
+  ImpactParticipants(const LoadedModel& loaded, const std::vector<RigidBlow>& blows) : model_(loaded.model), system_(*loaded.system) {
     parent_.resize(static_cast<std::size_t>(system_.body_count()));
     std::iota(parent_.begin(), parent_.end(), 0);
     for (int i = 1; i < system_.body_count(); ++i) place_[system_.bodies[i].name] = i;
@@ -109,7 +109,7 @@ private:
 };
 
 // Returns the time of the first impact that affected a channel or, for a formula, any channel in the formula.
-std::optional<double> first_blow_of(const Channel& channel, const Model& model, const System& system, const Struck& struck) {
+std::optional<double> first_blow_of(const Channel& channel, const Model& model, const System& system, const ImpactParticipants& struck) {
   if (const auto t = struck.first_blow(channel.name, channel.unit)) return t;
   for (const DefinedChannel& defined : model.channels) {
     if (defined.name != channel.name) continue;
@@ -128,7 +128,7 @@ void leave_struck_open(Judgement& judgement, const LoadedModel& loaded, const Ru
   const Model& model = loaded.model;
   const std::vector<RigidBlow> blows = judgement.criteria.empty() ? std::vector<RigidBlow>{} : blows_of(model, result);
   if (blows.empty()) return;
-  const Struck struck(loaded, blows);
+  const ImpactParticipants struck(loaded, blows);
   const std::size_t of_elements = judgement.criteria.size() - std::min(judgement.criteria.size(), model.criteria.size());
   for (std::size_t i = of_elements; i < judgement.criteria.size(); ++i) {
     CriterionResult& judged = judgement.criteria[i];

@@ -31,7 +31,7 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   double most_evaluations = std::numeric_limits<double>::infinity();
   std::optional<Estimate> too_dear; // result if reference runs do not help either
   if (options.estimating == Estimating::cheap) {
-    const double times = times_of_finer_runs(*loaded.system, as_run), parts = parts_evaluated(*loaded.system, statistics);
+    const double times = relative_cost_of_finer_runs(*loaded.system, as_run), parts = evaluation_cost(*loaded.system, statistics);
     const double evaluations_a_part = static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
     most_evaluations = std::floor(k_most * k_little * evaluations_a_part);
     if (!(times * parts < k_little)) {
@@ -53,7 +53,7 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
       estimate.balance_unknown = failure.what();
     }
     return estimate;
-  } catch (const EstimateTooDear& stopped) {
+  } catch (const EvaluationBudgetExceeded& stopped) {
     if (too_dear) return *std::move(too_dear);
     return none(EstimateStatus::too_dear, std::string(stopped.what()) + "; ask for it explicitly");
   } catch (const NumericalFailure& failure) {

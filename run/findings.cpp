@@ -188,7 +188,7 @@ Start start_of(const LoadedModel& loaded, const State& initial) {
   State state = initial;
   start_drives(system, state);
   const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), state.t);
-  dynamics.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
+  dynamics.set_left_limit_time(limit == system.breakpoints.end() ? system.drives_end : *limit);
   handler.start(state);
   dynamics.set_state(state);
   std::vector<double> y(static_cast<std::size_t>(system.largest_dimension())), dy(y.size());
@@ -317,7 +317,7 @@ std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
     findings.push_back({"unlike_shape", FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
   append(findings, implausible_friction(loaded));
   append(findings, implausible_loads(loaded));
-  append(findings, implausible_sizes(loaded));
+  append(findings, magnitude_warnings(loaded));
   return findings;
 }
 

@@ -18,7 +18,7 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_looks = 200;        // samples within the run; as many shortly after its end, and in a geometric sequence further on
+constexpr int k_samples = 200;      // samples within the run; as many shortly after its end, and in a geometric sequence further on
 constexpr double k_near = 10.0;     // run lengths over which the first samples after the end are evenly spaced
 constexpr double k_larger = 1.25;   // relative to the run; peaks of sums of harmonics differ by less between intervals
 constexpr double k_far = 100.0;     // run lengths within which a load reaches its full size, if it has one
@@ -49,7 +49,7 @@ public:
       if (system.element_names[static_cast<std::size_t>(system.units[u].element)] == element) units_.push_back(u);
     y_.resize(static_cast<std::size_t>(system.largest_dimension()));
     dy_.resize(y_.size());
-    dynamics_.set_time_limit(std::numeric_limits<double>::infinity());
+    dynamics_.set_left_limit_time(std::numeric_limits<double>::infinity());
   }
 
   std::vector<double> values(double t) {
@@ -120,8 +120,8 @@ std::optional<Late> late_look(AtOtherTimes& at, double end) {
   bool depends = false;
   Sizes within, behind, far_behind;
   within.add(first);
-  for (int i = 1; i <= k_looks; ++i) {
-    const std::vector<double> values = at.values(i == k_looks ? end : end * golden(i));
+  for (int i = 1; i <= k_samples; ++i) {
+    const std::vector<double> values = at.values(i == k_samples ? end : end * golden(i));
     depends = depends || !are_alike(values, first);
     within.add(values);
   }
@@ -132,9 +132,9 @@ std::optional<Late> late_look(AtOtherTimes& at, double end) {
     if (depends && !grows && within.are_exceeded_by(values)) grows = Late{t, false};
     (t > k_far * end ? far_behind : behind).add(values);
   };
-  for (int i = 1; i <= k_looks; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_looks));
-  for (int i = 1; i <= k_looks; ++i)
-    look(end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_looks));
+  for (int i = 1; i <= k_samples; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_samples));
+  for (int i = 1; i <= k_samples; ++i)
+    look(end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_samples));
   // A force that grows up to the last sample, such as c t, has no full size that a run could reach. Its end is the end of the run.
   if (behind.are_exceeded_by(far_behind.largest())) return begins;
   return begins ? begins : grows;

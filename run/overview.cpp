@@ -186,8 +186,8 @@ void add_part(std::string& list, const std::string& what, double error, const st
 
 Trust trust_by_errors(const Report& report) {
   const GlobalErrorEstimate& estimate = *report.estimate.errors;
-  if (!estimate.unknown_because.empty())
-    return {TrustLevel::limited, "The errors are not known: " + first_sentence(estimate.unknown_because) + "."};
+  if (!estimate.reason_unknown.empty())
+    return {TrustLevel::limited, "The errors are not known: " + first_sentence(estimate.reason_unknown) + "."};
   double time_error = report.run.result.events.empty() ? std::nan("") : 0.0;
   std::size_t unknown = 0;
   for (const double error : estimate.event_times)

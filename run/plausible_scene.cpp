@@ -37,10 +37,10 @@ bool is_zero(const Signal& signal, double end) {
   for (const double t : signal.breakpoints())
     if (t > 0.0 && t < end) times.push_back(t);
   std::sort(times.begin(), times.end());
-  constexpr int k_looks = 16; // a piece is a polynomial plus a few harmonics: with so many zeros it is zero everywhere
+  constexpr int k_samples = 16; // a piece is a polynomial plus a few harmonics: with so many zeros it is zero everywhere
   for (std::size_t i = 0; i + 1 < times.size(); ++i)
-    for (int k = 0; k <= k_looks; ++k)
-      if (signal.value(times[i] + (times[i + 1] - times[i]) * (k + 0.37) / (k_looks + 1.0)) != 0.0) return false;
+    for (int k = 0; k <= k_samples; ++k)
+      if (signal.value(times[i] + (times[i + 1] - times[i]) * (k + 0.37) / (k_samples + 1.0)) != 0.0) return false;
   return true;
 }
 
@@ -112,7 +112,7 @@ template <class Value> std::pair<const Body*, const Body*> extremes_of(const Mod
 }
 
 // Checks dry friction of kinds that can state its origin.
-void look_at_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
+void check_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
   if (!entry.kind->friction) return;
   const GivenFriction given = entry.kind->friction(*entry.element);
   if (!(given.coefficient > k_high_friction)) return;
@@ -157,7 +157,7 @@ void note_turns(const ModelEntry& entry, std::vector<Finding>& findings) {
 
 std::vector<Finding> implausible_friction(const LoadedModel& loaded) {
   std::vector<Finding> findings;
-  for (const ElementEntry& entry : loaded.model.elements) look_at_friction(entry, findings);
+  for (const ElementEntry& entry : loaded.model.elements) check_friction(entry, findings);
   return findings;
 }
 
@@ -195,7 +195,7 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   return findings;
 }
 
-std::vector<Finding> implausible_sizes(const LoadedModel& loaded) {
+std::vector<Finding> magnitude_warnings(const LoadedModel& loaded) {
   const Model& model = loaded.model;
   std::vector<Finding> findings;
   for (const Body& body : model.bodies) {

@@ -14,6 +14,6 @@ namespace steplap {
 [[nodiscard]] std::vector<Finding> implausible_friction(const LoadedModel& loaded);
 /// Returns one finding for each group of positions, speeds, masses or inertias of too different size, and for each angle beyond a full
 /// turn.
-[[nodiscard]] std::vector<Finding> implausible_sizes(const LoadedModel& loaded);
+[[nodiscard]] std::vector<Finding> magnitude_warnings(const LoadedModel& loaded);
 
 } // namespace steplap

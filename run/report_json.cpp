@@ -131,7 +131,7 @@ Json global_error_json(const Report& report) {
     const WorstError& worst = estimate.error.worst[k];
     json[name_of(static_cast<ErrorKind>(k))] = {{"error", number_json(worst.value)}, {"where", worst.where}, {"t", worst.t}};
   }
-  if (!estimate.unknown_because.empty()) json["unknown_because"] = estimate.unknown_because;
+  if (!estimate.reason_unknown.empty()) json["unknown_because"] = estimate.reason_unknown;
   if (!estimate.references.empty()) json["references"] = estimate.references;
   json["unmatched_events"] = estimate.error.unmatched_events;
   json["evaluations_of_finer_runs"] = estimate.cost.evaluations;

@@ -144,7 +144,7 @@ private:
     CrossCheckOptions options;
     options.methods = {used_, std::move(other)};
     options.cpu_limit = std::numeric_limits<double>::infinity();
-    const double parts = parts_evaluated(*system_, run_.statistics) / static_cast<double>(std::max(run_.statistics.evaluations, 1L));
+    const double parts = evaluation_cost(*system_, run_.statistics) / static_cast<double>(std::max(run_.statistics.evaluations, 1L));
     options.evaluation_limit =
         std::max(k_most_times * run_.statistics.evaluations, static_cast<long>(k_always_granted / std::max(parts, 1.0)));
     options.is_event_counted = is_main_event;

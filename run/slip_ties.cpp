@@ -19,7 +19,7 @@ namespace {
 constexpr double k_knife_edge = 1e-5;
 
 // Returns the error of the time of the event at which the tie occurred, s; 0 if unknown.
-double time_error(const SlipTie& tie, const RunResult& result, const GlobalErrorEstimate* errors) {
+double time_error(const SimultaneousSlip& tie, const RunResult& result, const GlobalErrorEstimate* errors) {
   if (!errors) return 0.0;
   for (std::size_t i = 0; i < result.events.size() && i < errors->event_times.size(); ++i)
     if (result.events[i].t == tie.t && result.events[i].element == tie.slips)
@@ -27,7 +27,7 @@ double time_error(const SlipTie& tie, const RunResult& result, const GlobalError
   return 0.0;
 }
 
-Finding finding_of(const SlipTie& tie, const LoadedModel& loaded) {
+Finding finding_of(const SimultaneousSlip& tie, const LoadedModel& loaded) {
   Finding finding;
   for (const ElementEntry& entry : loaded.model.elements)
     if (entry.element->name == tie.sticks) finding.where = entry.element->where;
@@ -42,20 +42,20 @@ Finding finding_of(const SlipTie& tie, const LoadedModel& loaded) {
 std::vector<Finding> slip_ties(const Run& run, const RunOptions& options, const Judgement& judgement, const GlobalErrorEstimate* errors,
                                int most_runs) {
   if (run.failure || !judgement.has_criteria) return {};
-  std::map<std::pair<std::string, std::string>, SlipTie> nearest;
-  for (const SlipTie& tie : run.result.ties) {
+  std::map<std::pair<std::string, std::string>, SimultaneousSlip> nearest;
+  for (const SimultaneousSlip& tie : run.result.ties) {
     if (!(1.0 - tie.share <= k_knife_edge + std::abs(tie.rate) * time_error(tie, run.result, errors))) continue;
-    SlipTie& known = nearest.try_emplace({std::min(tie.slips, tie.sticks), std::max(tie.slips, tie.sticks)}, tie).first->second;
+    SimultaneousSlip& known = nearest.try_emplace({std::min(tie.slips, tie.sticks), std::max(tie.slips, tie.sticks)}, tie).first->second;
     if (tie.share > known.share) known = tie;
   }
   if (nearest.empty()) return {};
-  std::vector<SlipTie> ties;
+  std::vector<SimultaneousSlip> ties;
   for (auto& [names, tie] : nearest) ties.push_back(tie);
-  std::stable_sort(ties.begin(), ties.end(), [](const SlipTie& a, const SlipTie& b) { return a.share > b.share; });
+  std::stable_sort(ties.begin(), ties.end(), [](const SimultaneousSlip& a, const SimultaneousSlip& b) { return a.share > b.share; });
   const LoadedModel& loaded = *run.loaded;
   const Verdict verdict = judge(loaded.model, *loaded.system, run.result, "").so_far;
   std::vector<Finding> findings;
-  for (const SlipTie& tie : ties) {
+  for (const SimultaneousSlip& tie : ties) {
     if (most_runs-- == 0) break;
     SimulationOptions other = simulation_options(loaded, options);
     other.other_slip = tie;

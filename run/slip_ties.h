@@ -1,6 +1,6 @@
 // Finds verdicts that depend on which of two friction elements slips first.
 //
-// If one element begins to slip while another is almost at its own friction bound (SlipTie), tiny changes of a coefficient decide which one
+// If one element begins to slip while another is almost at its own friction bound (SimultaneousSlip), tiny changes of a coefficient decide which one
 // slips. The slipping element then unloads the other one. The run is repeated with the same settings, but with the other element slipping
 // at that time. If this changes the verdict, the verdict is not reliable.
 #pragma once

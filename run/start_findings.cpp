@@ -57,23 +57,23 @@ public:
 
   std::vector<Finding> run() {
     contacts_ = contacts_at(loaded_, start_);
-    for (const ContactAtStart& contact : contacts_) look_at_gap(contact);
-    for (const ContactAtStart& contact : contacts_) look_at_ends(contact);
+    for (const ContactAtStart& contact : contacts_) check_gap(contact);
+    for (const ContactAtStart& contact : contacts_) check_ends(contact);
     // The search for an equilibrium also starts from these poses.
     if (loaded_.model.simulation.initial != "equilibrium") {
-      for (const ContactAtStart& contact : contacts_) look_at_depth(contact);
+      for (const ContactAtStart& contact : contacts_) check_depth(contact);
       for (const ElementEntry& entry : loaded_.model.elements)
-        if (const auto* const limit = dynamic_cast<const Limit*>(entry.element.get())) look_at_stops(*limit);
+        if (const auto* const limit = dynamic_cast<const Limit*>(entry.element.get())) check_stops(*limit);
     }
     const std::vector<double> reaches = body_reaches(loaded_.model);
     const double extent = scene_extent(loaded_.model, reaches);
     for (std::size_t i = 0; i < loaded_.model.bodies.size(); ++i) {
       const Body& body = loaded_.model.bodies[i];
       if (body.fixed || !(body.mass > 0.0)) continue;
-      if (body.outline.size() >= 3) look_at_inertia(body);
-      else look_at_gyration(body, reaches[i], extent);
+      if (body.outline.size() >= 3) check_inertia(body);
+      else check_gyration(body, reaches[i], extent);
     }
-    if (loaded_.model.simulation.initial == "equilibrium") look_at_states();
+    if (loaded_.model.simulation.initial == "equilibrium") check_states();
     return std::move(found_);
   }
 
@@ -86,7 +86,7 @@ private:
   }
 
   // In the search for an equilibrium inner states keep their initial values. If they change afterwards, the machine leaves the equilibrium.
-  void look_at_states() {
+  void check_states() {
     const std::vector<const OwnState*> states = own_states(loaded_.model);
     const auto* group = states.empty() ? nullptr : own_state_group(system_);
     if (!group) return;
@@ -95,7 +95,7 @@ private:
     std::vector<double> y(static_cast<std::size_t>(system_.largest_dimension())), dy(y.size());
     dynamics.pack(start_, y.data());
     dynamics.rates(start_.t, y.data(), dy.data());
-    for (const OwnStateGroup::Entry& entry : group->entries) {
+    for (const OwnStateGroup::ElementData& entry : group->entries) {
       const OwnState& state = *states[static_cast<std::size_t>(entry.place.inner - group->first_inner)];
       const double rate =
           dy[static_cast<std::size_t>(2 * dynamics.coordinate_count() + entry.place.inner)] * entry.place.unit / state.factor();
@@ -110,7 +110,7 @@ private:
   }
 
   // A gap, an interference or a preload shifts the contact line, so the position of marker b does not matter.
-  void look_at_gap(const ContactAtStart& contact) {
+  void check_gap(const ContactAtStart& contact) {
     const auto* const foot = dynamic_cast<const UnilateralContact*>(contact.entry->element.get());
     if (!foot || !(foot->gap || foot->interference || foot->preload)) return;
     const State given = system_.initial_state();
@@ -142,7 +142,7 @@ private:
   }
 
   // The touching point is behind the line or near it, but beyond the end of the face, and no other contact is below it.
-  void look_at_ends(const ContactAtStart& contact) {
+  void check_ends(const ContactAtStart& contact) {
     const auto* const foot = dynamic_cast<const UnilateralContact*>(contact.entry->element.get());
     if (!foot || !foot->ends || !contact.along) return;
     const double beyond = std::max(foot->ends->x() - *contact.along, *contact.along - foot->ends->y());
@@ -160,7 +160,7 @@ private:
             " m, counted along (n_y, -n_x) from marker b. Nothing carries it there");
   }
 
-  void look_at_depth(const ContactAtStart& contact) {
+  void check_depth(const ContactAtStart& contact) {
     const Element& element = *contact.entry->element;
     const double size = size_of_pair(system_, contact.a, contact.b), depth = -contact.gap;
     if (!(contact.force > 0.0) || !(depth > k_typed * size)) return;
@@ -183,7 +183,7 @@ private:
     add("starts_deep", element.where, text);
   }
 
-  void look_at_stops(const Limit& limit) {
+  void check_stops(const Limit& limit) {
     const Place a = place_of(loaded_.model, limit.a), b = place_of(loaded_.model, limit.b);
     const bool is_angle = limit.coordinate == "angle", is_axis = limit.coordinate == "x" || limit.coordinate == "y";
     RowSpec row;
@@ -243,7 +243,7 @@ private:
   }
 
   // Compares the moment of inertia with that of a plate with the shape of the outline, about the body's centre of gravity.
-  void look_at_inertia(const Body& body) {
+  void check_inertia(const Body& body) {
     double area = 0.0, moment = 0.0, farthest = 0.0;
     for (std::size_t i = 0; i < body.outline.size(); ++i) {
       const Vec2 p = body.outline[i] - body.cg, q = body.outline[(i + 1) % body.outline.size()] - body.cg;
@@ -267,7 +267,7 @@ private:
   }
 
   // Checks the radius of gyration. `reach` is the largest distance of the body's points from its centre, `extent` the size of the scene.
-  void look_at_gyration(const Body& body, double reach, double extent) {
+  void check_gyration(const Body& body, double reach, double extent) {
     const double gyration = std::sqrt(body.inertia / body.mass);
     if (!(reach > 0.0) || !(gyration > k_beyond_places * reach) || !(gyration > k_beyond_scene * extent) || is_driven(body)) return;
     add("inertia_beyond_places", body.where,

@@ -23,7 +23,7 @@ namespace {
 
 // Subject of a story entry. If an element opens and closes repeatedly, its first event decides whether the entry says "opens" or "closes":
 // a resting foot lifts, a flying ball touches.
-enum class What {
+enum class StorySubject {
   slips,
   would_slip,
   lifts,
@@ -43,14 +43,14 @@ enum class What {
   happens
 };
 
-struct Words {
+struct SubjectText {
   const char* key;     // StoryEntry::what
   const char* verb;    // singular
   const char* several; // plural
 };
 
-const Words& words_of(What what) {
-  static constexpr std::array<Words, 17> k_words{
+const SubjectText& words_of(StorySubject what) {
+  static constexpr std::array<SubjectText, 17> k_words{
       {{"slips", "slips", "slip"},
        {"would slip", "would slip", "would slip"},
        {"lifts", "lifts", "lift"},
@@ -73,7 +73,7 @@ const Words& words_of(What what) {
 
 // One element with one kind of occurrence.
 struct Happening {
-  What what = What::slips;
+  StorySubject what = StorySubject::slips;
   std::string who;
   std::size_t count = 0;
   double from = 0.0, begun = 0.0; // begin of the first and of the last occurrence, s
@@ -84,9 +84,9 @@ struct Happening {
   std::string detail = {}; // for an action: its effect
 };
 
-bool is_instant(What what) {
-  return what == What::breaks || what == What::apart || what == What::interface || what == What::tips || what == What::would_slip ||
-         what == What::happens;
+bool is_instant(StorySubject what) {
+  return what == StorySubject::breaks || what == StorySubject::apart || what == StorySubject::interface || what == StorySubject::tips ||
+         what == StorySubject::would_slip || what == StorySubject::happens;
 }
 
 // --- from events to occurrences
@@ -94,8 +94,8 @@ bool is_instant(What what) {
 constexpr double k_at_start = 1e-5; // of the run; earlier events count as part of the start
 
 // For an element that opens and closes repeatedly: the occurrence that its first event began.
-struct Way {
-  What what;
+struct SubjectDirection {
+  StorySubject what;
   bool is_opening;
 };
 
@@ -114,7 +114,7 @@ public:
     add_tipped();
     const double end = report_.run.result.final_state.t;
     std::erase_if(found_, [end](const Happening& h) { // bodies placed on the floor at the start that stay there
-      return h.what == What::touches && h.count == 1 && h.from <= k_at_start * end && !h.is_over;
+      return h.what == StorySubject::touches && h.count == 1 && h.from <= k_at_start * end && !h.is_over;
     });
     std::stable_sort(found_.begin(), found_.end(), [](const Happening& a, const Happening& b) { return a.from < b.from; });
     return std::move(found_);
@@ -164,15 +164,17 @@ private:
     return size > 0.0 && -normal.dot(model.header.gravity) > k_upright * size;
   }
 
-  static std::string place_name(What what, const std::string& who) { return who + '\0' + static_cast<char>('a' + static_cast<int>(what)); }
+  static std::string place_name(StorySubject what, const std::string& who) {
+    return who + '\0' + static_cast<char>('a' + static_cast<int>(what));
+  }
 
-  Happening& entry(What what, const std::string& who) {
+  Happening& entry(StorySubject what, const std::string& who) {
     const auto [place, is_new] = place_.try_emplace(place_name(what, who), found_.size());
     if (is_new) found_.push_back({what, who, 0, 0.0, 0.0, {}, {}, {}, {}, true});
     return found_[place->second];
   }
 
-  void begin(What what, const Event& event, std::optional<double> error) {
+  void begin(StorySubject what, const Event& event, std::optional<double> error) {
     Happening& h = entry(what, event.element);
     if (!h.is_over) return;
     if (h.count++ == 0) {
@@ -185,7 +187,7 @@ private:
     if (h.is_over) h.to = event.t;
   }
 
-  void end(What what, const Event& event, std::optional<double> error) {
+  void end(StorySubject what, const Event& event, std::optional<double> error) {
     const auto place = place_.find(place_name(what, event.element));
     if (place == place_.end() || found_[place->second].is_over) return;
     Happening& h = found_[place->second];
@@ -197,36 +199,38 @@ private:
   // `is_opening`: the element opens, goes slack or reaches its stop; false for the reverse.
   void toggle(bool is_opening, const Event& event, std::optional<double> error) {
     auto way = ways_.find(event.element);
-    if (way == ways_.end()) way = ways_.emplace(event.element, Way{what_of(event, is_opening), is_opening}).first;
+    if (way == ways_.end()) way = ways_.emplace(event.element, SubjectDirection{what_of(event, is_opening), is_opening}).first;
     if (way->second.is_opening == is_opening) begin(way->second.what, event, error);
     else end(way->second.what, event, error);
   }
 
   // Returns the occurrence that begins with the first event of the element.
-  What what_of(const Event& event, bool is_opening) const {
+  StorySubject what_of(const Event& event, bool is_opening) const {
     switch (event.kind) {
     case EventKind::opens:
-    case EventKind::closes: return !is_opening ? What::touches : is_upright(event.element) ? What::lifts : What::opens;
+    case EventKind::closes:
+      return !is_opening ? StorySubject::touches : is_upright(event.element) ? StorySubject::lifts : StorySubject::opens;
     case EventKind::enters_gap:
     case EventKind::closes_gap:
-      if (is_rope(event.element)) return is_opening ? What::slack : What::taut;
-      return is_opening ? What::leaves_gap : What::closes_gap;
-    default: return is_opening ? What::strikes : What::leaves_stop;
+      if (is_rope(event.element)) return is_opening ? StorySubject::slack : StorySubject::taut;
+      return is_opening ? StorySubject::leaves_gap : StorySubject::closes_gap;
+    default: return is_opening ? StorySubject::strikes : StorySubject::leaves_stop;
     }
   }
 
   // An action that releases an element ends its occurrences: the element no longer slides, presses or is slack.
   void take_action(const Event& event, std::optional<double> error) {
-    begin(What::happens, event, error);
-    entry(What::happens, event.element).detail = event.detail;
+    begin(StorySubject::happens, event, error);
+    entry(StorySubject::happens, event.element).detail = event.detail;
     const ElementEntry* const found = entry_of(event.element);
     const auto* const action = found ? as_action(*found->element) : nullptr;
     if (!action) return;
     for (const std::string& text : action->steps) {
       const ActionStepText step = action_step(text);
       if (step.verb != ActionVerb::release) continue;
-      for (const What what : {What::slips, What::lifts, What::opens, What::touches, What::slack, What::taut, What::leaves_gap,
-                              What::closes_gap, What::strikes, What::leaves_stop})
+      for (const StorySubject what :
+           {StorySubject::slips, StorySubject::lifts, StorySubject::opens, StorySubject::touches, StorySubject::slack, StorySubject::taut,
+            StorySubject::leaves_gap, StorySubject::closes_gap, StorySubject::strikes, StorySubject::leaves_stop})
         end(what, {event.t, step.name, EventKind::none}, error);
     }
   }
@@ -236,14 +240,14 @@ private:
     case EventKind::slips:
     case EventKind::slips_forward:
     case EventKind::slips_backward:
-    case EventKind::slips_another_way: return begin(What::slips, event, error);
+    case EventKind::slips_another_way: return begin(StorySubject::slips, event, error);
     case EventKind::sticks:
-    case EventKind::loses_normal_force: return end(What::slips, event, error);
+    case EventKind::loses_normal_force: return end(StorySubject::slips, event, error);
     case EventKind::force_reaches_zero:
-      if (is_tyre(event.element)) end(What::slips, event, error); // a tyre has one friction element for contact and tread
+      if (is_tyre(event.element)) end(StorySubject::slips, event, error); // a tyre has one friction element for contact and tread
       return;
     case EventKind::opens:
-      if (is_tyre(event.element)) end(What::slips, event, error);
+      if (is_tyre(event.element)) end(StorySubject::slips, event, error);
       return toggle(true, event, error);
     case EventKind::enters_gap:
     case EventKind::reaches_lower_stop:
@@ -251,12 +255,12 @@ private:
     case EventKind::closes:
     case EventKind::closes_gap:
     case EventKind::leaves_stop: return toggle(false, event, error);
-    case EventKind::breaks: return begin(What::breaks, event, error);
-    case EventKind::comes_apart: end(What::slips, event, error); return begin(What::apart, event, error);
-    case EventKind::loses_interface: return begin(What::interface, event, error);
+    case EventKind::breaks: return begin(StorySubject::breaks, event, error);
+    case EventKind::comes_apart: end(StorySubject::slips, event, error); return begin(StorySubject::apart, event, error);
+    case EventKind::loses_interface: return begin(StorySubject::interface, event, error);
     case EventKind::happens: return take_action(event, error);
-    case EventKind::storm: return begin(What::storm, event, error);
-    case EventKind::storm_over: return end(What::storm, event, error);
+    case EventKind::storm: return begin(StorySubject::storm, event, error);
+    case EventKind::storm_over: return end(StorySubject::storm, event, error);
     default: return;
     }
   }
@@ -285,12 +289,12 @@ private:
   }
 
   void add_amount(Happening& h) const {
-    if (h.what == What::slips) h.amount = slid(h.who);
-    if (h.what == What::lifts || h.what == What::opens)
+    if (h.what == StorySubject::slips) h.amount = slid(h.who);
+    if (h.what == StorySubject::lifts || h.what == StorySubject::opens)
       if (const ChannelRange* gap = ranges_.find(h.who + ".gap"); gap && gap->high.value > 0.0)
         h.amount = StoryAmount{gap->high.value, gap->channel->unit, report_.error_of(*gap, &ChannelError::high)};
-    if (h.what == What::touches) h.amount = excursion(h.who + ".force", false);
-    if (h.what == What::strikes)
+    if (h.what == StorySubject::touches) h.amount = excursion(h.who + ".force", false);
+    if (h.what == StorySubject::strikes)
       for (const char* part : {".force", ".couple"})
         if (!h.amount) h.amount = excursion(h.who + part, false);
   }
@@ -299,7 +303,8 @@ private:
   void add_monitored() {
     for (const JointAssessment& joint : report_.joints)
       if (joint.is_monitored && joint.first_slip)
-        found_.push_back({What::would_slip, joint.joint, 1, *joint.first_slip, *joint.first_slip, *joint.first_slip, {}, {}, {}, true});
+        found_.push_back(
+            {StorySubject::would_slip, joint.joint, 1, *joint.first_slip, *joint.first_slip, *joint.first_slip, {}, {}, {}, true});
   }
 
   void note_body(const std::string& marker, std::unordered_set<std::string>& bodies) const {
@@ -328,7 +333,7 @@ private:
       const auto amount = excursion(body.name + ".theta", true);
       if (!range || !amount || amount->value < k_tipped) continue;
       const double t = range->high.value - range->first >= range->first - range->low.value ? range->high.t : range->low.t;
-      found_.push_back({What::tips, body.name, 1, t, t, t, amount, {}, {}, true});
+      found_.push_back({StorySubject::tips, body.name, 1, t, t, t, amount, {}, {}, true});
     }
   }
 
@@ -336,7 +341,7 @@ private:
   const RangeIndex& ranges_;
   std::unordered_map<std::string, const ElementEntry*> entry_of_;
   std::unordered_map<std::string, std::size_t> place_; // key: element and What
-  std::unordered_map<std::string, Way> ways_;
+  std::unordered_map<std::string, SubjectDirection> ways_;
   std::vector<Happening> found_;
 };
 
@@ -367,17 +372,17 @@ public:
   }
 
   // Returns "", or ", at most 3.1 mm" and similar.
-  std::string reach(What what, const std::optional<StoryAmount>& a) const {
+  std::string reach(StorySubject what, const std::optional<StoryAmount>& a) const {
     if (!a) return "";
     const std::string shown = amount(*a);
     if (shown.starts_with("0 ") || shown == "0°") return "";
     switch (what) {
-    case What::slips: return " and slides " + shown;
-    case What::lifts:
-    case What::opens: return ", at most " + shown;
-    case What::touches: return ", pressing with up to " + shown;
-    case What::strikes: return ", with up to " + shown;
-    case What::tips: return " by up to " + shown;
+    case StorySubject::slips: return " and slides " + shown;
+    case StorySubject::lifts:
+    case StorySubject::opens: return ", at most " + shown;
+    case StorySubject::touches: return ", pressing with up to " + shown;
+    case StorySubject::strikes: return ", with up to " + shown;
+    case StorySubject::tips: return " by up to " + shown;
     default: return "";
     }
   }
@@ -401,12 +406,12 @@ public:
 
   std::string sentence(const Happening& h) const {
     const std::string who = sentence_name(h.who);
-    if (h.what == What::tips)
+    if (h.what == StorySubject::tips)
       return who + (h.amount && h.amount->value > k_over
                         ? " tips over: it has turned by " + amount(*h.amount) + " at " + time(h.from, {}) + "."
                         : " tips" + reach(h.what, h.amount) + " (at " + time(h.from, {}) + ").");
-    if (h.what == What::would_slip) return who + ", which is only monitored, would slip at " + time(h.from, {}) + ".";
-    if (h.what == What::happens) return "Action '" + h.who + "' happens" + when(h) + ": " + h.detail + ".";
+    if (h.what == StorySubject::would_slip) return who + ", which is only monitored, would slip at " + time(h.from, {}) + ".";
+    if (h.what == StorySubject::happens) return "Action '" + h.who + "' happens" + when(h) + ": " + h.detail + ".";
     std::string how = reach(h.what, h.amount);
     if (is_plural(h.who) && how.starts_with(" and slides")) how.replace(0, 11, " and slide");
     return who + " " + (is_plural(h.who) ? words_of(h.what).several : words_of(h.what).verb) + when(h) + how + ".";
@@ -428,7 +433,7 @@ public:
       if (h->to) entry.to = std::max(*entry.to, *h->to);
       if (h->amount && (!most || h->amount->value > most->amount->value)) most = h;
     }
-    const What what = group.front()->what;
+    const StorySubject what = group.front()->what;
     const std::string to = lasts ? "the end" : time(*entry.to, {});
     if (lasts || is_instant(what)) entry.to.reset();
     const std::size_t more = group.size() - 2;
@@ -469,7 +474,7 @@ bool tells_of_motion(const StoryEntry& entry) {
 std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits) {
   const std::vector<Happening> happenings = Gatherer(report, ranges).gather();
   const Teller teller(report, digits);
-  std::map<What, std::vector<const Happening*>> groups;
+  std::map<StorySubject, std::vector<const Happening*>> groups;
   if (happenings.size() > k_few)
     for (const Happening& h : happenings) groups[h.what].push_back(&h);
   std::vector<StoryEntry> story;

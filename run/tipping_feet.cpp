@@ -39,13 +39,13 @@ public:
   }
 
 private:
-  struct Seen {
+  struct MarkerPose {
     int body;
     Vec3 pose;
     double angle; ///< orientation of the marker
     Vec2 point;
   };
-  [[nodiscard]] Seen seen(const std::string& name) const {
+  [[nodiscard]] MarkerPose marker_pose(const std::string& name) const {
     const Place place = place_of(loaded_.model, name);
     const Vec3 pose = pose_of(*loaded_.system, state_, place.body);
     return {index_of(*loaded_.system, place.body), pose, pose.z() + place.angle, Vec2(pose.x(), pose.y()) + rotated(place.point, pose.z())};
@@ -67,13 +67,13 @@ private:
   }
 
   void add_foot(const UnilateralContact& contact) {
-    const Seen a = seen(contact.a), b = seen(contact.b);
+    const MarkerPose a = marker_pose(contact.a), b = marker_pose(contact.b);
     if (touches(contact.name, a.body, b.body))
       feet_.push_back({contact.name, contact.name, a.body, b.body, a.point, rotated(contact.normal, b.angle).normalized()});
   }
 
   void add_wheel(const SegmentContact& contact) {
-    const Seen a = seen(contact.a), b = seen(contact.b);
+    const MarkerPose a = marker_pose(contact.a), b = marker_pose(contact.b);
     if (!touches(contact.name, a.body, b.body)) return;
     const Vec2 from = b.point + rotated(contact.from, b.angle), along = b.point + rotated(contact.to, b.angle) - from;
     const double share = std::clamp((a.point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
@@ -82,7 +82,7 @@ private:
   }
 
   void add_roller(const CircleContact& contact) {
-    const Seen a = seen(contact.a), b = seen(contact.b);
+    const MarkerPose a = marker_pose(contact.a), b = marker_pose(contact.b);
     if (!touches(contact.name, a.body, b.body) || a.point == b.point) return;
     const Vec2 outwards = (a.point - b.point).normalized();
     const Vec2 normal = contact.inside ? Vec2(-outwards) : outwards;
@@ -92,7 +92,7 @@ private:
   // Returns the corners of one side, counter-clockwise.
   [[nodiscard]] std::vector<Vec2> corners(const std::string& name, const std::vector<Vec2>& given) const {
     const Place place = place_of(loaded_.model, name);
-    const Seen at = seen(name);
+    const MarkerPose at = marker_pose(name);
     std::vector<Vec2> points;
     if (!given.empty())
       for (const Vec2& p : given) points.push_back(at.point + rotated(p, at.angle));
@@ -119,7 +119,7 @@ private:
   }
 
   void add_outlines(const PolygonContact& contact) {
-    const Seen a = seen(contact.a), b = seen(contact.b);
+    const MarkerPose a = marker_pose(contact.a), b = marker_pose(contact.b);
     if (!touches(contact.name, a.body, b.body)) return;
     const std::vector<Vec2> of_a = corners(contact.a, contact.outline_a), of_b = corners(contact.b, contact.outline_b);
     if (of_a.empty()) return;

@@ -15,7 +15,7 @@ namespace {
 constexpr double k_rank = 1e-8;       // relative tolerance for the rank of the rows
 constexpr double k_balanced = 1e-10;  // relative to the loads; smaller unbalanced parts are rounding
 constexpr double k_same_tilt = 1e-12; // rad
-constexpr int k_most_looks = 200;     // iterations for a tilt
+constexpr int k_most_checks = 200;    // iterations for a tilt
 constexpr double k_right_angle = 0.5 * std::numbers::pi;
 
 MatX columns_of(const MatX& a, const std::vector<int>& which) {
@@ -84,7 +84,7 @@ public:
     balance(0.0);
     found.stands = left_.norm() <= rounding_;
     double tilt = found.stands ? sign * k_right_angle : 0.0;
-    for (int look = 0; look < k_most_looks; ++look) {
+    for (int look = 0; look < k_most_checks; ++look) {
       balance(tilt);
       if (left_.norm() <= rounding_) break;
       found.motion = (basis_ * left_).normalized();

@@ -16,7 +16,7 @@ struct OrificeDamper : Element {
 };
 
 struct OrificeLaw { // f = −c rate |rate| on a, away from b. Nothing is stored, so that all of −f rate is booked as dissipated.
-  static constexpr int k_watches = 0; // smooth: no events of its own
+  static constexpr int k_event_count = 0; // smooth: no events of its own
   static constexpr bool k_is_contact = false;
   double c = 0.0;
   template <class S> S force(const S&, const S& rate, UnitMode) const {

@@ -50,17 +50,17 @@ Group::Part part_of(int drum, const CompiledMarker& end, const WoundMeasure& mea
 
 // Sets the elongations at zero load so that in the reference pose both parts have the given pretension, or the band the given slack. The
 // slack is shared by the parts like an elongation, as if by an equal negative tension.
-void set_free_lengths(Group::Entry& entry, const std::optional<double>& pretension, const std::optional<double>& slack) {
+void set_free_lengths(Group::ElementData& entry, const std::optional<double>& pretension, const std::optional<double>& slack) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   const double pull = pretension ? *pretension : -slack.value_or(0.0) * k0 * k1 / (k0 + k1);
   entry.parts[0].free = -pull / k0;
   entry.parts[1].free = -pull / k1;
 }
 
-int add(Group& group, Group::Entry entry, SystemBuilder& builder) {
+int add(Group& group, Group::ElementData entry, SystemBuilder& builder) {
   entry.inner = builder.add_inner(group, 0.0);
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, Group::k_watches);
+  builder.add_unit(group, Group::k_event_count);
   return static_cast<int>(group.entries.size()) - 1;
 }
 
@@ -97,7 +97,7 @@ void compile_band(const Element& element, SystemBuilder& builder) {
   if (!has_tangent(drum, a, std::abs(e.radius), "marker 'a'", builder) || !has_tangent(drum, b, std::abs(e.radius), "marker 'b'", builder))
     return;
   const double sense = e.radius < 0.0 ? -1.0 : 1.0;
-  Group::Entry entry;
+  Group::ElementData entry;
   entry.drum = drum.body;
   entry.name = e.name;
   entry.friction[0] = e.friction;
@@ -140,7 +140,7 @@ void compile_belt(const Element& element, SystemBuilder& builder) {
   const double c =
       e.crossed ? e.radius_a + e.radius_b : std::max(e.radius_a, e.radius_b); // open belt: no centre may lie inside the other wheel
   if (!has_tangent(a, b, c, "the second wheel's centre", builder)) return;
-  Group::Entry entry;
+  Group::ElementData entry;
   entry.drum = a.body;
   entry.name = e.name;
   entry.is_belt = true;

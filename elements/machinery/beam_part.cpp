@@ -71,24 +71,24 @@ template <class S> PartWrench<S> wrench_of(const PartEntry& entry, const PartSta
 
 class BeamPartGroup final : public ForceGroup {
 public:
-  using Entry = PartEntry;
-  std::vector<Entry> entries;
+  using ElementData = PartEntry;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e); }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
     add_forces_to(e);
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const auto p = state_of(entry, motion[entry.a], motion[entry.b]);
       sum += 0.5 * (entry.k_x * p.q * p.q + entry.k_v * p.v * p.v + entry.k_theta * p.theta * p.theta);
     }
     return sum;
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const auto p = state_of(entry, seeded(e.motion[entry.a], 0), seeded(e.motion[entry.b], 3));
       const auto w = wrench_of(entry, p);
       const Dual<12> on_a = cross(p.lever_a, w.force) + w.couple, on_b = cross(p.lever_b, w.force) + w.couple;
@@ -103,19 +103,19 @@ public:
     }
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] PartState<double> now(int i, const Evaluation& e) const {
-    const Entry& entry = entries[static_cast<std::size_t>(i)];
+    const ElementData& entry = entries[static_cast<std::size_t>(i)];
     return state_of(entry, e.motion[entry.a], e.motion[entry.b]);
   }
 
 private:
-  template <class S> void add_forces_to(Evaluated<S>& e) const {
-    for (const Entry& entry : entries) {
+  template <class S> void add_forces_to(EvaluationData<S>& e) const {
+    for (const ElementData& entry : entries) {
       const PartState<S> p = state_of(entry, e.link_motion[entry.link], Origin{});
       const PartWrench<S> w = wrench_of(entry, p);
       BodyForceOf<S>& sum = e.link_force[entry.link];

@@ -36,35 +36,37 @@ public:
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return std::max(0.0, bound_at<double>(e)) * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_bounds<double>(e, wrench, watch);
+  void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
+    bound_events<double>(e, wrench, event_value);
   }
-  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
-                                    Traced* watch) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation& e, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
+                                     TapeNumber* event_value) const override {
     if (rate) {
-      wrench[0] = -state.sign * bound_at<Traced>(e);
-      watch[0] = state.sign * rate[0];
-      watch[1] = 1.0;
+      wrench[0] = -state.sign * bound_at<TapeNumber>(e);
+      event_value[0] = state.sign * rate[0];
+      event_value[1] = 1.0;
     } else {
-      watch_bounds<Traced>(e, wrench, watch);
+      bound_events<TapeNumber>(e, wrench, event_value);
     }
-    watch[2] = 1.0;
+    event_value[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool) const override {
     return block_within(std::max(0.0, bound_at<double>(e)), a[0], b[0]);
   }
 
 private:
   // Continued linearly beyond the ends of the segment, like the spring, so that a step beyond the end meets no corner.
-  template <class S> [[nodiscard]] S bound_at(const Evaluated<S>& e) const {
+  template <class S> [[nodiscard]] S bound_at(const EvaluationData<S>& e) const {
     const S value = evaluate_row<false>(row, e.motion[row.a], e.motion[row.b]).value;
     return bound.value(value - S(free), TabulatedSpring::spring_segment(e.mode[unit]));
   }
-  template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
-    steplap::watch_bounds<S>(bound_at(e), wrench[0], watch);
+  template <class S> void bound_events(const EvaluationData<S>& e, const S* wrench, S* event_value) const {
+    steplap::bound_events<S>(bound_at(e), wrench[0], event_value);
   }
 };
 
@@ -153,7 +155,7 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
 
   CurveGroup& group = builder.group<CurveGroup>();
   group.entries.push_back({a.body, b.body, measure, TabulatedSpring{middle, without, free, 1.0}});
-  builder.add_unit(group, TabulatedSpring::k_watches);
+  builder.add_unit(group, TabulatedSpring::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1, unit = group.entries.back().unit;
 
   auto friction = std::make_unique<BufferFriction>();

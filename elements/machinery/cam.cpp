@@ -24,7 +24,7 @@ struct CamEntry {
   double zero = 0.0; ///< φ for θ_cam = θ_b
   KelvinVoigtContact law = {};
   bool holds = false;
-  int unit = 0, watch = 0;
+  int unit = 0, first_event = 0;
 
   [[nodiscard]] std::array<int, 3> bodies() const { return {a, b, cam}; }
 };
@@ -60,22 +60,23 @@ template <class S> std::array<BodyForceOf<S>, 3> forces_of(const CamGap<S>& gap,
 
 class CamGroup final : public ForceGroup {
 public:
-  using Entry = CamEntry;
-  std::vector<Entry> entries;
+  using ElementData = CamEntry;
+  std::vector<ElementData> entries;
 
-  [[nodiscard]] static CamGap<double> gap_now(const Entry& entry, const Motion<double>* motion) {
+  [[nodiscard]] static CamGap<double> gap_now(const ElementData& entry, const Motion<double>* motion) {
     return gap_of(entry, motion[entry.a], motion[entry.b], motion[entry.cam]);
   }
-  [[nodiscard]] static double force(const Entry& entry, const CamGap<double>& gap, const Evaluation& e) {
+  [[nodiscard]] static double force(const ElementData& entry, const CamGap<double>& gap, const Evaluation& e) {
     return entry.law.force(gap.value, gap.rate, mode_of(entry, e));
   }
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const CamGap<double> gap = gap_now(entry, e.motion);
       const UnitMode mode = mode_of(entry, e);
       const double f = entry.law.force(gap.value, gap.rate, mode);
-      if (!entry.holds) entry.law.watch(gap.value, gap.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      if (!entry.holds)
+        entry.law.event_value(gap.value, gap.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
       e.dissipation += (entry.law.elastic_force(gap.value, mode) - f) * gap.rate;
       if (f == 0.0) continue;
       const std::array<int, 3> bodies = entry.bodies();
@@ -90,14 +91,14 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const double value = gap_now(entry, motion).value;
       sum += entry.holds ? 0.5 * entry.law.k * (value - entry.law.offset) * (value - entry.law.offset) : entry.law.energy(value);
     }
     return sum;
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const CamGap<Dual<18>> gap =
           gap_of(entry, seeded_of<3>(e.motion[entry.a], 0), seeded_of<3>(e.motion[entry.b], 1), seeded_of<3>(e.motion[entry.cam], 2));
       const Dual<18> f = entry.law.force(gap.value, gap.rate, mode_of(entry, e));
@@ -105,39 +106,39 @@ public:
     }
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       for (const int body : entry.bodies()) is_used[body] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) {
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) {
       turns.add(entry.a, entry.b, turning_of(entry.measure));
       turns.add(entry.cam, entry.b);
       if (!entry.curve.knots().empty()) turns.add(entry.cam, entry.b, TurnKnots{entry.zero, entry.curve.knots(), true});
     }
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
-    const Entry& entry = entry_at(element);
+    const ElementData& entry = entry_at(element);
     if (entry.holds) return k_contact_pressed;
     const CamGap<double> gap = gap_now(entry, e.motion);
-    return entry.law.mode_at(gap.value, gap.rate);
+    return entry.law.initial_mode(gap.value, gap.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Entry& entry = entry_at(element);
+    const ElementData& entry = entry_at(element);
     const CamGap<double> gap = gap_now(entry, e.motion);
     return entry.law.next_mode(mode, slot, gap.value, gap.rate, rounding_of(entry, gap, e));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Entry& entry = entry_at(element);
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const ElementData& entry = entry_at(element);
     const CamGap<double> gap = gap_now(entry, e.motion);
-    return entry.law.is_surely_positive(mode, slot, gap.value, rounding_of(entry, gap, e));
+    return entry.law.is_armed_at_entry(mode, slot, gap.value, rounding_of(entry, gap, e));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override { return KelvinVoigtContact::transition(from, to); }
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override { return KelvinVoigtContact::event_kind(from, to); }
 
 private:
-  [[nodiscard]] const Entry& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
-  static UnitMode mode_of(const Entry& entry, const Evaluation& e) { return entry.holds ? k_contact_pressed : e.mode[entry.unit]; }
+  [[nodiscard]] const ElementData& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
+  static UnitMode mode_of(const ElementData& entry, const Evaluation& e) { return entry.holds ? k_contact_pressed : e.mode[entry.unit]; }
   // The rounding error of the lift is that of the angle, which may be many turns.
-  static double rounding_of(const Entry& entry, const CamGap<double>& gap, const Evaluation& e) {
+  static double rounding_of(const ElementData& entry, const CamGap<double>& gap, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b], &cam = e.motion[entry.cam];
     return value_rounding(gap.m, a, b) +
            k_rounded_sum * (std::abs(gap.slope) * (std::abs(cam.theta) + std::abs(b.theta)) + std::abs(gap.value - gap.m.value));
@@ -220,7 +221,7 @@ void compile_cam(const Element& element, SystemBuilder& builder) {
   const double now = CamGroup::gap_now(entry, &builder.reference(0)).value;
   entry.law = {e.stiffness, e.damping, now - e.gap};
   group.entries.push_back(std::move(entry));
-  if (!e.holds) builder.add_unit(group, KelvinVoigtContact::k_watches);
+  if (!e.holds) builder.add_unit(group, KelvinVoigtContact::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const auto at = [&group, i](const Snapshot& s) { return CamGroup::gap_now(group.entries[static_cast<std::size_t>(i)], s.motion); };
   builder.add_channel("gap", "m", {"between follower and cam", "negative: pressed in"},

@@ -38,30 +38,30 @@ public:
     normal[0] = 1.0 / bound;
     return wrench[0] / bound;
   }
-  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_between<double>(wrench[0], watch);
+  void stick_events(const Evaluation&, const FrictionState&, const double* wrench, double* event_value) const override {
+    bound_events<double>(wrench[0], event_value);
   }
-  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
-                                    Traced* watch) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
+                                     TapeNumber* event_value) const override {
     if (rate) {
-      wrench[0] = Traced(sliding(state));
-      watch[0] = state.sign * rate[0];
-      watch[1] = 1.0;
+      wrench[0] = TapeNumber(sliding(state));
+      event_value[0] = state.sign * rate[0];
+      event_value[1] = 1.0;
     } else {
-      watch_between<Traced>(wrench[0], watch);
+      bound_events<TapeNumber>(wrench[0], event_value);
     }
-    watch[2] = 1.0;
+    event_value[2] = 1.0;
     return true;
   }
   // Slips at the nearer bound; the other one is far away.
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
+  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
     state.sign = wrench[0] > 0.5 * (low + high) ? -1 : 1;
   }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b, bool) const override {
+  [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b, bool) const override {
     constexpr double k_no_motion = 1e-12; // rad/s or rad/s²: rounding of an angle that a drive keeps at rest
-    FrictionBlock block;
+    BlockSolution block;
     const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? low : high);
-    block.is_inside = a[0] > 0.0 ? wanted >= least() && wanted <= most() : std::abs(b[0]) <= k_no_motion;
+    block.sticks = a[0] > 0.0 ? wanted >= least() && wanted <= most() : std::abs(b[0]) <= k_no_motion;
     block.wrench[0] = std::clamp(wanted, low, high);
     block.direction[0] = wanted > high ? -1.0 : 1.0;
     return block;
@@ -81,9 +81,9 @@ private:
             "' against its lock, which no couple keeps them from: turn 'free' round, give it 'holds', or drive one of them only",
         {name});
   }
-  template <class S> void watch_between(const S& wrench, S* watch) const {
-    watch[0] = most() - wrench;
-    watch[1] = wrench - least();
+  template <class S> void bound_events(const S& wrench, S* event_value) const {
+    event_value[0] = most() - wrench;
+    event_value[1] = wrench - least();
   }
 };
 

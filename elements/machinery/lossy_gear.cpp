@@ -18,7 +18,7 @@ struct MeshEntry {
   double ratio = 1.0, k = 0.0, c = 0.0;
   double start = 0.0; ///< δ of the angles in the reference pose
   double band = 0.0;  ///< N m: smaller loads count as zero
-  int unit = 0, watch = 0;
+  int unit = 0, first_event = 0;
 
   template <class S> [[nodiscard]] S twist(const Motion<S>* motion) const {
     return (motion[a].theta - motion[carrier].theta) - ratio * (motion[b].theta - motion[carrier].theta) - S(start);
@@ -34,20 +34,20 @@ class MeshGroup final : public ForceGroup {
 public:
   static constexpr UnitMode k_forwards = 0, k_backwards = 1;
   std::vector<MeshEntry> entries;
-  using Entry = MeshEntry;
+  using ElementData = MeshEntry;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e); }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
     add_forces_to(e);
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += 0.5 * entry.k * entry.twist(motion) * entry.twist(motion);
+    for (const ElementData& entry : entries) sum += 0.5 * entry.k * entry.twist(motion) * entry.twist(motion);
     return sum;
   }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const int bodies[3] = {entry.a, entry.b, entry.carrier};
       const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0}; // ∂δ by the three angles; the moments are −M times these
       for (int row = 0; row < 3; ++row)
@@ -65,27 +65,27 @@ public:
     }
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
   }
-  void enter_turns(TurnTable&) const override {} // nothing to add: a gear is linear in its angles
+  void register_turns(TurnTable&) const override {} // nothing to add: a gear is linear in its angles
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return entries[static_cast<std::size_t>(element)].couple(e.motion) < 0.0 ? k_backwards : k_forwards;
   }
   [[nodiscard]] UnitMode next_mode(int, UnitMode mode, int, const Evaluation&) const override {
     return mode == k_forwards ? k_backwards : k_forwards;
   }
-  [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
+  [[nodiscard]] EventKind event_kind(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
 private:
-  template <class S> void add_forces_to(Evaluated<S>& e) const {
-    for (const Entry& entry : entries) {
+  template <class S> void add_forces_to(EvaluationData<S>& e) const {
+    for (const ElementData& entry : entries) {
       const S couple = entry.couple(e.motion), rate = entry.rate(e.motion);
       e.force[entry.a].m -= couple;
       e.force[entry.b].m += entry.ratio * couple;
       e.force[entry.carrier].m += (1.0 - entry.ratio) * couple;
       e.dissipation += entry.c * rate * rate;
-      e.watch[entry.watch] = (e.mode[entry.unit] == k_forwards ? couple : -couple) + S(entry.band);
-      e.watch_rate[entry.watch] = S(std::numeric_limits<double>::quiet_NaN());
+      e.event_value[entry.first_event] = (e.mode[entry.unit] == k_forwards ? couple : -couple) + S(entry.band);
+      e.event_derivative[entry.first_event] = S(std::numeric_limits<double>::quiet_NaN());
     }
   }
 };
@@ -106,30 +106,32 @@ public:
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return std::max(0.0, bound<double>(e)) * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_bounds<double>(bound<double>(e), wrench[0], watch);
+  void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
+    bound_events<double>(bound<double>(e), wrench[0], event_value);
   }
-  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
-                                    Traced* watch) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation& e, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
+                                     TapeNumber* event_value) const override {
     if (rate) {
-      wrench[0] = -state.sign * bound<Traced>(e);
-      watch[0] = state.sign * rate[0];
-      watch[1] = 1.0;
+      wrench[0] = -state.sign * bound<TapeNumber>(e);
+      event_value[0] = state.sign * rate[0];
+      event_value[1] = 1.0;
     } else {
-      watch_bounds<Traced>(bound<Traced>(e), wrench[0], watch);
+      bound_events<TapeNumber>(bound<TapeNumber>(e), wrench[0], event_value);
     }
-    watch[2] = 1.0;
+    event_value[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool) const override {
     return block_within(std::max(0.0, bound<double>(e)), a[0], b[0]);
   }
 
 private:
   // The bound must remain positive in the unit's dead band around zero.
-  template <class S> [[nodiscard]] S bound(const Evaluated<S>& e) const {
+  template <class S> [[nodiscard]] S bound(const EvaluationData<S>& e) const {
     const S couple = mesh.couple(e.motion);
     return loss * ((e.mode[mesh.unit] == MeshGroup::k_forwards ? couple : -couple) + S(mesh.band));
   }

@@ -35,27 +35,27 @@ struct RopePart {
 // rope's length, because a part of zero length has no direction.
 class RopeGroup final : public ForceGroup {
 public:
-  static constexpr int k_watches = KelvinVoigtContact::k_watches + 1, k_on_pulley = KelvinVoigtContact::k_watches;
+  static constexpr int k_event_count = KelvinVoigtContact::k_event_count + 1, k_on_pulley = KelvinVoigtContact::k_event_count;
   static constexpr double k_run_in = 1e-3; ///< relative to the given length of a part
 
-  struct Entry {
+  struct ElementData {
     std::vector<RopePart> parts;
     KelvinVoigtContact law;
     double fixed_length = 0.0; ///< length of parts within one body, m
     std::string name;
-    int unit = 0, watch = 0;
+    int unit = 0, first_event = 0;
   };
-  struct Way {
+  struct RopeLength {
     double length = 0.0, rate = 0.0;
   };
-  struct Left {
+  struct PartLength {
     const RopePart* part = nullptr;
     double length = std::numeric_limits<double>::infinity(); ///< length in excess of what counts as none, m
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
-  static Way way_of(const Entry& entry, const Motion<double>* motion) {
-    Way way{entry.fixed_length, 0.0};
+  static RopeLength rope_length(const ElementData& entry, const Motion<double>* motion) {
+    RopeLength way{entry.fixed_length, 0.0};
     for (const RopePart& part : entry.parts) {
       const auto m = part.measure.at<false, double>(motion[part.a], motion[part.b]);
       way.length += m.value;
@@ -64,7 +64,7 @@ public:
     return way;
   }
   /// The length is the sum of all parts.
-  static double rounding_of(const Entry& entry, const Motion<double>* motion) {
+  static double rounding_of(const ElementData& entry, const Motion<double>* motion) {
     double sum = k_rounded_sum * entry.fixed_length;
     for (const RopePart& part : entry.parts) {
       const Motion<double>&a = motion[part.a], &b = motion[part.b];
@@ -73,8 +73,8 @@ public:
     return sum;
   }
   /// Returns the part nearest to having run onto its pulley.
-  static Left least_left(const Entry& entry, double stretch, const Motion<double>* motion) {
-    Left least;
+  static PartLength shortest_part_length(const ElementData& entry, double stretch, const Motion<double>* motion) {
+    PartLength least;
     for (const RopePart& part : entry.parts) {
       const double now = part.measure.at<false, double>(motion[part.a], motion[part.b]).value;
       const double none = std::max(OneSidedRow::k_least_part * -entry.law.offset, std::min(stretch, k_run_in * part.given));
@@ -83,18 +83,19 @@ public:
     return least;
   }
   [[nodiscard]] double tension(int i, const Evaluation& e) const {
-    const Way way = way_of(entries[i], e.motion);
+    const RopeLength way = rope_length(entries[i], e.motion);
     return entries[i].law.force(-way.length, -way.rate, e.mode[entries[i].unit]);
   }
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
-      const Way way = way_of(entry, e.motion);
+    for (const ElementData& entry : entries) {
+      const RopeLength way = rope_length(entry, e.motion);
       const UnitMode mode = e.mode[entry.unit];
       const double f = entry.law.force(-way.length, -way.rate, mode);
-      entry.law.watch(-way.length, -way.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
-      const bool is_watched = mode == k_contact_pressed && entry.parts.size() > 1;
-      e.watch[entry.watch + k_on_pulley] = is_watched ? least_left(entry, way.length + entry.law.offset, e.motion).length : 1.0;
+      entry.law.event_value(-way.length, -way.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
+      const bool is_monitored = mode == k_contact_pressed && entry.parts.size() > 1;
+      e.event_value[entry.first_event + k_on_pulley] =
+          is_monitored ? shortest_part_length(entry, way.length + entry.law.offset, e.motion).length : 1.0;
       e.dissipation -= (entry.law.elastic_force(-way.length, mode) - f) * way.rate;
       if (f == 0.0) continue;
       for (const RopePart& part : entry.parts) {
@@ -108,14 +109,14 @@ public:
 
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += entry.law.energy(-way_of(entry, motion).length);
+    for (const ElementData& entry : entries) sum += entry.law.energy(-rope_length(entry, motion).length);
     return sum;
   }
 
   // Adds −T ∂²L/∂q² of each part alone, and −∂L/∂q (k ∂L + c ∂L̇) for each pair of parts.
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
-      const Way way = way_of(entry, e.motion);
+    for (const ElementData& entry : entries) {
+      const RopeLength way = rope_length(entry, e.motion);
       const UnitMode mode = e.mode[entry.unit];
       const double f = entry.law.force(-way.length, -way.rate, mode);
       for (const RopePart& one : entry.parts) {
@@ -134,33 +135,33 @@ public:
   }
 
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       for (const RopePart& part : entry.parts) is_used[part.a] = is_used[part.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries)
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries)
       for (const RopePart& part : entry.parts) turns.add(part.a, part.b, turning_of(part.measure));
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
-    const Way way = way_of(entries[element], e.motion);
-    return entries[element].law.mode_at(-way.length, -way.rate);
+    const RopeLength way = rope_length(entries[element], e.motion);
+    return entries[element].law.initial_mode(-way.length, -way.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Entry& entry = entries[element];
-    const Way way = way_of(entry, e.motion);
+    const ElementData& entry = entries[element];
+    const RopeLength way = rope_length(entry, e.motion);
     if (slot == k_on_pulley) {
-      const RopePart& part = *least_left(entry, way.length + entry.law.offset, e.motion).part;
+      const RopePart& part = *shortest_part_length(entry, way.length + entry.law.offset, e.motion).part;
       throw rope_has_run_in(e.t, entry.name, part.name_a, part.name_b);
     }
     return entry.law.next_mode(mode, slot, -way.length, -way.rate, rounding_of(entry, e.motion));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Entry& entry = entries[element];
-    return entry.law.is_surely_positive(mode, slot, -way_of(entry, e.motion).length, rounding_of(entry, e.motion));
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const ElementData& entry = entries[element];
+    return entry.law.is_armed_at_entry(mode, slot, -rope_length(entry, e.motion).length, rounding_of(entry, e.motion));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;
-    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::transition(from, to);
+    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::event_kind(from, to);
   }
 
 private:
@@ -259,7 +260,7 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
 }
 
 // `entry`: as for an elastic rope; `now`: length of the way in the reference pose.
-void add_inextensible(const RopeGroup::Entry& entry, double now, double length, SystemBuilder& builder) {
+void add_inextensible(const RopeGroup::ElementData& entry, double now, double length, SystemBuilder& builder) {
   constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that accelerates the lightest body by less counts as rounding
   constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // relative to the length; m, larger than the residuals after projection
   refuse_time_stepping(builder);
@@ -295,7 +296,7 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   std::vector<std::string> names{e.a};
   names.insert(names.end(), e.over.begin(), e.over.end());
   names.push_back(e.b);
-  RopeGroup::Entry entry;
+  RopeGroup::ElementData entry;
   entry.name = e.name;
   double now = 0.0;
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
@@ -320,12 +321,12 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   entry.law = {*e.stiffness, e.damping, -length};
   RopeGroup& group = builder.group<RopeGroup>();
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, RopeGroup::k_watches);
+  builder.add_unit(group, RopeGroup::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("length", "m", "length of the way over its points",
-                      [&group, i](const Snapshot& s) { return RopeGroup::way_of(group.entries[i], s.motion).length; });
+                      [&group, i](const Snapshot& s) { return RopeGroup::rope_length(group.entries[i], s.motion).length; });
   builder.add_channel("rate", "m/s", {"of that length", "positive: it grows"},
-                      [&group, i](const Snapshot& s) { return RopeGroup::way_of(group.entries[i], s.motion).rate; });
+                      [&group, i](const Snapshot& s) { return RopeGroup::rope_length(group.entries[i], s.motion).rate; });
   builder.add_channel("tension", "N", {"force all along it, zero while it is slack", "positive: it pulls"},
                       [&group, i](const Snapshot& s) { return group.tension(i, *s.evaluation); });
 }

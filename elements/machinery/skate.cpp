@@ -27,23 +27,25 @@ public:
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
     return grip * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_bounds<double>(grip, wrench[0], watch);
+  void stick_events(const Evaluation&, const FrictionState&, const double* wrench, double* event_value) const override {
+    bound_events<double>(grip, wrench[0], event_value);
   }
-  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
-                                    Traced* watch) const override {
+  [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState& state, const TapeNumber* rate, TapeNumber* wrench,
+                                     TapeNumber* event_value) const override {
     if (rate) {
-      wrench[0] = Traced(-state.sign * drags);
-      watch[0] = state.sign * rate[0];
-      watch[1] = 1.0;
+      wrench[0] = TapeNumber(-state.sign * drags);
+      event_value[0] = state.sign * rate[0];
+      event_value[1] = 1.0;
     } else {
-      watch_bounds<Traced>(Traced(grip), wrench[0], watch);
+      bound_events<TapeNumber>(TapeNumber(grip), wrench[0], event_value);
     }
-    watch[2] = 1.0;
+    event_value[2] = 1.0;
     return true;
   }
-  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override { state.sign = wrench[0] > 0.0 ? -1 : 1; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
+  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
     return block_within(is_kinetic ? drags : grip, a[0], b[0]);
   }

@@ -21,7 +21,7 @@ D18 exponential(const D18& x) {
 }
 
 // Returns α of the drum, and of a belt's other wheel.
-template <class S> std::array<S, 2> angles_of(const Group::Entry& entry, const Group::Flow<S>& flow) {
+template <class S> std::array<S, 2> angles_of(const Group::ElementData& entry, const Group::Flow<S>& flow) {
   const WoundMeasure& first = entry.parts[0].measure;
   if (!entry.is_belt) {
     const S turned = entry.parts[1].measure.turned(flow.straight[1].u) - first.turned(flow.straight[0].u);
@@ -33,7 +33,7 @@ template <class S> std::array<S, 2> angles_of(const Group::Entry& entry, const G
 }
 
 // Returns the ratio E where the band is held least.
-template <class S> S ratio_of(const Group::Entry& entry, const std::array<S, 2>& angles) {
+template <class S> S ratio_of(const Group::ElementData& entry, const std::array<S, 2>& angles) {
   const S at_drum = S(entry.friction[0]) * angles[0];
   if (!entry.is_belt) return exponential(at_drum);
   const S at_other = S(entry.friction[1]) * angles[1];
@@ -41,7 +41,7 @@ template <class S> S ratio_of(const Group::Entry& entry, const std::array<S, 2>&
 }
 
 // Computes T_i and ṡ from τ_i and E.
-template <class S> void find_tensions(const Group::Entry& entry, UnitMode mode, Group::Flow<S>& flow) {
+template <class S> void find_tensions(const Group::ElementData& entry, UnitMode mode, Group::Flow<S>& flow) {
   const auto& [first, second] = flow.resting;
   const S c0(entry.time * entry.parts[0].stiffness), c1(entry.time * entry.parts[1].stiffness);
   if (mode == Group::k_to_second) flow.slip = (second - flow.ratio * first) / (c1 + flow.ratio * c0);
@@ -54,7 +54,8 @@ template <class S> void find_tensions(const Group::Entry& entry, UnitMode mode, 
   flow.slip = (k1 * flow.rate[1] - k0 * flow.rate[0]) / (k0 + k1);
 }
 
-template <class S> Group::Flow<S> flow_with(const Group::Entry& entry, const std::array<Motion<S>, 3>& motion, const S& s, UnitMode mode) {
+template <class S>
+Group::Flow<S> flow_with(const Group::ElementData& entry, const std::array<Motion<S>, 3>& motion, const S& s, UnitMode mode) {
   Group::Flow<S> flow;
   for (std::size_t i = 0; i < 2; ++i) {
     const Group::Part& part = entry.parts[i];
@@ -70,7 +71,7 @@ template <class S> Group::Flow<S> flow_with(const Group::Entry& entry, const std
   return flow;
 }
 
-Group::Flow<D18> seeded_flow(const Group::Entry& entry, const Evaluation& e) {
+Group::Flow<D18> seeded_flow(const Group::ElementData& entry, const Evaluation& e) {
   const std::array<int, 3> bodies = entry.bodies();
   const std::array<Motion<D18>, 3> motion = {seeded_of<3>(e.motion[bodies[0]], 0), seeded_of<3>(e.motion[bodies[1]], 1),
                                              seeded_of<3>(e.motion[bodies[2]], 2)};
@@ -82,7 +83,7 @@ struct ByState {
   std::array<double, 2> tension{0.0, 0.0};
   double slip = 0.0;
 };
-ByState by_state(const Group::Entry& entry, UnitMode mode) {
+ByState by_state(const Group::ElementData& entry, UnitMode mode) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   ByState by;
   if (mode < Group::k_sticks) return by;
@@ -92,28 +93,28 @@ ByState by_state(const Group::Entry& entry, UnitMode mode) {
 }
 
 // Returns the stiffness of both parts in series.
-double joint_stiffness(const Group::Entry& entry) {
+double joint_stiffness(const Group::ElementData& entry) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   return k0 * k1 / (k0 + k1);
 }
 
-double stored(const Group::Entry& entry, const Group::Flow<double>& flow) {
+double stored(const Group::ElementData& entry, const Group::Flow<double>& flow) {
   return 0.5 *
          (entry.parts[0].stiffness * flow.stretch[0] * flow.stretch[0] + entry.parts[1].stiffness * flow.stretch[1] * flow.stretch[1]);
 }
 
 } // namespace
 
-SlidingBandGroup::Flow<double> SlidingBandGroup::flow_of(const Entry& entry, const Motion<double>* motion, double s, UnitMode mode) {
+SlidingBandGroup::Flow<double> SlidingBandGroup::flow_of(const ElementData& entry, const Motion<double>* motion, double s, UnitMode mode) {
   return flow_with<double>(entry, {motion[entry.drum], motion[entry.parts[0].end], motion[entry.parts[1].end]}, s, mode);
 }
 
-double SlidingBandGroup::balanced(const Entry& entry, const Flow<double>& flow, double s) {
+double SlidingBandGroup::balanced(const ElementData& entry, const Flow<double>& flow, double s) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   return s + (k1 * flow.stretch[1] - k0 * flow.stretch[0]) / (k0 + k1);
 }
 
-void SlidingBandGroup::check(const Entry& entry, const Flow<double>& flow) {
+void SlidingBandGroup::check(const ElementData& entry, const Flow<double>& flow) {
   for (std::size_t i = 0; i < 2; ++i) {
     if (flow.straight[i].length < entry.parts[i].shortest)
       throw ElementFailure("what '" + entry.name + "' is fastened to has run onto its drum: a limit keeps it off", {entry.name});
@@ -126,28 +127,28 @@ void SlidingBandGroup::check(const Entry& entry, const Flow<double>& flow) {
     throw ElementFailure("'" + entry.name + "' has come off its drum: its free parts meet no longer there", {entry.name});
 }
 
-void SlidingBandGroup::watch(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e) {
-  double* const watch = e.watch + entry.watch;
-  double* const rate = e.watch_rate + entry.watch;
+void SlidingBandGroup::event_value(const ElementData& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e) {
+  double* const event_value = e.event_value + entry.first_event;
+  double* const rate = e.event_derivative + entry.first_event;
   const double sum = flow.stretch[0] + flow.stretch[1], growth = flow.rate[0] + flow.rate[1];
   rate[0] = rate[1] = std::numeric_limits<double>::quiet_NaN();
-  if (!is_taut(mode)) return whole(entry).watch(-sum, -growth, contact_mode(mode), watch, rate);
+  if (!is_taut(mode)) return whole(entry).event_value(-sum, -growth, contact_mode(mode), event_value, rate);
   if (mode == k_sticks) {
     const double slack = slack_of(entry, flow);
-    watch[0] = flow.ratio * flow.resting[0] - flow.resting[1] + slack;
-    watch[1] = flow.ratio * flow.resting[1] - flow.resting[0] + slack;
+    event_value[0] = flow.ratio * flow.resting[0] - flow.resting[1] + slack;
+    event_value[1] = flow.ratio * flow.resting[1] - flow.resting[0] + slack;
   } else {
-    watch[0] = mode == k_to_second ? flow.slip : -flow.slip;
-    watch[1] = sum + entry.time * growth;
+    event_value[0] = mode == k_to_second ? flow.slip : -flow.slip;
+    event_value[1] = sum + entry.time * growth;
   }
 }
 
 void SlidingBandGroup::add_forces(Evaluation& e) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
     const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], mode);
     check(entry, flow);
-    watch(entry, flow, mode, e);
+    event_value(entry, flow, mode, e);
     e.inner_rate[entry.inner] = flow.slip;
     if (!is_taut(mode)) {
       const double sum = flow.stretch[0] + flow.stretch[1];
@@ -166,7 +167,7 @@ void SlidingBandGroup::add_forces(Evaluation& e) const {
 
 double SlidingBandGroup::inner_energy(const Motion<double>* motion, const double* inner) const {
   double sum = 0.0;
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     // With s balanced, as in a loose band, this is the energy of both parts in series.
     const Flow<double> flow = flow_of(entry, motion, inner[entry.inner], k_sticks);
     if (flow.stretch[0] + flow.stretch[1] > 0.0) sum += stored(entry, flow);
@@ -176,9 +177,9 @@ double SlidingBandGroup::inner_energy(const Motion<double>* motion, const double
 
 // A loose band: the rate of s follows the motion only within the error of the method, so s is corrected. A taut band at rest beyond its
 // bound has slid until it is at the bound, as required in an equilibrium.
-double SlidingBandGroup::settle_inner(const Evaluation& e, double* inner) const {
+double SlidingBandGroup::project_inner(const Evaluation& e, double* inner) const {
   double dissipated = 0.0;
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
     double& s = inner[entry.inner];
     const Flow<double> flow = flow_of(entry, e.motion, s, mode);
@@ -199,8 +200,8 @@ double SlidingBandGroup::settle_inner(const Evaluation& e, double* inner) const 
   return dissipated;
 }
 
-double SlidingBandGroup::enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const {
-  const Entry& entry = entries[static_cast<std::size_t>(element)];
+double SlidingBandGroup::jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const {
+  const ElementData& entry = entries[static_cast<std::size_t>(element)];
   if (is_taut(to)) return 0.0;
   double& s = inner[entry.inner];
   const Flow<double> before = flow_of(entry, e.motion, s, to);
@@ -211,7 +212,7 @@ double SlidingBandGroup::enter_mode(int element, UnitMode to, const Evaluation& 
 }
 
 void SlidingBandGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const Flow<D18> flow = seeded_flow(entry, e);
     std::array<BodyForceOf<D18>, 3> forces;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -224,7 +225,7 @@ void SlidingBandGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobia
 }
 
 void SlidingBandGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const Flow<D18> flow = seeded_flow(entry, e);
     const ByState by = by_state(entry, e.mode[entry.unit]);
     add_rate_by_motion<3>(entry.inner, entry.bodies(), flow.slip, out);
@@ -240,12 +241,12 @@ void SlidingBandGroup::add_state_jacobian(const Evaluation& e, StateJacobian& ou
 }
 
 void SlidingBandGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     for (const int body : entry.bodies()) is_used[body] = 1;
 }
 
-void SlidingBandGroup::enter_turns(TurnTable& turns) const {
-  for (const Entry& entry : entries)
+void SlidingBandGroup::register_turns(TurnTable& turns) const {
+  for (const ElementData& entry : entries)
     for (const Part& part : entry.parts) turns.add(entry.drum, part.end, turning_of(part.measure));
 }
 
@@ -256,13 +257,13 @@ UnitMode SlidingBandGroup::contact_mode(UnitMode mode) {
   return mode == k_let_go ? k_contact_released : k_contact_pressed;
 }
 
-UnitMode SlidingBandGroup::mode_by_ratio(const Entry& entry, const Flow<double>& flow) {
+UnitMode SlidingBandGroup::mode_by_ratio(const ElementData& entry, const Flow<double>& flow) {
   const double slack = slack_of(entry, flow);
   if (flow.resting[1] > flow.ratio * flow.resting[0] + slack) return k_to_second;
   return flow.resting[0] > flow.ratio * flow.resting[1] + slack ? k_to_first : k_sticks;
 }
 
-double SlidingBandGroup::rounding_of(const Entry& entry, const Evaluation& e, const Flow<double>& flow) {
+double SlidingBandGroup::rounding_of(const ElementData& entry, const Evaluation& e, const Flow<double>& flow) {
   double sum = 0.0;
   const Motion<double>& drum = e.motion[entry.drum];
   for (std::size_t i = 0; i < 2; ++i) {
@@ -276,15 +277,15 @@ double SlidingBandGroup::rounding_of(const Entry& entry, const Evaluation& e, co
 }
 
 UnitMode SlidingBandGroup::initial_mode(int element, const Evaluation& e) const {
-  const Entry& entry = entries[static_cast<std::size_t>(element)];
+  const ElementData& entry = entries[static_cast<std::size_t>(element)];
   const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], k_sticks);
-  const UnitMode mode = whole(entry).mode_at(-(flow.stretch[0] + flow.stretch[1]), -(flow.rate[0] + flow.rate[1]));
+  const UnitMode mode = whole(entry).initial_mode(-(flow.stretch[0] + flow.stretch[1]), -(flow.rate[0] + flow.rate[1]));
   if (mode != k_contact_pressed) return mode == k_contact_open ? k_loose : k_let_go;
   return mode_by_ratio(entry, flow);
 }
 
 UnitMode SlidingBandGroup::next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const {
-  const Entry& entry = entries[static_cast<std::size_t>(element)];
+  const ElementData& entry = entries[static_cast<std::size_t>(element)];
   const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], mode);
   const double value = -(flow.stretch[0] + flow.stretch[1]), rate = -(flow.rate[0] + flow.rate[1]), rounding = rounding_of(entry, e, flow);
   const KelvinVoigtContact law = whole(entry);
@@ -294,20 +295,20 @@ UnitMode SlidingBandGroup::next_mode(int element, UnitMode mode, int slot, const
   };
   if (!is_taut(mode)) return of_contact(law.next_mode(contact_mode(mode), slot, value, rate, rounding));
   // Both bounds coincide at zero tension.
-  const bool is_without = law.raw(value, rate) <= rounding;
+  const bool is_without = law.unclamped_force(value, rate) <= rounding;
   if (is_without || (mode != k_sticks && slot == 1)) return of_contact(law.next_mode(k_contact_pressed, 0, value, rate, rounding));
   if (mode == k_sticks) return slot == 0 ? k_to_second : k_to_first;
   return k_sticks;
 }
 
-bool SlidingBandGroup::is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const {
+bool SlidingBandGroup::is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const {
   if (is_taut(mode)) return false;
-  const Entry& entry = entries[static_cast<std::size_t>(element)];
+  const ElementData& entry = entries[static_cast<std::size_t>(element)];
   const Flow<double> flow = flow_of(entry, e.motion, e.inner[entry.inner], mode);
-  return whole(entry).is_surely_positive(contact_mode(mode), slot, -(flow.stretch[0] + flow.stretch[1]), rounding_of(entry, e, flow));
+  return whole(entry).is_armed_at_entry(contact_mode(mode), slot, -(flow.stretch[0] + flow.stretch[1]), rounding_of(entry, e, flow));
 }
 
-EventKind SlidingBandGroup::transition(UnitMode from, UnitMode to) const {
+EventKind SlidingBandGroup::event_kind(UnitMode from, UnitMode to) const {
   if (is_taut(from) && is_taut(to)) {
     if (to == k_sticks) return EventKind::sticks;
     return to == k_to_second ? EventKind::slips_forward : EventKind::slips_backward;

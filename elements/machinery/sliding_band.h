@@ -35,7 +35,7 @@ namespace steplap {
 /// All bands and belts, as one force group.
 class SlidingBandGroup final : public ForceGroup {
 public:
-  static constexpr int k_watches = 2;
+  static constexpr int k_event_count = 2;
   static constexpr double k_place = 1e-12; ///< m: accuracy of positions; forces below the corresponding tension are not distinguished from
                                            ///< the bound
   static constexpr UnitMode k_loose = 0, k_let_go = 1, k_sticks = 2, k_to_second = 3, k_to_first = 4;
@@ -48,7 +48,7 @@ public:
     double free = 0.0;     ///< elongation of the measure at zero load, m
     double shortest = 0.0; ///< shortest length, m; below it the part does not exist
   };
-  struct Entry {
+  struct ElementData {
     int drum = k_ground;
     std::array<Part, 2> parts;
     double time = 0.0; ///< τ, s
@@ -59,7 +59,7 @@ public:
     bool is_belt = false;
     double far_sign = -1.0; ///< sign for the belt's other wheel
     std::string name;
-    int inner = 0, unit = 0, watch = 0;
+    int inner = 0, unit = 0, first_event = 0;
 
     [[nodiscard]] std::array<int, 3> bodies() const { return {drum, parts[0].end, parts[1].end}; }
   };
@@ -73,42 +73,42 @@ public:
     S slip{0.0};                                      ///< ṡ
   };
 
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
-  [[nodiscard]] static Flow<double> flow_of(const Entry& entry, const Motion<double>* motion, double s, UnitMode mode);
+  [[nodiscard]] static Flow<double> flow_of(const ElementData& entry, const Motion<double>* motion, double s, UnitMode mode);
   [[nodiscard]] Flow<double> flow_now(int i, const Evaluation& e) const {
     return flow_of(entries[static_cast<std::size_t>(i)], e.motion, e.inner[entries[static_cast<std::size_t>(i)].inner],
                    e.mode[entries[static_cast<std::size_t>(i)].unit]);
   }
   /// Returns the s for which both parts have the same tension.
-  [[nodiscard]] static double balanced(const Entry& entry, const Flow<double>& flow, double s);
+  [[nodiscard]] static double balanced(const ElementData& entry, const Flow<double>& flow, double s);
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override;
-  double settle_inner(const Evaluation& e, double* inner) const override;
-  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override;
+  double project_inner(const Evaluation& e, double* inner) const override;
+  double jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const override;
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_turns(TurnTable& turns) const override;
+  void register_turns(TurnTable& turns) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override;
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
 
 private:
-  [[nodiscard]] static KelvinVoigtContact whole(const Entry& entry) { return {1.0, entry.time, 0.0}; }
+  [[nodiscard]] static KelvinVoigtContact whole(const ElementData& entry) { return {1.0, entry.time, 0.0}; }
   [[nodiscard]] static bool is_taut(UnitMode mode) { return mode >= k_sticks; }
   [[nodiscard]] static UnitMode contact_mode(UnitMode mode);
-  [[nodiscard]] static UnitMode mode_by_ratio(const Entry& entry, const Flow<double>& flow);
+  [[nodiscard]] static UnitMode mode_by_ratio(const ElementData& entry, const Flow<double>& flow);
   /// Returns the force, N, by which the tensions may exceed the ratio, so that a slide that has decayed to rounding sticks.
-  [[nodiscard]] static double slack_of(const Entry& entry, const Flow<double>& flow) {
+  [[nodiscard]] static double slack_of(const ElementData& entry, const Flow<double>& flow) {
     return k_place * (1.0 + flow.ratio) * (entry.parts[0].stiffness + entry.parts[1].stiffness);
   }
-  [[nodiscard]] static double rounding_of(const Entry& entry, const Evaluation& e, const Flow<double>& flow);
-  static void check(const Entry& entry, const Flow<double>& flow);
-  static void watch(const Entry& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e);
+  [[nodiscard]] static double rounding_of(const ElementData& entry, const Evaluation& e, const Flow<double>& flow);
+  static void check(const ElementData& entry, const Flow<double>& flow);
+  static void event_value(const ElementData& entry, const Flow<double>& flow, UnitMode mode, Evaluation& e);
 };
 
 } // namespace steplap

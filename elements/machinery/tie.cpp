@@ -17,7 +17,7 @@ namespace {
 constexpr UnitMode k_slack = 0, k_pulls = 1, k_presses = 3, k_linear = 5, k_broken = 6;
 
 struct TieLaw {
-  static constexpr int k_watches = 3;
+  static constexpr int k_event_count = 3;
   KelvinVoigtContact pull, push; ///< for −δ and δ; offset −∞ if it does not act
   double k = 0.0, c = 0.0, free = 0.0;
   double strength = std::numeric_limits<double>::infinity(); ///< total strength
@@ -48,25 +48,25 @@ struct TieLaw {
     const double d = value - free;
     return is_linear ? 0.5 * k * d * d : pull.energy(-d) + push.energy(d);
   }
-  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
+  [[nodiscard]] UnitMode initial_mode(double value, double rate) const {
     const double d = value - free;
     if (is_linear) return k_linear;
-    if (const UnitMode mode = pull.mode_at(-d, -rate); mode != k_contact_open) return tie_mode(mode, k_pulls);
-    return tie_mode(push.mode_at(d, rate), k_presses);
+    if (const UnitMode mode = pull.initial_mode(-d, -rate); mode != k_contact_open) return tie_mode(mode, k_pulls);
+    return tie_mode(push.initial_mode(d, rate), k_presses);
   }
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
+  void event_value(double value, double rate, UnitMode mode, double* event_value, double* event_derivative) const {
     const double d = value - free;
-    watch[0] = watch[1] = watch[2] = 1.0;
-    watch_rate[0] = watch_rate[1] = watch_rate[2] = std::numeric_limits<double>::quiet_NaN();
+    event_value[0] = event_value[1] = event_value[2] = 1.0;
+    event_derivative[0] = event_derivative[1] = event_derivative[2] = std::numeric_limits<double>::quiet_NaN();
     if (mode == k_broken) return;
-    if (std::isfinite(strength)) watch[2] = 1.0 - std::abs(force(value, rate, mode)) / strength;
+    if (std::isfinite(strength)) event_value[2] = 1.0 - std::abs(force(value, rate, mode)) / strength;
     if (mode == k_slack) {
-      watch[0] = std::isfinite(pull.offset) ? -d - pull.offset : 1.0;
-      watch[1] = std::isfinite(push.offset) ? d - push.offset : 1.0;
+      event_value[0] = std::isfinite(pull.offset) ? -d - pull.offset : 1.0;
+      event_value[1] = std::isfinite(push.offset) ? d - push.offset : 1.0;
     } else if (is_pull(mode)) {
-      pull.watch(-d, -rate, contact_mode(mode), watch, watch_rate);
+      pull.event_value(-d, -rate, contact_mode(mode), event_value, event_derivative);
     } else if (is_push(mode)) {
-      push.watch(d, rate, contact_mode(mode), watch, watch_rate);
+      push.event_value(d, rate, contact_mode(mode), event_value, event_derivative);
     }
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
@@ -78,30 +78,30 @@ struct TieLaw {
     if (is_pull(mode)) return tie_mode(pull.next_mode(contact_mode(mode), slot, -d, -rate, rounding), k_pulls);
     return is_push(mode) ? tie_mode(push.next_mode(contact_mode(mode), slot, d, rate, rounding), k_presses) : mode;
   }
-  [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
+  [[nodiscard]] bool is_armed_at_entry(UnitMode mode, int slot, double value, double rounding) const {
     const double d = value - free;
-    if (is_pull(mode)) return pull.is_surely_positive(contact_mode(mode), slot, -d, rounding);
-    return is_push(mode) && push.is_surely_positive(contact_mode(mode), slot, d, rounding);
+    if (is_pull(mode)) return pull.is_armed_at_entry(contact_mode(mode), slot, -d, rounding);
+    return is_push(mode) && push.is_armed_at_entry(contact_mode(mode), slot, d, rounding);
   }
 };
 
 template <class Measure> class TieGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     Measure measure;
     TieLaw law;
     int inner = -1; ///< 1 after it has broken, for a tie with a strength
     bool stops = false;
-    int link = 0, unit = 0, watch = 0;
+    int link = 0, unit = 0, first_event = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const UnitMode mode = e.mode[entry.unit];
       const auto m = entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
-      entry.law.watch(m.value, m.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      entry.law.event_value(m.value, m.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
       const double f = entry.law.force(m.value, m.rate, mode);
       if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
       e.dissipation += (entry.law.elastic_force(m.value, mode) - f) * m.rate;
@@ -109,60 +109,60 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       if (entry.inner < 0) sum += entry.law.energy(value(entry, motion));
     return sum;
   }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       if (entry.inner >= 0 && inner[entry.inner] == 0.0) sum += entry.law.energy(value(entry, motion));
     return sum;
   }
-  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override {
-    const Entry& entry = entries[element];
+  double jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const override {
+    const ElementData& entry = entries[element];
     if (to != k_broken) return 0.0;
     inner[entry.inner] = 1.0;
     return entry.law.energy(value(entry, e.motion));
   }
-  [[nodiscard]] bool stops_in(int element, UnitMode to) const override { return to == k_broken && entries[element].stops; }
+  [[nodiscard]] bool ends_run_in(int element, UnitMode to) const override { return to == k_broken && entries[element].stops; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       add_pair_jacobian(
           entry.a, entry.b, entry.measure, e,
           [&](const Dual<12>& v, const Dual<12>& rate) { return entry.law.force(v, rate, e.mode[entry.unit]); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     if (entry.inner >= 0 && e.inner[entry.inner] != 0.0) return k_broken;
     const auto m = measured(element, e);
-    return entry.law.mode_at(m.value, m.rate);
+    return entry.law.initial_mode(m.value, m.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const auto m = measured(element, e);
     return entries[element].law.next_mode(mode, slot, m.value, m.rate, rounding_of(element, m, e));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const auto m = measured(element, e);
-    return entries[element].law.is_surely_positive(mode, slot, m.value, rounding_of(element, m, e));
+    return entries[element].law.is_armed_at_entry(mode, slot, m.value, rounding_of(element, m, e));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
     if (to == k_broken) return EventKind::breaks;
     if (to == k_slack) return EventKind::enters_gap;
     if (from == k_slack) return EventKind::closes_gap;
     return to == k_pulls || to == k_presses ? EventKind::force_returns : EventKind::force_reaches_zero;
   }
   [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
   /// Returns the force, tension positive.
@@ -175,7 +175,7 @@ private:
   [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
     return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
   }
-  static double value(const Entry& entry, const Motion<double>* motion) {
+  static double value(const ElementData& entry, const Motion<double>* motion) {
     return entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value;
   }
 };
@@ -183,7 +183,7 @@ private:
 template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, int b, const Measure& measure) {
   constexpr double k_never = -std::numeric_limits<double>::infinity();
   const double n = static_cast<double>(e.count), k = n * e.stiffness, c = n * e.damping;
-  typename TieGroup<Measure>::Entry entry;
+  typename TieGroup<Measure>::ElementData entry;
   entry.a = a;
   entry.b = b;
   entry.measure = measure;
@@ -201,7 +201,7 @@ template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, i
   auto& group = builder.group<TieGroup<Measure>>();
   if (e.strength) entry.inner = builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
-  builder.add_unit(group, TieLaw::k_watches);
+  builder.add_unit(group, TieLaw::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("elongation", "m", {"its length less the free one", "positive: stretched"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.free; });

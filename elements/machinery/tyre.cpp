@@ -73,7 +73,7 @@ void compile_tyre(const Element& element, SystemBuilder& builder) {
   auto road = std::make_shared<const Road>(e.road.empty() ? Road() : Road(e.road));
   if (!fits(*road, e.radius, builder)) return;
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
-  TyreGroup::Entry entry;
+  TyreGroup::ElementData entry;
   entry.a = a.body;
   entry.b = b.body;
   entry.measure = {a.point, b.point, builder.direction(b, {1.0, 0.0}), e.radius, std::move(road)};
@@ -82,7 +82,7 @@ void compile_tyre(const Element& element, SystemBuilder& builder) {
   TyreGroup& group = builder.group<TyreGroup>();
   entry.inner = builder.add_inner(group, entry.measure.at(builder.reference(a.body), builder.reference(b.body)).tread.value);
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, TyreGroup::k_watches);
+  builder.add_unit(group, TyreGroup::k_event_count);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   add_channels(group, static_cast<int>(group.entries.size()) - 1, builder);
 }

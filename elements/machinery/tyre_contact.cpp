@@ -35,7 +35,7 @@ template <class S> S damping_at(const TreadLaw& law, const S& through, UnitMode 
 }
 
 template <class S>
-TreadState<S> tread_at(const TyreGroup::Entry& entry, const WheelMotion<S>& w, const S& p, const S& normal, UnitMode mode) {
+TreadState<S> tread_at(const TyreGroup::ElementData& entry, const WheelMotion<S>& w, const S& p, const S& normal, UnitMode mode) {
   const TreadLaw& law = entry.tread;
   TreadState<S> t;
   t.bent = w.tread.value - p;
@@ -63,7 +63,7 @@ UnitMode sliding_at(double trial, double most) {
 }
 
 // Returns the whole mode for a given mode of the contact; direction of rotation and sliding follow from the motion.
-UnitMode mode_with(const TyreGroup::Entry& entry, const WheelMotion<double>& w, double p, UnitMode contact) {
+UnitMode mode_with(const TyreGroup::ElementData& entry, const WheelMotion<double>& w, double p, UnitMode contact) {
   const WheelSpin turning{w.rolling<0.0, std::abs(w.rolling)> entry.tread.slow()};
   if (contact != k_contact_pressed) return mode_of(contact, k_adheres, turning);
   const TreadState<double> t =
@@ -71,7 +71,7 @@ UnitMode mode_with(const TyreGroup::Entry& entry, const WheelMotion<double>& w, 
   return mode_of(contact, sliding_at(t.trial, t.most), turning);
 }
 
-WheelMotion<double> wheel_at(const TyreGroup::Entry& entry, const Motion<double>* motion) {
+WheelMotion<double> wheel_at(const TyreGroup::ElementData& entry, const Motion<double>* motion) {
   return entry.measure.at(motion[entry.a], motion[entry.b]);
 }
 
@@ -80,7 +80,7 @@ struct Derivatives {
   WheelMotion<D12> wheel;
   D12 normal;
   TreadState<D12> tread;
-  Derivatives(const TyreGroup::Entry& entry, const Evaluation& e)
+  Derivatives(const TyreGroup::ElementData& entry, const Evaluation& e)
       : wheel(entry.measure.at(seeded(e.motion[entry.a], 0), seeded(e.motion[entry.b], 3))),
         normal(entry.press.force(wheel.gap.value, wheel.gap.rate, contact_of(e.mode[entry.unit]))),
         tread(tread_at(entry, wheel, D12(e.inner[entry.inner]), normal, e.mode[entry.unit])) {}
@@ -94,44 +94,44 @@ void add_along(const MeasureValue<D12>& m, const D12& force, D12* on) {
 } // namespace
 
 void TyreGroup::add_forces(Evaluation& e) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit], contact = contact_of(mode);
     const WheelMotion<double> w = entry.measure.at(e.link_motion[entry.link], Origin{});
-    double* const watch = e.watch + entry.watch;
-    std::fill_n(e.watch_rate + entry.watch, k_watches, std::numeric_limits<double>::quiet_NaN());
-    entry.press.watch(w.gap.value, w.gap.rate, contact, watch, e.watch_rate + entry.watch);
+    double* const event_value = e.event_value + entry.first_event;
+    std::fill_n(e.event_derivative + entry.first_event, k_event_count, std::numeric_limits<double>::quiet_NaN());
+    entry.press.event_value(w.gap.value, w.gap.rate, contact, event_value, e.event_derivative + entry.first_event);
     const double normal = entry.press.force(w.gap.value, w.gap.rate, contact);
     const TreadState<double> t = tread_at(entry, w, e.inner[entry.inner], normal, mode);
     e.contact_force[entry.contact] = normal;
     e.inner_rate[entry.inner] = w.tread.rate - t.rate;
     e.dissipation += (entry.press.elastic_force(w.gap.value, contact) - normal) * w.gap.rate + t.force * w.slip_rate -
                      entry.tread.stiffness * t.bent * t.rate;
-    watch[2] = watch[3] = watch[4] = watch[5] = 1.0;
+    event_value[2] = event_value[3] = event_value[4] = event_value[5] = 1.0;
     if (contact != k_contact_pressed) continue;
     apply_force(e.link_force[entry.link], w.gap, normal);
     apply_force(e.link_force[entry.link], w.tread, -t.force);
     const UnitMode sliding = sliding_of(mode);
     if (sliding == k_adheres) {
-      watch[2] = t.most - t.trial;
-      watch[3] = t.most + t.trial;
+      event_value[2] = t.most - t.trial;
+      event_value[3] = t.most + t.trial;
     } else {
-      watch[2] = (sliding == k_slides_forward ? t.trial : -t.trial) - t.most;
+      event_value[2] = (sliding == k_slides_forward ? t.trial : -t.trial) - t.most;
     }
     const double through = turns_forward(mode) ? -w.rolling : w.rolling;
-    watch[4] = through + k_met + rate_rounding(w.tread, e.motion[entry.a], e.motion[entry.b]);
-    watch[5] = turns_fast(mode) ? through - entry.tread.slow() : entry.tread.slow() - through;
+    event_value[4] = through + k_met + rate_rounding(w.tread, e.motion[entry.a], e.motion[entry.b]);
+    event_value[5] = turns_fast(mode) ? through - entry.tread.slow() : entry.tread.slow() - through;
   }
 }
 
 double TyreGroup::potential(const Motion<double>* motion) const {
   double sum = 0.0;
-  for (const Entry& entry : entries) sum += entry.press.energy(wheel_at(entry, motion).gap.value);
+  for (const ElementData& entry : entries) sum += entry.press.energy(wheel_at(entry, motion).gap.value);
   return sum;
 }
 
 double TyreGroup::inner_energy(const Motion<double>* motion, const double* inner) const {
   double sum = 0.0;
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const double bent = wheel_at(entry, motion).tread.value - inner[entry.inner];
     sum += 0.5 * entry.tread.stiffness * bent * bent;
   }
@@ -139,7 +139,7 @@ double TyreGroup::inner_energy(const Motion<double>* motion, const double* inner
 }
 
 void TyreGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const Derivatives d(entry, e);
     D12 on[6];
     add_along(d.wheel.gap, d.normal, on);
@@ -158,7 +158,7 @@ void TyreGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out
 
 // T and u̇ depend on p only by u = s − p, at given s.
 void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
     const Derivatives d(entry, e);
     const bool adheres = tyre_presses(mode) && sliding_of(mode) == k_adheres;
@@ -180,25 +180,25 @@ void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobia
   }
 }
 
-void TyreGroup::start_inner(const Motion<double>* motion, double* inner) const {
-  for (const Entry& entry : entries) inner[entry.inner] = wheel_at(entry, motion).tread.value;
+void TyreGroup::relax_inner(const Motion<double>* motion, double* inner) const {
+  for (const ElementData& entry : entries) inner[entry.inner] = wheel_at(entry, motion).tread.value;
 }
 
 void TyreGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
-void TyreGroup::enter_turns(TurnTable& turns) const {
-  for (const Entry& entry : entries) turns.add(entry.a, entry.b, Turning{moves_by_turning(entry.measure.centre), true});
+void TyreGroup::register_turns(TurnTable& turns) const {
+  for (const ElementData& entry : entries) turns.add(entry.a, entry.b, Turning{moves_by_turning(entry.measure.centre), true});
 }
 
-void TyreGroup::enter_links(LinkTable& links) {
-  for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+void TyreGroup::register_links(LinkTable& links) {
+  for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
 // If the wheel is higher above the road than the radius of its hollows, another point may be nearest, but it is no nearer than this bound.
 void TyreGroup::add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const WheelMotion<double> w = wheel_at(entry, motion);
     GapBounds bounds;
     bounds.a = entry.a;
@@ -214,13 +214,13 @@ void TyreGroup::add_gaps(const Motion<double>* motion, std::vector<GapBounds>& o
 }
 
 UnitMode TyreGroup::initial_mode(int element, const Evaluation& e) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   const WheelMotion<double> w = measured(element, e);
-  return mode_with(entry, w, e.inner[entry.inner], entry.press.mode_at(w.gap.value, w.gap.rate));
+  return mode_with(entry, w, e.inner[entry.inner], entry.press.initial_mode(w.gap.value, w.gap.rate));
 }
 
 UnitMode TyreGroup::next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   const UnitMode contact = contact_of(mode), sliding = sliding_of(mode);
   if (slot < 2) {
     const WheelMotion<double> w = measured(element, e);
@@ -235,17 +235,17 @@ UnitMode TyreGroup::next_mode(int element, UnitMode mode, int slot, const Evalua
   return mode_of(contact, slot == 2 ? k_slides_forward : k_slides_backward, turning);
 }
 
-bool TyreGroup::is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const {
+bool TyreGroup::is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const {
   if (slot > 1) return false;
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   const WheelMotion<double> w = measured(element, e);
-  return entry.press.is_surely_positive(contact_of(mode), slot, w.gap.value, value_rounding(w.gap, e.motion[entry.a], e.motion[entry.b]));
+  return entry.press.is_armed_at_entry(contact_of(mode), slot, w.gap.value, value_rounding(w.gap, e.motion[entry.a], e.motion[entry.b]));
 }
 
-WatchKind TyreGroup::watch_kind(int slot) const { return slot == 4 ? WatchKind::rate : WatchKind::exact; }
+EventTolerance TyreGroup::event_tolerance(int slot) const { return slot == 4 ? EventTolerance::velocity : EventTolerance::none; }
 
-EventKind TyreGroup::transition(UnitMode from, UnitMode to) const {
-  if (contact_of(from) != contact_of(to)) return KelvinVoigtContact::transition(contact_of(from), contact_of(to));
+EventKind TyreGroup::event_kind(UnitMode from, UnitMode to) const {
+  if (contact_of(from) != contact_of(to)) return KelvinVoigtContact::event_kind(contact_of(from), contact_of(to));
   if (sliding_of(from) == sliding_of(to)) return EventKind::none;
   return sliding_of(to) == k_adheres ? EventKind::sticks : sliding_in(to);
 }
@@ -258,13 +258,13 @@ EventKind TyreGroup::sliding_in(UnitMode mode) const {
 WheelMotion<double> TyreGroup::measured(int element, const Evaluation& e) const { return wheel_at(entries[element], e.motion); }
 
 double TyreGroup::normal_force(int element, const Evaluation& e) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   const WheelMotion<double> w = measured(element, e);
   return entry.press.force(w.gap.value, w.gap.rate, contact_of(e.mode[entry.unit]));
 }
 
 TreadState<double> TyreGroup::tread_state(int element, const Evaluation& e) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   return tread_at(entry, measured(element, e), e.inner[entry.inner], normal_force(element, e), e.mode[entry.unit]);
 }
 

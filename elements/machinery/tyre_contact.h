@@ -77,32 +77,32 @@ template <class S> struct TreadState {
 /// All tyres, as one force group.
 class TyreGroup final : public ForceGroup, public GapSource, public SlidingUnits {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     WheelMeasure measure;
     KelvinVoigtContact press; ///< law for the distance of the centre
     TreadLaw tread;
     int inner = 0; ///< index of p
-    int link = 0, unit = 0, watch = 0, contact = 0;
+    int link = 0, unit = 0, first_event = 0, contact = 0;
   };
-  static constexpr int k_watches = 6; ///< two of the contact, two of the tread, one for the direction of rotation, one for its speed
-  std::vector<Entry> entries;
+  static constexpr int k_event_count = 6; ///< two of the contact, two of the tread, one for the direction of rotation, one for its speed
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>* motion) const override;
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override;
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const override;
-  void start_inner(const Motion<double>* motion, double* inner) const override;
+  void relax_inner(const Motion<double>* motion, double* inner) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_turns(TurnTable& turns) const override;
-  void enter_links(LinkTable& links) override;
+  void register_turns(TurnTable& turns) const override;
+  void register_links(LinkTable& links) override;
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] WatchKind watch_kind(int slot) const override;
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override;
+  [[nodiscard]] EventTolerance event_tolerance(int slot) const override;
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
   [[nodiscard]] EventKind sliding_in(UnitMode mode) const override;
 
   /// The following functions are for channels.

@@ -18,17 +18,17 @@ constexpr double k_shortest = 1e-6; // of the straight part in the reference pos
 
 class WoundRopeGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     WoundMeasure measure;
     KelvinVoigtContact law;
     std::string name;
     double shortest = 0.0; ///< m: a shorter straight part has vanished, and its direction is rounding
-    int unit = 0, watch = 0;
+    int unit = 0, first_event = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
-  [[nodiscard]] static MeasureValue<double> measured(const Entry& entry, const Motion<double>* motion) {
+  [[nodiscard]] static MeasureValue<double> measured(const ElementData& entry, const Motion<double>* motion) {
     return entry.measure.at<false, double>(motion[entry.a], motion[entry.b]);
   }
   [[nodiscard]] double tension(int i, const Evaluation& e) const {
@@ -37,13 +37,13 @@ public:
   }
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const auto part = entry.measure.straight(e.motion[entry.a], e.motion[entry.b]);
       const auto m = entry.measure.along(part, e.motion[entry.a], e.motion[entry.b]);
       check(entry, part);
       const UnitMode mode = e.mode[entry.unit];
       const double f = entry.law.force(m.value, m.rate, mode);
-      entry.law.watch(m.value, m.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      entry.law.event_value(m.value, m.rate, mode, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
       e.dissipation += (entry.law.elastic_force(m.value, mode) - f) * m.rate;
       if (f == 0.0) continue;
       add_at(e.force[entry.a], m.lever_a, f * m.direction);
@@ -52,43 +52,43 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += entry.law.energy(measured(entry, motion).value);
+    for (const ElementData& entry : entries) sum += entry.law.energy(measured(entry, motion).value);
     return sum;
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries)
+    for (const ElementData& entry : entries)
       add_pair_jacobian(
           entry.a, entry.b, entry.measure, e,
           [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e.mode[entry.unit]); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) turns.add(entry.a, entry.b, turning_of(entry.measure));
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const auto m = measured(entries[element], e.motion);
-    return entries[element].law.mode_at(m.value, m.rate);
+    return entries[element].law.initial_mode(m.value, m.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     const auto m = measured(entry, e.motion);
     return entry.law.next_mode(mode, slot, m.value, m.rate, rounding_of(entry, m, e));
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Entry& entry = entries[element];
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const ElementData& entry = entries[element];
     const auto m = measured(entry, e.motion);
-    return entry.law.is_surely_positive(mode, slot, m.value, rounding_of(entry, m, e));
+    return entry.law.is_armed_at_entry(mode, slot, m.value, rounding_of(entry, m, e));
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;
-    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::transition(from, to);
+    return from == k_contact_open ? EventKind::closes_gap : KelvinVoigtContact::event_kind(from, to);
   }
 
 private:
   // The value contains the wound length in addition to the terms of the measure.
-  static double rounding_of(const Entry& entry, const MeasureValue<double>& m, const Evaluation& e) {
+  static double rounding_of(const ElementData& entry, const MeasureValue<double>& m, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
     const double wound =
         std::abs(entry.measure.taken) + std::abs(entry.measure.radius_a * a.theta) + std::abs(entry.measure.radius_b * b.theta);
@@ -99,7 +99,7 @@ private:
     sum.fy += force.y;
     sum.m += cross(lever, force);
   }
-  static void check(const Entry& entry, const WoundMeasure::Straight<double>& part) {
+  static void check(const ElementData& entry, const WoundMeasure::Straight<double>& part) {
     const WoundMeasure& measure = entry.measure;
     if (part.length < entry.shortest)
       throw ElementFailure("what hangs on wound_rope '" + entry.name + "' has run onto its wheel: a limit keeps it off", {entry.name});
@@ -125,7 +125,7 @@ void compile_wound_rope(const Element& element, SystemBuilder& builder) {
   if (a.body == b.body) return builder.error("joins a body with itself: name markers on two different bodies");
   if (!has_tangent(e, a, b, builder)) return;
   WoundRopeGroup& group = builder.group<WoundRopeGroup>();
-  WoundRopeGroup::Entry entry{a.body, b.body, {a.point, b.point, e.radius_a, e.radius_b}, {}, e.name};
+  WoundRopeGroup::ElementData entry{a.body, b.body, {a.point, b.point, e.radius_a, e.radius_b}, {}, e.name};
   const Motion<double>&at_a = builder.reference(a.body), &at_b = builder.reference(b.body);
   const auto part = entry.measure.straight(at_a, at_b);
   entry.measure.start = {part.u.x, part.u.y};
@@ -134,10 +134,10 @@ void compile_wound_rope(const Element& element, SystemBuilder& builder) {
   const double free = e.slack.value_or(0.0) - e.pretension.value_or(0.0) / e.stiffness;
   entry.law = {e.stiffness, e.damping, -free};
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, KelvinVoigtContact::k_watches);
+  builder.add_unit(group, KelvinVoigtContact::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("length", "m", "length of its straight part", [&group, i](const Snapshot& s) {
-    const WoundRopeGroup::Entry& own = group.entries[i];
+    const WoundRopeGroup::ElementData& own = group.entries[i];
     return own.measure.straight(s.motion[own.a], s.motion[own.b]).length;
   });
   builder.add_channel("stretch", "m", {"by which it is longer than without load", "negative: slack"},

@@ -61,7 +61,7 @@ struct BedGaps {
   }
 };
 
-BedGaps gaps_of(const EdgeGroup::Entry& bed, const Motion<double>* motion) {
+BedGaps gaps_of(const EdgeGroup::ElementData& bed, const Motion<double>* motion) {
   BedGaps gaps;
   for (const EdgeGroup::Line& line : bed.lines)
     for (const AxisMeasure& gap : line.gap) gaps.add(gap.at<false, double>(motion[bed.a], motion[bed.b]));
@@ -71,7 +71,7 @@ BedGaps gaps_of(const EdgeGroup::Entry& bed, const Motion<double>* motion) {
 } // namespace
 
 void EdgeGroup::add_forces(Evaluation& e) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const Motion<double>& link = e.link_motion[entry.link];
     const UnitMode mode = e.mode[entry.unit];
     BedGaps gaps;
@@ -85,16 +85,16 @@ void EdgeGroup::add_forces(Evaluation& e) const {
       apply_force(e.link_force[entry.link], two, p.force[1]);
     }
     const double closing = mode == k_bed_open ? 1.0 : -1.0, filling = mode == k_bed_whole ? -1.0 : 1.0;
-    e.watch[entry.watch] = closing * gaps.least;
-    e.watch_rate[entry.watch] = closing * gaps.least_rate;
-    e.watch[entry.watch + 1] = filling * gaps.most;
-    e.watch_rate[entry.watch + 1] = filling * gaps.most_rate;
+    e.event_value[entry.first_event] = closing * gaps.least;
+    e.event_derivative[entry.first_event] = closing * gaps.least_rate;
+    e.event_value[entry.first_event + 1] = filling * gaps.most;
+    e.event_derivative[entry.first_event + 1] = filling * gaps.most_rate;
   }
 }
 
 double EdgeGroup::potential(const Motion<double>* motion) const {
   double sum = 0.0;
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     for (const Line& line : entry.lines) {
       const auto depth = [&](int end) { return -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value; };
       sum += energy(depth(0), depth(1), line.stiffness, line.length);
@@ -103,7 +103,7 @@ double EdgeGroup::potential(const Motion<double>* motion) const {
 }
 
 void EdgeGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
     if (mode == k_bed_open) continue;
     const auto a = seeded(e.motion[entry.a], 0), b = seeded(e.motion[entry.b], 3);
@@ -118,11 +118,11 @@ void EdgeGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out
 }
 
 void EdgeGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
-void EdgeGroup::enter_links(LinkTable& links) {
-  for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+void EdgeGroup::register_links(LinkTable& links) {
+  for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
 UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
@@ -134,7 +134,7 @@ UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
 // order; the result is the same for both.
 UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation& e) const {
   constexpr double k_parallel = 1e-9; // rad: a bed at a smaller angle to its yoke counts as parallel
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   double length = 0.0;
   for (const Line& line : entry.lines) length = std::max(length, line.length);
   const BedGaps gaps = gaps_of(entry, e.motion);
@@ -145,13 +145,13 @@ UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation&
   return is_pressed(gaps.least, gaps.least_rate, slot == 0) ? k_bed_partly : k_bed_open;
 }
 
-EventKind EdgeGroup::transition(UnitMode from, UnitMode to) const {
+EventKind EdgeGroup::event_kind(UnitMode from, UnitMode to) const {
   if (from == k_bed_open) return EventKind::closes;
   return to == k_bed_open ? EventKind::opens : EventKind::passes_kink;
 }
 
 EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   Bearing bearing;
   for (const Line& line : entry.lines) {
     double depth[2];

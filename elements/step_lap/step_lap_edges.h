@@ -43,23 +43,23 @@ public:
     double length = 0.0;    ///< m
   };
   /// One bed.
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground; ///< limb and active part
     double clearance = 0.0;         ///< m, of all its lines
     std::vector<Line> lines;
-    int link = 0, unit = 0, watch = 0;
+    int link = 0, unit = 0, first_event = 0;
   };
-  static constexpr int k_watches = 2;
-  std::vector<Entry> entries;
+  static constexpr int k_event_count = 2;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>* motion) const override;
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_links(LinkTable& links) override;
+  void register_links(LinkTable& links) override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
 
   /// Load of one bed: force on the limb away from the yoke, N; line loads at both ends, N/m, as sums over its lines.
   struct Bearing {

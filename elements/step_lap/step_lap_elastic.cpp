@@ -14,7 +14,7 @@ namespace {
 
 using D12 = Dual<12>;
 
-constexpr int k_direction = 3, k_lost = 6; // positions of these states, relative to Entry::inner
+constexpr int k_direction = 3, k_lost = 6; // positions of these states, relative to ElementData::inner
 constexpr int k_most_returns = 5;          // iterations; each reduces the error to the square of the relative change of the overlap
 constexpr double k_on_surface = 1e-15;     // tolerance of u
 // Limits of the iteration for p at a given direction of slip. The first step leaves an error of strain over width of the overlap.
@@ -38,7 +38,7 @@ bool is_following(UnitMode mode) { return elastic_state(mode) == k_elastic_follo
 /// Returns the strain s − p.
 Vec3 strain(const Pose& now, const double* slid) { return {now.x - slid[0], now.y - slid[1], now.theta - slid[2]}; }
 
-double stored(const ElasticGripGroup::Entry& entry, const Motion<double>* motion, const double* inner) {
+double stored(const ElasticGripGroup::ElementData& entry, const Motion<double>* motion, const double* inner) {
   if (inner[entry.inner + k_lost] != 0.0) return 0.0;
   const Vec3 d = strain(entry.friction->pose_of(motion), inner + entry.inner);
   return 0.5 * d.dot(entry.friction->stiffness() * d);
@@ -49,7 +49,7 @@ Vec3 direction(const double* slid) { return Vec3::Map(slid + k_direction) / k_di
 /// The three measures of the joint with their derivatives by the motions of both bodies.
 struct Measures {
   MeasureValue<D12> m[3];
-  Measures(const ElasticGripGroup::Entry& entry, const Evaluation& e) {
+  Measures(const ElasticGripGroup::ElementData& entry, const Evaluation& e) {
     const Motion<D12> a = seeded(e.motion[entry.a], 0), b = seeded(e.motion[entry.b], 3);
     const RowSpec* hold = entry.friction->hold;
     for (int r = 0; r < 2; ++r) m[r] = AxisMeasure{hold[r].point_a, hold[r].point_b, hold[r].direction}.at<false, D12>(a, b);
@@ -81,18 +81,18 @@ struct Measures {
 };
 
 /// Returns the direction of slip that follows from the wrench.
-Vec3 told_direction(const ElasticGripGroup::Entry& entry, const Evaluation& e, const double* p) {
+Vec3 told_direction(const ElasticGripGroup::ElementData& entry, const Evaluation& e, const double* p) {
   return entry.friction->direction_of(e, slid_at(p), entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p));
 }
 
 /// Returns the mode at the start of yielding: the direction is a state at a corner of the limit surface; elsewhere it follows from the
 /// wrench.
-UnitMode sliding_mode(const ElasticGripGroup::Entry& entry, const Evaluation& e, const double* p) {
+UnitMode sliding_mode(const ElasticGripGroup::ElementData& entry, const Evaluation& e, const double* p) {
   return entry.friction->roundness(e, slid_at(p), told_direction(entry, e, p)) < k_sharp ? k_elastic_follows : k_elastic_yields;
 }
 
 /// Moves p along the strain until the wrench lies on the limit surface (u = 1). Returns the dissipated energy.
-double return_to_surface(const ElasticGripGroup::Entry& entry, const Evaluation& e, double* p) {
+double return_to_surface(const ElasticGripGroup::ElementData& entry, const Evaluation& e, double* p) {
   const Pose now = entry.friction->pose_of(e.motion);
   double dissipated = 0.0;
   for (int i = 0; i < k_most_returns; ++i) {
@@ -108,7 +108,7 @@ double return_to_surface(const ElasticGripGroup::Entry& entry, const Evaluation&
 
 /// Moves p until the wrench is that of the direction of slip. At a corner of the limit surface the wrench hardly determines the direction,
 /// but the direction always determines the wrench. Returns the dissipated energy.
-double follow_direction(const ElasticGripGroup::Entry& entry, const Evaluation& e, double* p) {
+double follow_direction(const ElasticGripGroup::ElementData& entry, const Evaluation& e, double* p) {
   if (direction(p).isZero(0.0) || entry.friction->grip_beyond_last(e, slid_at(p)) <= 0.0) return 0.0; // already past separation
   const Vec3 along = direction(p).normalized();
   Vec3::Map(p + k_direction) = k_direction_length * along;
@@ -131,10 +131,10 @@ double follow_direction(const ElasticGripGroup::Entry& entry, const Evaluation& 
 } // namespace
 
 void ElasticGripGroup::add_forces(Evaluation& e) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
-    double* const watch = e.watch + entry.watch;
-    watch[0] = watch[1] = watch[2] = 1.0;
+    double* const event_value = e.event_value + entry.first_event;
+    event_value[0] = event_value[1] = event_value[2] = 1.0;
     if (is_apart(mode)) continue;
     const Motion<double>& m = e.link_motion[entry.link];
     const double* const p = e.inner + entry.inner;
@@ -145,7 +145,7 @@ void ElasticGripGroup::add_forces(Evaluation& e) const {
     on_limb.fy -= force[1];
     on_limb.m -= force[2];
     if (elastic_state(mode) == k_elastic_holds) {
-      watch[0] = friction.spare(e, slid_at(p), force);
+      event_value[0] = friction.spare(e, slid_at(p), force);
       continue;
     }
     const StepLapFriction::Flow flow = is_following(mode) ? friction.flow_along(e, slid_at(p), force, direction(p), rate)
@@ -153,20 +153,20 @@ void ElasticGripGroup::add_forces(Evaluation& e) const {
     Vec3::Map(e.inner_rate + entry.inner) = flow.rate;
     Vec3::Map(e.inner_rate + entry.inner + k_direction) = k_direction_length * flow.turning;
     e.dissipation += force.dot(flow.rate);
-    watch[0] = flow.speed;
-    watch[2] = is_following(mode) ? 1.0 - flow.roundness / k_blunt : flow.roundness / k_sharp - 1.0;
-    watch[1] = std::min(friction.parting(e, slid_at(p), mode >> k_elastic_parted), friction.grip_beyond_last(e, slid_at(p)));
+    event_value[0] = flow.speed;
+    event_value[2] = is_following(mode) ? 1.0 - flow.roundness / k_blunt : flow.roundness / k_sharp - 1.0;
+    event_value[1] = std::min(friction.parting(e, slid_at(p), mode >> k_elastic_parted), friction.grip_beyond_last(e, slid_at(p)));
   }
 }
 
 double ElasticGripGroup::inner_energy(const Motion<double>* motion, const double* inner) const {
   double sum = 0.0;
-  for (const Entry& entry : entries) sum += stored(entry, motion, inner);
+  for (const ElementData& entry : entries) sum += stored(entry, motion, inner);
   return sum;
 }
 
-double ElasticGripGroup::enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const {
-  const Entry& entry = entries[element];
+double ElasticGripGroup::jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const {
+  const ElementData& entry = entries[element];
   double* const p = inner + entry.inner;
   if (is_apart(to)) {
     const double lost = stored(entry, e.motion, inner);
@@ -179,7 +179,7 @@ double ElasticGripGroup::enter_mode(int element, UnitMode to, const Evaluation& 
 }
 
 void ElasticGripGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     PairJacobian& j = out.emplace_back();
     j.a = entry.a;
     j.b = entry.b;
@@ -204,7 +204,7 @@ void ElasticGripGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobia
 
 // The flow depends on the strain, on p by the strain and the overlap, and linearly on the rate.
 void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     if (is_apart(e.mode[entry.unit]) || is_following(e.mode[entry.unit])) continue;
     const StepLapFriction& friction = *entry.friction;
     const Mat3& k = friction.stiffness();
@@ -250,7 +250,7 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
 
 // In this mode the flow depends on p by the overlap, on the direction of slip and linearly on the rate, but not on the strain.
 void ElasticGripGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) const {
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     if (!is_following(e.mode[entry.unit])) continue;
     const StepLapFriction& friction = *entry.friction;
     const Measures measures(entry, e);
@@ -279,9 +279,9 @@ void ElasticGripGroup::add_state_jacobian(const Evaluation& e, StateJacobian& ou
   }
 }
 
-double ElasticGripGroup::settle_inner(const Evaluation& e, double* inner) const {
+double ElasticGripGroup::project_inner(const Evaluation& e, double* inner) const {
   double dissipated = 0.0;
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     double* const p = inner + entry.inner;
     if (is_yielding(e.mode[entry.unit])) dissipated += return_to_surface(entry, e, p);
     if (is_following(e.mode[entry.unit])) dissipated += follow_direction(entry, e, p);
@@ -289,23 +289,23 @@ double ElasticGripGroup::settle_inner(const Evaluation& e, double* inner) const 
   return dissipated;
 }
 
-void ElasticGripGroup::start_inner(const Motion<double>* motion, double* inner) const {
-  for (const Entry& entry : entries) {
+void ElasticGripGroup::relax_inner(const Motion<double>* motion, double* inner) const {
+  for (const ElementData& entry : entries) {
     const Pose now = entry.friction->pose_of(motion);
     Vec3::Map(inner + entry.inner) = Vec3(now.x, now.y, now.theta);
   }
 }
 
 void ElasticGripGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
 }
 
-void ElasticGripGroup::enter_links(LinkTable& links) {
-  for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+void ElasticGripGroup::register_links(LinkTable& links) {
+  for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
 UnitMode ElasticGripGroup::initial_mode(int element, const Evaluation& e) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   const double* const p = e.inner + entry.inner;
   if (p[k_lost] != 0.0) return k_elastic_apart; // it came apart before an action deactivated it
   const Vec3 force = entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p);
@@ -313,7 +313,7 @@ UnitMode ElasticGripGroup::initial_mode(int element, const Evaluation& e) const 
 }
 
 UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const {
-  const Entry& entry = entries[element];
+  const ElementData& entry = entries[element];
   const double* const p = e.inner + entry.inner;
   const UnitMode parts = mode & ~UnitMode{3};
   if (slot == 0) return parts | (elastic_state(mode) == k_elastic_holds ? sliding_mode(entry, e, p) : k_elastic_holds);
@@ -325,7 +325,7 @@ UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const
   return parted << k_elastic_parted | (is_any_left ? elastic_state(mode) : k_elastic_apart);
 }
 
-EventKind ElasticGripGroup::transition(UnitMode from, UnitMode to) const {
+EventKind ElasticGripGroup::event_kind(UnitMode from, UnitMode to) const {
   if (is_apart(to)) return EventKind::comes_apart;
   const UnitMode before = from >> k_elastic_parted, now = to >> k_elastic_parted;
   if (before != now) return (now & ~before) != 0 ? EventKind::loses_interface : EventKind::meets_interface;

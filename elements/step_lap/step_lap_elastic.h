@@ -5,9 +5,9 @@
 //
 // Holding: p is constant, valid while W is within the limit surface. Yielding: p moves along the normal of the surface. W is continuous,
 // and K finite, so that velocities and accelerations do not jump, and the mode does not depend on other friction elements. While it yields,
-// integration leaves u = 1 + error; settle_inner() moves p along the strain onto the surface (radial return) and counts F·Δp as dissipated.
-// At a corner of the limit surface the slip direction is a state, too, and p follows it; the wrench is a well-defined function of the
-// direction even there. The joint comes apart when its overlaps have 1/100 of the capacity that they had in the reference pose.
+// integration leaves u = 1 + error; project_inner() moves p along the strain onto the surface (radial return) and counts F·Δp as
+// dissipated. At a corner of the limit surface the slip direction is a state, too, and p follows it; the wrench is a well-defined function
+// of the direction even there. The joint comes apart when its overlaps have 1/100 of the capacity that they had in the reference pose.
 #pragma once
 
 #include "elements/step_lap/step_lap_friction.h"
@@ -31,15 +31,15 @@ inline constexpr int k_elastic_parted = 2; ///< index of the first of these bits
 /// All elastic joints, as one force group.
 class ElasticGripGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;            ///< limb and active part
     const StepLapFriction* friction = nullptr; ///< belongs to the system, which owns both
     /// Index of the first of seven numbers: p (3), direction of slip (3), and 1 after it has come apart.
     int inner = 0;
-    int link = 0, unit = 0, watch = 0;
+    int link = 0, unit = 0, first_event = 0;
   };
-  static constexpr int k_watches = 3; ///< bound or flow; separation of interfaces; sharpness of the corner
-  std::vector<Entry> entries;
+  static constexpr int k_event_count = 3; ///< bound or flow; separation of interfaces; sharpness of the corner
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
@@ -47,15 +47,15 @@ public:
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const override;
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
-  double settle_inner(const Evaluation& e, double* inner) const override;
-  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override;
-  void start_inner(const Motion<double>* motion, double* inner) const override;
+  double project_inner(const Evaluation& e, double* inner) const override;
+  double jump_inner(int element, UnitMode to, const Evaluation& e, double* inner) const override;
+  void relax_inner(const Motion<double>* motion, double* inner) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_links(LinkTable& links) override;
+  void register_links(LinkTable& links) override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
-  [[nodiscard]] bool stops_in(int element, UnitMode to) const override {
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] bool ends_run_in(int element, UnitMode to) const override {
     return elastic_state(to) == k_elastic_apart && entries[element].friction->stops_when_apart();
   }
 };

@@ -208,9 +208,9 @@ RequiredPressure StepLapFriction::required(const Patch& patch, const Vec3& wrenc
 
 // --- sticking
 
-void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const {
-  watch[0] = watch[1] = 1.0;
-  if (!never_slips()) watch[0] = spare(e, anchor(e.memory), Vec3(wrench[0], wrench[1], wrench[2]));
+void StepLapFriction::stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const {
+  event_value[0] = event_value[1] = 1.0;
+  if (!never_slips()) event_value[0] = spare(e, anchor(e.memory), Vec3(wrench[0], wrench[1], wrench[2]));
 }
 
 double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const {
@@ -301,7 +301,7 @@ double StepLapFriction::area(const Snapshot& s) const {
   return fit(s.evaluation->scratch, present(s), GripLaw::holding, pressure_at(s.t).tilt).patch.area();
 }
 
-FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
+BlockSolution StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                            bool is_kinetic) const {
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
   const PressureState now = pressure_at(e.t);
@@ -310,8 +310,8 @@ FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
   const Mat3 mobility = now.factor * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w = admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
   insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
-  FrictionBlock block;
-  block.is_inside = !w.slips;
+  BlockSolution block;
+  block.sticks = !w.slips;
   Vec3::Map(block.wrench) = now.factor * w.wrench;
   if (const double size = scaled(w.acceleration).norm(); size > 0.0) Vec3::Map(block.direction) = w.acceleration / size;
   return block;
@@ -319,7 +319,7 @@ FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
 
 // --- separation
 
-double StepLapFriction::watch_place(const Evaluation& e, const FrictionState& state) const {
+double StepLapFriction::contact_point_event(const Evaluation& e, const FrictionState& state) const {
   return state.phase == FrictionPhase::slip ? parting(e, pose_of(e.motion), state.foot) : 1.0;
 }
 
@@ -333,17 +333,17 @@ double StepLapFriction::depth_of(std::size_t i, const Pose& pose, OverlapWorkspa
 
 double StepLapFriction::parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const {
   OverlapWorkspace& workspace = static_cast<Scratch&>(*e.scratch[index_]).workspace;
-  double watch = 1.0, deepest = -1.0;
+  double event_value = 1.0, deepest = -1.0;
   for (std::size_t i = 0; i < sheets_.size(); ++i) {
     const bool is_parted = i < k_tracked && (parted >> i & 1u) != 0;
     const double depth = is_parted ? penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace) : depth_of(i, pose, workspace);
-    if (i < k_tracked) watch = std::min(watch, is_parted ? -depth : depth);
+    if (i < k_tracked) event_value = std::min(event_value, is_parted ? -depth : depth);
     deepest = std::max(deepest, depth);
   }
-  return sheets_.size() > k_tracked ? std::min(watch, deepest) : watch;
+  return sheets_.size() > k_tracked ? std::min(event_value, deepest) : event_value;
 }
 
-void StepLapFriction::change_place(const Evaluation& e, FrictionState& state) const {
+void StepLapFriction::switch_contact_point(const Evaluation& e, FrictionState& state) const {
   bool is_any_left = false;
   state.foot = parted_at(pose_of(e.motion), is_any_left);
   if (!is_any_left) state.phase = FrictionPhase::apart;

@@ -21,7 +21,7 @@
 // the law is −∇h(ν + ε n), with n the direction when it was last updated, and the slip ends when ν·n passes zero. If |ν| grows again, the
 // slip continues. To allow steps through ν = 0, the law is continued to ν·n < 0 with constant wrench. Another event is ν leaving the cone
 // of 60° about n; then n is updated and the slip continues. Derivation: docs/explanation/limit_surface.md, section 7. Methods get the
-// required accuracy of velocities from slip_scale() and decay_rate().
+// required accuracy of velocities from slip_scale() and max_damping_rate().
 //
 // An elastic joint (make_elastic) does not use these laws. It is a spring, W = −K (s − p), with s the relative pose and p the slid part of
 // it, an inner state. p moves only while u(W) = 1, along the normal n of the limit surface, at the rate that keeps W on it (associated,
@@ -161,20 +161,20 @@ public:
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override;
   [[nodiscard]] double support(const Evaluation& e, const FrictionState& state, const double* rate) const override;
   [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench, double* normal) const override;
-  void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench, double* watch) const override;
-  void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const override;
+  void stick_events(const Evaluation& e, const FrictionState& state, const double* wrench, double* event_value) const override;
+  void set_onset_direction(const Evaluation& e, FrictionState& state, const double* wrench) const override;
   void aim(FrictionState& state, const double* rate) const override;
-  void watch_slip(const Evaluation& e, const FrictionState& state, const double* rate, double* watch) const override;
+  void slip_events(const Evaluation& e, const FrictionState& state, const double* rate, double* event_value) const override;
   [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const override;
-  [[nodiscard]] double decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const override;
-  [[nodiscard]] bool goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate, int slot) const override;
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override;
-  void change_place(const Evaluation& e, FrictionState& state) const override;
-  [[nodiscard]] EventKind place_change(const FrictionState& from, const FrictionState& to) const override {
+  [[nodiscard]] double max_damping_rate(const Evaluation& e, const FrictionState& state, const double* rate) const override;
+  [[nodiscard]] bool continue_slip(const Evaluation& e, FrictionState& state, const double* rate, int slot) const override;
+  [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override;
+  void switch_contact_point(const Evaluation& e, FrictionState& state) const override;
+  [[nodiscard]] EventKind contact_switch_event(const FrictionState& from, const FrictionState& to) const override {
     return (to.foot & ~from.foot) != 0 ? EventKind::loses_interface : EventKind::meets_interface;
   }
   [[nodiscard]] bool stops_when_apart() const override { return stops_when_apart_; }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& state, const double* a, const double* b,
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState& state, const double* a, const double* b,
                                           bool is_kinetic) const override;
 
 private:

@@ -47,18 +47,18 @@ bool are_same_bits(const Polygon& a, const Polygon& b) {
 // Returns make_outline(polygon), cached. It takes a quarter of the compilation of a system; an interface is compiled twice (for its check
 // and with its joint), and variants of a scene mostly have the same sheets. Valid until the next call.
 const Outline& outline_of(Polygon polygon) {
-  struct Made {
+  struct CachedOutline {
     Polygon polygon;
     Outline outline;
   };
   constexpr std::size_t k_kept = 64;
-  thread_local std::vector<Made> made;
+  thread_local std::vector<CachedOutline> made;
   thread_local std::size_t next = 0;
-  const auto known = std::find_if(made.begin(), made.end(), [&](const Made& m) { return are_same_bits(m.polygon, polygon); });
+  const auto known = std::find_if(made.begin(), made.end(), [&](const CachedOutline& m) { return are_same_bits(m.polygon, polygon); });
   if (known != made.end()) return known->outline;
   Outline outline = make_outline(polygon);
-  if (made.size() < k_kept) return made.emplace_back(Made{std::move(polygon), std::move(outline)}).outline;
-  Made& place = made[next];
+  if (made.size() < k_kept) return made.emplace_back(CachedOutline{std::move(polygon), std::move(outline)}).outline;
+  CachedOutline& place = made[next];
   next = (next + 1) % k_kept;
   place = {std::move(polygon), std::move(outline)};
   return place.outline;

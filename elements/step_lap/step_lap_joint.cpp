@@ -212,7 +212,7 @@ bool check_elastic(const StepLapJoint& e, SystemBuilder& builder, const StepLapF
 bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& builder, StepLapFriction& friction) {
   if (!check_elastic(e, builder, friction)) return false;
   auto& group = builder.group<ElasticGripGroup>();
-  ElasticGripGroup::Entry entry;
+  ElasticGripGroup::ElementData entry;
   entry.a = friction.hold[0].a;
   entry.b = friction.hold[0].b;
   entry.friction = &friction;
@@ -221,7 +221,7 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   builder.add_inner(group, reference.theta);
   for (int i = 0; i < 4; ++i) builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
-  builder.add_unit(group, ElasticGripGroup::k_watches);
+  builder.add_unit(group, ElasticGripGroup::k_event_count);
   friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);
   return true;
 }
@@ -281,21 +281,21 @@ void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const Edge
 }
 
 // Returns the bed of a corner for a line with this clearance: parallel lines of equal clearance close together.
-EdgeGroup::Entry& bed_of(EdgeCorner& corner, const EdgeLine& line, double clearance, const StepLapFriction& friction,
-                         SystemBuilder& builder, EdgeGroup& group) {
+EdgeGroup::ElementData& bed_of(EdgeCorner& corner, const EdgeLine& line, double clearance, const StepLapFriction& friction,
+                               SystemBuilder& builder, EdgeGroup& group) {
   constexpr double k_parallel = 1e-9; // rad: rounding error of the directions of parallel lines
   for (const int bed : corner.beds)
-    if (EdgeGroup::Entry& entry = group.entries[bed];
+    if (EdgeGroup::ElementData& entry = group.entries[bed];
         entry.clearance == clearance && std::abs(cross(entry.lines.front().gap[0].axis, line.off)) < k_parallel)
       return entry;
-  EdgeGroup::Entry entry;
+  EdgeGroup::ElementData entry;
   entry.a = friction.hold[0].a;
   entry.b = friction.hold[0].b;
   entry.clearance = clearance;
   if (corner.beds.empty()) corner.middle = 0.5 * (line.ends[0] + line.ends[1]);
   corner.beds.push_back(static_cast<int>(group.entries.size()));
   group.entries.push_back(entry);
-  builder.add_unit(group, EdgeGroup::k_watches);
+  builder.add_unit(group, EdgeGroup::k_event_count);
   return group.entries.back();
 }
 

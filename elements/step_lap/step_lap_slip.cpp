@@ -35,8 +35,8 @@ template <class Look> void for_each_corner(const Polygon& polygon, Look look) {
     for (const Vec2& corner : hole) look(corner);
 }
 
-bool is_moving(const FrictionState& state) { return state.is_starting && state.stage == k_moving_stage; }
-bool is_ending(const FrictionState& state) { return !state.is_starting && state.stage == k_ending_stage; }
+bool is_moving(const FrictionState& state) { return state.is_onset && state.onset_stage == k_moving_stage; }
+bool is_ending(const FrictionState& state) { return !state.is_onset && state.onset_stage == k_ending_stage; }
 
 } // namespace
 
@@ -83,14 +83,14 @@ double StepLapFriction::end_speed(const Evaluation& e) const {
   return std::max(time * grip_acceleration_, k_rounding * speed);
 }
 
-void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
+void StepLapFriction::set_onset_direction(const Evaluation& e, FrictionState& state, const double* wrench) const {
   Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding, pressure_at(e.t).tilt);
-  state.stage = 0;
+  state.onset_stage = 0;
   set_direction(state, -required(f.tabulated(), Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
 }
 
 void StepLapFriction::aim(FrictionState& state, const double* rate) const {
-  state.stage = 0;
+  state.onset_stage = 0;
   set_direction(state, Vec3(rate[0], rate[1], rate[2]));
 }
 
@@ -99,7 +99,7 @@ void StepLapFriction::aim(FrictionState& state, const double* rate) const {
 Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const {
   const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
   const Vec3 y = scaled(nu);
-  if (state.is_starting) {
+  if (state.is_onset) {
     const double delta = onset_speed(e), reach = k_start_reach * delta;
     const double left = 1.0 - y.squaredNorm() / (reach * reach);
     if (left > 0.0) return nu + delta * left * left * left * n;
@@ -119,20 +119,20 @@ void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& stat
   Vec3::Map(wrench) = -now.factor * gradient_at(pose_of(e.motion), now.tilt, nu, static_cast<Scratch&>(*e.scratch[index_]));
 }
 
-void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate, double* watch) const {
+void StepLapFriction::slip_events(const Evaluation& e, const FrictionState& state, const double* rate, double* event_value) const {
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm();
-  if (state.is_starting) {
+  if (state.is_onset) {
     const double delta = onset_speed(e);
-    watch[0] = (is_moving(state) ? k_start_reach : k_moving) * delta - speed;
-    watch[1] = along + (is_moving(state) ? end_speed(e) : std::max(end_speed(e), k_backward * delta));
+    event_value[0] = (is_moving(state) ? k_start_reach : k_moving) * delta - speed;
+    event_value[1] = along + (is_moving(state) ? end_speed(e) : std::max(end_speed(e), k_backward * delta));
   } else if (is_ending(state)) {
-    watch[0] = along;
-    watch[1] = k_no_end * end_speed(e) - speed;
+    event_value[0] = along;
+    event_value[1] = k_no_end * end_speed(e) - speed;
   } else {
-    watch[0] = speed - end_speed(e);
-    watch[1] = along - k_cone * speed;
+    event_value[0] = speed - end_speed(e);
+    event_value[1] = along - k_cone * speed;
   }
 }
 
@@ -156,7 +156,7 @@ SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& 
 }
 
 // Returns an upper bound of the damping rates: the trace of A ∇²h is their sum, and none is negative.
-double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
+double StepLapFriction::max_damping_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
   const Pose pose = pose_of(e.motion);
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, pose, GripLaw::sliding, now.tilt);
@@ -166,19 +166,19 @@ double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& sta
          part_mobility_[1] * turned.dot(curvature * turned);
 }
 
-bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate, int slot) const {
+bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, const double* rate, int slot) const {
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm(), end = end_speed(e);
   const auto goes_on = [&state](std::uint8_t stage) {
-    state.stage = stage;
+    state.onset_stage = stage;
     return true;
   };
   const auto rests = [&state] {
-    state.stage = 0;
+    state.onset_stage = 0;
     return false;
   };
-  if (state.is_starting) {
+  if (state.is_onset) {
     if (slot == 1) return rests();
     if (!is_moving(state)) return goes_on(k_moving_stage);
   } else if (is_ending(state)) {
@@ -189,7 +189,7 @@ bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state
     else if (along <= 0.0) return rests(); // passed through ν = 0 within a step, along a line
     return goes_on(k_ending_stage);
   }
-  state.is_starting = false;
+  state.is_onset = false;
   aim(state, rate);
   return true;
 }

@@ -8,13 +8,13 @@ namespace steplap {
 
 namespace {
 
-struct Entry {
+struct EventKindText {
   EventKind kind;
   const char* words;
   const char* doc;
 };
 
-constexpr std::array<Entry, k_event_kinds> k_table{{
+constexpr std::array<EventKindText, k_event_kinds> k_table{{
     {EventKind::none, "", "no event"},
     {EventKind::opens, "opens", "a contact lifts off"},
     {EventKind::closes, "closes", "a contact touches down"},
@@ -54,7 +54,7 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "the table has a line for each kind, in their order");
 
-const Entry& entry_of(EventKind kind) { return k_table[static_cast<std::size_t>(kind)]; }
+const EventKindText& entry_of(EventKind kind) { return k_table[static_cast<std::size_t>(kind)]; }
 
 } // namespace
 
@@ -63,7 +63,7 @@ const char* words_of(EventKind kind) { return entry_of(kind).words; }
 const char* doc_of(EventKind kind) { return entry_of(kind).doc; }
 
 std::optional<EventKind> event_kind_called(std::string_view words) {
-  for (const Entry& entry : k_table)
+  for (const EventKindText& entry : k_table)
     if (entry.kind != EventKind::none && words == entry.words) return entry.kind;
   return {};
 }
@@ -79,7 +79,7 @@ std::optional<EventKind> event_kind_of_entry(std::string_view text) {
 
 EventKinds event_kinds_matching(const std::string& pattern) {
   EventKinds kinds;
-  for (const Entry& entry : k_table)
+  for (const EventKindText& entry : k_table)
     if (entry.kind != EventKind::none && matches_pattern(entry.words, pattern)) kinds.set(static_cast<std::size_t>(entry.kind));
   return kinds;
 }

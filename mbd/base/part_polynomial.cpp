@@ -27,14 +27,14 @@ constexpr int k_samples_of_gap = 8; // samples for bracketing the minimum
 constexpr int k_sections = 40;      // golden-section steps, enough for the rounding error of the position
 
 struct Table {
-  Values place{}, between{};
+  Values node{}, between{};
   std::array<Values, k_order + 1> transform{}; // matrix from values to Chebyshev coefficients
   std::array<Values, k_order + 1> bernstein{}; // Bernstein coefficients of T_j on [0, 1]
 
   Table() {
     const double pi = std::numbers::pi;
     for (std::size_t k = 0; k <= k_order; ++k) {
-      place[k] = 0.5 * (1.0 - portable::cos(pi * static_cast<double>(k) / k_order));
+      node[k] = 0.5 * (1.0 - portable::cos(pi * static_cast<double>(k) / k_order));
       between[k] = 0.5 * (1.0 - portable::cos(pi * (static_cast<double>(k) + 0.5) / k_order));
     }
     for (std::size_t j = 0; j <= k_order; ++j)
@@ -145,7 +145,7 @@ Fall walk(const Stretch& s, Fall so_far, double floor, double error, int depth) 
 
 } // namespace
 
-double PartPolynomial::place(std::size_t k) { return k_table.place[k]; }
+double PartPolynomial::node(std::size_t k) { return k_table.node[k]; }
 
 double PartPolynomial::between(std::size_t gap) { return k_table.between[gap]; }
 
@@ -163,7 +163,7 @@ void PartPolynomial::fit(const Values& values) {
   for (std::size_t j = 0; j <= k_order; ++j)
     for (std::size_t i = 0; i <= k_order; ++i) rest[i] += chebyshev_[j] * k_table.bernstein[j][i];
   for (std::size_t gap = 0; gap < k_order; ++gap) {
-    const double from = k_table.place[gap], to = k_table.place[gap + 1];
+    const double from = k_table.node[gap], to = k_table.node[gap + 1];
     bernstein_[gap] = gap + 1 < k_order ? take_away(rest, (to - from) / (1.0 - from)) : rest;
     bernstein_[gap][0] = values[gap]; // the value itself, without the rounding errors of the transform
     bernstein_[gap][k_order] = values[gap + 1];
@@ -181,23 +181,23 @@ double PartPolynomial::at(double x) const {
   return chebyshev_[0] + u * b1 - b2;
 }
 
-int PartPolynomial::doubtful_gap(double floor, std::size_t from, std::size_t to) const {
+int PartPolynomial::first_uncertain_gap(double floor, std::size_t from, std::size_t to) const {
   for (std::size_t gap = from; gap < to; ++gap) {
-    const Stretch whole{bernstein_[gap], place(gap + 1) - place(gap), true, true};
+    const Stretch whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
     if (!is_above(whole, floor, error_, k_depth)) return static_cast<int>(gap);
   }
   return -1;
 }
 
 bool PartPolynomial::falls_once(double floor, std::size_t gap) const {
-  const Stretch whole{bernstein_[gap], place(gap + 1) - place(gap), true, true};
+  const Stretch whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
   return walk(whole, Fall::above, floor, error_, k_depth) != Fall::in_doubt;
 }
 
 double PartPolynomial::lowest(std::size_t from, std::size_t to) const {
   constexpr double k_golden = 0.3819660112501051;
   const int count = k_samples_of_gap * static_cast<int>(to - from);
-  const double begin = place(from), step = (place(to) - begin) / count;
+  const double begin = node(from), step = (node(to) - begin) / count;
   int least = 0;
   for (int m = 1; m <= count; ++m)
     if (at(begin + m * step) < at(begin + least * step)) least = m;

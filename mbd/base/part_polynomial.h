@@ -22,7 +22,7 @@ public:
   using Values = std::array<double, k_order + 1>;
 
   /// Returns node k, 0 … 6, in ascending order on [0, 1].
-  [[nodiscard]] static double place(std::size_t k);
+  [[nodiscard]] static double node(std::size_t k);
   /// Returns a point between nodes `gap` and `gap` + 1, at the middle in the Chebyshev angle. The interpolation error is largest near it.
   [[nodiscard]] static double between(std::size_t gap);
 
@@ -37,7 +37,7 @@ public:
 
   /// Returns the first gap k (between nodes k and k + 1, `from` ≤ k < `to`) in which f < `floor` cannot be excluded; −1 if it can be
   /// excluded in all of them. Precondition: f ≥ `floor` at these nodes.
-  [[nodiscard]] int doubtful_gap(double floor, std::size_t from, std::size_t to) const;
+  [[nodiscard]] int first_uncertain_gap(double floor, std::size_t from, std::size_t to) const;
   /// Returns true if f certainly falls below `floor` exactly once in the gap, given that it is above at its left node and below at its
   /// right one.
   [[nodiscard]] bool falls_once(double floor, std::size_t gap) const;

@@ -56,7 +56,7 @@ void ConstraintSolution::solve_mechanisms(const BodyForce* force, double* a) {
   for (Mechanism& m : layout_->mechanisms) accelerate_mechanism(m, force, a);
 }
 
-STEPLAP_INLINE void ConstraintSolution::respond(Mechanism& m, double* a) {
+STEPLAP_INLINE void ConstraintSolution::solve_multipliers(Mechanism& m, double* a) {
   if (m.row_count == 0) return;
   double* const right = multiplier_.data() + m.first_row;
   const SchurRow* const rows = layout_->schur_rows.data() + m.first_row;
@@ -86,7 +86,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   if (layout.active.empty()) return;
   drive(t);
   is_factored_ = true;
-  for (Mechanism& m : layout.mechanisms) respond(m, a);
+  for (Mechanism& m : layout.mechanisms) solve_multipliers(m, a);
   if (count == 0) return;
   layout.schur.solve(layout.schur_rows, right);
   add_responses(layout.schur_rows.data(), count, right, a);

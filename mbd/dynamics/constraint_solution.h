@@ -66,7 +66,7 @@ public:
 private:
   void solve_mechanisms(const BodyForce* force, double* a);
   void accelerate_mechanism(Mechanism& m, const BodyForce* force, double* a);
-  void respond(Mechanism& m, double* a);
+  void solve_multipliers(Mechanism& m, double* a);
   void drive(double t);
   void compare_row(std::size_t r, double t);
   // Contributions of the further parts of rows over more than two bodies (row_parts.cpp): to γ and gradients, to the residuals, to `right`

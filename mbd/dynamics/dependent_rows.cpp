@@ -12,9 +12,9 @@ namespace {
 constexpr double k_stays_out = 2.0; // factor on k_dependent for a row that was left out before (hysteresis)
 
 // Orthonormal basis of the rows kept so far: each vector is a row's part independent of those before.
-class Taken {
+class RowBasis {
 public:
-  Taken(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
+  RowBasis(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
   void remove_from(VecX& row) const {
     const auto taken = basis_.leftCols(count_);
     for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second pass removes rounding of the first
@@ -42,7 +42,7 @@ struct Candidate {
 std::vector<char> dependent_rows(const std::vector<WeightedRow>& rows, const char* can_stay_out, const std::vector<char>& was_out) {
   std::vector<char> out(rows.size(), 0);
   if (rows.empty()) return out;
-  Taken taken(rows[0].row.size(), static_cast<Eigen::Index>(rows.size()));
+  RowBasis taken(rows[0].row.size(), static_cast<Eigen::Index>(rows.size()));
   std::vector<Candidate> candidates;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const double length = rows[r].length;

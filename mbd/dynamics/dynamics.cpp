@@ -38,7 +38,7 @@ void Dynamics::set_state(const State& state) {
   is_merged_near_ = was_merged_near_ = false;
   pending_.end();
   stage_programs_.leave();
-  std::fill(arrays_.watch.begin(), arrays_.watch.end(), 1.0);
+  std::fill(arrays_.event_value.begin(), arrays_.event_value.end(), 1.0);
   std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // bodies on which nothing acts in the new layout keep zero
   const auto [layout, is_new] = layouts_.at(state, choice_);
   // A layout may have been discarded and computed again in between. It must therefore not keep its load sharing, or results would depend on
@@ -52,9 +52,9 @@ void Dynamics::set_state(const State& state) {
     std::vector<double> packed(dimension());
     pack(system_.initial_state(), packed.data());
     layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
-    if (placed_.size() < packed.size()) placed_.resize(packed.size());
+    if (projected_state_.size() < packed.size()) projected_state_.resize(packed.size());
     pending_.reserve(packed.size());
-    if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
+    if (row_scratch_.size() < layout_->active.size()) row_scratch_.resize(layout_->active.size());
   }
   if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
   decide_rank();
@@ -63,12 +63,13 @@ void Dynamics::set_state(const State& state) {
 void Dynamics::decide_rank() {
   is_rank_new_ = !layout_->held_rows.empty();
   if (!is_rank_new_) return;
-  was_out_.assign(layout_->active.size(), 0);
-  for (std::size_t r = 0; r < was_out_.size(); ++r)
+  was_dependent_.assign(layout_->active.size(), 0);
+  for (std::size_t r = 0; r < was_dependent_.size(); ++r)
     if (const ActiveRow& row = layout_->active[r]; row.friction >= 0)
-      was_out_[r] = static_cast<char>(state_->friction[row.friction].left_out >> static_cast<unsigned>(row.friction_row) & 1U);
-  layout_->schur.decide_rank(layout_->is_friction_row, was_out_);
-  for (Mechanism& m : layout_->mechanisms) m.decide_rank(layout_->is_friction_row.data() + m.first_row, was_out_.data() + m.first_row);
+      was_dependent_[r] = static_cast<char>(state_->friction[row.friction].left_out >> static_cast<unsigned>(row.friction_row) & 1U);
+  layout_->schur.decide_rank(layout_->is_friction_row, was_dependent_);
+  for (Mechanism& m : layout_->mechanisms)
+    m.decide_rank(layout_->is_friction_row.data() + m.first_row, was_dependent_.data() + m.first_row);
 }
 
 // Rows whose rank was not decided since set_state() keep their entry.
@@ -84,7 +85,7 @@ void Dynamics::record_rank(State& state) const {
   }
 }
 
-void Dynamics::set_time_limit(double limit) { time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity()); }
+void Dynamics::set_left_limit_time(double limit) { time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity()); }
 
 void Dynamics::begin_stages() { stage_programs_.enter(*layout_, *state_, layouts_); }
 
@@ -100,7 +101,7 @@ STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i) {
   double* const wrench = &friction_force_[unit.row];
   unit.friction->slip_wrench(evaluation_, friction, rows.rate, wrench);
   rows.pull(wrench, arrays_.force[link], evaluation_.dissipation);
-  unit.friction->watch_slip(evaluation_, friction, rows.rate, &arrays_.watch[unit.watch]);
+  unit.friction->slip_events(evaluation_, friction, rows.rate, &arrays_.event_value[unit.first_event]);
 }
 
 // Computes the forces of all elements on clusters and on their bodies.
@@ -125,7 +126,7 @@ void Dynamics::finish_power(const double* a) {
       [this](std::size_t i) -> const SignalJet& { return kinematics_.lock_target(i); }, evaluation_.work);
 }
 
-void Dynamics::finish_watches() {
+void Dynamics::finish_events() {
   const Layout& layout = *layout_;
   for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = multipliers()[held.row];
   if (layout.is_singular() && (!layout.sharing || is_rank_new_)) [[unlikely]] {
@@ -133,24 +134,24 @@ void Dynamics::finish_watches() {
     is_rank_new_ = false;
   }
   const LoadSharing* const shared = sharing(); // event functions of elements that share a load are evaluated at the ends of steps
-  const auto watch_place = [this](int f) {
+  const auto contact_point_event = [this](int f) {
     const FrictionUnit& unit = system_.frictions[f];
-    arrays_.watch[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
+    arrays_.event_value[unit.first_event + 2] = unit.friction->contact_point_event(evaluation_, state_->friction[f]);
   };
-  const auto watch = [&](int f) {
+  const auto event_value = [&](int f) {
     const FrictionUnit& unit = system_.frictions[f];
     if (!shared || shared->group_of(f) < 0) [[likely]]
-      unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], &arrays_.watch[unit.watch]);
-    watch_place(f);
+      unit.friction->stick_events(evaluation_, state_->friction[f], &friction_force_[unit.row], &arrays_.event_value[unit.first_event]);
+    contact_point_event(f);
   };
-  for (const int f : layout.holding) watch(f);
-  for (const int f : layout.sliding) watch_place(f);
+  for (const int f : layout.holding) event_value(f);
+  for (const int f : layout.sliding) contact_point_event(f);
 }
 
 void Dynamics::evaluate(Request request, double t, const double* y, double* dy) {
   switch (request) {
   case Request::rates: return rates(t, y, dy);
-  case Request::rates_as_given: return rates_as_given(t, y, dy);
+  case Request::rates_without_projection: return rates_without_projection(t, y, dy);
   case Request::stage: return evaluate_stage(t, y, dy);
   case Request::stage_near_limit: return evaluate_stage_and_joints(t, y, dy, false);
   case Request::stage_and_joints: return evaluate_stage_and_joints(t, y, dy, true);
@@ -159,22 +160,22 @@ void Dynamics::evaluate(Request request, double t, const double* y, double* dy) 
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
-  rates_as_given(t, y, dy);
+  rates_without_projection(t, y, dy);
   if (!layout_->active.empty() && layout_->smallest_pivot() < k_placed_pivot) [[unlikely]]
     rates_nearby(t, y, dy);
 }
 
-void Dynamics::rates_as_given(double t, const double* y, double* dy) {
+void Dynamics::rates_without_projection(double t, const double* y, double* dy) {
   rates_at(t, y, dy);
-  if (!layout_->active.empty()) lowest_pivot_ = std::min(lowest_pivot_, layout_->smallest_pivot());
+  if (!layout_->active.empty()) least_pivot_ = std::min(least_pivot_, layout_->smallest_pivot());
 }
 
 STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {
   const int n = coordinate_count();
   finish_power(dy + n);
-  finish_watches();
+  finish_events();
   double* const power = dy + 2 * n + inner_count();
-  std::copy_n(y + 2 * n + inner_count(), 2, booked_);
+  std::copy_n(y + 2 * n + inner_count(), 2, energy_integrals_);
   power[0] = evaluation_.dissipation;
   power[1] = evaluation_.work;
 }
@@ -236,14 +237,14 @@ void Dynamics::take_time_inputs(double t, double* into) {
   if (!layout_->driven_rows.empty()) take_row_inputs(*layout_, state_->memory.data(), t, into);
 }
 
-// Computes rates, powers and event functions by machine code; with `all` also the data for look_by_code() and defer_byproducts(). Returns
-// false, without any change, if no code is valid here.
+// Computes rates, powers and event functions by machine code; with `all` also the data for evaluate_joint_events_by_code() and
+// defer_byproducts(). Returns false, without any change, if no code is valid here.
 bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
-  if (!program->run(now, y, dy + coordinate_count(), arrays_.watch.data(), arrays_.watch_rate.data(), all)) return false;
+  if (!program->run(now, y, dy + coordinate_count(), arrays_.event_value.data(), arrays_.event_derivative.data(), all)) return false;
   ++evaluations_;
   ++coded_stages_;
   pending_.end();
@@ -265,45 +266,45 @@ void Dynamics::evaluate_stage_without_code(double t, const double* y, double* dy
 }
 
 void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, bool always) {
-  if (!looks_at_merged(always)) {
+  if (!needs_rigid_joint_events(always)) {
     if (run_code(t, y, dy, false)) return; // where code is valid no loads are shared
     evaluate_stage_without_code(t, y, dy);
-    watch_merged_if_near(dy, always);
-  } else if (may_look_by_code() && run_code(t, y, dy, true)) {
+    evaluate_rigid_joint_events_if_near_limit(dy, always);
+  } else if (may_evaluate_joint_events_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();
     defer_byproducts(program, t, y);
-    (void)look_by_code(program, t);
+    (void)evaluate_joint_events_by_code(program, t);
   } else {
     rates(t, y, dy);
-    watch_merged_if_near(dy, always);
+    evaluate_rigid_joint_events_if_near_limit(dy, always);
     count_stage(t, y, dy);
   }
 }
 
 void Dynamics::evaluate_end(double t, const double* y, double* dy) {
-  if (!may_look_by_code() || !run_code(t, y, dy, true)) {
+  if (!may_evaluate_joint_events_by_code() || !run_code(t, y, dy, true)) {
     rates(t, y, dy);
-    watch_merged(dy);
+    evaluate_rigid_joint_events(dy);
     return;
   }
   const StageProgram& program = *stage_programs_.now();
   defer_byproducts(program, t, y);
-  if (!layout_->is_merged_watched) return;
+  if (!layout_->has_rigid_joint_events) return;
   was_merged_near_ = is_merged_near_;
-  is_merged_near_ = look_by_code(program, t);
+  is_merged_near_ = evaluate_joint_events_by_code(program, t);
 }
 
-bool Dynamics::may_look_by_code() const {
+bool Dynamics::may_evaluate_joint_events_by_code() const {
   const StageProgram* const program = stage_programs_.now();
-  return program && program->is_ready() && program->can_look() && !sharing();
+  return program && program->is_ready() && program->has_joint_wrenches() && !sharing();
 }
 
 // After a stage by code: computes the event functions of merged joints. Returns true if one is near its limit.
-bool Dynamics::look_by_code(const StageProgram& program, double t) {
+bool Dynamics::evaluate_joint_events_by_code(const StageProgram& program, double t) {
   // A stick in a cluster is judged by its wrench, the time and the friction state.
   evaluation_.t = std::min(t, time_cap_);
   program.put_wrenches(friction_force_);
-  return watch_wrenches();
+  return evaluate_wrench_events();
 }
 
 // Counts a stage evaluated without code, and records it if code will pay.
@@ -315,7 +316,7 @@ void Dynamics::count_stage(double t, const double* y, const double* dy) {
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
   reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
-  const StageFound found{dy + coordinate_count(), arrays_.watch.data(), arrays_.watch_rate.data(), friction_force_,
+  const StageFound found{dy + coordinate_count(), arrays_.event_value.data(), arrays_.event_derivative.data(), friction_force_,
                          layout_->smallest_pivot()};
   program->record(system_, *state_, evaluation_, now, y, found);
 }
@@ -346,20 +347,20 @@ double Dynamics::mechanical_energy(double t, const double* y) {
 
 // --- results of an evaluation --------------------------------------------------------------------
 
-void Dynamics::watch_merged(const double* dy) {
-  if (!layout_->is_merged_watched) return;
+void Dynamics::evaluate_rigid_joint_events(const double* dy) {
+  if (!layout_->has_rigid_joint_events) return;
   was_merged_near_ = is_merged_near_;
-  is_merged_near_ = watch_joints(dy);
+  is_merged_near_ = evaluate_joint_events(dy);
 }
 
-void Dynamics::watch_merged_if_near(const double* dy, bool always) {
-  if (looks_at_merged(always)) (void)watch_joints(dy);
+void Dynamics::evaluate_rigid_joint_events_if_near_limit(const double* dy, bool always) {
+  if (needs_rigid_joint_events(always)) (void)evaluate_joint_events(dy);
 }
 
 bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Computes the event functions of merged joints and groups. Returns true if one is near its limit.
-bool Dynamics::watch_joints(const double* dy) {
+bool Dynamics::evaluate_joint_events(const double* dy) {
   ensure_byproducts();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
@@ -368,19 +369,19 @@ bool Dynamics::watch_joints(const double* dy) {
     reactions_.find_accelerations(cluster_a); // needed by LoadSharing::discord()
   }
   reactions_.find_joints(cluster_a, multipliers().data());
-  const bool is_group_near = watch_groups();
-  return watch_wrenches() || is_group_near;
+  const bool is_group_near = evaluate_group_events();
+  return evaluate_wrench_events() || is_group_near;
 }
 
 // Computes the event functions of merged joints from their wrenches. Returns true if one is near its limit.
-bool Dynamics::watch_wrenches() {
+bool Dynamics::evaluate_wrench_events() {
   bool is_near = false;
   for (const int f : layout_->merged) {
     if (is_shared(f)) continue;
     const FrictionUnit& unit = system_.frictions[f];
-    double* watch = &arrays_.watch[unit.watch];
-    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
-    if (std::min(watch[0], watch[1]) < k_near_limit) is_near = true;
+    double* event_value = &arrays_.event_value[unit.first_event];
+    unit.friction->stick_events(evaluation_, state_->friction[f], &friction_force_[unit.row], event_value);
+    if (std::min(event_value[0], event_value[1]) < k_near_limit) is_near = true;
   }
   return is_near;
 }
@@ -405,8 +406,8 @@ Snapshot Dynamics::snapshot(const double* dy) {
   s.row_force = reactions_.row_force().data();
   s.friction_force = friction_force_;
   s.memory = state_->memory.data();
-  s.dissipated = booked_[0];
-  s.work = booked_[1];
+  s.dissipated = energy_integrals_[0];
+  s.work = energy_integrals_[1];
   s.integrals = integrals_;
   return s;
 }

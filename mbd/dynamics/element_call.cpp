@@ -28,14 +28,14 @@ ElementCall::ElementCall(const System& system, const Evaluation& live)
 }
 
 // Passes a number to the call: a constant is stored once, a variable becomes an argument.
-void ElementCall::take(const Traced& x, double& place) {
+void ElementCall::take(const TapeNumber& x, double& place) {
   place = value_of(x);
   if (x.is_constant()) return;
   arguments_.push_back(x);
   places_.push_back(&place);
 }
 
-void ElementCall::take(const Motion<Traced>& from, Motion<double>& to) {
+void ElementCall::take(const Motion<TapeNumber>& from, Motion<double>& to) {
   take(from.x, to.x);
   take(from.y, to.y);
   take(from.theta, to.theta);
@@ -46,13 +46,13 @@ void ElementCall::take(const Motion<Traced>& from, Motion<double>& to) {
   take(from.omega, to.omega);
 }
 
-void ElementCall::give(Traced& x, const double& place) {
+void ElementCall::give(TapeNumber& x, const double& place) {
   results_.push_back(&x);
   found_.push_back(&place);
 }
 
 // A sum is passed with its previous value, so that terms are added in the same order as without code.
-void ElementCall::add_to(Traced& x, double& place) {
+void ElementCall::add_to(TapeNumber& x, double& place) {
   take(x, place);
   if (x.is_constant()) constants_.push_back({&place, place});
   give(x, place);
@@ -73,7 +73,7 @@ std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
 
 // Time is always an argument, so that no call has only constant arguments.
 void ElementCall::take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
-  take(e.of_time({&clock_signal()}), own_.t);
+  take(e.record_signal_input({&clock_signal()}), own_.t);
   for (const int slot : slots_of(is_used)) take(e.motion[slot], motion_[static_cast<std::size_t>(slot)]);
   for (std::size_t i = 0; i < inner_.size(); ++i) take(e.inner[i], inner_[i]);
 }
@@ -85,7 +85,7 @@ void ElementCall::trace(const ForceGroup& group, TracedEvaluation& e) {
   take_surroundings(is_used, e);
   for (const int slot : slots_of(is_used)) {
     if (slot == k_ground) continue;
-    BodyForceOf<Traced>& force = e.force[slot];
+    BodyForceOf<TapeNumber>& force = e.force[slot];
     BodyForce& own = arrays_.force[static_cast<std::size_t>(slot)];
     add_to(force.fx, own.fx);
     add_to(force.fy, own.fy);
@@ -97,9 +97,9 @@ void ElementCall::trace(const ForceGroup& group, TracedEvaluation& e) {
   for (const std::size_t i : contacts_of_group()) give(e.contact_force[i], arrays_.contact_force[i]);
   for (const Unit& unit : system_.units) {
     if (unit.group != &group) continue;
-    for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot) {
-      give(e.watch[slot], arrays_.watch[static_cast<std::size_t>(slot)]);
-      give(e.watch_rate[slot], arrays_.watch_rate[static_cast<std::size_t>(slot)]);
+    for (int slot = unit.first_event; slot < unit.first_event + unit.event_count; ++slot) {
+      give(e.event_value[slot], arrays_.event_value[static_cast<std::size_t>(slot)]);
+      give(e.event_derivative[slot], arrays_.event_derivative[static_cast<std::size_t>(slot)]);
     }
   }
   put_down();
@@ -121,7 +121,7 @@ std::vector<std::size_t> ElementCall::contacts_of_group() {
   return found;
 }
 
-void ElementCall::trace(int f, TracedEvaluation& e, const Traced* rate, Traced* wrench, Traced* watch) {
+void ElementCall::trace(int f, TracedEvaluation& e, const TapeNumber* rate, TapeNumber* wrench, TapeNumber* event_value) {
   const FrictionElement& friction = *system_.frictions[static_cast<std::size_t>(f)].friction;
   friction_ = f;
   is_sliding_ = rate != nullptr;
@@ -138,14 +138,14 @@ void ElementCall::trace(int f, TracedEvaluation& e, const Traced* rate, Traced* 
   }
   if (is_sliding_)
     for (int r = 0; r < friction.dimension(); ++r) give(wrench[r], wrench_[r]);
-  for (int slot = 0; slot < k_friction_watches; ++slot) give(watch[slot], arrays_.watch[static_cast<std::size_t>(slot)]);
+  for (int slot = 0; slot < k_friction_event_count; ++slot) give(event_value[slot], arrays_.event_value[static_cast<std::size_t>(slot)]);
   put_down();
 }
 
 void ElementCall::put_down() {
-  arguments_.insert(arguments_.begin(), Traced(std::bit_cast<double>(this)));
-  std::vector<Traced> made(results_.size());
-  Traced::call(&ElementCall::run, arguments_, made);
+  arguments_.insert(arguments_.begin(), TapeNumber(std::bit_cast<double>(this)));
+  std::vector<TapeNumber> made(results_.size());
+  TapeNumber::call(&ElementCall::run, arguments_, made);
   if (has_failed()) throw NotTraceable();
   for (std::size_t i = 0; i < made.size(); ++i) *results_[i] = made[i];
   arguments_.clear();
@@ -171,18 +171,18 @@ void ElementCall::evaluate_element() {
   own_.friction = live_.friction;
   own_.memory = live_.memory;
   own_.scratch = live_.scratch;
-  own_.mean_from = live_.mean_from;
+  own_.averaging_start = live_.averaging_start;
   if (group_) return group_->add_forces(own_);
   const FrictionElement& friction = *system_.frictions[static_cast<std::size_t>(friction_)].friction;
   const FrictionState& state = own_.friction[friction_];
-  double* const watch = arrays_.watch.data();
+  double* const event_value = arrays_.event_value.data();
   if (is_sliding_) {
     friction.slip_wrench(own_, state, rate_, wrench_);
-    friction.watch_slip(own_, state, rate_, watch);
+    friction.slip_events(own_, state, rate_, event_value);
   } else {
-    friction.watch_stick(own_, state, wrench_, watch);
+    friction.stick_events(own_, state, wrench_, event_value);
   }
-  watch[2] = friction.watch_place(own_, state);
+  event_value[2] = friction.contact_point_event(own_, state);
 }
 
 } // namespace steplap

@@ -16,16 +16,16 @@ namespace steplap {
 /// One recorded call of one element, or of one group.
 class ElementCall {
 public:
-  /// Precondition: a trace has been started (Traced::start). `live` is the evaluation whose modes and memory are read; it must outlive the
-  /// call.
+  /// Precondition: a trace has been started (TapeNumber::start). `live` is the evaluation whose modes and memory are read; it must outlive
+  /// the call.
   ElementCall(const System& system, const Evaluation& live);
   ElementCall(const ElementCall&) = delete; // the tape's constants point to it
   ElementCall& operator=(const ElementCall&) = delete;
 
   /// Records group.add_forces(), adding to `e`.
   void trace(const ForceGroup& group, TracedEvaluation& e);
-  /// Records FrictionElement::trace_friction() for friction element f.
-  void trace(int f, TracedEvaluation& e, const Traced* rate, Traced* wrench, Traced* watch);
+  /// Records FrictionElement::record_friction() for friction element f.
+  void trace(int f, TracedEvaluation& e, const TapeNumber* rate, TapeNumber* wrench, TapeNumber* event_value);
 
   /// Returns whether the element threw an exception in the last run, and resets this flag. If it did, the results of the run are invalid.
   [[nodiscard]] bool has_failed() { return std::exchange(has_failed_, false); }
@@ -36,10 +36,10 @@ private:
     double value;
   };
 
-  void take(const Traced& x, double& place);
-  void take(const Motion<Traced>& from, Motion<double>& to);
-  void give(Traced& x, const double& place);
-  void add_to(Traced& x, double& place);
+  void take(const TapeNumber& x, double& place);
+  void take(const Motion<TapeNumber>& from, Motion<double>& to);
+  void give(TapeNumber& x, const double& place);
+  void add_to(TapeNumber& x, double& place);
   void take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e);
   [[nodiscard]] std::vector<int> slots_of(const std::vector<char>& is_used) const;
   [[nodiscard]] std::vector<std::size_t> contacts_of_group();
@@ -57,11 +57,11 @@ private:
   EvaluationArrays arrays_;
   std::vector<double> inner_;
   double rate_[3] = {0, 0, 0}, wrench_[3] = {0, 0, 0};
-  std::vector<double*> places_;      ///< addresses of the arguments; the first argument of the call is the address of this object
-  std::vector<Constant> constants_;  ///< initial values of the sums that are constants
-  std::vector<const double*> found_; ///< addresses of the results
-  std::vector<Traced> arguments_;    ///< only while recording, as `results_`
-  std::vector<Traced*> results_;
+  std::vector<double*> places_;       ///< addresses of the arguments; the first argument of the call is the address of this object
+  std::vector<Constant> constants_;   ///< initial values of the sums that are constants
+  std::vector<const double*> found_;  ///< addresses of the results
+  std::vector<TapeNumber> arguments_; ///< only while recording, as `results_`
+  std::vector<TapeNumber*> results_;
   bool has_failed_ = false;
 };
 

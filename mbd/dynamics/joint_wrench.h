@@ -10,7 +10,7 @@
 namespace steplap {
 
 /// Computes the geometry of all joints inside clusters for the present contact points and anchors, one entry per edge.
-void place_edges(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges);
+void compute_edge_geometry(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges);
 
 /// Returns the wrench missing in the equation of motion of a member of a cluster: m (R a_c + α ẑ×r − ω² r − g) minus the forces on it, with
 /// R the rotation to the cluster's axes. `k` and `a` are motion and accelerations of the cluster, `f` is the force on the member.

@@ -433,7 +433,7 @@ void fill_rows(Layout& layout) {
 void analyze_rows(Layout& layout) {
   int absolute_rows = static_cast<int>(layout.active.size());
   for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
-  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts, SchurSolver::Hubs::apart);
+  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts, SchurSolver::HubElimination::apart);
 }
 
 } // namespace

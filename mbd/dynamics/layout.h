@@ -140,7 +140,7 @@ struct Layout {
   std::vector<int> holding;                            ///< friction elements in phase stick that are rows
   std::vector<int> merged;                             ///< friction elements in phase stick that merge their bodies
   bool can_merged_slip = false;                        ///< some of the merged ones can slip
-  bool is_merged_watched = false;                      ///< their event functions are evaluated, as for sticking elements that share a load
+  bool has_rigid_joint_events = false;                 ///< their event functions are evaluated, as for sticking elements that share a load
   std::unique_ptr<LoadSharing> sharing;                ///< null until dependent rows have occurred
   std::vector<double> reference;                       ///< coordinates in the reference pose, for error scales
   std::vector<HeldRow> held_rows;                      ///< rows of the elements in `holding`
@@ -155,7 +155,7 @@ struct Layout {
   /// Discards the load sharing, as in a new layout. It depends on the pose in which it was first computed.
   void forget_sharing() {
     sharing.reset();
-    is_merged_watched = can_merged_slip;
+    has_rigid_joint_events = can_merged_slip;
   }
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
   /// Returns true if an active row is over more than two bodies.

@@ -134,7 +134,7 @@ private:
   std::vector<unsigned> path_; ///< per member: bit mask of the coordinates that move it
   std::array<double, k_most> reach_{};
   std::array<char, k_most> is_place_{};
-  std::vector<char> can_stay_out_, out_, was_out_; ///< per row, as in SchurSolver
+  std::vector<char> can_stay_out_, out_, was_dependent_; ///< per row, as in SchurSolver
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;

@@ -159,7 +159,7 @@ void Mechanism::factor_as_is(double shift) {
 
 void Mechanism::decide_rank(const char* is_friction, const char* was_out) {
   can_stay_out_.assign(is_friction, is_friction + row_count);
-  was_out_.assign(was_out, was_out + row_count);
+  was_dependent_.assign(was_out, was_out + row_count);
   out_.clear();
   is_rank_open_ = row_count > 0;
 }
@@ -184,7 +184,7 @@ void Mechanism::keep_rank(double shift) {
     }
     in_masses[r].length = std::sqrt(w.own[r]);
   }
-  out_ = dependent_rows(in_masses, can_stay_out_.data(), was_out_);
+  out_ = dependent_rows(in_masses, can_stay_out_.data(), was_dependent_);
   factor_as_is(shift);
 }
 

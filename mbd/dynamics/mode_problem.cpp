@@ -33,7 +33,7 @@ AlongRow along_row(const SchurRow& row, double bias, const double* a) {
 
 } // namespace
 
-void Dynamics::slip_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding) {
+void Dynamics::relative_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding) {
   ensure_byproducts();
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* specs = friction.rows(state_->friction[f]);
@@ -101,7 +101,7 @@ struct Dynamics::CandidateRow {
   }
 };
 
-void Dynamics::respond(Candidates& candidates, const double* dy) {
+void Dynamics::compute_mode_problem(ModeProblem& candidates, const double* dy) {
   ensure_byproducts();
   Layout& layout = *layout_;
   const std::size_t n = candidates.rows.size();
@@ -127,8 +127,8 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
     std::fill(response.begin(), response.end(), 0.0);
     for (const CandidateRow& part : rows[c]) part.add_response(1.0, response.data());
     if (!layout.active.empty()) {
-      for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, response.data());
-      rows_.take_away(kept_.data(), response.data());
+      for (std::size_t r = 0; r < layout.active.size(); ++r) row_scratch_[r] = rows_.along(r, response.data());
+      rows_.take_away(row_scratch_.data(), response.data());
     }
     for (std::size_t d = 0; d < n; ++d)
       for (const CandidateRow& part : rows[d]) candidates.compliance[d * n + c] += part.along(response.data());

@@ -17,8 +17,8 @@ constexpr int k_max_projection_iterations = 60;
 constexpr int k_iterations_per_factorization = 3;
 // Upper limit of the damping of a projection near a singular position, as a fraction of the diagonal.
 constexpr double k_largest_damping = 1e-3;
-// Below this relative pivot the constrained part of error estimates is removed (remove_held). Otherwise tight tolerances could not be
-// reached near a singular position, where accelerations across the constraints are mostly rounding.
+// Below this relative pivot the constrained part of error estimates is removed (remove_constrained_error). Otherwise tight tolerances could
+// not be reached near a singular position, where accelerations across the constraints are mostly rounding.
 constexpr double k_removal_pivot = 1e-2;
 // A factorisation is used again if it has reduced the residual to this fraction.
 constexpr double k_chord_worth = 0.1;
@@ -100,33 +100,33 @@ bool Dynamics::is_near_singular() const {
   return !layout_->active.empty() && rows_.is_factored() && layout_->smallest_pivot() < k_removal_pivot;
 }
 
-void Dynamics::keep_allowed(double* change) {
+void Dynamics::project_onto_null_space(double* change) {
   const Layout& layout = *layout_;
   if (layout.active.empty()) return;
   ensure_byproducts();
   if (!rows_.is_factored()) rows_.factor();
-  for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, change);
-  rows_.take_away(kept_.data(), change);
+  for (std::size_t r = 0; r < layout.active.size(); ++r) row_scratch_[r] = rows_.along(r, change);
+  rows_.take_away(row_scratch_.data(), change);
 }
 
-void Dynamics::remove_held(double* change) {
+void Dynamics::remove_constrained_error(double* change) {
   if (!is_near_singular()) return;
-  keep_allowed(change);
-  keep_allowed(change + coordinate_count());
+  project_onto_null_space(change);
+  project_onto_null_space(change + coordinate_count());
 }
 
 Residual Dynamics::project(double t, double* y, double tolerance) {
   const Residual found = project_rows(t, y, tolerance);
-  if (inner_count() > 0) settle_inner(t, y);
+  if (inner_count() > 0) project_inner(t, y);
   return found;
 }
 
-void Dynamics::settle_inner(double t, double* y) {
+void Dynamics::project_inner(double t, double* y) {
   double* const inner = y + 2 * coordinate_count();
   evaluation_.t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(evaluation_.t, y)) kinematics_.place(evaluation_.t, y, y + coordinate_count());
   take_inner(inner);
-  for (const ForceGroup* group : system_.inner_groups) inner[inner_count()] += group->settle_inner(evaluation_, inner);
+  for (const ForceGroup* group : system_.inner_groups) inner[inner_count()] += group->project_inner(evaluation_, inner);
   take_inner(inner);
 }
 
@@ -153,7 +153,7 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   return first;
 }
 
-void Dynamics::close_velocities(double t, double* y) {
+void Dynamics::project_velocities(double t, double* y) {
   if (!layout_->active.empty()) {
     ensure_byproducts();
     const Residual now = constraint_values(t, y);
@@ -204,19 +204,19 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
 // singularity, so that accelerations at the stage itself would be unbounded. The rates of the nearest state on the constraints are as
 // smooth, and equal to the rates proper at the ends of the step.
 void Dynamics::rates_nearby(double t, const double* y, double* dy) {
-  std::copy(y, y + dimension(), placed_.begin());
+  std::copy(y, y + dimension(), projected_state_.begin());
   Residual off = constraint_values(t, y);
   if (off.position <= place_rounding(y) && off.velocity <= rate_rounding(y)) {
     rates_at(t, y, dy);
     return;
   }
-  bool is_placed = reach_positions(t, placed_.data(), place_rounding(y), off);
+  bool is_placed = reach_positions(t, projected_state_.data(), place_rounding(y), off);
   try {
-    if (is_placed) reach_velocities(t, placed_.data(), off, rate_rounding(y));
+    if (is_placed) reach_velocities(t, projected_state_.data(), off, rate_rounding(y));
   } catch (const ElementFailure&) { // for a stage far off; the error estimate of the step will reject it if necessary
     is_placed = false;
   }
-  rates_at(t, is_placed ? placed_.data() : y, dy);
+  rates_at(t, is_placed ? projected_state_.data() : y, dy);
 }
 
 } // namespace steplap

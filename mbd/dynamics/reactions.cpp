@@ -14,7 +14,7 @@ Reactions::Reactions(const System& system, const Kinematics& kinematics, const B
 void Reactions::use(const Layout& layout, const State& state) {
   layout_ = &layout;
   state_ = &state;
-  place_edges(system_, layout, state, edges_);
+  compute_edge_geometry(system_, layout, state, edges_);
 }
 
 void Reactions::find_accelerations(const double* cluster_a) {
@@ -37,7 +37,7 @@ double* Reactions::multipliers_of(const RigidEdge& edge) {
   return &friction_force_[system_.frictions[edge.friction].row];
 }
 
-void place_edges(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges) {
+void compute_edge_geometry(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges) {
   edges.resize(layout.edges.size());
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];

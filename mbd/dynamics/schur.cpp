@@ -192,7 +192,7 @@ SchurSolver::~SchurSolver() = default;
 SchurSolver::SchurSolver(SchurSolver&&) noexcept = default;
 SchurSolver& SchurSolver::operator=(SchurSolver&&) noexcept = default;
 
-void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts, Hubs hubs) {
+void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts, HubElimination hubs) {
   n_ = count;
   parts_ = parts;
   length_ = std::max(1.0, n_ / k_usual_rows);
@@ -203,7 +203,7 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const st
   position_.resize(n_);
   inverse_d_.assign(n_, 0.0);
   is_by_hubs_ = is_pattern_known_ = false;
-  hubs_ = hubs == Hubs::apart && parts.empty() ? HubSolver::of(rows, count) : nullptr;
+  hubs_ = hubs == HubElimination::apart && parts.empty() ? HubSolver::of(rows, count) : nullptr;
   if (!hubs_) find_pattern(rows);
 }
 
@@ -228,7 +228,7 @@ void SchurSolver::find_pattern(const std::vector<SchurRow>& rows) {
 
 void SchurSolver::decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out) {
   can_stay_out_ = is_friction;
-  was_out_ = was_out;
+  was_dependent_ = was_out;
   out_.clear();
   is_rank_open_ = !is_friction.empty();
 }
@@ -266,7 +266,7 @@ std::vector<char> SchurSolver::dependent_friction(const std::vector<SchurRow>& r
   }
   for (const SchurPart& part : parts_) add(part.of, rows[part.row]);
   for (WeightedRow& row : in_masses) row.length = row.row.norm();
-  return dependent_rows(in_masses, can_stay_out_.data(), was_out_);
+  return dependent_rows(in_masses, can_stay_out_.data(), was_dependent_);
 }
 
 void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
@@ -340,18 +340,18 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
   });
 }
 
-void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x,
+void SchurSolver::trace(const std::vector<SchurRowOf<TapeNumber>>& rows, double least_pivot, TapeNumber* x,
                         std::vector<TracedPivot>& pivots) const {
   if (!is_small()) return trace_sparse(rows, least_pivot, x, pivots);
   // Decodes an index of a double in the rows: row and side.
   constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
   const auto side_of = [](std::size_t place, std::size_t member) { return (place % k_row - member / sizeof(double)) / 3; };
-  std::array<Traced, k_max_dense * k_max_dense> m;
-  std::array<Traced, k_max_dense> inverse_d;
+  std::array<TapeNumber, k_max_dense * k_max_dense> m;
+  std::array<TapeNumber, k_max_dense> inverse_d;
   for (int i = 0; i < n_ * n_; ++i) m[i] = dense_constant_[i];
   for (const DenseProduct& p : dense_products_) {
-    const Traced* const a = rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))];
-    const Traced* const b = rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))];
+    const TapeNumber* const a = rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))];
+    const TapeNumber* const b = rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))];
     m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
   for (const DenseProduct& p : dense_turns_)
@@ -359,11 +359,11 @@ void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double leas
         rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))][2] * rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))][2];
   const double least = n_ > 1 ? least_pivot : k_pivot_tolerance; // a single row cannot be nearly dependent on others
   eliminate_rows<0>(
-      m.data(), inverse_d.data(), n_, [](const Traced& diagonal) { return diagonal; },
-      [&](int, const Traced& d, const Traced& diagonal) {
+      m.data(), inverse_d.data(), n_, [](const TapeNumber& diagonal) { return diagonal; },
+      [&](int, const TapeNumber& d, const TapeNumber& diagonal) {
         if (!(d > least * diagonal)) throw NotTraceable();
         if (n_ > 1) pivots.push_back({d, diagonal});
-        return Traced(1.0) / d;
+        return TapeNumber(1.0) / d;
       });
   if (n_ == 1) x[0] *= inverse_d[0];
   else substitute<0>(m.data(), inverse_d.data(), n_, x);
@@ -430,16 +430,16 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
   smallest_pivot_ = smallest_pivot;
 }
 
-void SchurSolver::trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x,
+void SchurSolver::trace_sparse(const std::vector<SchurRowOf<TapeNumber>>& rows, double least_pivot, TapeNumber* x,
                                std::vector<TracedPivot>& pivots) const {
   std::vector<int> fill(column_fill_.size());
-  std::vector<Traced> y(work_.size(), Traced(0.0)), l(l_.size()), inverse_d(inverse_d_.size());
+  std::vector<TapeNumber> y(work_.size(), TapeNumber(0.0)), l(l_.size()), inverse_d(inverse_d_.size());
   eliminate_pattern(
-      rows, fill.data(), y.data(), l.data(), inverse_d.data(), [](const Traced& diagonal) { return diagonal; },
-      [&](int, const Traced& d, const Traced& diagonal) {
+      rows, fill.data(), y.data(), l.data(), inverse_d.data(), [](const TapeNumber& diagonal) { return diagonal; },
+      [&](int, const TapeNumber& d, const TapeNumber& diagonal) {
         if (!(d > least_pivot * diagonal)) throw NotTraceable();
-        pivots.push_back({d / diagonal, Traced(1.0)}); // the same comparison as in factor_sparse()
-        return Traced(1.0) / d;
+        pivots.push_back({d / diagonal, TapeNumber(1.0)}); // the same comparison as in factor_sparse()
+        return TapeNumber(1.0) / d;
       });
   substitute_pattern(l.data(), inverse_d.data(), y.data(), x);
 }

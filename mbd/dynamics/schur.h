@@ -36,7 +36,7 @@ using SchurRow = SchurRowOf<double>;
 
 /// A recorded pivot, and the diagonal element that it is compared with.
 struct TracedPivot {
-  Traced pivot, diagonal;
+  TapeNumber pivot, diagonal;
 };
 
 /// Further part of a row over more than two bodies: rows[row] is not a row itself but a part of rows[of].
@@ -57,10 +57,11 @@ public:
 
   /// `apart`: bodies in which many rows meet are treated separately if this is accurate (hub_solver.h). Requires the inverse masses of the
   /// rows.
-  enum class Hubs : unsigned char { as_others, apart };
+  enum class HubElimination : unsigned char { as_others, apart };
   /// Computes the pattern for the first `count` rows, the ones to be solved for, and for their further `parts`, which follow them in
   /// `rows`. Body −1 couples nothing.
-  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {}, Hubs hubs = Hubs::as_others);
+  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {},
+               HubElimination hubs = HubElimination::as_others);
   void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
   /// Factorises A for the present j and wj, with its diagonal increased by the fraction `shift` (damping). Does not allocate, except the
   /// first time that HubSolver refuses the numbers.
@@ -72,7 +73,7 @@ public:
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   /// Records factor() and solve() on a tape, x = A⁻¹ x, for independent rows with can_be_traced(). The tape is valid while all relative
   /// pivots are above `least_pivot`. Appends the pivots that smallest_pivot() is computed from.
-  void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
+  void trace(const std::vector<SchurRowOf<TapeNumber>>& rows, double least_pivot, TapeNumber* x, std::vector<TracedPivot>& pivots) const;
   /// In place: x = A⁻¹ x. `rows` must be those factorised.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 
@@ -109,7 +110,8 @@ private:
   void find_pattern_of_factors(const Columns& columns);
   void factor_sparse(const std::vector<SchurRow>& rows);
   void eliminate_sparse(double* x) const;
-  void trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
+  void trace_sparse(const std::vector<SchurRowOf<TapeNumber>>& rows, double least_pivot, TapeNumber* x,
+                    std::vector<TracedPivot>& pivots) const;
   template <class S> void add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const;
   template <class S, class Raise, class Invert>
   void eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d, const Raise& raise,
@@ -149,7 +151,7 @@ private:
   [[nodiscard]] bool is_in_doubt(const std::vector<SchurRow>& rows) const;
   [[nodiscard]] std::vector<char> dependent_friction(const std::vector<SchurRow>& rows) const;
 
-  std::vector<char> can_stay_out_, out_, was_out_; ///< per row; empty: none
+  std::vector<char> can_stay_out_, out_, was_dependent_; ///< per row; empty: none
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;

@@ -15,7 +15,7 @@ void Dynamics::find_sharing() {
   for (const HeldRow& held : layout.held_rows) left_out[held.friction_row] = layout.is_dependent(held.row) ? 1 : 0;
   if (layout.sharing && layout.sharing->holds_at(all, left_out)) return;
   layout.sharing = std::make_unique<LoadSharing>(system_, *state_, all, std::move(left_out));
-  if (layout.sharing->has_friction()) layout.is_merged_watched = true;
+  if (layout.sharing->has_friction()) layout.has_rigid_joint_events = true;
 }
 
 const LoadSharing* Dynamics::sharing_now() const {
@@ -40,7 +40,7 @@ void Dynamics::take_solved_friction() {
 // Sets the event functions of each group in the slots of all its elements. First: 1 minus the least utilisation; the group gives way when
 // it becomes negative, and the mode problem decides which elements slip. Second: 1 minus the incompatible motion of its rows
 // (LoadSharing::discord). Returns true if one of them is near zero. Precondition: wrenches of rigid joints inside clusters are up to date.
-bool Dynamics::watch_groups() {
+bool Dynamics::evaluate_group_events() {
   bool is_near = false;
   if (!sharing()) return is_near;
   find_sharing();
@@ -51,8 +51,8 @@ bool Dynamics::watch_groups() {
     const double margin = 1.0 + k_bound_slack - group.least.usage();
     const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, reactions_.acceleration().data());
     for (const int f : group.frictions) {
-      arrays_.watch[system_.frictions[f].watch] = margin;
-      arrays_.watch[system_.frictions[f].watch + 1] = concord;
+      arrays_.event_value[system_.frictions[f].first_event] = margin;
+      arrays_.event_value[system_.frictions[f].first_event + 1] = concord;
     }
     if (concord < k_near_limit) is_near = true;
     if (margin < k_near_limit) is_near = true;

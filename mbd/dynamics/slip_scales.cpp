@@ -37,7 +37,7 @@ bool Dynamics::slip_scales(double* scale) {
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const FrictionState& friction = state_->friction[layout_->sliding[i]];
     const FrictionElement& element = *system_.frictions[layout_->sliding[i]].friction;
-    if (!element.turns_with_slip(friction)) continue;
+    if (!element.depends_on_slip_direction(friction)) continue;
     ensure_byproducts();
     double rate[3];
     sliding_rates(i, rate);
@@ -69,11 +69,11 @@ double Dynamics::slip_decay_rate() {
   double fastest = 0.0;
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const int f = layout_->sliding[i];
-    if (!system_.frictions[f].friction->turns_with_slip(state_->friction[f])) continue;
+    if (!system_.frictions[f].friction->depends_on_slip_direction(state_->friction[f])) continue;
     ensure_byproducts();
     double rate[3];
     sliding_rates(i, rate);
-    fastest = std::max(fastest, system_.frictions[f].friction->decay_rate(evaluation_, state_->friction[f], rate));
+    fastest = std::max(fastest, system_.frictions[f].friction->max_damping_rate(evaluation_, state_->friction[f], rate));
   }
   return fastest;
 }

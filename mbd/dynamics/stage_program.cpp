@@ -15,7 +15,7 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
   family_ = tape_family(key());
   stages_ = family_->made();
-  look_for_candidate();
+  find_candidate();
 }
 
 // Hash that identifies a layout with its modes, and the scene by its sizes.
@@ -33,7 +33,7 @@ std::uint64_t StageProgram::key() const {
   return hash;
 }
 
-void StageProgram::look_for_candidate() {
+void StageProgram::find_candidate() {
   if (choice_ == StageCode::when_it_pays && !tape_code_ && tapes_ == 0 && !is_hopeless_) candidate_ = family_->coded();
 }
 
@@ -45,7 +45,7 @@ bool StageProgram::is_of(const State& state) const {
                     });
 }
 
-void StageProgram::look_for_code() {
+void StageProgram::adopt_code() {
   if (code_ || !tape_code_ || !tape_code_->code()) return;
   const MachineCode& made = *tape_code_->code();
   const double *const inputs = traced_.inputs.data(), *const constants = traced_.tape.constants.data();
@@ -63,7 +63,7 @@ void StageProgram::look_for_code() {
 bool StageProgram::makes_what_was_traced(const MachineCode& made) const {
   const Tape& tape = traced_.tape;
   std::size_t size[CodeArrays::k_more + 1] = {};
-  for (const OutputPlace& p : tape.places) size[p.array] = std::max(size[p.array], static_cast<std::size_t>(p.place) + 1);
+  for (const OutputLocation& p : tape.places) size[p.array] = std::max(size[p.array], static_cast<std::size_t>(p.place) + 1);
   std::vector<double> found(size[0] + size[1] + size[2] + size[3]);
   double* const begin[] = {found.data(), found.data() + size[0], found.data() + size[0] + size[1], found.data() + found.size() - size[3]};
   const CodeArrays arrays{tape.constants.data(), traced_.inputs.data() + tape.first_inputs, {begin[1], begin[2], begin[3]}};
@@ -85,11 +85,11 @@ void StageProgram::give_up() {
   is_hopeless_ = tapes_ >= k_most_tapes;
 }
 
-bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all) {
+bool StageProgram::run(double t, const double* y, double* dy, double* event_value, double* event_derivative, bool all) {
   double* of_signal = time_inputs_.data() + time_count_;
-  for (const TimeInput& signal : traced_.signals) *of_signal++ = signal.at(t);
-  arrays_.outputs[0] = watch;
-  arrays_.outputs[1] = watch_rate;
+  for (const SignalInput& signal : traced_.signals) *of_signal++ = signal.at(t);
+  arrays_.outputs[0] = event_value;
+  arrays_.outputs[1] = event_derivative;
   if (!code_->run(y, arrays_, dy, all)) {
     note_failure();
     return false;
@@ -104,7 +104,7 @@ void StageProgram::count_stage() {
   family_->count_evaluation();
   if (!tape_code_) return;
   tape_code_->count_uses(1);
-  look_for_code();
+  adopt_code();
 }
 
 void StageProgram::put_wrenches(double* friction_force) const {
@@ -139,8 +139,9 @@ bool StageProgram::has_found(const StageFound& found) const {
   const auto are_same = [&is_same](const std::vector<int>& slots, const double* x) {
     return std::all_of(slots.begin(), slots.end(), [&](int slot) { return is_same(x[slot]); });
   };
-  return std::all_of(found.dy, found.dy + coordinate_count_ + inner_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
-         are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
+  return std::all_of(found.dy, found.dy + coordinate_count_ + inner_count_ + 2, is_same) &&
+         are_same(traced_.event_values, found.event_value) && are_same(traced_.event_derivatives, found.event_derivative) &&
+         are_same(traced_.wrenches, found.friction_force) &&
          smallest_pivot_in(traced_.outputs.data() + traced_.usual_outputs()) == found.smallest_pivot;
 }
 
@@ -167,7 +168,7 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   tape_code_ = known ? known : shared_code(traced_.tape);
   if (!known) family_->keep(tape_code_);
   if (choice_ == StageCode::at_once) tape_code_->make();
-  look_for_code();
+  adopt_code();
 }
 
 void StagePrograms::enter(Layout& layout, const State& state, LayoutStore& kept) {
@@ -175,8 +176,8 @@ void StagePrograms::enter(Layout& layout, const State& state, LayoutStore& kept)
       std::find_if(layout.programs.begin(), layout.programs.end(), [&state](const auto& program) { return program->is_of(state); });
   if (known != layout.programs.end()) {
     now_ = known->get();
-    now_->look_for_code();
-    now_->look_for_candidate();
+    now_->adopt_code();
+    now_->find_candidate();
     return;
   }
   now_ = nullptr;

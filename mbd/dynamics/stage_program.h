@@ -15,7 +15,7 @@
 
 namespace steplap {
 
-/// Relative pivot below which stages are evaluated without code. Integrators need the smallest pivot of a step (Dynamics::lowest_pivot) if
+/// Relative pivot below which stages are evaluated without code. Integrators need the smallest pivot of a step (Dynamics::least_pivot) if
 /// it is below 2e-2, and stages by code do not compute it.
 inline constexpr double k_traced_pivot = 2.5e-2;
 
@@ -29,7 +29,7 @@ enum class StageCode : std::uint8_t {
 /// Results of an evaluation without code.
 struct StageFound {
   const double* dy; ///< accelerations, rates of inner states, dissipated power and power of loads
-  const double *watch, *watch_rate, *friction_force;
+  const double *event_value, *event_derivative, *friction_force;
   double smallest_pivot;
 };
 
@@ -41,15 +41,15 @@ public:
   [[nodiscard]] bool is_of(const State& state) const;
 
   /// Takes over machine code that has been made since, if it reproduces the recorded stage bit by bit.
-  void look_for_code();
+  void adopt_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// Computes accelerations, rates of inner states, powers and event functions at coordinates, rates and inner states y. Returns false if
-  /// the stage must be evaluated without code; the outputs are then undefined. `all`: also computes the data for can_look(), put_wrenches()
-  /// and smallest_pivot().
-  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
-  /// can_look() returns true if the event functions of merged joints can be computed from a stage by code. put_wrenches() then writes the
-  /// wrenches of these joints at the last run().
-  [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
+  /// the stage must be evaluated without code; the outputs are then undefined. `all`: also computes the data for has_joint_wrenches(),
+  /// put_wrenches() and smallest_pivot().
+  [[nodiscard]] bool run(double t, const double* y, double* dy, double* event_value, double* event_derivative, bool all);
+  /// has_joint_wrenches() returns true if the event functions of merged joints can be computed from a stage by code. put_wrenches() then
+  /// writes the wrenches of these joints at the last run().
+  [[nodiscard]] bool has_joint_wrenches() const { return traced_.has_wrenches; }
   void put_wrenches(double* friction_force) const;
   /// Returns Layout::smallest_pivot() at the last run(), bit-identical.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(rest_.data()); }
@@ -63,7 +63,7 @@ public:
   /// Counts a stage evaluated without code.
   void count_stage();
   /// To be called when modes recur: looks for code made for such a tape in the meantime.
-  void look_for_candidate();
+  void find_candidate();
   /// Records the stage evaluated last, at t, y and time_inputs(), and checks the tape against its results. `live` as for trace_rates().
   void record(const System& system, const State& state, const Evaluation& live, double t, const double* y, const StageFound& found);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
 
 struct LockTarget {
-  Traced value, rate, acceleration;
+  TapeNumber value, rate, acceleration;
 };
 
 // Limit of the size: with some 80 instructions per coordinate, longer code would not fit in the instruction cache.
@@ -28,11 +28,11 @@ bool is_plain(const Layout& layout) {
 
 /// Memory of a trace, kept for the next one: allocation would take a tenth of the time.
 struct TracerMemory {
-  std::vector<Motion<Traced>> motion_;
-  std::vector<BodyForceOf<Traced>> force_, lack_;
-  std::vector<Traced> contact_force_, watch_, watch_rate_, friction_force_;
-  std::vector<Traced> q_, v_, inner_, inner_rate_, time_, a_, multiplier_, cluster_a_;
-  std::vector<SchurRowOf<Traced>> rows_;
+  std::vector<Motion<TapeNumber>> motion_;
+  std::vector<BodyForceOf<TapeNumber>> force_, lack_;
+  std::vector<TapeNumber> contact_force_, watch_, event_derivative_, friction_force_;
+  std::vector<TapeNumber> q_, v_, inner_, inner_rate_, time_, a_, multiplier_, cluster_a_;
+  std::vector<SchurRowOf<TapeNumber>> rows_;
   std::vector<EdgeGeometry> edges_;
 
   static TracerMemory& kept() {
@@ -51,21 +51,21 @@ public:
       : TracerMemory(std::move(kept())), system_(system), layout_(layout), state_(state), live_(live) {
     motion_.assign(system.bodies.size() + system.links.slot_count(), {});
     force_.assign(motion_.size(), {});
-    contact_force_.assign(system.contact_count, Traced(0.0));
-    watch_.assign(system.watch_count, Traced(1.0));
-    watch_rate_.assign(system.watch_count, Traced(std::numeric_limits<double>::quiet_NaN()));
-    friction_force_.assign(system.friction_row_count, Traced(0.0));
+    contact_force_.assign(system.contact_count, TapeNumber(0.0));
+    watch_.assign(system.event_count, TapeNumber(1.0));
+    event_derivative_.assign(system.event_count, TapeNumber(std::numeric_limits<double>::quiet_NaN()));
+    friction_force_.assign(system.friction_row_count, TapeNumber(0.0));
     for (auto* const numbers : {&q_, &v_, &inner_, &time_, &a_, &multiplier_, &cluster_a_}) numbers->clear();
     if (layout.has_mechanisms()) cluster_a_.resize(3 * layout.clusters.size());
     rows_.clear();
-    inner_rate_.assign(static_cast<std::size_t>(system.inner_count()), Traced(0.0));
+    inner_rate_.assign(static_cast<std::size_t>(system.inner_count()), TapeNumber(0.0));
     e_.motion = motion_.data();
     e_.link_motion = motion_.data();
     e_.force = force_.data();
     e_.link_force = force_.data();
     e_.contact_force = contact_force_.data();
-    e_.watch = watch_.data();
-    e_.watch_rate = watch_rate_.data();
+    e_.event_value = watch_.data();
+    e_.event_derivative = event_derivative_.data();
     e_.mode = state.mode.data();
     e_.friction = state.friction.data();
   }
@@ -82,9 +82,9 @@ public:
     accelerate();
     solve_rows(least_pivot);
     find_power();
-    watch_friction();
+    evaluate_friction_events();
     put_out(traced);
-    Traced::end_usual_outputs();
+    TapeNumber::end_usual_outputs();
     put_out_wrenches(traced);
     put_out_pivots(traced);
   }
@@ -92,11 +92,12 @@ public:
 private:
   ElementCall& call_element() { return *calls_->emplace_back(std::make_unique<ElementCall>(system_, live_)); }
 
-  // Records a friction element, as FrictionElement::trace_friction.
-  void trace_friction(int f, const Traced* rate, Traced* wrench) {
+  // Records a friction element, as FrictionElement::record_friction.
+  void record_friction(int f, const TapeNumber* rate, TapeNumber* wrench) {
     const FrictionUnit& unit = system_.frictions[f];
-    Traced* const watch = &watch_[unit.watch];
-    if (!unit.friction->trace_friction(e_, state_.friction[f], rate, wrench, watch)) call_element().trace(f, e_, rate, wrench, watch);
+    TapeNumber* const event_value = &watch_[unit.first_event];
+    if (!unit.friction->record_friction(e_, state_.friction[f], rate, wrench, event_value))
+      call_element().trace(f, e_, rate, wrench, event_value);
   }
 
   [[nodiscard]] std::size_t coordinate_count() const { return static_cast<std::size_t>(layout_.coordinate_count); }
@@ -105,21 +106,21 @@ private:
 
   void take_inputs(const double* y, std::span<const double> time_inputs) {
     const std::size_t n = coordinate_count();
-    for (std::size_t i = 0; i < n; ++i) q_.push_back(Traced::input(y[i]));
-    for (std::size_t i = 0; i < n; ++i) v_.push_back(Traced::input(y[n + i]));
-    for (std::size_t i = 0; i < inner_rate_.size(); ++i) inner_.push_back(Traced::input(y[2 * n + i]));
+    for (std::size_t i = 0; i < n; ++i) q_.push_back(TapeNumber::input(y[i]));
+    for (std::size_t i = 0; i < n; ++i) v_.push_back(TapeNumber::input(y[n + i]));
+    for (std::size_t i = 0; i < inner_rate_.size(); ++i) inner_.push_back(TapeNumber::input(y[2 * n + i]));
     e_.inner = inner_.data();
     e_.inner_rate = inner_rate_.data();
-    for (const double x : time_inputs) time_.push_back(Traced::input(x));
+    for (const double x : time_inputs) time_.push_back(TapeNumber::input(x));
     first_inputs_ = static_cast<std::int32_t>(2 * n + inner_rate_.size());
   }
   [[nodiscard]] auto target_of_lock() const {
     return [this](std::size_t lock) {
-      const Traced* const of_lock = time_.data() + k_of_lock * lock;
+      const TapeNumber* const of_lock = time_.data() + k_of_lock * lock;
       return LockTarget{of_lock[0], of_lock[1], of_lock[2]};
     };
   }
-  [[nodiscard]] const Traced* of_driven_row(std::size_t i) const {
+  [[nodiscard]] const TapeNumber* of_driven_row(std::size_t i) const {
     return time_.data() + k_of_lock * layout_.locks.size() + k_of_driven_row * i;
   }
 
@@ -134,7 +135,7 @@ private:
   // The parts of long rows follow all rows.
   void load_rows() {
     for (const SchurRow& known : layout_.schur_rows) {
-      SchurRowOf<Traced>& row = rows_.emplace_back();
+      SchurRowOf<TapeNumber>& row = rows_.emplace_back();
       row.is_constant = known.is_constant;
       for (int side = 0; side < 2; ++side) {
         row.body[side] = known.body[side];
@@ -153,16 +154,16 @@ private:
 
   void apply_forces() {
     for (const auto& group : system_.groups)
-      if (!group->trace_forces(e_)) call_element().trace(*group, e_);
+      if (!group->record_forces(e_)) call_element().trace(*group, e_);
     for (std::size_t i = 0; i < layout_.sliding.size(); ++i) apply_sliding(layout_.sliding[i], layout_.sliding_link[i]);
     gather_forces(layout_, motion_.data(), force_.data());
   }
 
   void apply_sliding(int f, int link) {
     const FrictionUnit& unit = system_.frictions[f];
-    const SlidingRows<Traced> rows(unit.friction->rows(state_.friction[f]), unit.friction->dimension(), motion_[link]);
-    Traced wrench[3];
-    trace_friction(f, rows.rate, wrench);
+    const SlidingRows<TapeNumber> rows(unit.friction->rows(state_.friction[f]), unit.friction->dimension(), motion_[link]);
+    TapeNumber wrench[3];
+    record_friction(f, rows.rate, wrench);
     rows.pull(wrench, force_[link], e_.dissipation);
   }
 
@@ -193,7 +194,7 @@ private:
   // Accelerations of a mechanism without its rows, and γ − J a of the rows.
   void accelerate(TracedMechanism& m) {
     const Mechanism& of = m.constants();
-    Traced* const s = &a_[static_cast<std::size_t>(of.first_coordinate)];
+    TapeNumber* const s = &a_[static_cast<std::size_t>(of.first_coordinate)];
     m.accelerate(force_.data(), s);
     if (of.row_count == 0) return;
     m.expand(s, cluster_a_.data());
@@ -206,11 +207,11 @@ private:
     add_power_of_drives(layout_, force_.data(), rows_.data(), multiplier_.data(), a_.data(), row_rate, target_of_lock(), e_.work);
   }
 
-  void watch_friction() {
+  void evaluate_friction_events() {
     for (const HeldRow& held : layout_.held_rows) friction_force_[held.friction_row] = multiplier_[held.row];
     for (const int f : layout_.holding) {
       const FrictionUnit& unit = system_.frictions[f];
-      trace_friction(f, nullptr, &friction_force_[unit.row]);
+      record_friction(f, nullptr, &friction_force_[unit.row]);
     }
   }
 
@@ -218,48 +219,48 @@ private:
   void clear(TracedRates& traced) {
     traced.outputs.clear();
     traced.tape.places.clear();
-    traced.watches.clear();
-    traced.watch_rates.clear();
+    traced.event_values.clear();
+    traced.event_derivatives.clear();
     traced.inputs.clear();
     const std::size_t rates = a_.size() + inner_rate_.size() + 2, most = rates + 2 * watch_.size() + 3 * layout_.merged.size();
     traced.outputs.reserve(most);
     traced.tape.places.reserve(most);
-    traced.watches.reserve(watch_.size());
+    traced.event_values.reserve(watch_.size());
     traced.inputs.reserve(q_.size() + v_.size() + inner_.size() + time_.size() + e_.time_inputs.size());
   }
 
   void put_out(TracedRates& traced) {
     clear(traced);
     for (const auto* rates : {&a_, &inner_rate_})
-      for (const Traced& rate : *rates) put_next(rate, 0, traced);
+      for (const TapeNumber& rate : *rates) put_next(rate, 0, traced);
     put_next(e_.dissipation, 0, traced);
     put_next(e_.work, 0, traced);
     for (std::size_t i = 0; i < watch_.size(); ++i) {
       if (watch_[i].is_constant()) continue; // constants remain as the evaluation before has left them
-      traced.watches.push_back(static_cast<int>(i));
-      put_out(watch_[i], {TracedRates::k_watches, static_cast<std::int32_t>(i)}, traced);
+      traced.event_values.push_back(static_cast<int>(i));
+      put_out(watch_[i], {TracedRates::k_event_count, static_cast<std::int32_t>(i)}, traced);
     }
-    for (std::size_t i = 0; i < watch_rate_.size(); ++i) {
-      if (watch_rate_[i].is_constant()) continue;
-      traced.watch_rates.push_back(static_cast<int>(i));
-      put_out(watch_rate_[i], {TracedRates::k_watch_rates, static_cast<std::int32_t>(i)}, traced);
+    for (std::size_t i = 0; i < event_derivative_.size(); ++i) {
+      if (event_derivative_[i].is_constant()) continue;
+      traced.event_derivatives.push_back(static_cast<int>(i));
+      put_out(event_derivative_[i], {TracedRates::k_event_derivatives, static_cast<std::int32_t>(i)}, traced);
     }
     traced.tape.first_inputs = first_inputs_;
     traced.signals = e_.time_inputs;
     for (const auto* given : {&q_, &v_, &inner_, &time_})
-      for (const Traced& x : *given) traced.inputs.push_back(value_of(x));
-    for (const TimeInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
+      for (const TapeNumber& x : *given) traced.inputs.push_back(value_of(x));
+    for (const SignalInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
   }
 
   // Outputs the wrenches in joints inside clusters if event functions depend on them; the same as Reactions::find_joints.
   void put_out_wrenches(TracedRates& traced) {
     traced.wrenches.clear();
     traced.has_wrenches = !layout_.is_carried_by_pins; // pin forces are not recorded
-    if (!traced.has_wrenches || !layout_.is_merged_watched) return;
+    if (!traced.has_wrenches || !layout_.has_rigid_joint_events) return;
     lack_.assign(system_.bodies.size(), {});
     find_lacks(system_, layout_, motion_.data(), force_.data(), cluster_accelerations(), multiplier_.data(), lack_.data());
-    place_edges(system_, layout_, state_, edges_);
-    hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const Traced* along) {
+    compute_edge_geometry(system_, layout_, state_, edges_);
+    hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const TapeNumber* along) {
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
       for (int r = 0; r < 3; ++r) {
         traced.wrenches.push_back(system_.frictions[edge.friction].row + r);
@@ -268,7 +269,7 @@ private:
     });
   }
 
-  [[nodiscard]] const Traced* cluster_accelerations() {
+  [[nodiscard]] const TapeNumber* cluster_accelerations() {
     if (mechanisms_.empty()) return a_.data();
     std::copy_n(a_.begin(), 3 * absolute_count(), cluster_a_.begin());
     for (TracedMechanism& m : mechanisms_) m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
@@ -286,14 +287,14 @@ private:
     }
   }
 
-  static void put_out(const Traced& x, OutputPlace place, TracedRates& traced) {
-    Traced::output(x);
+  static void put_out(const TapeNumber& x, OutputLocation place, TracedRates& traced) {
+    TapeNumber::output(x);
     traced.outputs.push_back(value_of(x));
     traced.tape.places.push_back(place);
   }
 
   // Appends an output after the previous ones of its array.
-  void put_next(const Traced& x, std::int32_t array, TracedRates& traced) { put_out(x, {array, put_[array == 0 ? 0 : 1]++}, traced); }
+  void put_next(const TapeNumber& x, std::int32_t array, TracedRates& traced) { put_out(x, {array, put_[array == 0 ? 0 : 1]++}, traced); }
 
   const System& system_;
   const Layout& layout_;
@@ -314,14 +315,14 @@ std::size_t time_input_count(const Layout& layout) { return k_of_lock * layout.l
 bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t, const double* y,
                  std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known) {
   if (!is_plain(layout)) return false;
-  Traced::start(known);
+  TapeNumber::start(known);
   try {
     Tracer(system, layout, state, live).trace(t, y, time_inputs, least_pivot, traced);
   } catch (const NotTraceable&) {
-    (void)Traced::finish(nullptr);
+    (void)TapeNumber::finish(nullptr);
     return false;
   }
-  const bool is_known = Traced::finish(&traced.tape);
+  const bool is_known = TapeNumber::finish(&traced.tape);
   return is_known && (!known || (traced.tape.first_inputs == known->first_inputs && traced.tape.places == known->places));
 }
 

@@ -21,15 +21,16 @@ struct TracedRates {
   /// Inputs: coordinates and rates, inner states, time-dependent numbers of the layout, values of signals. Outputs: accelerations, rates of
   /// inner states, dissipated power, power of loads, event functions and their rates; then, for event functions of merged joints and for
   /// the end of a step, wrenches, and each pivot with its diagonal element. Compiled code reads coordinates, rates and inner states
-  /// directly from the state, and writes rates, event functions (array k_watches) and their rates (k_watch_rates) directly to their arrays.
+  /// directly from the state, and writes rates, event functions (array k_event_count) and their rates (k_event_derivatives) directly to
+  /// their arrays.
   Tape tape;
-  static constexpr std::int32_t k_watches = 1, k_watch_rates = 2, k_rest = 3; ///< arrays of outputs (Tape::places)
-  std::vector<TimeInput> signals;
-  std::vector<int> watches;     ///< indices of the event functions
-  std::vector<int> watch_rates; ///< indices of those whose rate is not constant
-  bool has_wrenches = false;    ///< false: event functions of merged joints cannot be computed from it
-  std::vector<int> wrenches;    ///< indices in Snapshot::friction_force of merged joints that can slip
-  std::vector<int> pivots;      ///< number of pivots of the rows between absolute clusters, then of each mechanism
+  static constexpr std::int32_t k_event_count = 1, k_event_derivatives = 2, k_rest = 3; ///< arrays of outputs (Tape::places)
+  std::vector<SignalInput> signals;
+  std::vector<int> event_values;      ///< indices of the event functions
+  std::vector<int> event_derivatives; ///< indices of those whose rate is not constant
+  bool has_wrenches = false;          ///< false: event functions of merged joints cannot be computed from it
+  std::vector<int> wrenches;          ///< indices in Snapshot::friction_force of merged joints that can slip
+  std::vector<int> pivots;            ///< number of pivots of the rows between absolute clusters, then of each mechanism
 
   /// Returns the number of outputs that every stage needs: accelerations, event functions and their rates.
   [[nodiscard]] std::size_t usual_outputs() const { return tape.usual_outputs; }
@@ -44,7 +45,7 @@ struct TracedRates {
 /// Records the evaluation at time t for coordinates, rates and inner states y. Returns false if the scene cannot be recorded: too many
 /// coordinates or rows, or dependent rows. `live`: evaluation whose modes and memory are read by called elements; it must outlive `traced`.
 /// `least_pivot`: smallest relative pivot for which the tape is valid. `known`: a tape that this evaluation probably equals; it is then
-/// only compared, not recorded again (Traced::start), and the function also returns false if it differs.
+/// only compared, not recorded again (TapeNumber::start), and the function also returns false if it differs.
 [[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t,
                                const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced,
                                const Tape* known = nullptr);

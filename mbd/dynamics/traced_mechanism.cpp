@@ -4,8 +4,8 @@ namespace steplap {
 
 namespace {
 
-MechanismWorkOf<Traced>::Link link_of(const MechanismWork::Link& known) {
-  MechanismWorkOf<Traced>::Link link;
+MechanismWorkOf<TapeNumber>::Link link_of(const MechanismWork::Link& known) {
+  MechanismWorkOf<TapeNumber>::Link link;
   link.parent = known.parent;
   link.coordinate = known.coordinate;
   link.slot = known.slot;
@@ -40,12 +40,12 @@ TracedMechanism::TracedMechanism(const Mechanism& mechanism) : mechanism_(mechan
   for (auto* numbers : {&work_.inverse_pivot, &work_.own}) numbers->resize(rows);
 }
 
-void TracedMechanism::solve_mass(Traced* x) const {
+void TracedMechanism::solve_mass(TapeNumber* x) const {
   if (work_.is_chain) work_.solve_chain<0>(x);
   else work_.solve_tree(x);
 }
 
-void TracedMechanism::accelerate(const BodyForceOf<Traced>* force, Traced* s) {
+void TracedMechanism::accelerate(const BodyForceOf<TapeNumber>* force, TapeNumber* s) {
   work_.fill_mass();
   if (work_.is_chain) work_.factor_chain<0>();
   else work_.factor_tree();
@@ -53,7 +53,7 @@ void TracedMechanism::accelerate(const BodyForceOf<Traced>* force, Traced* s) {
   solve_mass(s);
 }
 
-void TracedMechanism::solve_rows(const SchurRowOf<Traced>* rows, double least_pivot, Traced* lambda, Traced* change,
+void TracedMechanism::solve_rows(const SchurRowOf<TapeNumber>* rows, double least_pivot, TapeNumber* lambda, TapeNumber* change,
                                  std::vector<TracedPivot>& pivots) {
   const int count = mechanism_.row_count;
   for (int r = 0; r < count; ++r) {
@@ -66,14 +66,14 @@ void TracedMechanism::solve_rows(const SchurRowOf<Traced>* rows, double least_pi
   }
   for (int r = 0; r < count; ++r) work_.whiten_row(static_cast<std::size_t>(r), rows[r]);
   work_.factor_rows<0>(
-      count, [](const Traced& d, const Traced&) { return d; },
-      [&](int, const Traced& d, const Traced& own) {
+      count, [](const TapeNumber& d, const TapeNumber&) { return d; },
+      [&](int, const TapeNumber& d, const TapeNumber& own) {
         if (!(d > least_pivot * own)) throw NotTraceable();
         pivots.push_back({d, own});
         return 1.0 / d;
       });
   work_.eliminate<0>(count, lambda);
-  std::array<Traced, Mechanism::k_most> pull;
+  std::array<TapeNumber, Mechanism::k_most> pull;
   work_.pull_rows(count, lambda, pull.data());
   solve_mass(pull.data());
   for (int i = 0; i < work_.n; ++i) change[i] += pull[static_cast<std::size_t>(i)];

@@ -12,18 +12,19 @@ public:
   [[nodiscard]] const Mechanism& constants() const { return mechanism_; }
 
   /// As in Mechanism. q, v, s, lambda and change begin with the mechanism's own numbers, `rows` with its first row.
-  void place(const Traced* q, const Traced* v, Motion<Traced>* motion) { work_.place(q, v, motion); }
-  void accelerate(const BodyForceOf<Traced>* force, Traced* s);
-  void expand(const Traced* s, Traced* cluster_a) { work_.expand(s, cluster_a); }
+  void place(const TapeNumber* q, const TapeNumber* v, Motion<TapeNumber>* motion) { work_.place(q, v, motion); }
+  void accelerate(const BodyForceOf<TapeNumber>* force, TapeNumber* s);
+  void expand(const TapeNumber* s, TapeNumber* cluster_a) { work_.expand(s, cluster_a); }
   /// Throws NotTraceable if a pivot is below `least_pivot` of its diagonal; the tape is valid only while all pivots are above. Appends its
   /// pivots.
-  void solve_rows(const SchurRowOf<Traced>* rows, double least_pivot, Traced* lambda, Traced* change, std::vector<TracedPivot>& pivots);
+  void solve_rows(const SchurRowOf<TapeNumber>* rows, double least_pivot, TapeNumber* lambda, TapeNumber* change,
+                  std::vector<TracedPivot>& pivots);
 
 private:
-  void solve_mass(Traced* x) const;
+  void solve_mass(TapeNumber* x) const;
 
   const Mechanism& mechanism_;
-  MechanismWorkOf<Traced> work_;
+  MechanismWorkOf<TapeNumber> work_;
 };
 
 } // namespace steplap

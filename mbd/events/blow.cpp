@@ -28,7 +28,7 @@ double rest_rate(const OneSidedRow& rope, const std::vector<Motion<double>>& mot
 }
 
 // Elements that may take part in an impact, with the bounds of their impulses.
-struct Struck {
+struct ImpactElements {
   std::vector<int> elements;
   std::vector<double> rate, rounding, lower, upper;
   std::vector<double> acceleration; ///< acceleration without any of these elements
@@ -58,10 +58,10 @@ LockRate rate_of(const OneWayLock& lock, const FrictionState& friction, const st
 
 // Returns the ropes at their length, and all clutches, since an impact may drive any of them against its lock. Returns nothing if there is
 // no impact.
-Struck struck_in(const System& system, const State& state) {
+ImpactElements struck_in(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
-  Struck struck;
+  ImpactElements struck;
   bool is_any_rope = false;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction)) {
@@ -76,17 +76,17 @@ Struck struck_in(const System& system, const State& state) {
     struck.add(static_cast<int>(f), m.rate, k_rest_velocity + k_rounded_share * rope->speed(motion.data()), 1);
     is_any_rope = true;
   }
-  return is_any_rope || turns_against_lock(system, state) ? struck : Struck{};
+  return is_any_rope || turns_against_lock(system, state) ? struck : ImpactElements{};
 }
 
-BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& loose, Struck& struck) {
+BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& loose, ImpactElements& struck) {
   std::vector<double> y(static_cast<std::size_t>(system.largest_dimension())), dy(y.size());
   dynamics.set_state(loose);
   dynamics.pack(loose, y.data());
   dynamics.rates(loose.t, y.data(), dy.data());
-  Dynamics::Candidates answer;
+  Dynamics::ModeProblem answer;
   for (const int f : struck.elements) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
-  dynamics.respond(answer, dy.data());
+  dynamics.compute_mode_problem(answer, dy.data());
   struck.acceleration = answer.acceleration;
   const auto n = static_cast<Eigen::Index>(struck.elements.size());
   const MatX a = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(answer.compliance.data(), n, n);
@@ -104,7 +104,7 @@ void meet(Dynamics& dynamics, State& state) {
   dynamics.set_state(state);
   dynamics.pack(state, y.data());
   dynamics.project(state.t, y.data(), k_projection_tolerance);
-  dynamics.close_velocities(state.t, y.data());
+  dynamics.project_velocities(state.t, y.data());
   dynamics.unpack(state.t, y.data(), state);
 }
 
@@ -197,7 +197,7 @@ bool turns_against_lock(const System& system, const State& state) {
 }
 
 void take_blow(const System& system, Dynamics& dynamics, State& state) {
-  Struck struck = struck_in(system, state);
+  ImpactElements struck = struck_in(system, state);
   if (struck.elements.empty()) return;
   State after = state;
   free_friction(system, after);

@@ -1,13 +1,13 @@
 // Event location: finds the first event inside a step that an integrator has made.
 //
-// The elements provide event functions g_i(t), in the code "watch values", one per slot. A mode is valid while its event functions
+// The elements provide event functions g_i(t), in the code `event_value`, one per slot. A mode is valid while its event functions
 // are ≥ 0 (roles.h). An event is a change of some g_i from ≥ 0 to < 0. Position in the step is θ = (t − t0)/h, 0 ≤ θ ≤ 1.
 //
 // Sign changes at the ends of the step are not sufficient: g_i can be negative between two positive ends. A step is therefore
 // accepted without event only if every g_i is shown to be positive on all of it. Three tests are applied in turn, from cheap to
 // expensive (docs/explanation/theory.md, "Events"):
 //   1. far      (event_finder.cpp) The least value at ends and stages exceeds half the largest.
-//   2. certain  (watch_nodes.h)    The chord between neighbouring samples, less a bound ½ M (x − x_j)(x_{j+1} − x) with M ≥ |g″|,
+//   2. certain  (event_nodes.h)    The chord between neighbouring samples, less a bound ½ M (x − x_j)(x_{j+1} − x) with M ≥ |g″|,
 //                                  is positive.
 //   3. survey   (event_survey.cpp) g_i is interpolated on the dense output by polynomials with an error bound. The step is
 //                                  subdivided until each part is shown to be positive or contains a sign change.
@@ -51,30 +51,30 @@ public:
 private:
   /// Result of tests 1 and 2. none: no event. at_end: only functions with one simple root, negative at the end of the step.
   /// inside: some function has to be surveyed.
-  enum class Suspicion { none, at_end, inside };
-  /// found: low_ and high_ enclose the root. at_once: the event is at high_.theta, without root finding.
-  enum class Bracket { none, found, at_once };
+  enum class Screening { none, at_end, inside };
+  /// found: low_ and high_ enclose the root. immediate: the event is at high_.theta, without root finding.
+  enum class Bracket { none, found, immediate };
   /// Sample of all event functions.
-  struct Look {
+  struct Sample {
     double theta = 0.0;
-    std::vector<double> watch, rate; ///< g_i and dg_i/dθ; the derivative is NaN if the element does not provide it
+    std::vector<double> event_value, rate; ///< g_i and dg_i/dθ; the derivative is NaN if the element does not provide it
   };
   /// Interval of the step that is to be surveyed. `slot`, `error` and `stalled` describe the function that caused the last split.
-  struct Part {
+  struct Interval {
     double begin = 0.0, end = 1.0;
     int slot = -1;
     double error = 0.0; ///< its interpolation error on the parent interval
     int stalled = 0;    ///< number of successive splits that did not reduce this error
   };
-  /// Reason to split a part: function `slot` may be negative near `place`.
-  struct Unclear {
-    double place = -1.0; ///< relative position in the part, 0 … 1; −1: no reason
+  /// Reason to split a part: function `slot` may be negative near `position`.
+  struct Split {
+    double position = -1.0; ///< relative position in the part, 0 … 1; −1: no reason
     int slot = -1;
     double error = 0.0;
     int stalled = 0;
   };
   /// Interpolant of one event function on the present part.
-  struct Near {
+  struct Interpolant {
     int slot = -1;
     int stalled = 0;
     std::size_t from = 0, to = 0; ///< nodes between which it has to be positive
@@ -82,75 +82,75 @@ private:
     PartPolynomial polynomial;
   };
 
-  /// Applies tests 1 and 2; fills near_ with the slots that pass neither.
-  [[nodiscard]] Suspicion suspicion(Integrator& integrator, const Dynamics& dynamics, const std::vector<char>& fresh);
+  /// Applies tests 1 and 2; fills surveyed_slots_ with the slots that pass neither.
+  [[nodiscard]] Screening screen(Integrator& integrator, const Dynamics& dynamics, const std::vector<char>& fresh);
   [[nodiscard]] bool is_merged(const Dynamics& dynamics, int slot);
-  /// Uses the whole step as the bracket; for Suspicion::at_end.
+  /// Uses the whole step as the bracket; for Screening::at_end.
   Bracket bracket_whole(const Integrator& integrator);
   // --- event_survey.cpp
   Bracket survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
-  bool look_through(Integrator& integrator, Dynamics& dynamics, const Part& part);
-  void begin_parts(Integrator& integrator, Dynamics& dynamics, bool is_any_unarmed);
-  void arm_positive(double theta, const std::vector<double>& watch);
-  std::size_t look_at_places(Integrator& integrator, Dynamics& dynamics, const Part& part);
-  void fit_near(const Part& part, std::size_t last);
-  [[nodiscard]] double tangents_meet_below(int slot, std::size_t last) const;
-  [[nodiscard]] int doubtful_gap(const Near& near) const;
-  [[nodiscard]] Unclear unclear_at(const Near& near, double place) const;
-  [[nodiscard]] Unclear unclear_place(std::size_t last) const;
-  [[nodiscard]] double place_to_check() const;
-  [[nodiscard]] Unclear belied_place(Integrator& integrator, Dynamics& dynamics, const Part& part, std::size_t last);
+  bool survey_interval(Integrator& integrator, Dynamics& dynamics, const Interval& interval);
+  void push_first_interval(Integrator& integrator, Dynamics& dynamics, bool is_any_unarmed);
+  void arm_positive(double theta, const std::vector<double>& event_value);
+  std::size_t sample_nodes(Integrator& integrator, Dynamics& dynamics, const Interval& interval);
+  void fit_interpolants(const Interval& interval, std::size_t last);
+  [[nodiscard]] double tangent_intersection(int slot, std::size_t last) const;
+  [[nodiscard]] int first_uncertain_gap(const Interpolant& interpolant) const;
+  [[nodiscard]] Split split_at(const Interpolant& interpolant, double position) const;
+  [[nodiscard]] Split find_split(std::size_t last) const;
+  [[nodiscard]] double check_point() const;
+  [[nodiscard]] Split verify_interpolants(Integrator& integrator, Dynamics& dynamics, const Interval& interval, std::size_t last);
   // --- event_closing.cpp
-  void close_in(Integrator& integrator, Dynamics& dynamics);
-  [[nodiscard]] double next_look(double middle);
-  [[nodiscard]] double first_secant() const;
-  [[nodiscard]] bool is_root_just_before(const Look& beyond, double reach) const;
+  void locate_root(Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] double next_estimate(double middle);
+  [[nodiscard]] double secant_estimate() const;
+  [[nodiscard]] bool is_root_just_before(const Sample& beyond, double half_width) const;
 
   /// Evaluates all event functions at `theta` on the dense output.
-  void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
+  void sample_at(Integrator& integrator, Dynamics& dynamics, double theta, Sample& sample);
   /// Takes the event functions that the integrator has stored at the start or the end (`is_last`) of the step.
-  static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
+  static void stored_sample(const Integrator& integrator, bool is_last, Sample& sample);
   /// Puts the armed slots with low ≥ 0 and high < 0 into fired_. Returns true if there are any.
-  [[nodiscard]] bool crosses(const Look& low, const Look& high);
-  /// As crosses(), but with the tolerance slack_ instead of zero, and with zero for `high` at the end of the step. A step therefore
-  /// never ends with a negative value, and an excursion within the tolerance is neither lost nor reported twice.
-  [[nodiscard]] bool falls(const Look& low, const Look& high);
-  [[nodiscard]] Bracket bracket_of_fall();
+  [[nodiscard]] bool find_sign_changes(const Sample& low, const Sample& high);
+  /// As find_sign_changes(), but with the tolerance tolerance_ instead of zero, and with zero for `high` at the end of the step. A step
+  /// therefore never ends with a negative value, and an excursion within the tolerance is neither lost nor reported twice.
+  [[nodiscard]] bool find_sign_changes_beyond_tolerance(const Sample& low, const Sample& high);
+  [[nodiscard]] Bracket classify_bracket();
   [[nodiscard]] bool is_any_merged_near(const Integrator& integrator, const Dynamics& dynamics) const;
-  void set_slack(const Integrator& integrator, const Dynamics& dynamics);
+  void set_tolerance(const Integrator& integrator, const Dynamics& dynamics);
 
   const System& system_;
   int slots_;
   double theta_ = 0.0;
   bool is_step_withdrawn_ = false;
   std::vector<double> y_, dy_;
-  Look low_, high_, middle_; ///< ends of the bracket and a sample in between
-  static constexpr std::size_t k_most_known = 7;
-  std::array<Look, k_most_known> known_; ///< last samples, in a ring; the root is estimated from them
-  std::size_t known_count_ = 0;
+  Sample low_, high_, middle_; ///< ends of the bracket and a sample in between
+  static constexpr std::size_t k_history = 7;
+  std::array<Sample, k_history> history_; ///< last samples, in a ring; the root is estimated from them
+  std::size_t history_count_ = 0;
   RootEstimate estimate_;
   /// State of the root iteration, in units of θ.
-  struct Aim {
-    double reach = 0.0;      ///< half-width of the final bracket around the root
-    double root = 0.0;       ///< last estimate
-    double distance = 1.0;   ///< difference of the last two estimates
-    double expected = 1.0;   ///< predicted error of the last estimate
-    int looks = 0;           ///< number of estimates
-    bool is_settled = false; ///< the estimate is as accurate as rounding allows
+  struct RootIteration {
+    double half_width = 0.0;   ///< half-width of the final bracket around the root
+    double root = 0.0;         ///< last estimate
+    double distance = 1.0;     ///< difference of the last two estimates
+    double expected = 1.0;     ///< predicted error of the last estimate
+    int count = 0;             ///< number of estimates
+    bool is_converged = false; ///< the estimate is as accurate as rounding allows
   };
-  Aim aim_;
-  static constexpr std::size_t k_places = PartPolynomial::k_order + 1;
-  std::array<Look, k_places> place_; ///< samples at the interpolation nodes of the present part
+  RootIteration iteration_;
+  static constexpr std::size_t k_node_count = PartPolynomial::k_order + 1;
+  std::array<Sample, k_node_count> nodes_; ///< samples at the interpolation nodes of the present part
   /// Tolerance below zero, per slot. A dip that is no deeper and recovers within the step is no event. Accuracy of velocities for
-  /// slip rates, as given by ForceGroup::watch_kind() for units, zero for all others.
-  std::vector<double> slack_;
-  std::vector<int> place_slots_, rate_slots_; ///< slots of units with WatchKind::place and WatchKind::rate
+  /// slip rates, as given by ForceGroup::event_tolerance() for units, zero for all others.
+  std::vector<double> tolerance_;
+  std::vector<int> place_slots_, rate_slots_; ///< slots of units with EventTolerance::position and EventTolerance::velocity
   std::vector<char> is_of_joint_;             ///< per slot: belongs to friction of dimension 3
-  std::vector<int> near_;                     ///< slots to be surveyed
+  std::vector<int> surveyed_slots_;           ///< slots to be surveyed
   std::vector<char> merged_;                  ///< per slot: belongs to a merged joint; filled at the first use in a step
   bool are_merged_known_ = false;             ///< merged_ is valid for this step
-  std::vector<Near> curves_;                  ///< interpolants of the functions in near_ on the present part
-  std::vector<Part> parts_;                   ///< stack of parts still to be surveyed; the earliest is on top
+  std::vector<Interpolant> interpolants_;     ///< interpolants of the functions in surveyed_slots_ on the present part
+  std::vector<Interval> intervals_;           ///< stack of parts still to be surveyed; the earliest is on top
   bool is_merged_near_ = false;               ///< a merged joint may slip in this step, so every sample evaluates merged joints
   std::vector<char> armed_, armed_before_;    ///< per slot: armed; the same at the start of the present part
   std::vector<int> fired_, fired_before_;

@@ -68,7 +68,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
   modes.evaluate(state);
   for (const int f : begun) {
     double rate = 0.0, acceleration = 0.0, rounding = 0.0;
-    dynamics.slip_motion(f, modes.rates(), &rate, &acceleration, &rounding);
+    dynamics.relative_motion(f, modes.rates(), &rate, &acceleration, &rounding);
     if (!(state.friction[f].sign * acceleration > rounding)) relieved.push_back(f);
   }
   if (relieved.size() == begun.size()) return; // if no μ_k is below μ_s, all begin without acceleration and stay released
@@ -78,8 +78,8 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
     for (const int f : relieved) state.friction[f] = before[f];
     modes.evaluate(state);
     const auto is_overloaded = [&](int f) {
-      const double* const watch = &dynamics.watch()[system.frictions[f].watch];
-      return !(std::min(watch[0], watch[1]) > k_inside * std::max(watch[0], watch[1]));
+      const double* const event_value = &dynamics.event_value()[system.frictions[f].first_event];
+      return !(std::min(event_value[0], event_value[1]) > k_inside * std::max(event_value[0], event_value[1]));
     };
     if (std::erase_if(relieved, is_overloaded) == 0) return;
   }
@@ -89,21 +89,21 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
 } // namespace
 
 // The event functions are bound ∓ λ in one dimension; in three dimensions the first one is 1 − u.
-double share_of_bound(const FrictionUnit& unit, const std::vector<double>& watch) {
-  const double one = watch[unit.watch], other = watch[unit.watch + 1];
+double share_of_bound(const FrictionUnit& unit, const std::vector<double>& event_value) {
+  const double one = event_value[unit.first_event], other = event_value[unit.first_event + 1];
   return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;
 }
 
 std::string Event::words() const { return detail.empty() ? words_of(kind) : words_of(kind) + (" " + detail); }
 
 EventHandler::EventHandler(const System& system, Dynamics& dynamics)
-    : system_(system), dynamics_(dynamics), modes_(system, dynamics), unit_of_slot_(system.watch_count, -1),
-      friction_of_slot_(system.watch_count, -1), fresh_(system.watch_count, 0), has_switched_(system.watch_count, 0),
+    : system_(system), dynamics_(dynamics), modes_(system, dynamics), unit_of_slot_(system.event_count, -1),
+      friction_of_slot_(system.event_count, -1), fresh_(system.event_count, 0), has_switched_(system.event_count, 0),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   for (std::size_t u = 0; u < system.units.size(); ++u)
-    for (int w = 0; w < system.units[u].watch_count; ++w) unit_of_slot_[system.units[u].watch + w] = static_cast<int>(u);
+    for (int w = 0; w < system.units[u].event_count; ++w) unit_of_slot_[system.units[u].first_event + w] = static_cast<int>(u);
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
-    for (int w = 0; w < k_friction_watches; ++w) friction_of_slot_[system.frictions[f].watch + w] = static_cast<int>(f);
+    for (int w = 0; w < k_friction_event_count; ++w) friction_of_slot_[system.frictions[f].first_event + w] = static_cast<int>(f);
 }
 
 void EventHandler::slip_rates(const State& state, int f, double* rate) {
@@ -118,7 +118,7 @@ void EventHandler::slip_rates(const State& state, int f, double* rate) {
 void EventHandler::load(State& state, int f) {
   FrictionState& friction = state.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
-  if (element.watch_place(dynamics_.evaluation(), friction) < 0.0) element.change_place(dynamics_.evaluation(), friction);
+  if (element.contact_point_event(dynamics_.evaluation(), friction) < 0.0) element.switch_contact_point(dynamics_.evaluation(), friction);
   if (friction.phase == FrictionPhase::apart) return;
   modes_.set_anchor(state, f);
   double rate[3] = {0, 0, 0};
@@ -132,14 +132,14 @@ void EventHandler::load(State& state, int f) {
   }
   is_sliding = is_sliding && !element.never_slips();
   friction.phase = is_sliding ? FrictionPhase::slip : FrictionPhase::stick;
-  friction.is_starting = false;
+  friction.is_onset = false;
   element.aim(friction, rate);
 }
 
 // Layouts that merge the two bodies of a rigid joint are invalid after the joint has slid.
 void EventHandler::forget_moved_layouts(const State& state) {
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
-    if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid()) return dynamics_.forget_layouts();
+    if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid()) return dynamics_.clear_layouts();
 }
 
 // Projects the state onto joints and drives with all friction released. Which elements slide depends on the resulting velocities.
@@ -161,7 +161,7 @@ void EventHandler::begin_units(State& state) const {
 
 void EventHandler::start(State& state) {
   blows_.clear();
-  dynamics_.forget_layouts();
+  dynamics_.clear_layouts();
   meet_constraints(state);
   dynamics_.rates(state.t, y_.data(), dy_.data());
   begin_units(state);
@@ -195,18 +195,19 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std
     if (u < 0) continue;
     const Unit& unit = system_.units[u];
     // Inside a step, joints are satisfied only to its tolerance. An event function that is not zero once they are satisfied was no event.
-    if (unit.group->watch_kind(slot - unit.watch) != WatchKind::exact && dynamics_.watch()[slot] > 0.5 * k_met) continue;
+    if (unit.group->event_tolerance(slot - unit.first_event) != EventTolerance::none && dynamics_.event_value()[slot] > 0.5 * k_met)
+      continue;
     const UnitMode from = state.mode[u];
-    const UnitMode to = unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
+    const UnitMode to = unit.group->next_mode(unit.index, from, slot - unit.first_event, dynamics_.evaluation());
     if (to == from) continue;
     state.mode[u] = to;
     has_switched_[slot] = 1;
-    state.dissipated += unit.group->enter_mode(unit.index, to, dynamics_.evaluation(), state.inner.data());
-    if (unit.group->stops_in(unit.index, to))
-      stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->transition(from, to));
+    state.dissipated += unit.group->jump_inner(unit.index, to, dynamics_.evaluation(), state.inner.data());
+    if (unit.group->ends_run_in(unit.index, to))
+      stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->event_kind(from, to));
     is_any = true;
-    for (int w = 0; w < unit.watch_count; ++w)
-      fresh_[unit.watch + w] = !unit.group->is_surely_positive(unit.index, to, w, dynamics_.evaluation());
+    for (int w = 0; w < unit.event_count; ++w)
+      fresh_[unit.first_event + w] = !unit.group->is_armed_at_entry(unit.index, to, w, dynamics_.evaluation());
     list_unit_change(u, from, to, state.t, events);
   }
   return is_any;
@@ -214,7 +215,7 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std
 
 void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t, std::vector<Event>& events) const {
   const Unit& unit = system_.units[u];
-  const EventKind kind = unit.group->transition(from, to);
+  const EventKind kind = unit.group->event_kind(from, to);
   if (kind != EventKind::none) events.push_back({t, system_.element_names[unit.element], kind});
   const EventKind slide = sliding_of(*unit.group, to); // a contact that closes and slides at once
   if (!is_slip(kind) && slide != EventKind::none && slide != sliding_of(*unit.group, from))
@@ -227,21 +228,21 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
   if (one_sided_row(*unit.friction)) { // The rope becomes slack. Ropes that become taut are handled by an impact.
     friction.phase = FrictionPhase::slip;
     friction.sign = 0;
-  } else if (slot == unit.watch + 2) {
+  } else if (slot == unit.first_event + 2) {
     if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
     const FrictionState from = friction;
-    unit.friction->change_place(dynamics_.evaluation(), friction);
+    unit.friction->switch_contact_point(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
     if (unit.friction->dimension() == 1) move_on(state, f, from);
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
-    friction.has_slipped = friction.is_starting = true;
+    friction.has_slipped = friction.is_onset = true;
     const Snapshot snapshot = dynamics_.snapshot(modes_.rates());
-    unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
+    unit.friction->set_onset_direction(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
   } else if (friction.phase == FrictionPhase::slip) {
     double rate[3];
     slip_rates(state, f, rate);
-    if (unit.friction->goes_on_slipping(dynamics_.evaluation(), friction, rate, slot - unit.watch)) return;
+    if (unit.friction->continue_slip(dynamics_.evaluation(), friction, rate, slot - unit.first_event)) return;
     modes_.end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem decides
     if (unit.friction->dimension() == 1) modes_.note_rest(f, rate[0]);
@@ -264,7 +265,7 @@ void EventHandler::move_on(State& state, int f, const FrictionState& from) {
   if (std::abs(m.rate) <= at_rest) return;
   friction.phase = FrictionPhase::slip;
   friction.has_slipped = true;
-  friction.is_starting = false;
+  friction.is_onset = false;
   element.aim(friction, &m.rate);
 }
 
@@ -290,7 +291,7 @@ bool EventHandler::update_loading(State& state) {
 
 bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const {
   if (system_.frictions[f].friction->dimension() == 1) return a.sign == b.sign;
-  return !b.is_starting || (a.is_starting && std::equal(a.direction, a.direction + 3, b.direction));
+  return !b.is_onset || (a.is_onset && std::equal(a.direction, a.direction + 3, b.direction));
 }
 
 EventKind EventHandler::slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const {
@@ -346,7 +347,7 @@ std::vector<int> fallen(const std::vector<double>& before, const std::vector<dou
 
 // Computes event functions of units from each body's own motion. An evaluation would already use one common motion for bodies that a joint
 // is about to connect.
-void watch_apart(const System& system, const State& state, std::vector<double>& watch) {
+void evaluate_separated_joint_events(const System& system, const State& state, std::vector<double>& event_value) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   motion.resize(static_cast<std::size_t>(system.links.slot_count()));
@@ -360,7 +361,8 @@ void watch_apart(const System& system, const State& state, std::vector<double>& 
   e.memory = state.memory.data();
   e.inner = state.inner.data();
   for (const auto& group : system.groups) group->add_forces(e);
-  for (const Unit& unit : system.units) std::copy_n(arrays.watch.begin() + unit.watch, unit.watch_count, watch.begin() + unit.watch);
+  for (const Unit& unit : system.units)
+    std::copy_n(arrays.event_value.begin() + unit.first_event, unit.event_count, event_value.begin() + unit.first_event);
 }
 
 } // namespace
@@ -373,7 +375,8 @@ bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old,
   if (old.phase == now.phase && old.foot == now.foot && is_same_slip) return false;
   const FrictionUnit& unit = system_.frictions[f];
   const std::string& name = system_.element_names[unit.element];
-  if (old.foot != now.foot && now.phase != FrictionPhase::apart) events.push_back({state.t, name, unit.friction->place_change(old, now)});
+  if (old.foot != now.foot && now.phase != FrictionPhase::apart)
+    events.push_back({state.t, name, unit.friction->contact_switch_event(old, now)});
   if (old.phase == now.phase && is_same_slip) return true;
   EventKind kind = EventKind::none;
   switch (now.phase) {
@@ -395,14 +398,14 @@ void EventHandler::note_friction(const std::vector<FrictionState>& before, const
     if (const OneSidedRow* const rope = one_sided_row(*unit.friction)) {
       const std::size_t known = events.size();
       note_rope(system_, {rope, f}, old.phase, memory_before, state, events);
-      for (int w = 0; w < k_friction_watches && events.size() > known; ++w) fresh_[unit.watch + w] = 1;
+      for (int w = 0; w < k_friction_event_count && events.size() > known; ++w) fresh_[unit.first_event + w] = 1;
       continue;
     }
     if (!list_friction_change(f, old, memory_before, state, events)) continue;
-    for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
+    for (int w = 0; w < k_friction_event_count; ++w) fresh_[unit.first_event + w] = 1;
     const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
     if ((old.phase == now.phase && is_same_slip) || !unit.friction->is_rigid()) continue;
-    dynamics_.forget_layouts();
+    dynamics_.clear_layouts();
     modes_.forget_evaluation();
   }
 }
@@ -459,21 +462,21 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
     const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
-    if (rope && slot == system_.frictions[f].watch + 2) {
+    if (rope && slot == system_.frictions[f].first_event + 2) {
       found.is_any_tight = true;
       fresh_[slot] = 1;
       continue;
     }
-    if (rope && slot == system_.frictions[f].watch + 1) fail_on_pulley(state, f);
-    const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
-    if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // the rows separate; decide() finds out how
-    if (group >= 0) {                                                   // fires in the slots of all elements of the group
+    if (rope && slot == system_.frictions[f].first_event + 1) fail_on_pulley(state, f);
+    const int group = sharing && slot != system_.frictions[f].first_event + 2 ? sharing->group_of(f) : -1;
+    if (group >= 0 && slot == system_.frictions[f].first_event + 1) continue; // the rows separate; decide() finds out how
+    if (group >= 0) {                                                         // fires in the slots of all elements of the group
       if (!is_released_[group]) modes_.release(state, group);
       is_released_[group] = 1;
       continue;
     }
     // If both slots of an element fired, only the first counts: it changes the phase to which the second belongs.
-    if (slot != system_.frictions[f].watch + 2) {
+    if (slot != system_.frictions[f].first_event + 2) {
       if (has_fired_[f]) continue;
       has_fired_[f] = 1;
     }
@@ -487,16 +490,16 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
 // mode.
 bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   modes_.evaluate(state);
-  std::vector<double> watch = dynamics_.watch();
+  std::vector<double> event_value = dynamics_.event_value();
   const State unhurt = state;
   if (blow == Blow::rows) {
-    watch_apart(system_, state, watch);
+    evaluate_separated_joint_events(system_, state, event_value);
     close_rows(system_, dynamics_, state);
   }
   take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   std::fill(has_switched_.begin(), has_switched_.end(), 0);
-  bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
+  bool is_contact_changed = switch_units(state, fallen(event_value, dynamics_.event_value()), events);
   if (follow_jumps(state, nullptr, events)) is_contact_changed = true;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionPhase phase = state.friction[f].phase;
@@ -514,11 +517,11 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
 }
 
 // Returns slots that a jump made negative, of units that follow jumps. A unit that has already switched in this event does not switch back.
-std::vector<int> EventHandler::carried(const std::vector<double>& before) const {
-  std::vector<int> slots = fallen(before, dynamics_.watch());
+std::vector<int> EventHandler::slots_made_negative_by_jump(const std::vector<double>& before) const {
+  std::vector<int> slots = fallen(before, dynamics_.event_value());
   std::erase_if(slots, [this](int slot) {
     const int u = unit_of_slot_[slot];
-    return u < 0 || has_switched_[slot] != 0 || !system_.units[u].group->follows_jumps();
+    return u < 0 || has_switched_[slot] != 0 || !system_.units[u].group->has_discontinuous_events();
   });
   return slots;
 }
@@ -526,18 +529,18 @@ std::vector<int> EventHandler::carried(const std::vector<double>& before) const 
 // A signal jumps at a breakpoint, and a formula where one of its comparisons changes. Other comparisons of the formula may change as a
 // consequence, and so on. The state is evaluated in the previous modes, and switches are repeated until none follows. Each comparison
 // switches once at most, so this ends.
-bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_before, std::vector<Event>& events) {
-  bool is_any = watch_before && switch_units(state, carried(*watch_before), events);
+bool EventHandler::follow_jumps(State& state, const std::vector<double>* event_value_before, std::vector<Event>& events) {
+  bool is_any = event_value_before && switch_units(state, slots_made_negative_by_jump(*event_value_before), events);
   const auto has_jumped = [this] {
     for (std::size_t slot = 0; slot < has_switched_.size(); ++slot)
-      if (has_switched_[slot] != 0 && system_.units[unit_of_slot_[slot]].group->follows_jumps()) return true;
+      if (has_switched_[slot] != 0 && system_.units[unit_of_slot_[slot]].group->has_discontinuous_events()) return true;
     return false;
   };
   if (!has_jumped()) return is_any;
   for (;;) {
-    const std::vector<double> before = dynamics_.watch();
+    const std::vector<double> before = dynamics_.event_value();
     modes_.evaluate(state);
-    if (!switch_units(state, carried(before), events)) return is_any;
+    if (!switch_units(state, slots_made_negative_by_jump(before), events)) return is_any;
     is_any = true;
   }
 }
@@ -549,7 +552,7 @@ void EventHandler::note_blows(const std::vector<double>& memory_before, const St
 
 // Records ties of friction elements. Ropes and locked clutches have no bound and are excluded. Groups that share a load are excluded too,
 // since their event functions are common to all elements.
-void EventHandler::note_ties(const State& state, const std::vector<double>& watch) {
+void EventHandler::record_simultaneous_slips(const State& state, const std::vector<double>& event_value) {
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
@@ -563,7 +566,7 @@ void EventHandler::note_ties(const State& state, const std::vector<double>& watc
     const FrictionUnit& unit = system_.frictions[f];
     const bool is_in_group = sharing && sharing->group_of(static_cast<int>(f)) >= 0;
     if (state.friction[f].phase != FrictionPhase::stick || is_in_group || !stuck(f)) continue;
-    const double share = share_of_bound(unit, watch);
+    const double share = share_of_bound(unit, event_value);
     if (!(share > 1.0 - k_near_bound)) continue;
     for (std::size_t g = first; g < before_.size(); ++g)
       if (began(g))
@@ -573,7 +576,7 @@ void EventHandler::note_ties(const State& state, const std::vector<double>& watc
 
 // The state is evaluated and projected once for each set of modes that is tried, at most events twice. The next step starts from the last
 // evaluation.
-void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before,
+void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* event_value_before,
                           std::vector<Event>& events) {
   clear_fresh();
   std::fill(has_switched_.begin(), has_switched_.end(), 0);
@@ -587,9 +590,9 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   blows_.clear();
   const auto sticks = [](const FrictionState& friction) { return friction.phase == FrictionPhase::stick; };
   const bool may_tie = std::count_if(before_.begin(), before_.end(), sticks) > 1;
-  if (may_tie) watch_before_ = dynamics_.watch();
+  if (may_tie) event_value_before_ = dynamics_.event_value();
   bool is_contact_changed = switch_units(state, fired, events);
-  if (follow_jumps(state, watch_before, events)) is_contact_changed = true;
+  if (follow_jumps(state, event_value_before, events)) is_contact_changed = true;
   const Fired found = fire(state, fired);
   if (fired.size() > 1) hold_relieved(system_, dynamics_, modes_, before_, state);
   if (!fired.empty()) modes_.forget_evaluation();
@@ -611,7 +614,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
     }
   }
   conclude(state, is_contact_changed || fired.empty(), is_settled, events); // at a breakpoint a signal may begin or cease to press
-  if (may_tie) note_ties(state, watch_before_);
+  if (may_tie) record_simultaneous_slips(state, event_value_before_);
 }
 
 // Elements that were inactive have their initial mode and do not stick. Modes and phases of all are decided here.
@@ -620,7 +623,7 @@ void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>&
   settled_ = 0.0;
   before_ = state.friction;
   memory_before_ = state.memory;
-  dynamics_.forget_layouts();
+  dynamics_.clear_layouts();
   modes_.begin_event();
   blows_.clear();
   if (closes_rows) {
@@ -664,7 +667,7 @@ void EventHandler::settle(State& state) {
   dynamics_.pack(state, y_.data());
   const double energy = system_.kinetic_energy(state);
   dynamics_.project(state.t, y_.data(), k_projection_tolerance);
-  dynamics_.close_velocities(state.t, y_.data());
+  dynamics_.project_velocities(state.t, y_.data());
   dynamics_.unpack(state.t, y_.data(), state);
   const double lost = energy - system_.kinetic_energy(state);
   state.dissipated += lost;

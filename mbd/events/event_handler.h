@@ -32,7 +32,7 @@ struct RigidBlow {
 
 /// Two elements that reach their friction bounds almost at once: one began to slip, the other one stuck close to its bound. Rounding
 /// decides which one slips first.
-struct SlipTie {
+struct SimultaneousSlip {
   double t = 0.0;     ///< time at which `slips` began to slip, s
   std::string slips;  ///< element that began to slip
   std::string sticks; ///< element that stuck before and after
@@ -40,8 +40,8 @@ struct SlipTie {
   double rate = 0.0;  ///< rate of change of that utilisation, 1/s, mean over the step before
 };
 /// Returns the utilisation |λ|/bound of a sticking element (u for a step-lap joint) from its event functions
-/// (FrictionElement::watch_stick()).
-[[nodiscard]] double share_of_bound(const FrictionUnit& unit, const std::vector<double>& watch);
+/// (FrictionElement::stick_events()).
+[[nodiscard]] double share_of_bound(const FrictionUnit& unit, const std::vector<double>& event_value);
 
 /// Applies events to states of one system.
 class EventHandler {
@@ -54,9 +54,9 @@ public:
   /// are not reported.
   void note_start(const State& state, std::vector<Event>& events) const;
   /// Handles an event at `state`: changes modes, phases and anchors, and appends events. `fired`: slots of the event functions that became
-  /// negative; empty at a breakpoint of a signal, where loads may jump. `watch_before`: all event functions just before a breakpoint, else
-  /// null.
-  void handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before, std::vector<Event>& events);
+  /// negative; empty at a breakpoint of a signal, where loads may jump. `event_value_before`: all event functions just before a breakpoint,
+  /// else null.
+  void handle(State& state, const std::vector<int>& fired, const std::vector<double>* event_value_before, std::vector<Event>& events);
   /// Takes over a state from another system at the same time (mbd/simulation/changeover.h), in which some elements were active that are not
   /// now, or the reverse. `closes_rows`: new constraints may cause an impact.
   void take_over(State& state, bool closes_rows, std::vector<Event>& events);
@@ -82,7 +82,7 @@ public:
   [[nodiscard]] const double* packed() const { return modes_.packed(); }
   [[nodiscard]] const double* rates() const { return modes_.rates(); }
   /// Returns the ties of the last handle(): sticking elements with a utilisation above 1 − k_near_bound.
-  [[nodiscard]] const std::vector<SlipTie>& ties() const { return ties_; }
+  [[nodiscard]] const std::vector<SimultaneousSlip>& ties() const { return ties_; }
   static constexpr double k_near_bound = 1e-3;
   /// Returns the ropes and clutches struck in the last start(), handle() or take_over().
   [[nodiscard]] const std::vector<RigidBlow>& blows() const { return blows_; }
@@ -92,13 +92,13 @@ private:
   void meet_constraints(State& state);
   void begin_units(State& state) const;
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
-  [[nodiscard]] std::vector<int> carried(const std::vector<double>& before) const;
-  bool follow_jumps(State& state, const std::vector<double>* watch_before, std::vector<Event>& events);
+  [[nodiscard]] std::vector<int> slots_made_negative_by_jump(const std::vector<double>& before) const;
+  bool follow_jumps(State& state, const std::vector<double>* event_value_before, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
   void note_blows(const std::vector<double>& memory_before, const State& state);
-  void note_ties(const State& state, const std::vector<double>& watch);
+  void record_simultaneous_slips(const State& state, const std::vector<double>& event_value);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
@@ -134,8 +134,8 @@ private:
   std::vector<double> y_, dy_;
   std::vector<FrictionState> before_; ///< friction states at the start of handle()
   std::vector<double> memory_before_;
-  std::vector<double> watch_before_; ///< event functions at the start of handle(), if two or more elements stuck
-  std::vector<SlipTie> ties_;
+  std::vector<double> event_value_before_; ///< event functions at the start of handle(), if two or more elements stuck
+  std::vector<SimultaneousSlip> ties_;
   std::vector<RigidBlow> blows_;
   std::vector<char> is_released_;      ///< per group of LoadSharing
   std::vector<char> has_fired_;        ///< per friction element

@@ -39,20 +39,20 @@ constexpr double k_rest_error = 2.0;
 class DualProblem {
 public:
   DualProblem(const System& system, const State& state, const std::vector<int>& elements, const Evaluation& evaluation,
-              const Dynamics::Candidates& candidates)
+              const Dynamics::ModeProblem& candidates)
       : system_(system), state_(state), elements_(elements), evaluation_(evaluation), candidates_(candidates), n_(candidates.rows.size()),
         wrench_(n_, 0.0), blocks_(elements.size()), is_kinetic_(elements.size(), 0) {
     for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
   }
 
   // Solves with μ_s first; slipping elements then get μ_k and the problem is solved again. The slipping set only grows (physics.md §3).
-  const std::vector<FrictionBlock>& solve() {
+  const std::vector<BlockSolution>& solve() {
     for (std::size_t pass = 0; pass <= elements_.size(); ++pass) {
       if (is_flat_) solve_flat();
       else sweep_until_settled();
       bool is_changed = false;
       for (std::size_t e = 0; e < elements_.size(); ++e)
-        if (!blocks_[e].is_inside && !is_kinetic_[e]) is_kinetic_[e] = is_changed = true;
+        if (!blocks_[e].sticks && !is_kinetic_[e]) is_kinetic_[e] = is_changed = true;
       if (!is_changed) break;
     }
     return blocks_;
@@ -75,15 +75,15 @@ private:
     const BoxSolution solution = solve_box_problem(a, b, lower, upper, rounding);
     if (!solution.is_solved) return sweep_until_settled(); // its active sets repeat by rounding
     for (Eigen::Index i = 0; i < n; ++i) {
-      FrictionBlock& block = blocks_[i];
+      BlockSolution& block = blocks_[i];
       block = {};
       block.wrench[0] = solution.w[i];
-      block.is_inside = solution.is_free[i] != 0;
+      block.sticks = solution.is_free[i] != 0;
       block.direction[0] = solution.g[i] > 0.0 ? 1.0 : -1.0;
     }
   }
 
-  [[nodiscard]] FrictionBlock block_of(std::size_t e, const double* a, const double* b) const {
+  [[nodiscard]] BlockSolution block_of(std::size_t e, const double* a, const double* b) const {
     return system_.frictions[elements_[e]].friction->solve_block(evaluation_, state_.friction[elements_[e]], a, b, is_kinetic_[e] != 0);
   }
 
@@ -155,10 +155,10 @@ private:
   const State& state_;
   const std::vector<int>& elements_;
   const Evaluation& evaluation_;
-  const Dynamics::Candidates& candidates_;
+  const Dynamics::ModeProblem& candidates_;
   std::size_t n_;
   std::vector<double> wrench_;
-  std::vector<FrictionBlock> blocks_;
+  std::vector<BlockSolution> blocks_;
   std::vector<char> is_kinetic_;
   bool is_flat_ = true; ///< all elements are one-dimensional
 };
@@ -166,7 +166,7 @@ private:
 // Releases a rope that would have to push although its constraint is satisfied: other ropes carry its load. Returns true if there is one.
 bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) {
   for (const auto& [rope, f] : one_sided_rows(system)) {
-    if (state.friction[f].phase != FrictionPhase::stick || dynamics.watch()[system.frictions[f].watch] >= 0.0) continue;
+    if (state.friction[f].phase != FrictionPhase::stick || dynamics.event_value()[system.frictions[f].first_event] >= 0.0) continue;
     state.friction[f].phase = FrictionPhase::slip;
     state.friction[f].sign = 0;
     return true;
@@ -208,7 +208,7 @@ void FrictionModes::evaluate(const State& state) {
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   dynamics_.rates(state.t, y_.data(), dy_.data());
-  dynamics_.watch_merged(dy_.data());
+  dynamics_.evaluate_rigid_joint_events(dy_.data());
   is_evaluated_ = true;
 }
 
@@ -222,8 +222,8 @@ std::vector<int> FrictionModes::held_beyond(const State& state) const {
   std::vector<int> result;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     if (state.friction[f].phase != FrictionPhase::stick) continue;
-    const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
-    if (watch[0] < 0.0 || watch[1] < 0.0) result.push_back(f);
+    const double* event_value = &dynamics_.event_value()[system_.frictions[f].first_event];
+    if (event_value[0] < 0.0 || event_value[1] < 0.0) result.push_back(f);
   }
   return result;
 }
@@ -234,25 +234,25 @@ void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   dynamics_.rates(state.t, y_.data(), dy_.data());
-  Dynamics::Candidates problem;
+  Dynamics::ModeProblem problem;
   for (const int f : candidates) {
     const FrictionElement& friction = *system_.frictions[f].friction;
     for (int r = 0; r < friction.dimension(); ++r) problem.rows.push_back(friction.rows(state.friction[f]) + r);
   }
-  dynamics_.respond(problem, dy_.data());
+  dynamics_.compute_mode_problem(problem, dy_.data());
   DualProblem dual(system_, state, candidates, dynamics_.evaluation(), problem);
-  const std::vector<FrictionBlock>& blocks = dual.solve();
+  const std::vector<BlockSolution>& blocks = dual.solve();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     FrictionState& friction = state.friction[candidates[i]];
-    friction.phase = blocks[i].is_inside ? FrictionPhase::stick : FrictionPhase::slip;
+    friction.phase = blocks[i].sticks ? FrictionPhase::stick : FrictionPhase::slip;
     std::copy(blocks[i].direction, blocks[i].direction + 3, friction.direction);
     if (one_sided_row(*system_.frictions[candidates[i]].friction)) {
       friction.sign = 0;
       continue;
     }
     friction.sign = blocks[i].direction[0] > 0.0 ? 1 : -1;
-    friction.is_starting = !blocks[i].is_inside;
-    if (!blocks[i].is_inside) friction.has_slipped = true;
+    friction.is_onset = !blocks[i].sticks;
+    if (!blocks[i].sticks) friction.has_slipped = true;
   }
 }
 
@@ -260,8 +260,8 @@ void FrictionModes::release(State& state, int group) const {
   for (const Release& r : dynamics_.sharing()->releases(group)) {
     FrictionState& friction = state.friction[r.friction];
     friction.phase = FrictionPhase::slip;
-    friction.has_slipped = friction.is_starting = true;
-    system_.frictions[r.friction].friction->begin_slip(dynamics_.evaluation(), friction, r.wrench);
+    friction.has_slipped = friction.is_onset = true;
+    system_.frictions[r.friction].friction->set_onset_direction(dynamics_.evaluation(), friction, r.wrench);
   }
 }
 
@@ -271,7 +271,7 @@ bool FrictionModes::release_overloaded(State& state) const {
   bool is_any = false;
   for (std::size_t g = 0; g < sharing->groups().size(); ++g) {
     const int first = sharing->groups()[g].frictions.front();
-    if (dynamics_.watch()[system_.frictions[first].watch] >= 0.0) continue;
+    if (dynamics_.event_value()[system_.frictions[first].first_event] >= 0.0) continue;
     release(state, static_cast<int>(g));
     is_any = true;
   }
@@ -299,8 +299,8 @@ bool FrictionModes::rejoin(State& state) {
     trial.friction[f].phase = FrictionPhase::stick;
     (void)violated(trial);
     const LoadSharing* const sharing = dynamics_.sharing();
-    const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
-    const bool is_held = sharing && sharing->group_of(f) >= 0 && watch[0] >= 0.0 && watch[1] >= k_surely_together;
+    const double* event_value = &dynamics_.event_value()[system_.frictions[f].first_event];
+    const bool is_held = sharing && sharing->group_of(f) >= 0 && event_value[0] >= 0.0 && event_value[1] >= k_surely_together;
     if (is_held) std::swap(state, trial);
     dynamics_.set_state(state);
     is_any = is_any || is_held;
@@ -330,7 +330,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   bool is_any = false;
   for (const int f : slow) {
     double rate = 0.0, acceleration = 0.0, rounding = 0.0;
-    dynamics_.slip_motion(f, dy_.data(), &rate, &acceleration, &rounding);
+    dynamics_.relative_motion(f, dy_.data(), &rate, &acceleration, &rounding);
     if (state.friction[f].sign * acceleration > rounding) continue; // the slip has only begun
     end_slip(state, f);
     state.friction[f].phase = FrictionPhase::stick;
@@ -346,14 +346,14 @@ void FrictionModes::let_go_moving(State& state) {
   if (!sharing) return;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
-                               dynamics_.watch()[system_.frictions[f].watch + 1] < 0.0;
+                               dynamics_.event_value()[system_.frictions[f].first_event + 1] < 0.0;
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (!is_discordant || friction.dimension() != 1) continue;
     if (is_at_rest(state, f)) continue;
     const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion_.data()).rate;
     state.friction[f].phase = FrictionPhase::slip;
     state.friction[f].has_slipped = true;
-    state.friction[f].is_starting = false;
+    state.friction[f].is_onset = false;
     friction.aim(state.friction[f], &rate);
     is_any = true;
   }
@@ -367,7 +367,7 @@ void FrictionModes::anchor_resting(State& state) const {
   if (!sharing) return;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
-                               dynamics_.watch()[system_.frictions[f].watch + 1] < 0.0;
+                               dynamics_.event_value()[system_.frictions[f].first_event + 1] < 0.0;
     if (is_discordant && is_at_rest(state, f)) set_anchor(state, f);
   }
 }

@@ -47,14 +47,14 @@ public:
   }
   [[nodiscard]] const char* name() const override { return "auto"; }
   [[nodiscard]] bool is_adaptive() const override { return true; }
-  [[nodiscard]] WatchNodes& watch_nodes() override { return active_->watch_nodes(); }
-  void expect_looks(bool are_expected) override {
-    Integrator::expect_looks(are_expected);
-    explicit_->expect_looks(are_expected);
-    implicit_->expect_looks(are_expected);
+  [[nodiscard]] EventNodes& event_nodes() override { return active_->event_nodes(); }
+  void expect_dense_evaluations(bool are_expected) override {
+    Integrator::expect_dense_evaluations(are_expected);
+    explicit_->expect_dense_evaluations(are_expected);
+    implicit_->expect_dense_evaluations(are_expected);
   }
-  [[nodiscard]] bool bears_look(Dynamics& dynamics) override {
-    const bool bears = active_->bears_look(dynamics);
+  [[nodiscard]] bool dense_output_is_accurate(Dynamics& dynamics) override {
+    const bool bears = active_->dense_output_is_accurate(dynamics);
     if (!bears) note_counts();
     return bears;
   }
@@ -91,8 +91,8 @@ public:
     h_ = active_->h();
     std::copy(active_->y1(), active_->y1() + n_, y1_.begin());
     std::copy(active_->rate1(), active_->rate1() + n_, k1_);
-    watch1_ = active_->watch1();
-    watch_rate1_ = active_->watch_rate1();
+    event_value1_ = active_->event_value1();
+    event_derivative1_ = active_->event_derivative1();
     note_counts();
     residual_.position = std::max(residual_.position, active_->max_position_residual());
     residual_.velocity = std::max(residual_.velocity, active_->max_velocity_residual());

@@ -16,7 +16,7 @@ namespace {
 // its end by up to (hρ)¹²/12!, in the dense output by (hρ)¹⁵, which is 10⁴ times as much at hρ = 30 and 10⁵ times at 60, unseen by the
 // error estimate. The difference between the stage at 0.2 and the dense output is then 1/15 to 1/60 of the error of the latter; in accurate
 // steps it is a tenth of the tolerance (docs/how-to/choose_a_method.md).
-constexpr std::size_t k_looked_stage = 14;
+constexpr std::size_t k_checked_stage = 14;
 constexpr double k_most_departure = 5.0;
 // The slip velocities on which friction directions depend need an accuracy there that is 1/60 of a tenth: within a step they may decrease
 // to a tenth (Integrator::resolves_slips).
@@ -116,8 +116,8 @@ private:
   [[nodiscard]] double stage_departure() {
     double* const y = scratch_.data();
     double* const departure = y + n_;
-    combine<dop853::a, k_looked_stage, k_looked_stage>(y0_.data(), h_, k_.data(), stride_, n_, y);
-    dense_of_pair(dop853::c[k_looked_stage], departure);
+    combine<dop853::a, k_checked_stage, k_checked_stage>(y0_.data(), h_, k_.data(), stride_, n_, y);
+    dense_of_pair(dop853::c[k_checked_stage], departure);
     for (int i = 0; i < n_; ++i) departure[i] -= y[i];
     return error_norm(departure);
   }

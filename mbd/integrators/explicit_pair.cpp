@@ -38,7 +38,7 @@ double ExplicitPair::shorter(double error) const {
 
 void ExplicitPair::note_end(double pivot) {
   ++steps_;
-  before_.approach = approach_;
+  saved_control_.approach = approach_;
   approach_.note_end(pivot);
 }
 
@@ -50,12 +50,12 @@ double ExplicitPair::error_inside(Dynamics& dynamics) {
 }
 
 void ExplicitPair::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_))
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }
 
-bool ExplicitPair::bears_look(Dynamics& dynamics) {
+bool ExplicitPair::dense_output_is_accurate(Dynamics& dynamics) {
   if (is_crossing_ || is_inside_known_) return true;
   const double inside = error_inside(dynamics);
   return inside <= 1.0 || !withdraw(dynamics, h_ * shorter(inside));
@@ -65,8 +65,8 @@ bool ExplicitPair::withdraw(Dynamics& dynamics, double h) {
   if (is_crossing_) return false;
   --steps_;
   ++rejections_;
-  approach_ = before_.approach;
-  control_.previous_error = before_.error;
+  approach_ = saved_control_.approach;
+  control_.previous_error = saved_control_.error;
   next_h_ = h;
   refuse_shorter_than_rounding(next_h_);
   dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
@@ -88,7 +88,7 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   if (h == 0.0) return h_tried;
   h_ = h;
   t1_ = t0_ + h_;
-  begin_watch_nodes();
+  begin_event_nodes();
   const double error = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data());
   is_crossing_ = error <= 1.0;
   const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
@@ -116,17 +116,17 @@ void ExplicitPair::prepare_try() {
   // Two equal steps instead of a long one followed by a tiny one.
   h_ = attempt_.is_last ? left : (2.0 * h > left ? 0.5 * left : h);
   t1_ = attempt_.is_last ? t_limit_ : t0_ + h_;
-  begin_watch_nodes();
+  begin_event_nodes();
   attempt_.passage->begin_try();
   is_crossing_ = is_inside_known_ = false;
 }
 
 bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
   const double pivot = dynamics.smallest_pivot();
-  is_beside_singular_ = approach_.is_beside(dynamics.lowest_pivot());
-  if (are_looks_expected()) inside = error_inside(dynamics);
+  is_beside_singular_ = approach_.is_beside(dynamics.least_pivot());
+  if (are_dense_evaluations_expected()) inside = error_inside(dynamics);
   if (inside > 1.0) return false;
-  before_.error = control_.previous_error;
+  saved_control_.error = control_.previous_error;
   const double factor = control_.factor(std::max(try_error_, inside), attempt_.is_retry);
   // If the limit has cut the step, the next one may still have the planned length.
   next_h_ = h_ < attempt_.h ? std::max(attempt_.h, h_ * factor) : h_ * factor;
@@ -135,7 +135,7 @@ bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
 }
 
 bool ExplicitPair::conclude_try(Dynamics& dynamics) {
-  if (!attempt_.has_tried_crossing && approach_.is_ahead(dynamics.lowest_pivot())) [[unlikely]] {
+  if (!attempt_.has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
     attempt_.has_tried_crossing = true;
     const double h_next = cross_singularity(dynamics, attempt_.left);
     if (h_next == 0.0 && try_finish_step(dynamics)) {

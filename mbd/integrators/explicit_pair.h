@@ -23,7 +23,7 @@ public:
   void begin_step(Dynamics& dynamics, double t_limit) override;
   void make_try(Dynamics& dynamics) override { try_error_ = try_step(dynamics); }
   [[nodiscard]] bool conclude_try(Dynamics& dynamics) override;
-  [[nodiscard]] bool bears_look(Dynamics& dynamics) final;
+  [[nodiscard]] bool dense_output_is_accurate(Dynamics& dynamics) final;
   void dense(Dynamics& dynamics, double theta, double* out) final;
   [[nodiscard]] double stability_share(Dynamics& dynamics) final { return is_crossing_ ? 0.0 : share_of_stability(dynamics); }
 
@@ -105,11 +105,11 @@ private:
   bool is_inside_known_ = false;    ///< the dense output of the step made has been checked
   bool is_beside_singular_ = false; ///< the step made is near a singular position
   /// Control data before the step made, restored if it is withdrawn.
-  struct Before {
+  struct SavedControl {
     SingularApproach approach;
     double error = 1e-4;
   };
-  Before before_;
+  SavedControl saved_control_;
 };
 
 } // namespace steplap

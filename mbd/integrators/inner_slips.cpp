@@ -43,7 +43,7 @@ State& probe_state() {
 
 // Returns the utilisation of an element; 1 if it slips.
 double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) const {
-  if (!part.block.is_inside) return 1.0;
+  if (!part.block.sticks) return 1.0;
   const double* const wrench = &wrench_[static_cast<std::size_t>(part.first)];
   if (std::all_of(wrench, wrench + part.dimension, [](double w) { return w == 0.0; })) return 0.0;
   if (part.dimension == 1) return std::abs(wrench[0]) / bound_of(e, part, false);
@@ -61,7 +61,7 @@ bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
   sticking_now_.assign(system_.frictions.size(), {});
   bool is_any_near = false;
   for (const FrictionPart& part : parts_) {
-    if (!part.block.is_inside || part.is_driven) continue;
+    if (!part.block.sticks || part.is_driven) continue;
     const Sticking& before = sticking_[part.friction];
     Sticking& now = sticking_now_[part.friction];
     now.t = t1;

@@ -19,7 +19,7 @@ constexpr double k_rate_floor = 60.0 / k_metre_rate;
 constexpr double k_turned_share = 1e-4;
 // Event functions of merged joints far from their limits are computed about twice inside a step, at this distance, but not just before its
 // end, where they are computed in any case.
-constexpr double k_merged_look = 0.25, k_merged_end = 0.0625;
+constexpr double k_rigid_joint_interval = 0.25, k_merged_end = 0.0625;
 // Relative to time: a step that cannot satisfy the constraints is not shortened below this.
 constexpr double k_shortest_try = 1e-12;
 // Errors of slip velocities stay below this fraction of the slip speed, whatever the tolerance. At the start and end of a slip, |ν| → 0, an
@@ -42,9 +42,9 @@ double slip_share(int division) { return k_slip_share / (static_cast<double>(div
 
 Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
     : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0), y1_(max_dimension, 0.0), weight_(max_dimension, 0.0),
-      scratch_(3 * max_dimension, 0.0), watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_), watch_rate1_(watch0_),
-      nodes_(system_.watch_count), turn_limit_(system_), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_),
-      slip_scale_inside_(slip_scale0_) {
+      scratch_(3 * max_dimension, 0.0), event_value0_(system_.event_count, 1.0), event_value1_(event_value0_),
+      event_derivative0_(event_value0_), event_derivative1_(event_value0_), nodes_(system_.event_count), turn_limit_(system_),
+      slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_), slip_scale_inside_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -63,7 +63,7 @@ void Integrator::begin_at(Dynamics& dynamics, double t, const double* y) {
 void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
   begin_at(dynamics, t, y);
   dynamics.rates(t, y0_.data(), k0_);
-  dynamics.watch_merged(k0_);
+  dynamics.evaluate_rigid_joint_events(k0_);
   note_begin(dynamics);
 }
 
@@ -74,8 +74,8 @@ void Integrator::restart_evaluated(Dynamics& dynamics, double t, const double* y
 }
 
 void Integrator::note_begin(Dynamics& dynamics) {
-  watch0_ = dynamics.watch();
-  watch_rate0_ = dynamics.watch_rate();
+  event_value0_ = dynamics.event_value();
+  event_derivative0_ = dynamics.event_derivative();
   is_restarted_ = true;
   note_slips(dynamics, slip_scale0_, has_slip_scale0_);
 }
@@ -150,7 +150,7 @@ SingularCrossing::Step Integrator::crossing_step(Dynamics& dynamics) {
   step.rate0 = k0_;
   step.n = n_;
   step.norm = [this](const double* error) { return error_norm(error); };
-  step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
+  step.record_stage = [this, &dynamics](const double* rates, double theta) { record_stage_events(dynamics, rates, theta); };
   return step;
 }
 
@@ -158,8 +158,8 @@ void Integrator::accept() {
   t0_ = t1_;
   std::swap(y0_, y1_);
   std::copy(k1_, k1_ + n_, k0_);
-  std::swap(watch0_, watch1_);
-  std::swap(watch_rate0_, watch_rate1_);
+  std::swap(event_value0_, event_value1_);
+  std::swap(event_derivative0_, event_derivative1_);
   std::swap(slip_scale0_, slip_scale1_);
   has_slip_scale0_ = has_slip_scale1_;
 }
@@ -168,21 +168,21 @@ void Integrator::finish_step(Dynamics& dynamics) {
   const Residual found = dynamics.project(t1_, y1_.data(), settings_.projection_tolerance);
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);
-  if (is_adaptive() || !are_looks_expected_) {
+  if (is_adaptive() || !are_dense_evaluations_expected_) {
     dynamics.evaluate(Request::end, t1_, y1_.data(), k1_);
   } else { // for fixed steps only the values at their ends are used
     dynamics.rates(t1_, y1_.data(), k1_);
-    dynamics.watch_merged(k1_);
+    dynamics.evaluate_rigid_joint_events(k1_);
   }
-  watch1_ = dynamics.watch();
-  watch_rate1_ = dynamics.watch_rate();
+  event_value1_ = dynamics.event_value();
+  event_derivative1_ = dynamics.event_derivative();
   note_slips(dynamics, slip_scale1_, has_slip_scale1_);
   is_restarted_ = false;
 }
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
   // If no step is short enough, the failure itself is more informative than a message about the step length.
-  const bool is_shortest = h_ < k_shortest_try * time_size(t0_, system_);
+  const bool is_shortest = h_ < k_shortest_try * rounding_time_scale(t0_, system_);
   try {
     finish_step(dynamics);
     return true;
@@ -194,21 +194,23 @@ bool Integrator::try_finish_step(Dynamics& dynamics) {
   return false;
 }
 
-bool Integrator::is_merged_look_due(double theta) const { return theta > last_merged_look_ + k_merged_look && theta < 1.0 - k_merged_end; }
-
-void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta) {
-  const bool is_due = is_merged_look_due(theta);
-  if (is_due) last_merged_look_ = theta;
-  const bool has_merged = dynamics.looks_at_merged(is_due);
-  dynamics.evaluate(is_due ? Request::stage_and_joints : Request::stage_near_limit, t, y, dy);
-  nodes_.add(theta, dynamics.watch().data(), has_merged);
+bool Integrator::are_rigid_joint_events_due(double theta) const {
+  return theta > last_rigid_joint_evaluation_ + k_rigid_joint_interval && theta < 1.0 - k_merged_end;
 }
 
-void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double theta) {
-  const bool is_due = is_merged_look_due(theta);
-  if (is_due) last_merged_look_ = theta;
-  dynamics.watch_merged_if_near(dy, is_due);
-  nodes_.add(theta, dynamics.watch().data(), dynamics.looks_at_merged(is_due));
+void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta) {
+  const bool is_due = are_rigid_joint_events_due(theta);
+  if (is_due) last_rigid_joint_evaluation_ = theta;
+  const bool has_merged = dynamics.needs_rigid_joint_events(is_due);
+  dynamics.evaluate(is_due ? Request::stage_and_joints : Request::stage_near_limit, t, y, dy);
+  nodes_.add(theta, dynamics.event_value().data(), has_merged);
+}
+
+void Integrator::record_stage_events(Dynamics& dynamics, const double* dy, double theta) {
+  const bool is_due = are_rigid_joint_events_due(theta);
+  if (is_due) last_rigid_joint_evaluation_ = theta;
+  dynamics.evaluate_rigid_joint_events_if_near_limit(dy, is_due);
+  nodes_.add(theta, dynamics.event_value().data(), dynamics.needs_rigid_joint_events(is_due));
 }
 
 void Integrator::update_weights(Dynamics& dynamics) {
@@ -260,7 +262,7 @@ double Integrator::error_norm(const double* error) const {
 double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const {
   const double all = error_norm(error);
   if (!dynamics.is_near_singular()) return all;
-  dynamics.remove_held(error);
+  dynamics.remove_constrained_error(error);
   return std::max(error_norm(error), k_turned_share * all);
 }
 

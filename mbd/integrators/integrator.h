@@ -6,9 +6,9 @@
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/integrators/event_nodes.h"
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/turn_limit.h"
-#include "mbd/integrators/watch_nodes.h"
 
 #include <algorithm>
 #include <limits>
@@ -44,11 +44,11 @@ public:
   /// As restart(), if the last evaluation of `dynamics` was at (t, y), with event functions of merged joints, and gave the rates `dy`.
   void restart_evaluated(Dynamics& dynamics, double t, const double* y, const double* dy);
   /// Tells whether every step will be evaluated inside (samples, extremes). If so, which is the default, step() makes only steps whose
-  /// dense output is as accurate as their ends. If not, bears_look() checks this on demand.
-  virtual void expect_looks(bool are_expected) { are_looks_expected_ = are_expected; }
+  /// dense output is as accurate as their ends. If not, dense_output_is_accurate() checks this on demand.
+  virtual void expect_dense_evaluations(bool are_expected) { are_dense_evaluations_expected_ = are_expected; }
   /// To be called before the dense output of a step is used for the first time. Returns false if it is less accurate than the ends of the
   /// step; the step is then withdrawn, and step() must be called again to make a shorter one.
-  [[nodiscard]] virtual bool bears_look(Dynamics& /*dynamics*/) { return true; }
+  [[nodiscard]] virtual bool dense_output_is_accurate(Dynamics& /*dynamics*/) { return true; }
   /// To be called if the step is used only up to theta, with y the state there. Returns false if some slip velocity has fallen there to the
   /// accuracy of velocities in this step, so that its end or its direction would be arbitrary. The step is then withdrawn, and step() makes
   /// a shorter one.
@@ -98,12 +98,12 @@ public:
   [[nodiscard]] const double* y1() const { return y1_.data(); }
   [[nodiscard]] const double* rate0() const { return k0_; }
   [[nodiscard]] const double* rate1() const { return k1_; }
-  [[nodiscard]] const std::vector<double>& watch0() const { return watch0_; }
-  [[nodiscard]] const std::vector<double>& watch1() const { return watch1_; }
-  [[nodiscard]] const std::vector<double>& watch_rate0() const { return watch_rate0_; }
-  [[nodiscard]] const std::vector<double>& watch_rate1() const { return watch_rate1_; }
+  [[nodiscard]] const std::vector<double>& event_value0() const { return event_value0_; }
+  [[nodiscard]] const std::vector<double>& event_value1() const { return event_value1_; }
+  [[nodiscard]] const std::vector<double>& event_derivative0() const { return event_derivative0_; }
+  [[nodiscard]] const std::vector<double>& event_derivative1() const { return event_derivative1_; }
   /// Returns the event functions at the stages inside the step.
-  [[nodiscard]] virtual WatchNodes& watch_nodes() { return nodes_; }
+  [[nodiscard]] virtual EventNodes& event_nodes() { return nodes_; }
 
   /// Returns the relative local tolerance; 0 for methods with fixed steps.
   [[nodiscard]] double tolerance() const { return is_adaptive() ? settings_.tolerance : 0.0; }
@@ -127,7 +127,7 @@ protected:
   virtual void on_restart(Dynamics& /*dynamics*/) {}
   /// Withdraws the step made and tries h next. Returns false if the method cannot.
   [[nodiscard]] virtual bool withdraw(Dynamics& /*dynamics*/, double /*h*/) { return false; }
-  [[nodiscard]] bool are_looks_expected() const { return are_looks_expected_; }
+  [[nodiscard]] bool are_dense_evaluations_expected() const { return are_dense_evaluations_expected_; }
   void begin_at(Dynamics& dynamics, double t, const double* y);
   void note_begin(Dynamics& dynamics);
   /// Sets where the rates at both ends are stored; methods with more stages use their own arrays.
@@ -142,15 +142,15 @@ protected:
   [[nodiscard]] bool try_finish_step(Dynamics& dynamics);
   /// Stores how accurately slip velocities must be known at the last evaluation (Dynamics::slip_scales).
   void note_slips(Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
-  void begin_watch_nodes() {
+  void begin_event_nodes() {
     nodes_.clear();
-    last_merged_look_ = 0.0;
+    last_rigid_joint_evaluation_ = 0.0;
   }
   /// Evaluates a stage at t = t0 + theta·h: rates to dy, event functions to the nodes.
   void evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta);
-  [[nodiscard]] bool is_merged_look_due(double theta) const;
+  [[nodiscard]] bool are_rigid_joint_events_due(double theta) const;
   /// Stores the event functions of a stage at t0 + theta·h, after its rates dy were computed.
-  void note_stage_watches(Dynamics& dynamics, const double* dy, double theta);
+  void record_stage_events(Dynamics& dynamics, const double* dy, double theta);
   /// Returns `h` limited by max_step and limit_step().
   [[nodiscard]] double limited(double h) const {
     if (settings_.max_step > 0.0) h = std::min(h, settings_.max_step);
@@ -181,18 +181,18 @@ protected:
   IntegratorSettings settings_;
   int n_ = 0;                 ///< present dimension of the state
   bool is_restarted_ = false; ///< no step since the last restart
-  bool are_looks_expected_ = true;
+  bool are_dense_evaluations_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
   double t_limit_ = 0.0; ///< argument of begin_step()
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;
   double* k1_ = nullptr;
-  std::vector<double> watch0_, watch1_, watch_rate0_, watch_rate1_;
-  WatchNodes nodes_;
+  std::vector<double> event_value0_, event_value1_, event_derivative0_, event_derivative1_;
+  EventNodes nodes_;
   double longest_step_ = std::numeric_limits<double>::infinity();
   TurnLimit turn_limit_;
   DividedSteps divided_;
-  double last_merged_look_ = 0.0;                 ///< theta at which joints that are merged were last looked at inside the step
+  double last_rigid_joint_evaluation_ = 0.0;      ///< theta at which joints that are merged were last looked at inside the step
   std::vector<double> slip_scale0_, slip_scale1_; ///< per rate, then speeds (Dynamics::slip_scales)
   std::vector<double> slip_scale_inside_;         ///< where the step is used up to
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;

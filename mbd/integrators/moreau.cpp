@@ -41,7 +41,7 @@ public:
     n_ = dynamics.dimension();
     dynamics.pack(start_, y0_.data());
     dynamics.pack(state_, y1_.data());
-    std::fill(watch1_.begin(), watch1_.end(), 1.0); // event functions are not used, nor rates: the run restarts after each step
+    std::fill(event_value1_.begin(), event_value1_.end(), 1.0); // event functions are not used, nor rates: the run restarts after each step
     ++steps_;
   }
 

@@ -74,7 +74,7 @@ protected:
 
 private:
   [[nodiscard]] bool try_step(Dynamics& dynamics) {
-    begin_watch_nodes();
+    begin_event_nodes();
     stage(dynamics, 1, 0.5, k(0));
     stage(dynamics, 2, 0.5, k(1));
     stage(dynamics, 3, 1.0, k(2));

@@ -72,8 +72,8 @@ protected:
     if (is_crossing_) return false;
     --steps_;
     ++rejections_;
-    approach_ = before_.approach;
-    control_.previous_error = before_.error;
+    approach_ = saved_control_.approach;
+    control_.previous_error = saved_control_.error;
     next_h_ = h;
     refuse_shorter_than_rounding(h);
     dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
@@ -105,11 +105,11 @@ private:
   SingularApproach approach_;
   bool is_crossing_ = false; ///< the step made is a crossing
   /// Control data before the step made, restored if it is withdrawn.
-  struct Before {
+  struct SavedControl {
     SingularApproach approach;
     double error = 1e-4;
   };
-  Before before_;
+  SavedControl saved_control_;
 };
 
 // Computes ∂F/∂t at (t0, y0) from five points forward (order 4).
@@ -121,7 +121,7 @@ void Rodas5p::find_time_slope(Dynamics& dynamics) {
   bool is_still = true;
   for (int i = 0; i < n; ++i) slope_[i] = -25.0 / 12.0 * k0_[i] / d;
   for (int p = 3; p >= 0; --p) {
-    dynamics.evaluate(Request::rates_as_given, t0_ + (p + 1) * d, y0_.data(), f);
+    dynamics.evaluate(Request::rates_without_projection, t0_ + (p + 1) * d, y0_.data(), f);
     is_still = is_still && std::equal(f, f + n, k0_);
     if (is_still && p < 3) break; // equal at three times: no explicit time dependence
     for (int i = 0; i < n; ++i) slope_[i] += weights[p] / d * f[i];
@@ -148,7 +148,7 @@ double Rodas5p::try_step(Dynamics& dynamics) {
     }
     const double* f = k0_;
     if (i > 0) {
-      dynamics.evaluate(Request::rates_as_given, t0_ + c[i] * h_, y, rate_.data());
+      dynamics.evaluate(Request::rates_without_projection, t0_ + c[i] * h_, y, rate_.data());
       f = rate_.data();
     }
     for (int k = 0; k < n; ++k) right_[k] += f[k];
@@ -201,7 +201,7 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
   for (int p = 0; p < 2; ++p) {
     interpolate(k_lobatto[p], y.data());
     dynamics.rates(t0_ + k_lobatto[p] * h_, y.data(), rate_.data());
-    note_stage_watches(dynamics, rate_.data(), k_lobatto[p]);
+    record_stage_events(dynamics, rate_.data(), k_lobatto[p]);
     for (int i = 0; i < 2; ++i) power_[i][p + 1] = rate_[e + i];
   }
   for (int i = 0; i < 2; ++i) {
@@ -252,14 +252,14 @@ bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
   if (h == 0.0) return false;
   h_ = h;
   t1_ = t0_ + h_;
-  begin_watch_nodes();
+  begin_event_nodes();
   is_crossing_ = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data()) <= 1.0;
   return is_crossing_ && try_finish_step(dynamics);
 }
 
 void Rodas5p::note_end(const Dynamics& dynamics) {
   ++steps_;
-  before_.approach = approach_;
+  saved_control_.approach = approach_;
   approach_.note_end(dynamics.layout().active.empty() ? 1.0 : dynamics.smallest_pivot());
 }
 
@@ -278,21 +278,21 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     const bool is_last = h >= left * (1.0 - 1e-10);
     h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
     t1_ = is_last ? t_limit : t0_ + h_;
-    dynamics.forget_pivots();
+    dynamics.reset_least_pivot();
     double error = try_step(dynamics);
-    if (!has_tried_crossing && approach_.is_ahead(dynamics.lowest_pivot())) [[unlikely]] {
+    if (!has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
       has_tried_crossing = true;
       if (cross_singularity(dynamics, left)) return note_end(dynamics);
       continue;
     }
     if (error <= 1.0) {
-      begin_watch_nodes();
+      begin_event_nodes();
       if (!try_finish_step(dynamics)) error = std::numeric_limits<double>::infinity();
       else finish_powers(dynamics);
     }
     if (error <= 1.0) error = std::max(error, error_of_powers());
     if (error <= 1.0) {
-      before_.error = control_.previous_error;
+      saved_control_.error = control_.previous_error;
       const double factor = control_.factor(error, is_retry);
       next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
       return note_end(dynamics);
@@ -304,7 +304,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
 }
 
 void Rodas5p::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_))
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }

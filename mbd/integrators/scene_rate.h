@@ -19,7 +19,7 @@ inline constexpr double k_metre_rate = 3.1320919526731650; ///< 1/s: √(9.81 m/
 
 /// Returns the magnitude of time that a step length is compared with to decide whether it is only rounding: |t|, but at least a small
 /// fraction of the characteristic time.
-[[nodiscard]] inline double time_size(double t, const System& system) {
+[[nodiscard]] inline double rounding_time_scale(double t, const System& system) {
   constexpr double k_least_share = 3.132e-3; // 1 ms for bodies of a metre
   return std::max(std::abs(t), k_least_share / scene_rate(system));
 }

@@ -217,8 +217,8 @@ double SingularCrossing::error_of(Dynamics& dynamics, const Step& step) {
     off[l] = step.h * sum;
     whole[l] = step.h * step.rate0[l];
   }
-  dynamics.keep_allowed(off);
-  dynamics.keep_allowed(off + dynamics.coordinate_count());
+  dynamics.project_onto_null_space(off);
+  dynamics.project_onto_null_space(off + dynamics.coordinate_count());
   const double delta = step.norm(off), size = step.norm(whole);
   return std::max(size > 0.0 ? delta * delta / size : delta, k_dense_share * delta);
 }
@@ -253,7 +253,7 @@ double SingularCrossing::cross(Dynamics& dynamics, const Step& step, double* y1)
     if (!settle(dynamics, step, y1)) return k_infinite;
     for (int i = 0; i < k_stages; ++i) { // the stages become nodes of the event functions
       evaluate(dynamics, step, i);
-      step.note_stage(rate(i), gauss_table().c[i]);
+      step.record_stage(rate(i), gauss_table().c[i]);
     }
   } catch (const ConstraintFailure&) {
     return k_infinite;

@@ -16,7 +16,7 @@
 
 namespace steplap {
 
-/// Keeps track of how near steps have come to a singular position, by the smallest pivots (Dynamics::lowest_pivot), about squares of
+/// Keeps track of how near steps have come to a singular position, by the smallest pivots (Dynamics::least_pivot), about squares of
 /// distances in rad². Copied, so that it can be restored with a withdrawn step.
 class SingularApproach {
 public:
@@ -54,8 +54,8 @@ public:
     const double* y0 = nullptr;
     const double* rate0 = nullptr;
     int n = 0;
-    Norm norm;                                                         ///< error norm; 1 is the tolerance
-    std::function<void(const double* rates, double theta)> note_stage; ///< called after the last evaluation of each stage
+    Norm norm;                                                           ///< error norm; 1 is the tolerance
+    std::function<void(const double* rates, double theta)> record_stage; ///< called after the last evaluation of each stage
   };
 
   /// Returns the singular position as a fraction of the step (0 start, 1 end, above 1 beyond it); NaN if none is near.

@@ -16,12 +16,12 @@ public:
   explicit SingularPassage(Dynamics& dynamics) : dynamics_(dynamics), begins_near_(is_near()) {}
 
   /// To be called before each try.
-  void begin_try() { dynamics_.forget_pivots(); }
+  void begin_try() { dynamics_.reset_least_pivot(); }
   /// After an acceptable try: returns true if the step should end elsewhere, because its end is too near.
   [[nodiscard]] bool wants_other_end() { return !begins_near_ && other_ends_ < k_max_other_ends && is_near() && ++other_ends_ > 0; }
   /// After a rejected try: returns true if it should be repeated because a stage came too near.
   [[nodiscard]] bool wants_other_stages() {
-    return dynamics_.lowest_pivot() < k_close_pivot && tries_across_ < k_max_tries_across && ++tries_across_ > 0;
+    return dynamics_.least_pivot() < k_close_pivot && tries_across_ < k_max_tries_across && ++tries_across_ > 0;
   }
 
   static constexpr double k_shorter_end = 0.75, k_shorter_across = 0.88;

@@ -204,7 +204,7 @@ void StageSystem::solve_unknowns() {
   sparse_.solve(solution_.data());
 }
 
-void StageSystem::respond(const double* pull, double* u) {
+void StageSystem::solve_for_forces(const double* pull, double* u) {
   const std::vector<double>& w = linearization_->inverse_mass();
   for (int i = 0; i < n_; ++i) right_[i] = g_ * pull[i];
   right_.tail(m_).setZero();

@@ -40,7 +40,7 @@ public:
   /// Solves u = (1/g − ∂F/∂y)⁻¹ r; both consist of q, v (n each) and inner states.
   void solve(const double* r, double* u);
   /// Solves for additional forces: `pull` contains the n velocity parts W f; rows and locks react.
-  void respond(const double* pull, double* u);
+  void solve_for_forces(const double* pull, double* u);
 
 private:
   template <class Put> void assemble(double g, const Put& put) const;

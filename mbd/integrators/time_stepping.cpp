@@ -27,14 +27,14 @@ constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // relative to a part: a shorter remainder is added to it
 // Relative to the longest step. A slip that a part of this length does not show is 1e-6 of the curvature of a load within a step.
-constexpr double k_shortest_looked_into = 1e-3;
+constexpr double k_shortest_searched = 1e-3;
 constexpr double k_known = 1e-12; // relative to the scene's length: accuracy of positions, equal to that of the constraints
 
 // While it exists, rates use the means of force signals over [`from`, t].
 class Means {
 public:
-  Means(Dynamics& dynamics, double from) : dynamics_(dynamics) { dynamics.take_means(from); }
-  ~Means() { dynamics_.take_means(std::numeric_limits<double>::infinity()); }
+  Means(Dynamics& dynamics, double from) : dynamics_(dynamics) { dynamics.average_signals_from(from); }
+  ~Means() { dynamics_.average_signals_from(std::numeric_limits<double>::infinity()); }
   Means(const Means&) = delete;
   Means& operator=(const Means&) = delete;
 
@@ -46,8 +46,9 @@ private:
 void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& state) {
   for (std::size_t u = 0; u < system.units.size(); ++u) {
     const Unit& unit = system.units[u];
-    for (int w = 0; w < unit.watch_count; ++w)
-      if (dynamics.watch()[unit.watch + w] < 0.0) (void)unit.group->next_mode(unit.index, state.mode[u], w, dynamics.evaluation());
+    for (int w = 0; w < unit.event_count; ++w)
+      if (dynamics.event_value()[unit.first_event + w] < 0.0)
+        (void)unit.group->next_mode(unit.index, state.mode[u], w, dynamics.evaluation());
   }
 }
 
@@ -95,7 +96,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
     if (!trouble.what) {
       const bool is_near = note_sticking(dynamics, end);
       finish_phases(dynamics, state, h);
-      if (is_near && std::isnan(held_time_) && h > k_shortest_looked_into * longest_ && slips_inside(dynamics, end, tolerance))
+      if (is_near && std::isnan(held_time_) && h > k_shortest_searched * longest_ && slips_inside(dynamics, end, tolerance))
         trouble.what = "a slip inside it";
       if (is_near) dynamics.set_state(state);
     }
@@ -191,9 +192,9 @@ int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, doub
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     if (state.mode[u] != 0 || start_.mode[u] != 0) continue;
-    for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot)
-      if (start_watch_[slot] + h * start_watch_rate_[slot] < -known && // false if a rate is not known
-          dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < -known)
+    for (int slot = unit.first_event; slot < unit.first_event + unit.event_count; ++slot)
+      if (start_event_value_[slot] + h * start_event_derivative_[slot] < -known && // false if a rate is not known
+          dynamics.event_value()[slot] - h * dynamics.event_derivative()[slot] < -known)
         return static_cast<int>(u);
   }
   return -1;
@@ -209,8 +210,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   n_ = dynamics.coordinate_count();
   dynamics.pack(state, y0_.data());
   evaluate(dynamics, start_.t, y0_.data());
-  start_watch_ = dynamics.watch();
-  start_watch_rate_ = dynamics.watch_rate();
+  start_event_value_ = dynamics.event_value();
+  start_event_derivative_ = dynamics.event_derivative();
   collect_friction(dynamics, state);
   dynamics.set_state(state);
   Trouble trouble;
@@ -233,14 +234,14 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
     const int unit = changed_unit(dynamics, state);
     if (unit < 0) {
       if (const int passed = passed_unit(dynamics, state, h); passed >= 0)
-        return {"the gap", system_.units[passed].element, dynamics.watch()[system_.units[passed].watch], " m"};
+        return {"the gap", system_.units[passed].element, dynamics.event_value()[system_.units[passed].first_event], " m"};
       refuse_beyond_laws(system_, dynamics, state);
       dynamics.unpack(t1, y1_.data(), state);
       return {};
     }
     const Unit& changed = system_.units[unit];
-    const double* const watch = &dynamics.watch()[changed.watch];
-    trouble = {"the mode", changed.element, *std::min_element(watch, watch + changed.watch_count), ""};
+    const double* const event_value = &dynamics.event_value()[changed.first_event];
+    trouble = {"the mode", changed.element, *std::min_element(event_value, event_value + changed.event_count), ""};
   }
   return trouble;
 }
@@ -268,23 +269,23 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     const RowSpec* rows = element.rows(friction);
     if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // an unloaded element is free
     double rate[3] = {0, 0, 0};
-    const bool stays = part.block.is_inside && has_held(friction, part.friction);
+    const bool stays = part.block.sticks && has_held(friction, part.friction);
     for (int r = 0; r < part.dimension; ++r) {
       const auto m = evaluate_row<false>(rows[r], dynamics.motion().data());
       rate[r] = m.rate;
       if (rows[r].memory >= 0 && !stays) state.memory[rows[r].memory] = m.value;
     }
-    friction.is_starting = false;
-    friction.phase = part.block.is_inside ? FrictionPhase::stick : FrictionPhase::slip;
-    has_rejoined = has_rejoined || (part.block.is_inside && !stays && element.is_rigid());
-    if (part.block.is_inside) continue;
+    friction.is_onset = false;
+    friction.phase = part.block.sticks ? FrictionPhase::stick : FrictionPhase::slip;
+    has_rejoined = has_rejoined || (part.block.sticks && !stays && element.is_rigid());
+    if (part.block.sticks) continue;
     friction.has_slipped = true;
     friction.slid += h * std::abs(rate[0]);
     std::copy(part.block.direction, part.block.direction + 3, friction.direction);
     friction.sign = part.block.direction[0] > 0.0 ? 1 : -1;
     if (part.dimension == 3) element.aim(friction, rate);
   }
-  if (has_rejoined) dynamics.forget_layouts(); // cached layouts that merge the two bodies have their previous relative pose
+  if (has_rejoined) dynamics.clear_layouts(); // cached layouts that merge the two bodies have their previous relative pose
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
   book_power(dynamics, state, h);

@@ -70,7 +70,7 @@ private:
     Mat3 free = Mat3::Identity();               ///< projection onto the other directions
     double noise = 0.0;                         ///< velocity in these directions that counts as rest
     double bound = 0.0, kinetic_share = 1.0;    ///< dimension 1: bound at the wrench bound_at_; ratio of the kinetic to the static bound
-    FrictionBlock block;
+    BlockSolution block;
   };
   /// Gradient of a friction row in the coordinates of the clusters on both sides.
   struct FrictionGradient {
@@ -120,8 +120,8 @@ private:
   void free_rates(Dynamics& dynamics, double tolerance);
   [[nodiscard]] Trouble settle_wrenches(Dynamics& dynamics, double& change);
   [[nodiscard]] double sweep(Dynamics& dynamics, int& worst);
-  [[nodiscard]] FrictionBlock solve_part(const Evaluation& e, const FrictionPart& part) const;
-  [[nodiscard]] FrictionBlock solve_coupled(const FrictionPart& part, double a, double b) const;
+  [[nodiscard]] BlockSolution solve_part(const Evaluation& e, const FrictionPart& part) const;
+  [[nodiscard]] BlockSolution solve_coupled(const FrictionPart& part, double a, double b) const;
   [[nodiscard]] double bound_of(const Evaluation& e, const FrictionPart& part, bool is_kinetic) const;
   void couple_bounds(Dynamics& dynamics, double t1, double tolerance);
   void find_slope(Dynamics& dynamics, double t1, const FrictionPart& by);
@@ -152,8 +152,8 @@ private:
   StageSystem stages_;
   Residual residual_;
   State start_;
-  std::vector<double> start_watch_, start_watch_rate_; ///< at the start of the part being made
-  double longest_ = 0.0;                               ///< longest step so far, s
+  std::vector<double> start_event_value_, start_event_derivative_; ///< at the start of the part being made
+  double longest_ = 0.0;                                           ///< longest step so far, s
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;

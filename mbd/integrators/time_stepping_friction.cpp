@@ -62,7 +62,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     if (friction.phase == FrictionPhase::apart || element.never_slips()) continue;
     FrictionState before = friction; // a joint that sticks cannot separate, so the phase matters
     before.phase = start_.friction[f].phase;
-    if (element.watch_place(dynamics.evaluation(), before) < 0.0) element.change_place(dynamics.evaluation(), friction);
+    if (element.contact_point_event(dynamics.evaluation(), before) < 0.0) element.switch_contact_point(dynamics.evaluation(), friction);
     if (friction.phase == FrictionPhase::apart) continue;
     const RowSpec* rows = element.rows(friction);
     for (int r = 0; r < element.dimension() && !has_held(friction, f); ++r)
@@ -123,7 +123,7 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
         const int k = 3 * row.cluster[side] + c;
         right_[k] += w[k] * row.g[side][c];
       }
-    stages_.respond(right_.data(), &response_[r * n2]);
+    stages_.solve_for_forces(right_.data(), &response_[r * n2]);
   }
   for (std::size_t i = 0; i < rows; ++i)
     for (int side = 0; side < 2; ++side)
@@ -241,7 +241,7 @@ void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart&
 
 // Solves a one-dimensional element with bound B(w) = bound + slope w: it sticks if |w| ≤ B(w) stops it, otherwise it slides in either
 // direction with w = ∓B(w) against the rate a w + b. If several solutions exist (Painlevé's paradox) it sticks.
-FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, double b) const {
+BlockSolution TimeStepping::solve_coupled(const FrictionPart& part, double a, double b) const {
   const std::size_t row = part.first;
   const double* const by = &bound_by_[row * rows_];
   double bound = part.bound - by[row] * bound_at_[row], slope = by[row];
@@ -251,11 +251,11 @@ FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, do
     bound *= part.kinetic_share;
     slope *= part.kinetic_share;
   }
-  FrictionBlock block;
+  BlockSolution block;
   const double held = a > 0.0 ? -b / a : 0.0;
-  block.is_inside = a > 0.0 && std::abs(held) <= bound + slope * held;
+  block.sticks = a > 0.0 && std::abs(held) <= bound + slope * held;
   block.wrench[0] = held;
-  if (block.is_inside) return block;
+  if (block.sticks) return block;
   double least = std::numeric_limits<double>::infinity();
   for (const double sign : {1.0, -1.0}) { // direction of slip
     const double against = 1.0 + sign * slope;
@@ -270,7 +270,7 @@ FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, do
 }
 
 // Solves one element for the present wrenches of the others.
-FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& part) const {
+BlockSolution TimeStepping::solve_part(const Evaluation& e, const FrictionPart& part) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
   const int d = part.dimension;
@@ -338,8 +338,8 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   last_ = wrench_;
   double largest = 0.0, size = largest_size(e);
   for (FrictionPart& part : parts_) {
-    FrictionBlock block;
-    block.is_inside = false;
+    BlockSolution block;
+    block.sticks = false;
     part.is_loaded = system_.frictions[part.friction].friction->is_loaded(e, e.friction[part.friction]);
     if (part.is_loaded) block = solve_part(e, part);
     double* const wrench = &wrench_[part.first];
@@ -362,7 +362,7 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
 void TimeStepping::hold_together() {
   held_.clear();
   for (const FrictionPart& part : parts_)
-    for (int i = 0; part.block.is_inside && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
+    for (int i = 0; part.block.sticks && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
   if (held_.empty() || !hold_rows()) return;
   for (std::size_t i = 0; i < held_.size(); ++i) wrench_[held_[i]] = together_[i];
 }
@@ -436,7 +436,7 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
       a[i * d + i] = compliance_[static_cast<std::size_t>(part.first + i) * rows_ + part.first + i];
       b[i] = -a[i * d + i] * w[i];
     }
-    if (!element.solve_block(e, e.friction[part.friction], a, b, part.is_kinetic).is_inside) return false;
+    if (!element.solve_block(e, e.friction[part.friction], a, b, part.is_kinetic).sticks) return false;
   }
   return true;
 }
@@ -471,7 +471,7 @@ void TimeStepping::stretch(const Evaluation& e) {
 void TimeStepping::stop_at_rest(double change) {
   const double share = std::max(k_rest_of_others, k_changes_at_rest * change);
   for (FrictionPart& part : parts_) {
-    if (part.block.is_inside || part.is_driven) continue;
+    if (part.block.sticks || part.is_driven) continue;
     double velocity = 0.0, others = 0.0;
     for (int i = 0; i < part.dimension; ++i) {
       const std::size_t r = part.first + i;
@@ -484,7 +484,7 @@ void TimeStepping::stop_at_rest(double change) {
       velocity = std::max(velocity, std::abs(sum) / std::sqrt(c[r]));
       others = std::max(others, size / std::sqrt(c[r]));
     }
-    part.block.is_inside = velocity <= share * others;
+    part.block.sticks = velocity <= share * others;
   }
 }
 

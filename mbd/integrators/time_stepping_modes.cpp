@@ -69,7 +69,7 @@ TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool ke
 // Returns true if the element slides opposite to its direction at the end of the last step. In three dimensions a slip changes its
 // direction without coming to rest; there the criterion is whether the friction would push along the former slip.
 bool TimeStepping::turns_round(const FrictionPart& part) const {
-  if (!part.has_slid || !part.is_kinetic || !part.is_loaded || part.block.is_inside) return false;
+  if (!part.has_slid || !part.is_kinetic || !part.is_loaded || part.block.sticks) return false;
   const FrictionState& before = start_.friction[part.friction];
   if (part.dimension == 1) return before.sign * part.block.direction[0] < 0.0;
   double power = 0.0;
@@ -90,16 +90,16 @@ bool TimeStepping::return_turned() {
 // The wrenches are admissible in the static sets, too, so they need not be solved again.
 void TimeStepping::return_stopped(const Evaluation& e) {
   for (FrictionPart& part : parts_) {
-    if (!part.is_kinetic || part.is_returned || !part.is_loaded || !part.block.is_inside) continue;
+    if (!part.is_kinetic || part.is_returned || !part.is_loaded || !part.block.sticks) continue;
     part.is_kinetic = false;
-    if (solve_part(e, part).is_inside) part.is_returned = true;
+    if (solve_part(e, part).sticks) part.is_returned = true;
     else part.is_kinetic = true; // a viscous part makes the kinetic set larger than the static one
   }
 }
 
 // Returns false if nothing slides with its static coefficient.
 bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
-  const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.is_inside; };
+  const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.sticks; };
   if (std::none_of(parts_.begin(), parts_.end(), slides)) return false;
   find_overloads(e);
   double most = -1.0;
@@ -137,7 +137,7 @@ void TimeStepping::find_overloads(const Evaluation& e) {
     const FrictionPart& part = parts_[p];
     if (!part.is_loaded || part.is_kinetic) continue;
     if (part.is_driven) {
-      if (!part.block.is_inside) overload_[p] = std::numeric_limits<double>::infinity();
+      if (!part.block.sticks) overload_[p] = std::numeric_limits<double>::infinity();
       continue;
     }
     double normal[3];

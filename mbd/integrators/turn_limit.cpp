@@ -30,7 +30,7 @@ TurnLimit::TurnLimit(const System& system) : turns_(turn_table_of(system).turns(
   has_knots_ = std::any_of(turns_.begin(), turns_.end(), [](const Turn& turn) { return !turn.knots.empty(); });
 }
 
-double TurnLimit::difference(const Layout& layout, const Turn& turn, const double* values) {
+double TurnLimit::relative_turn(const Layout& layout, const Turn& turn, const double* values) {
   const int a = layout.placements[static_cast<std::size_t>(turn.a)].cluster;
   const int b = layout.placements[static_cast<std::size_t>(turn.b)].cluster;
   if (a == b) return 0.0; // both bodies belong to one cluster
@@ -52,10 +52,10 @@ double TurnLimit::shortened(const Layout& layout, const double* y, const double*
 }
 
 double TurnLimit::shortened_by(const Turn& turn, const Layout& layout, const double* y, const double* dy, double h, int division) {
-  const double rate = difference(layout, turn, y + layout.coordinate_count);
+  const double rate = relative_turn(layout, turn, y + layout.coordinate_count);
   double most = k_aim / division;
   if (std::abs(rate) * h <= (turn.knots.empty() ? most : 0.0)) return h;
-  const double angle = turn.knots.empty() ? 0.0 : difference(layout, turn, y) + offset(layout, turn);
+  const double angle = turn.knots.empty() ? 0.0 : relative_turn(layout, turn, y) + offset(layout, turn);
   for (const TurnKnots& knots : turn.knots) {
     const double x = angle + knots.zero;
     const TurnKnots::Interval interval = knots.about(x, rate);
@@ -65,7 +65,7 @@ double TurnLimit::shortened_by(const Turn& turn, const Layout& layout, const dou
   }
   // An acceleration that would double the rate within such a step is a transient and is ignored; the rotation is checked at the end of the
   // step.
-  const double even = most / std::abs(rate), growth = difference(layout, turn, dy + layout.coordinate_count) * (rate > 0.0 ? 1.0 : -1.0);
+  const double even = most / std::abs(rate), growth = relative_turn(layout, turn, dy + layout.coordinate_count) * (rate > 0.0 ? 1.0 : -1.0);
   const bool is_steady = growth > 0.0 && growth * even < std::abs(rate);
   return is_steady ? time_to(most, std::abs(rate), growth) : even;
 }
@@ -73,7 +73,7 @@ double TurnLimit::shortened_by(const Turn& turn, const Layout& layout, const dou
 double TurnLimit::kept_by_all(const Layout& layout, const double* y0, const double* y1) {
   double share = 1.0;
   for (const Turn& turn : turns_) {
-    const double turned = difference(layout, turn, y1) - difference(layout, turn, y0);
+    const double turned = relative_turn(layout, turn, y1) - relative_turn(layout, turn, y0);
     const double kept = std::abs(turned) > (turn.knots.empty() ? k_most : 0.0) ? kept_by(turn, layout, y0, turned) : 1.0;
     if (kept >= share) continue;
     share = kept;
@@ -84,7 +84,7 @@ double TurnLimit::kept_by_all(const Layout& layout, const double* y0, const doub
 
 double TurnLimit::kept_by(const Turn& turn, const Layout& layout, const double* y0, double turned) {
   double most = k_most;
-  const double angle = turn.knots.empty() ? 0.0 : difference(layout, turn, y0) + offset(layout, turn);
+  const double angle = turn.knots.empty() ? 0.0 : relative_turn(layout, turn, y0) + offset(layout, turn);
   for (const TurnKnots& knots : turn.knots) {
     const double x = angle + knots.zero;
     const TurnKnots::Interval interval = knots.about(x, turned);

@@ -60,7 +60,7 @@ private:
     return most;
   }
   /// Returns the angle, or rate, of the pair's a relative to b for the coordinates or rates in `values`.
-  [[nodiscard]] static double difference(const Layout& layout, const Turn& turn, const double* values);
+  [[nodiscard]] static double relative_turn(const Layout& layout, const Turn& turn, const double* values);
   /// Returns the difference between the argument of a curve and the angle of the coordinates, since a cluster has the angle of one of its
   /// bodies.
   [[nodiscard]] static double offset(const Layout& layout, const Turn& turn);

@@ -295,18 +295,18 @@ std::string without_line_ends(std::string text) {
   return text;
 }
 
-void look_for_control_characters(const Node& node, std::vector<Diagnostic>& problems) {
+void find_control_characters(const Node& node, std::vector<Diagnostic>& problems) {
   const bool has_lines = node.key == "source" && !has_control_character(without_line_ends(node.text()));
   if (has_control_character(node.key)) problems.push_back({node.where_key(), "the key '" + node.key + "' holds a control character"});
   else if (node.type == Node::Type::text && has_control_character(node.text()) && !has_lines)
     problems.push_back({node.where(), (node.key.empty() ? "the text" : "'" + node.key + "',") + std::string(" '") + node.text() +
                                           "', holds a control character (a line break, a tab or the like): write it without"});
-  for (const Node& child : node.children) look_for_control_characters(child, problems);
+  for (const Node& child : node.children) find_control_characters(child, problems);
 }
 
 } // namespace
 
-void refuse_control_characters(Document& document) { look_for_control_characters(document.root, document.problems); }
+void refuse_control_characters(Document& document) { find_control_characters(document.root, document.problems); }
 
 Document load_document(const std::string& path) { return Loader().load(read_layer(path, Location{}), shown_input(path)); }
 

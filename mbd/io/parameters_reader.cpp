@@ -231,7 +231,7 @@ ParameterFormula ParametersReader::formula_of(const std::string& text, const Loc
   return made;
 }
 
-std::array<double, 3> ParametersReader::powers_of(const ParameterFormula& formula) const {
+std::array<double, 3> ParametersReader::dimension_exponents(const ParameterFormula& formula) const {
   std::vector<std::string> units;
   for (const std::size_t k : formula.of) units.push_back(unit_text(parameters_.entries[k].powers));
   return formula.formula.dimension(units).powers;
@@ -260,7 +260,7 @@ bool ParametersReader::resolve(std::size_t index, std::vector<std::size_t>& chai
   for (const std::size_t k : parameter.formula->of)
     if (turns_[k] != Turns::none) turns_[index] = turns_[k];
   try {
-    parameter.powers = powers_of(*parameter.formula);
+    parameter.powers = dimension_exponents(*parameter.formula);
     parameters_.values[index] = parameter.formula->value(parameters_.values);
     if (!std::isfinite(parameters_.values[index])) throw ModelError(parameter.where, "the formula has no finite value");
   } catch (const ModelError& error) {
@@ -303,7 +303,7 @@ Quantity ParametersReader::value(const Node& node, const std::string& unit) {
       is_excused_ = true;
       return {};
     }
-    const std::array<double, 3> powers = powers_of(formula);
+    const std::array<double, 3> powers = dimension_exponents(formula);
     found.use.unit = unit_text(powers);
     found.value = formula.value(parameters_.values);
     if (!std::isfinite(found.value)) return {0.0, "the formula '" + node.text() + "' has no finite value"};

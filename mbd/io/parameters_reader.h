@@ -43,7 +43,7 @@ private:
   bool resolve(std::size_t index, std::vector<std::size_t>& chain);
   void check_ranges();
   [[nodiscard]] ParameterFormula formula_of(const std::string& text, const Location& where) const;
-  [[nodiscard]] std::array<double, 3> powers_of(const ParameterFormula& formula) const;
+  [[nodiscard]] std::array<double, 3> dimension_exponents(const ParameterFormula& formula) const;
   [[nodiscard]] std::string turns_problem(const ParameterFormula& formula, const std::string& unit) const;
   void add(const Location& where, std::string message) { problems_.push_back({where, std::move(message)}); }
 

@@ -17,14 +17,14 @@ void add_transitions(const ForceGroup& group, EventKinds& kinds) {
   constexpr UnitMode k_modes = 64;
   for (UnitMode from = 0; from < k_modes; ++from)
     for (UnitMode to = 0; to < k_modes; ++to)
-      if (from != to) add(kinds, group.transition(from, to));
+      if (from != to) add(kinds, group.event_kind(from, to));
 }
 
 void add_friction(const FrictionElement& friction, EventKinds& kinds) {
   FrictionState here, there;
   there.foot = 1;
-  for (const EventKind kind :
-       {EventKind::sticks, EventKind::loses_normal_force, friction.place_change(here, there), friction.place_change(there, here)})
+  for (const EventKind kind : {EventKind::sticks, EventKind::loses_normal_force, friction.contact_switch_event(here, there),
+                               friction.contact_switch_event(there, here)})
     add(kinds, kind);
   if (friction.dimension() == 3)
     for (const EventKind kind : {EventKind::slips, EventKind::slips_another_way, EventKind::comes_apart}) add(kinds, kind);

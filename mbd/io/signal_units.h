@@ -21,14 +21,14 @@ public:
   [[nodiscard]] std::string misfit(const std::string& signal, const std::string& unit) const;
 
 private:
-  struct Entry {
+  struct GivenSignal {
     std::string kind;
     const std::vector<GivenField>* given;
   };
   [[nodiscard]] std::string misfit(const std::string& signal, const std::string& unit, int depth) const;
   [[nodiscard]] std::string problem_of(const Node& node, const std::string& unit) const;
   const ParametersReader& parameters_;
-  std::unordered_map<std::string, Entry> signals_;
+  std::unordered_map<std::string, GivenSignal> signals_;
 };
 
 } // namespace steplap

@@ -23,14 +23,14 @@ namespace steplap {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-constexpr int k_power = 16;              // highest power of τ in a piece; products with cubics stay below k_most_power (signal_algebra.h)
-constexpr int k_looked_at = 2 * k_power; // highest power considered for the truncation error; higher ones are negligible, since successive
-                                         // terms fall by a factor of about ten
+constexpr int k_power = 16; // highest power of τ in a piece; products with cubics stay below k_most_power (signal_algebra.h)
+constexpr int k_highest_power = 2 * k_power; // considered for the truncation error; higher ones are negligible, since successive terms
+                                             // fall by a factor of about ten
 constexpr double k_left_out = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double k_nothing = 1e-40; // relative to the amplitude: negligible terms, whose coefficients could overflow
 constexpr std::size_t k_most_pieces = 20'000;
 
-using Powers = std::array<double, k_looked_at + 1>;
+using Powers = std::array<double, k_highest_power + 1>;
 
 struct Chirp : SignalDefinition {
   double amplitude = 0.0;
@@ -58,7 +58,7 @@ Powers deviation(const Chirp& chirp, double omega, double length) {
   }
   const double growth = portable::log10(chirp.to / chirp.from) * std::numbers::ln10 / chirp.duration * length;
   double term = omega * length;
-  for (int n = 2; n <= k_looked_at; ++n) {
+  for (int n = 2; n <= k_highest_power; ++n) {
     term *= growth / n;
     d[n] = term;
   }
@@ -70,7 +70,7 @@ double left_out(const Powers& d) {
   Powers bound{};
   bound[0] = 1.0;
   double sum = 0.0;
-  for (int n = 1; n <= k_looked_at; ++n) {
+  for (int n = 1; n <= k_highest_power; ++n) {
     for (int j = 2; j <= n; ++j) bound[n] += j * std::abs(d[j]) * bound[n - j];
     bound[n] /= n;
     if (n > k_power) sum += bound[n];
@@ -153,7 +153,7 @@ Signal build_chirp(const SignalDefinition& definition) {
     const Powers d = deviation(chirp, omega, length);
     pieces.push_back(piece_of(chirp.amplitude, t, omega, phase, d, length));
     double turned = omega * length;
-    for (int n = 2; n <= k_looked_at; ++n) turned += d[n];
+    for (int n = 2; n <= k_highest_power; ++n) turned += d[n];
     phase = std::fmod(phase + turned, 2.0 * k_pi);
     if (!(next > t)) break; // far from t = 0 times cannot resolve a shorter piece
     t = next;

@@ -70,7 +70,7 @@ private:
   }
   [[nodiscard]] std::vector<double> along_constraints(const std::vector<double>& y, std::vector<double> change) const {
     (void)dynamics_.residual(t_, y.data());
-    dynamics_.keep_allowed(change.data());
+    dynamics_.project_onto_null_space(change.data());
     return change;
   }
   [[nodiscard]] double dot(const std::vector<double>& a, const std::vector<double>& b) const {
@@ -221,7 +221,7 @@ State assembled_start(const System& system, const State& assembled) {
   state.v = assembled.v;
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
-  for (const ForceGroup* group : system.inner_groups) group->start_inner(motion.data(), state.inner.data());
+  for (const ForceGroup* group : system.inner_groups) group->relax_inner(motion.data(), state.inner.data());
   return state;
 }
 

@@ -33,7 +33,7 @@ Clearance::Clearance(const System& system, double touch) : touch_(touch), still_
     if (const auto* const source = dynamic_cast<const GapSource*>(group.get())) sources_.push_back(source);
 }
 
-void Clearance::look(const std::vector<double>& q, bool is_instead) {
+void Clearance::measure(const std::vector<double>& q, bool is_instead) {
   if (!is_instead) std::swap(now_, before_);
   now_.clear();
   place_bodies(q, still_, motion_);

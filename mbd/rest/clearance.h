@@ -18,7 +18,7 @@ public:
   [[nodiscard]] bool is_endless() const { return sources_.empty(); }
   /// Measures the gaps with bodies at the poses `q`, three numbers each, the ground first. The previous measurement is kept; if
   /// `is_instead`, this one replaces the last and the one before is kept.
-  void look(const std::vector<double>& q, bool is_instead = false);
+  void measure(const std::vector<double>& q, bool is_instead = false);
   /// Returns the share of a displacement (three numbers per body without the ground) from the measured poses that is safe in one step;
   /// above 1 if all of it is. Contacts already pressed are checked by keeps_sides().
   [[nodiscard]] double share(const VecX& displacement) const;

@@ -26,8 +26,8 @@ constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium:
 constexpr double k_turned_against = 0.5;
 constexpr double k_far = 1e4; // in sizes of the model; beyond it a body counts as moving without end
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
-constexpr int k_most_looks = 1000; // gap measurements along one step
-constexpr int k_most_halved_looks = 40;
+constexpr int k_most_measurements = 1000; // gap measurements along one step
+constexpr int k_most_halved_measurements = 40;
 constexpr double k_touch = 64.0; // roundings of the largest coordinate by which a landing body penetrates
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
 constexpr int k_most_dense = 90; // coordinates; with more, sparse algebra is faster
@@ -50,7 +50,7 @@ Descent::Descent(const System& system, State& state, RestAlgebra algebra)
   }
   measure_scene();
   is_sparse_ = algebra == RestAlgebra::sparse || (algebra == RestAlgebra::by_size && n_ > k_most_dense);
-  const Landscape::Scene scene{system_, statics_, scale_, mass_, length_};
+  const Landscape::StepProblem scene{system_, statics_, scale_, mass_, length_};
   landscape_ = is_sparse_ ? sparse_landscape(scene) : dense_landscape(scene);
   clearance_ = std::make_unique<Clearance>(system_, k_touch * k_epsilon * reach_);
   radius_ = k_first_radius * length_;
@@ -136,8 +136,8 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
     is_better = true;
     before = after;
   }
-  clearance_->look(first);
-  clearance_->look(state_.q);
+  clearance_->measure(first);
+  clearance_->measure(state_.q);
   if (is_better && (now < slope || now < 0.0) && clearance_->keeps_sides(way_from(first))) return now;
   state_.q = first;
   statics_.evaluate(state_);
@@ -146,32 +146,32 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
 
 // Returns the number of gap measurements along a step: one per quarter of a body's size and per tenth of a radian, because contacts may
 // close and open in between.
-int Descent::looks_along(const VecX& step) const {
+int Descent::measurement_count(const VecX& step) const {
   double parts = 0.0;
   for (int k = 0; k < n_; ++k) {
     const double inverse_size = scale_[k - k % 3 + 2];
     parts = std::max(parts, (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * inverse_size);
   }
-  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1.0 * k_most_looks));
+  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1.0 * k_most_measurements));
 }
 
 // In a large model: cuts the step of each body at its first contact, so that many bodies land in one step. Returns false if none lands.
 bool Descent::land(const std::vector<double>& from, VecX& step) {
   if (!is_sparse_ || system_.contact_count == 0) return false;
-  std::vector<double> looks(system_.bodies.size(), 0.0);
+  std::vector<double> measurements(system_.bodies.size(), 0.0);
   for (int k = 0; k < n_; ++k) {
     const double parts = (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * scale_[k - k % 3 + 2];
-    looks[k / 3 + 1] = std::max(looks[k / 3 + 1], std::min(std::ceil(parts), 1.0 * k_most_looks));
+    measurements[k / 3 + 1] = std::max(measurements[k / 3 + 1], std::min(std::ceil(parts), 1.0 * k_most_measurements));
   }
-  const auto look = [&](const VecX& way) {
+  const auto evaluate = [&](const VecX& way) {
     for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * way[k];
     statics_.evaluate(state_);
   };
   const auto room = [&](const VecX& way) {
-    clearance_->look(state_.q);
+    clearance_->measure(state_.q);
     return clearance_->share(scale_.cwiseProduct(way));
   };
-  const bool is_cut = Landing(system_, statics_).cut(step, looks, k_touch * k_epsilon * reach_, {look, room});
+  const bool is_cut = Landing(system_, statics_).cut(step, measurements, k_touch * k_epsilon * reach_, {evaluate, room});
   state_.q = from;
   statics_.evaluate(state_);
   return is_cut;
@@ -185,13 +185,13 @@ VecX Descent::way_from(const std::vector<double>& from) const {
 
 // Moves to `share` of a step, projected onto the rows. Reduces `share` until no contact can have closed and opened again since the share
 // `before`, at which gaps were measured last.
-void Descent::look_on(const std::vector<double>& from, const VecX& step, double before, double& share) {
+void Descent::refine_first_contact(const std::vector<double>& from, const VecX& step, double before, double& share) {
   const std::vector<double> last = state_.q;
   const bool is_on_rows = !is_sparse_ && !statics_.rows().empty();
-  for (int i = 0; i < k_most_halved_looks; ++i) {
+  for (int i = 0; i < k_most_halved_measurements; ++i) {
     if (!is_on_rows || !move_to(from, share * step))
       for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k] * share;
-    clearance_->look(state_.q, i > 0);
+    clearance_->measure(state_.q, i > 0);
     if (clearance_->keeps_sides(way_from(last))) return;
     share = 0.5 * (before + share);
   }
@@ -200,14 +200,14 @@ void Descent::look_on(const std::vector<double>& from, const VecX& step, double 
 // Returns the share of a step at which a contact first closes; 1 if none does.
 double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
   if (clearance_->is_endless()) return 1.0;
-  const double look = 1.0 / looks_along(step);
+  const double spacing = 1.0 / measurement_count(step);
   const VecX way = scale_.cwiseProduct(step);
-  clearance_->look(from);
+  clearance_->measure(from);
   double share = 0.0;
-  for (int i = 0; i < k_most_looks && share < 1.0; ++i) {
+  for (int i = 0; i < k_most_measurements && share < 1.0; ++i) {
     const double before = share;
-    share = std::min(1.0, before + std::min(look, clearance_->share(way)));
-    look_on(from, step, before, share);
+    share = std::min(1.0, before + std::min(spacing, clearance_->share(way)));
+    refine_first_contact(from, step, before, share);
     if (clearance_->has_met()) break;
   }
   state_.q = from;
@@ -329,8 +329,8 @@ void Descent::follow_friction(const std::vector<double>& from) {
       anchor_friction(system_, state_, f, statics_.motion().data());
       hold_[f] = Hold::sticks;
     } else {
-      const bool is_displaced = element.watch_place(statics_.evaluation(), friction) < 0.0;
-      if (is_displaced) element.change_place(statics_.evaluation(), friction);
+      const bool is_displaced = element.contact_point_event(statics_.evaluation(), friction) < 0.0;
+      if (is_displaced) element.switch_contact_point(statics_.evaluation(), friction);
       if (friction.phase == FrictionPhase::apart) continue;
       friction.phase = FrictionPhase::stick;
       if (is_displaced || hold_[f] != Hold::sticks) anchor_friction(system_, state_, f, statics_.motion().data());

@@ -60,11 +60,11 @@ private:
   bool move_to(const std::vector<double>& from, const VecX& step);
   bool project();
   bool advance(VecX step);
-  [[nodiscard]] int looks_along(const VecX& step) const;
+  [[nodiscard]] int measurement_count(const VecX& step) const;
   bool land(const std::vector<double>& from, VecX& step);
   [[nodiscard]] double slope_along(const VecX& step) const;
   [[nodiscard]] double first_contact(const std::vector<double>& from, const VecX& step);
-  void look_on(const std::vector<double>& from, const VecX& step, double before, double& share);
+  void refine_first_contact(const std::vector<double>& from, const VecX& step, double before, double& share);
   [[nodiscard]] VecX way_from(const std::vector<double>& from) const;
   void adapt_region(double factor, const VecX& step, bool is_straight);
   [[nodiscard]] double correct(const VecX& step, const std::vector<double>& from, double slope);

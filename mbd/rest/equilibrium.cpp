@@ -180,7 +180,7 @@ private:
     Statics statics(system_);
     statics.evaluate(state_);
     const std::vector<double> before = state_.inner;
-    for (const ForceGroup* group : system_.inner_groups) (void)group->settle_inner(statics.evaluation(), state_.inner.data());
+    for (const ForceGroup* group : system_.inner_groups) (void)group->project_inner(statics.evaluation(), state_.inner.data());
     double most = 0.0, along = 0.0, square = 0.0;
     std::vector<double> flow(before.size());
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -224,7 +224,7 @@ private:
     std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
     dynamics.pack(held, y.data());
     dynamics.rates(held.t, y.data(), dy.data());
-    dynamics.watch_merged(dy.data());
+    dynamics.evaluate_rigid_joint_events(dy.data());
     const LoadSharing* const sharing = dynamics.sharing();
     std::vector<double> wrench(system_.friction_row_count, 0.0);
     const std::vector<StaticRow>& rows = descent.statics().rows();
@@ -389,7 +389,7 @@ private:
       if (++slip->times > k_most_slips) fail_sliding(*slip);
       Statics statics(system_);
       statics.evaluate(state_);
-      element.begin_slip(statics.evaluation(), state_.friction[f], overload.wrench);
+      element.set_onset_direction(statics.evaluation(), state_.friction[f], overload.wrench);
       state_.friction[f].phase = FrictionPhase::slip;
     }
     was_shared_anew_ = false;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double k_same_share = 1e-12;
 constexpr int k_most_halvings = 60;
-constexpr double k_least_look = 1e-3; // share of a step: least distance of measurements, so at most a thousand, as in a small model
+constexpr double k_least_measurement = 1e-3; // share of a step: least distance of measurements, so at most a thousand, as in a small model
 
 } // namespace
 
@@ -69,28 +69,28 @@ int Landing::lander(const Pair& pair, const VecX& step) {
 bool Landing::has_stopped(int island, double share) const { return !landed_[island].empty() && high_[island] < share; }
 
 // Returns the next share of the step for a measurement, by the number of measurements and the safe share of the islands that still move.
-double Landing::next_share(const VecX& step, const std::vector<double>& looks, const Look& look, double share) {
+double Landing::next_share(const VecX& step, const std::vector<double>& measurements, const StepProbe& probe, double share) {
   double most = 1.0;
   std::vector<double> moving(parent_.size(), 0.0);
   for (int body = 1; body < system_.body_count(); ++body) {
     if (!landed_[island(body)].empty()) continue;
-    most = std::max(most, looks[body]);
+    most = std::max(most, measurements[body]);
     moving[island(body)] = 1.0;
   }
-  const double room = std::max(look.room(cut_step(step, moving)), k_least_look);
+  const double room = std::max(probe.room(cut_step(step, moving)), k_least_measurement);
   return std::min(1.0, share + std::min(1.0 / most, room));
 }
 
 // Finds the first contact of each island, measurement by measurement. Returns false if no contact closes, or one at which nothing lands.
-bool Landing::find_first(const VecX& step, const std::vector<double>& looks, const Look& look) {
+bool Landing::find_first(const VecX& step, const std::vector<double>& measurements, const StepProbe& probe) {
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> shares(parent_.size());
   std::vector<char> is_known(open_.size(), 0);
   bool is_any = false;
   for (double share = 0.0, before = 0.0; share < 1.0; before = share) {
-    share = next_share(step, looks, look, share);
+    share = next_share(step, measurements, probe, share);
     for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::min(share, high_[k]);
-    look.at(cut_step(step, shares));
+    probe.at(cut_step(step, shares));
     for (std::size_t p = 0; p < open_.size(); ++p) {
       if (is_known[p] != 0 || !(force[open_[p].contact] > 0.0)) continue;
       is_known[p] = 1;
@@ -110,7 +110,7 @@ bool Landing::find_first(const VecX& step, const std::vector<double>& looks, con
 }
 
 // Locates the first contacts of all islands at once by bisection.
-void Landing::close_in(const VecX& step, const Look& look) {
+void Landing::locate_contact(const VecX& step, const StepProbe& probe) {
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> shares(parent_.size());
   for (int i = 0; i < k_most_halvings; ++i) {
@@ -121,7 +121,7 @@ void Landing::close_in(const VecX& step, const Look& look) {
       is_open = is_open || !is_known;
     }
     if (!is_open) return;
-    look.at(cut_step(step, shares));
+    probe.at(cut_step(step, shares));
     for (std::size_t k = 0; k < shares.size(); ++k) {
       if (shares[k] == high_[k]) continue;
       const bool is_closed = std::any_of(landed_[k].begin(), landed_[k].end(), [force](int contact) { return force[contact] > 0.0; });
@@ -130,12 +130,12 @@ void Landing::close_in(const VecX& step, const Look& look) {
   }
 }
 
-bool Landing::cut(VecX& step, const std::vector<double>& looks, double touch, const Look& look) {
+bool Landing::cut(VecX& step, const std::vector<double>& measurements, double touch, const StepProbe& probe) {
   low_.assign(parent_.size(), 0.0);
   high_.assign(parent_.size(), 1.0);
   landed_.assign(parent_.size(), {});
-  if (open_.empty() || !find_first(step, looks, look)) return false;
-  close_in(step, look);
+  if (open_.empty() || !find_first(step, measurements, probe)) return false;
+  locate_contact(step, probe);
   std::vector<double> size(parent_.size(), 0.0);
   for (int body = 1; body < system_.body_count(); ++body)
     size[island(body)] = std::max(size[island(body)], step.segment<3>(3 * (body - 1)).cwiseAbs().maxCoeff());

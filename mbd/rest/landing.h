@@ -17,15 +17,15 @@ public:
   /// Uses the last evaluation of `statics`.
   Landing(const System& system, const Statics& statics);
 
-  struct Look {
+  struct StepProbe {
     std::function<void(const VecX& step)> at;     ///< evaluates the statics at a displacement from the start of the step
     std::function<double(const VecX& step)> room; ///< share of a step that is safe from there before the next measurement of gaps
   };
-  /// Cuts the part of `step` of each island where its first contact has just closed. `looks`: number of measurements along each body's
-  /// path, 0 for the ground. `touch`: penetration after closing, m, so that rounding does not open the contact again. Returns false and
-  /// leaves the step unchanged if no contact closes, or one within an island or between two supported ones. The statics is left at an
+  /// Cuts the part of `step` of each island where its first contact has just closed. `measurements`: number of measurements along each
+  /// body's path, 0 for the ground. `touch`: penetration after closing, m, so that rounding does not open the contact again. Returns false
+  /// and leaves the step unchanged if no contact closes, or one within an island or between two supported ones. The statics is left at an
   /// arbitrary pose.
-  bool cut(VecX& step, const std::vector<double>& looks, double touch, const Look& look);
+  bool cut(VecX& step, const std::vector<double>& measurements, double touch, const StepProbe& probe);
 
 private:
   struct Pair {
@@ -35,10 +35,10 @@ private:
   [[nodiscard]] int island(int body);
   [[nodiscard]] VecX cut_step(const VecX& step, const std::vector<double>& shares);
   [[nodiscard]] int lander(const Pair& pair, const VecX& step);
-  [[nodiscard]] double next_share(const VecX& step, const std::vector<double>& looks, const Look& look, double share);
+  [[nodiscard]] double next_share(const VecX& step, const std::vector<double>& measurements, const StepProbe& probe, double share);
   [[nodiscard]] bool has_stopped(int island, double share) const;
-  [[nodiscard]] bool find_first(const VecX& step, const std::vector<double>& looks, const Look& look);
-  void close_in(const VecX& step, const Look& look);
+  [[nodiscard]] bool find_first(const VecX& step, const std::vector<double>& measurements, const StepProbe& probe);
+  void locate_contact(const VecX& step, const StepProbe& probe);
 
   const System& system_;
   const Statics& statics_;

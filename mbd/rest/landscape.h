@@ -26,7 +26,7 @@ enum class RestAlgebra { by_size, dense, sparse };
 
 class Landscape {
 public:
-  struct Scene {
+  struct StepProblem {
     const System& system;
     const Statics& statics;
     const VecX& scale;
@@ -41,7 +41,7 @@ public:
     double force = 0.0, rounding = 0.0;
   };
 
-  explicit Landscape(const Scene& scene) : scene_(scene) {}
+  explicit Landscape(const StepProblem& scene) : scene_(scene) {}
   virtual ~Landscape() = default;
   Landscape(const Landscape&) = delete;
   Landscape& operator=(const Landscape&) = delete;
@@ -85,11 +85,11 @@ protected:
   /// Returns the rounding errors of forces of these sizes, from rounding of poses, stiffness and reactions.
   [[nodiscard]] VecX rounding_of(const State& state, const VecX& sizes, const std::function<VecX(const VecX&)>& stiffness) const;
 
-  Scene scene_;
+  StepProblem scene_;
   VecX force_, lambda_;
 };
 
-[[nodiscard]] std::unique_ptr<Landscape> dense_landscape(const Landscape::Scene& scene);
-[[nodiscard]] std::unique_ptr<Landscape> sparse_landscape(const Landscape::Scene& scene);
+[[nodiscard]] std::unique_ptr<Landscape> dense_landscape(const Landscape::StepProblem& scene);
+[[nodiscard]] std::unique_ptr<Landscape> sparse_landscape(const Landscape::StepProblem& scene);
 
 } // namespace steplap

@@ -14,7 +14,7 @@ constexpr double k_rounded_terms = 32.0;
 
 class DenseLandscape final : public Landscape {
 public:
-  explicit DenseLandscape(const Scene& scene) : Landscape(scene) {}
+  explicit DenseLandscape(const StepProblem& scene) : Landscape(scene) {}
 
   void linearise(const State& state) override {
     const Statics& statics = scene_.statics;
@@ -193,6 +193,6 @@ VecX Landscape::rounding_of(const State& state, const VecX& sizes, const std::fu
   return k_rounded_terms * k_epsilon * (sizes + stiffness(place));
 }
 
-std::unique_ptr<Landscape> dense_landscape(const Landscape::Scene& scene) { return std::make_unique<DenseLandscape>(scene); }
+std::unique_ptr<Landscape> dense_landscape(const Landscape::StepProblem& scene) { return std::make_unique<DenseLandscape>(scene); }
 
 } // namespace steplap

@@ -15,7 +15,7 @@ namespace steplap {
 namespace {
 
 using Sparse = BorderedSystem::Sparse;
-using Entry = Statics::Entry;
+using MatrixEntry = Statics::MatrixEntry;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
@@ -32,7 +32,7 @@ double largest(const VecX& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 
 
 class SparseLandscape final : public Landscape {
 public:
-  explicit SparseLandscape(const Scene& scene) : Landscape(scene), n_(scene.statics.coordinates()) {
+  explicit SparseLandscape(const StepProblem& scene) : Landscape(scene), n_(scene.statics.coordinates()) {
     identity_.resize(static_cast<int>(n_), static_cast<int>(n_));
     identity_.setIdentity();
   }
@@ -126,7 +126,7 @@ public:
   VecX acceleration() override {
     BorderedSystem by_mass;
     const double unit = scene_.mass.maxCoeff();
-    std::vector<Entry> entries;
+    std::vector<MatrixEntry> entries;
     for (int i = 0; i < static_cast<int>(n_); ++i) entries.emplace_back(i, i, scene_.mass[i] / unit);
     Sparse mass(static_cast<int>(n_), static_cast<int>(n_));
     mass.setFromTriplets(entries.begin(), entries.end());
@@ -208,10 +208,10 @@ private:
   [[nodiscard]] const std::vector<SparseRow>& rows() const { return held_.rows(); }
 
   void find_stiffness(const VecX& whole_force) {
-    std::vector<Entry> entries, both;
+    std::vector<MatrixEntry> entries, both;
     scene_.statics.stiffness(lambda_, entries, false);
     both.reserve(2 * entries.size() + static_cast<std::size_t>(n_));
-    for (const Entry& e : entries) {
+    for (const MatrixEntry& e : entries) {
       const double half = -0.5 * e.value() * scene_.scale[e.row()] * scene_.scale[e.col()];
       both.emplace_back(e.row(), e.col(), half);
       both.emplace_back(e.col(), e.row(), half);
@@ -235,9 +235,9 @@ private:
   }
 
   void find_skew() {
-    std::vector<Entry> entries;
+    std::vector<MatrixEntry> entries;
     scene_.statics.stiffness(lambda_, entries, true);
-    for (Entry& e : entries) e = Entry(e.row(), e.col(), -e.value() * scene_.scale[e.row()] * scene_.scale[e.col()] / size_);
+    for (MatrixEntry& e : entries) e = MatrixEntry(e.row(), e.col(), -e.value() * scene_.scale[e.row()] * scene_.scale[e.col()] / size_);
     whole_hat_.resize(static_cast<int>(n_), static_cast<int>(n_));
     whole_hat_.setFromTriplets(entries.begin(), entries.end());
     const Sparse turned = whole_hat_.transpose();
@@ -276,7 +276,7 @@ private:
     return skew_factors_.info() == Eigen::Success && x.allFinite();
   }
   bool factor_skew() {
-    std::vector<Entry> entries;
+    std::vector<MatrixEntry> entries;
     for (int c = 0; c < whole_hat_.outerSize(); ++c)
       for (Sparse::InnerIterator it(whole_hat_, c); it; ++it) entries.emplace_back(static_cast<int>(it.row()), c, it.value());
     const int n = static_cast<int>(n_), m = static_cast<int>(rows().size());
@@ -382,6 +382,6 @@ private:
 
 } // namespace
 
-std::unique_ptr<Landscape> sparse_landscape(const Landscape::Scene& scene) { return std::make_unique<SparseLandscape>(scene); }
+std::unique_ptr<Landscape> sparse_landscape(const Landscape::StepProblem& scene) { return std::make_unique<SparseLandscape>(scene); }
 
 } // namespace steplap

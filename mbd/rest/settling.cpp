@@ -32,7 +32,7 @@ public:
       : system_(system), dynamics_(system), stepping_(system), state_(start), scene_(scale_of(system, start)),
         clearance_(system, k_touch * k_epsilon * scene_.reach) {
     const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), start.t);
-    dynamics_.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
+    dynamics_.set_left_limit_time(limit == system.breakpoints.end() ? system.drives_end : *limit);
     dynamics_.use_coordinates(Coordinates::absolute);
     stepping_.hold_time(start.t);
   }
@@ -49,7 +49,7 @@ public:
       return found;
     }
     double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
-    clearance_.look(state_.q);
+    clearance_.measure(state_.q);
     for (; found.steps < std::min(most, 1.0 * k_most_steps) && h > k_shortest * longest; ++found.steps) {
       stop_if_asked("while the machine settled");
       State next = state_;
@@ -57,7 +57,7 @@ public:
         h *= 0.25;
         continue;
       }
-      const VecX way = way_to(next);
+      const VecX way = displacement_to(next);
       const double size = std::max(size_of(way), 1.0 / clearance_.share(way));
       if (!(size <= 1.0) || !passes_nothing(next, way)) {
         h *= std::isfinite(size) && size > 1.0 ? std::max(0.1, 0.7 / std::sqrt(size)) : 0.25;
@@ -89,13 +89,13 @@ private:
   }
 
   [[nodiscard]] bool passes_nothing(const State& next, const VecX& way) {
-    clearance_.look(next.q);
+    clearance_.measure(next.q);
     if (clearance_.keeps_sides(way)) return true;
-    clearance_.look(state_.q);
+    clearance_.measure(state_.q);
     return false;
   }
 
-  [[nodiscard]] VecX way_to(const State& next) const {
+  [[nodiscard]] VecX displacement_to(const State& next) const {
     VecX way(scene_.scale.size());
     for (Eigen::Index k = 0; k < way.size(); ++k)
       way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];

@@ -11,21 +11,21 @@ namespace steplap {
 namespace {
 
 using Sparse = SparseVibration::Sparse;
-using Entry = Statics::Entry;
+using MatrixEntry = Statics::MatrixEntry;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
 constexpr double k_skew = 1e-9;
 
-Sparse sparse(const std::vector<Entry>& entries, Eigen::Index n) {
+Sparse sparse(const std::vector<MatrixEntry>& entries, Eigen::Index n) {
   Sparse matrix(static_cast<int>(n), static_cast<int>(n));
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
 
 Sparse diagonal(const VecX& values) {
-  std::vector<Entry> entries;
+  std::vector<MatrixEntry> entries;
   for (int i = 0; i < static_cast<int>(values.size()); ++i) entries.emplace_back(i, i, values[i]);
   return sparse(entries, values.size());
 }
@@ -71,20 +71,20 @@ void SparseVibration::find_forces(const Statics& statics) {
       throw NumericalFailure("the reactions at rest, about which vibrations are looked for, cannot be found");
     lambda = -reaction.cwiseQuotient(rows_.size());
   }
-  std::vector<Entry> k, d, both;
+  std::vector<MatrixEntry> k, d, both;
   statics.stiffness(lambda, k);
   statics.damping(d);
   size_ = std::numeric_limits<double>::min();
-  for (Entry& e : k) {
-    e = Entry(e.row(), e.col(), -e.value() * scale_[e.row()] * scale_[e.col()]);
+  for (MatrixEntry& e : k) {
+    e = MatrixEntry(e.row(), e.col(), -e.value() * scale_[e.row()] * scale_[e.col()]);
     size_ = std::max(size_, std::abs(e.value()));
   }
-  for (Entry& e : k) {
-    e = Entry(e.row(), e.col(), e.value() / size_);
+  for (MatrixEntry& e : k) {
+    e = MatrixEntry(e.row(), e.col(), e.value() / size_);
     both.emplace_back(e.row(), e.col(), 0.5 * e.value());
     both.emplace_back(e.col(), e.row(), 0.5 * e.value());
   }
-  for (Entry& e : d) e = Entry(e.row(), e.col(), -e.value() * scale_[e.row()] * scale_[e.col()] / size_);
+  for (MatrixEntry& e : d) e = MatrixEntry(e.row(), e.col(), -e.value() * scale_[e.row()] * scale_[e.col()] / size_);
   for (int i = 0; i < static_cast<int>(n_); ++i) both.emplace_back(i, i, 0.0);
   mass_ /= size_;
   stiffness_ = sparse(k, n_);
@@ -135,7 +135,7 @@ bool ShiftedResponse::factor(const SparseVibration& scene, std::complex<double> 
   m_ = static_cast<Eigen::Index>(scene.rows().size());
   is_complex_ = sigma.imag() != 0.0;
   const int parts = is_complex_ ? 2 : 1;
-  std::vector<Entry> entries;
+  std::vector<MatrixEntry> entries;
   // The real and imaginary part of an unknown are adjacent.
   const auto put = [&](int row, int column, std::complex<double> value) {
     entries.emplace_back(parts * row, parts * column, value.real());

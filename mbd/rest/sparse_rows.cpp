@@ -17,10 +17,10 @@ void SparseRows::measure_and_rank(const Statics& statics, const VecX& scale) {
 }
 
 void SparseRows::measure_all(const Statics& statics, const VecX& scale) {
-  std::vector<Statics::Entry> entries;
+  std::vector<Statics::MatrixEntry> entries;
   statics.gradient(entries);
   rows_.assign(statics.rows().size(), {});
-  for (const Statics::Entry& entry : entries) {
+  for (const Statics::MatrixEntry& entry : entries) {
     SparseRow& row = rows_[static_cast<std::size_t>(entry.row())];
     const double value = entry.value() * scale[entry.col()];
     if (statics.rows()[static_cast<std::size_t>(entry.row())].spec->next) row.merge(entry.col(), value);

@@ -23,23 +23,23 @@ int place_of(const RowSpec& row, int k) {
 }
 
 // Adds w ∂²(measure)/∂q² of one part of a row to k.
-void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::Entry>& k) {
+void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::MatrixEntry>& k) {
   const RowGradient<D12> g = row_gradient(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3));
   for (int i = 0; i < 6; ++i)
     for (int l = 0; l < 6; ++l)
       if (const int r = place_of(row, i), c = place_of(row, l); r >= 0 && c >= 0) k.emplace_back(r, c, w * g.j[i].d[l]);
 }
 
-void add_pair(int a, int b, const Eigen::Matrix<double, 6, 6>& part, std::vector<Statics::Entry>& whole) {
+void add_pair(int a, int b, const Eigen::Matrix<double, 6, 6>& part, std::vector<Statics::MatrixEntry>& whole) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
       if (const int row = i < 3 ? a : b, column = j < 3 ? a : b; row != k_ground && column != k_ground)
         whole.emplace_back(3 * row - 3 + i % 3, 3 * column - 3 + j % 3, part(i, j));
 }
 
-MatX dense(const std::vector<Statics::Entry>& entries, Eigen::Index rows, Eigen::Index columns) {
+MatX dense(const std::vector<Statics::MatrixEntry>& entries, Eigen::Index rows, Eigen::Index columns) {
   MatX matrix = MatX::Zero(rows, columns);
-  for (const Statics::Entry& entry : entries) matrix(entry.row(), entry.col()) += entry.value();
+  for (const Statics::MatrixEntry& entry : entries) matrix(entry.row(), entry.col()) += entry.value();
   return matrix;
 }
 
@@ -127,12 +127,12 @@ void Statics::collect_rows(const State& state, const std::vector<char>& left_out
 }
 
 MatX Statics::gradient() const {
-  std::vector<Entry> entries;
+  std::vector<MatrixEntry> entries;
   gradient(entries);
   return dense(entries, static_cast<Eigen::Index>(rows_.size()), n_);
 }
 
-void Statics::gradient(std::vector<Entry>& entries) const {
+void Statics::gradient(std::vector<MatrixEntry>& entries) const {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     for (const RowSpec* part = rows_[r].spec; part; part = part->next) {
       const RowGradient<double> g = row_gradient(*part, motion_[part->a], motion_[part->b]);
@@ -155,12 +155,12 @@ VecX Statics::off() const {
 }
 
 MatX Statics::stiffness(const VecX& lambda) const {
-  std::vector<Entry> entries;
+  std::vector<MatrixEntry> entries;
   stiffness(lambda, entries);
   return dense(entries, n_, n_);
 }
 
-void Statics::stiffness(const VecX& lambda, std::vector<Entry>& k, bool with_sliding) const {
+void Statics::stiffness(const VecX& lambda, std::vector<MatrixEntry>& k, bool with_sliding) const {
   std::vector<PairJacobian> parts;
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.stiffness, k);
@@ -172,12 +172,12 @@ void Statics::stiffness(const VecX& lambda, std::vector<Entry>& k, bool with_sli
 }
 
 MatX Statics::damping() const {
-  std::vector<Entry> entries;
+  std::vector<MatrixEntry> entries;
   damping(entries);
   return dense(entries, n_, n_);
 }
 
-void Statics::damping(std::vector<Entry>& d) const {
+void Statics::damping(std::vector<MatrixEntry>& d) const {
   std::vector<PairJacobian> parts;
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.damping, d);
@@ -185,7 +185,7 @@ void Statics::damping(std::vector<Entry>& d) const {
 
 // Adds the stiffness of a sliding force w(N) along its row: w ∂²(measure)/∂q², and the change of w by the normal forces N, in which w is
 // linear.
-void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<Entry>& k) const {
+void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<MatrixEntry>& k) const {
   const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
   double wrench[3], more[3];
   slip_wrench(f, wrench);

@@ -43,11 +43,11 @@ public:
   [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
   [[nodiscard]] MatX damping() const;                        ///< ∂Q/∂v
   // Sparse forms of these matrices: functions that append entries; duplicates add up.
-  using Entry = Eigen::Triplet<double, int>;
-  void gradient(std::vector<Entry>& entries) const;
+  using MatrixEntry = Eigen::Triplet<double, int>;
+  void gradient(std::vector<MatrixEntry>& entries) const;
   /// Adds the entries of K. `with_sliding`: include the dependence of sliding friction on normal forces.
-  void stiffness(const VecX& lambda, std::vector<Entry>& entries, bool with_sliding = true) const;
-  void damping(std::vector<Entry>& entries) const;
+  void stiffness(const VecX& lambda, std::vector<MatrixEntry>& entries, bool with_sliding = true) const;
+  void damping(std::vector<MatrixEntry>& entries) const;
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Returns the normal force of a contact, which may be changed to test its effect on friction.
@@ -58,7 +58,7 @@ public:
 private:
   void set_modes(State& state);
   void add_sliding_forces();
-  void add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<Entry>& k) const;
+  void add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<MatrixEntry>& k) const;
 
   const System& system_;
   int n_ = 0, bilateral_count_ = 0;

@@ -118,14 +118,14 @@ void ActionFollower::act(std::unique_ptr<RunLeg>& leg) {
     for (std::size_t i = 0; i < group_.entries.size() && !is_ended_; ++i)
       if (triggers_.is_due[i] != 0) happen(i, *leg);
     if (!(now_ == before)) change_over(leg, before);
-    if (!is_ended_) leg->look_for_actions(known);
+    if (!is_ended_) leg->interrupt_if_action_due(known);
   }
   if (is_ended_) leg->close(true);
   else leg->go_on();
 }
 
 void ActionFollower::happen(std::size_t action, RunLeg& leg) {
-  const ActionGroup::Entry& entry = group_.entries[action];
+  const ActionGroup::ElementData& entry = group_.entries[action];
   guard_against_rings(action, leg);
   at_once_.push_back(action);
   triggers_.spend(action, entry.is_once);

@@ -23,8 +23,8 @@ void ActionTriggers::spend(std::size_t action, bool is_once) {
   if (is_once) is_armed[action] = 0;
 }
 
-bool ActionTriggers::look(const ActionGroup& group, const System& system, const State& state, bool is_stepped,
-                          std::span<const Event> events) {
+bool ActionTriggers::update(const ActionGroup& group, const System& system, const State& state, bool is_stepped,
+                            std::span<const Event> events) {
   place_bodies(state.q, state.v, motion_);
   bool is_any = false;
   for (std::size_t i = 0; i < is_armed.size(); ++i) {

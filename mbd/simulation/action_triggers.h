@@ -18,7 +18,7 @@ struct ActionTriggers {
   std::vector<char> is_armed;  ///< waits for its condition
   std::vector<char> is_spent;  ///< the condition is true and has been since the action was last executed
   std::vector<char> has_event; ///< its event has occurred since the action was last executed
-  std::vector<char> is_due;    ///< result of the last look()
+  std::vector<char> is_due;    ///< result of the last update()
 
   /// Sets the state at the start as the model specifies.
   explicit ActionTriggers(const ActionGroup& group);
@@ -31,7 +31,7 @@ struct ActionTriggers {
   /// it was armed again.
   void spend(std::size_t action, bool is_once);
   /// Returns true if any action is due at `state`, and sets is_due. `events` are the new events; `is_stepped` as in ActionGroup::holds.
-  bool look(const ActionGroup& group, const System& system, const State& state, bool is_stepped, std::span<const Event> events);
+  bool update(const ActionGroup& group, const System& system, const State& state, bool is_stepped, std::span<const Event> events);
 
 private:
   std::vector<Motion<double>> motion_;

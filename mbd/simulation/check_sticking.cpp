@@ -11,14 +11,15 @@
 
 namespace steplap {
 
-void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& watch) {
+void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t,
+                    const std::vector<double>& event_value) {
   constexpr double k_stuck_beyond = 1e-6; // the mode problem determines forces to 1e-9 of the capacities, and events are located to
                                           // rounding
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     const FrictionUnit& unit = system.frictions[f];
     if (unit.friction->dimension() != 1 || unit.friction->never_slips()) continue;
     if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
-    const double one = watch[unit.watch], other = watch[unit.watch + 1];
+    const double one = event_value[unit.first_event], other = event_value[unit.first_event + 1];
     const std::string& name = system.element_names[unit.element];
     if (const OneWayLock* const lock = one_way_lock(*unit.friction)) {
       const double beyond = -std::min(one, other); // the bounded side

@@ -8,9 +8,9 @@
 
 namespace steplap {
 
-/// To be called at the end of a step, at time t in s. `watch` contains all event functions; for a sticking element these are bound − λ and
-/// bound + λ, and a violation is judged relative to the sum of their magnitudes; for a one-way clutch only the bounded side counts.
+/// To be called at the end of a step, at time t in s. `event_value` contains all event functions; for a sticking element these are bound −
+/// λ and bound + λ, and a violation is judged relative to the sum of their magnitudes; for a one-way clutch only the bounded side counts.
 /// Elements that share a load are judged as a group (`sharing`; null: none). Throws ElementFailure.
-void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& watch);
+void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& event_value);
 
 } // namespace steplap

@@ -110,8 +110,8 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
   Places& places = Places::of_thread();
   if (c == open_.front()) places.clear(); // a new stretch
   const auto own = static_cast<std::size_t>(std::find(open_.begin(), open_.end(), c) - open_.begin());
-  const auto look_for_all = [&](double theta) -> const Places::Place& {
-    const Snapshot snapshot = look(theta, integrator, dynamics);
+  const auto search_all_extremes = [&](double theta) -> const Places::Place& {
+    const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
     Places::Place& place = places.add(theta, open_.size());
     place.is_singular = is_singular_;
     place.value[own] = ranges_[c].channel->value(snapshot);
@@ -126,7 +126,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
   const auto value_at = [&](double theta) {
     const Places::Place* const known = places.at(theta, own);
     if (known) places.note_use();
-    const Places::Place& place = known ? *known : look_for_all(theta);
+    const Places::Place& place = known ? *known : search_all_extremes(theta);
     is_singular_ = place.is_singular;
     take(c, t_ + theta * (t1_ - t_), *place.value[own]);
     return *place.value[own];

@@ -24,10 +24,10 @@ constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_surprise = 3.0;
 // Weight of the curvature in earlier stretches: long steps may meet an oscillation where it is nearly straight.
 constexpr double k_remembered = 0.5;
-constexpr double k_looks_per_period = 8.0; // samples per period of the fastest load
-constexpr double k_within_reach = 0.25;    // relative to the range of a channel: values farther from both extremes are ignored if the
-                                           // curvature is small enough
-constexpr double k_bit_of_slack = 0.1;     // accuracy of a polynomial's maximum, relative to the tolerance
+constexpr double k_samples_per_period = 8.0; // samples per period of the fastest load
+constexpr double k_within_reach = 0.25;      // relative to the range of a channel: values farther from both extremes are ignored if the
+                                             // curvature is small enough
+constexpr double k_bit_of_slack = 0.1;       // accuracy of a polynomial's maximum, relative to the tolerance
 // One estimate in a hundred is exceeded by up to this factor. A maximum whose error estimate is not below the tolerance by it is evaluated.
 constexpr double k_safety = 3.0;
 constexpr double k_same_crossing = 1e-10; // relative to the stretch
@@ -70,7 +70,7 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     screened_slot_[c] = static_cast<int>(bounds_.size());
     bounds_.emplace_back();
   }
-  sure_.reserve(count_);
+  known_direction_.reserve(count_);
   rate_of_ = rates_of(system);
   formulas_ = std::make_unique<FormulaExtremes>(system, rate_of_);
   bounds_before_ = bounds_;
@@ -101,7 +101,7 @@ void ExtremeFinder::take(std::size_t c, double t, const Snapshot& snapshot, doub
 }
 
 void ExtremeFinder::take(std::size_t c, double t, double value) {
-  if (!sure_.empty()) note_sure(c, value);
+  if (!known_direction_.empty()) record_known_direction(c, value);
   const bool is_new = !(value >= ranges_[c].low.value && value <= ranges_[c].high.value);
   if (!is_new) return;
   note(c, value, t);
@@ -160,7 +160,7 @@ public:
       : finder_(finder), h_(h), integrator_(integrator), dynamics_(dynamics) {}
   ChannelRange& range(std::size_t channel) override { return finder_.ranges_[channel]; }
   [[nodiscard]] double tolerance(std::size_t channel) const override { return finder_.tolerance(channel); }
-  Snapshot look(double theta) override { return finder_.look(theta, *integrator_, *dynamics_); }
+  Snapshot evaluate_dense(double theta) override { return finder_.evaluate_dense(theta, *integrator_, *dynamics_); }
   void note(std::size_t channel, double value, double theta) override { finder_.take(channel, finder_.t_ + theta * h_, value); }
 
 private:
@@ -174,7 +174,7 @@ private:
 void ExtremeFinder::pass_between(double t, const Snapshot& snapshot) {
   Site site(*this, t - t_, nullptr, nullptr);
   formulas_->arrive(snapshot);
-  formulas_->search_straight(t_, t - t_, site);
+  formulas_->search_linear_step(t_, t - t_, site);
 }
 
 void ExtremeFinder::finish(const Snapshot& snapshot) {
@@ -183,9 +183,9 @@ void ExtremeFinder::finish(const Snapshot& snapshot) {
     ranges_[c].resolution = std::max(tolerance(c), formulas_->unclosed(c, ranges_[c]));
   }
   const auto beyond = [](double extreme, double sure) { return extreme == sure || std::isnan(extreme) ? 0.0 : std::abs(extreme - sure); };
-  for (std::size_t c = 0; c < sure_.size(); ++c) {
-    ranges_[c].unsure_low = beyond(ranges_[c].low.value, sure_[c].low);
-    ranges_[c].unsure_high = beyond(ranges_[c].high.value, sure_[c].high);
+  for (std::size_t c = 0; c < known_direction_.size(); ++c) {
+    ranges_[c].unsure_low = beyond(ranges_[c].low.value, known_direction_[c].low);
+    ranges_[c].unsure_high = beyond(ranges_[c].high.value, known_direction_[c].high);
   }
 }
 
@@ -222,7 +222,7 @@ void ExtremeFinder::end_at(double t, Integrator& integrator, Dynamics& dynamics)
 
 void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics) {
   // While nothing moves a step may be longer than many periods of a load. It is then divided into pieces.
-  const double begin = t_, pieces = std::ceil((t - t_) / shortest_period(system_, 0.5 * (t_ + t)) * k_looks_per_period / k_last);
+  const double begin = t_, pieces = std::ceil((t - t_) / shortest_period(system_, 0.5 * (t_ + t)) * k_samples_per_period / k_last);
   for (double i = 1.0; i < pieces; ++i) {
     const double piece_end = begin + i / pieces * (t - begin);
     state_at(piece_end, integrator, dynamics);
@@ -241,7 +241,7 @@ void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrat
 void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics) {
   is_singular_ = dynamics.smallest_pivot() < k_singular_pivot;
   const bool was_unsure = is_unsure_;
-  look_at_slips(integrator, dynamics, false);
+  check_slip_directions(integrator, dynamics, false);
   screen(snapshot);
   evaluate(t, snapshot, node_[k_last].data(), false);
   formulas_->arrive(snapshot);
@@ -263,7 +263,7 @@ void ExtremeFinder::state_at(double t, Integrator& integrator, Dynamics& dynamic
   hermite_dense(dynamics.coordinate_count(), dynamics.dimension(), (t - step_t_[i]) / h, h, y, y + stride_, k, k + stride_, y_.data());
 }
 
-Snapshot ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dynamics) {
+Snapshot ExtremeFinder::evaluate_dense(double theta, Integrator& integrator, Dynamics& dynamics) {
   const double t = t_ + theta * (t1_ - t_);
   state_at(t, integrator, dynamics);
   dynamics.rates(t, y_.data(), dy_.data());
@@ -309,7 +309,7 @@ bool ExtremeFinder::suspect(double h) {
                square = h * h; // contains the curvature of the previous stretch, if there is one
   for (const std::size_t c : tracked_) {
     const double a = first[c], b = end[c];
-    Curve& curve = curve_[c];
+    ChannelSearchState& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
     if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // at rest
@@ -390,7 +390,7 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
       unchecked_.push_back({c, top->theta, sign * top->value});
       continue;
     }
-    if (!sure_.empty()) note_sure(c, sign * top->value);
+    if (!known_direction_.empty()) record_known_direction(c, sign * top->value);
     note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
   }
   return true;
@@ -405,13 +405,13 @@ void ExtremeFinder::check_tops(int level, Integrator& integrator, Dynamics& dyna
     const double t = t_ + top.theta * (t1_ - t_);
     bool is_exact = true;
     if (!are_many) {
-      const double value = ranges_[top.channel].channel->value(look(top.theta, integrator, dynamics));
+      const double value = ranges_[top.channel].channel->value(evaluate_dense(top.theta, integrator, dynamics));
       take(top.channel, t, value);
       is_exact = std::abs(value - top.value) <= tolerance(top.channel);
     } else if (level == 1) {
       is_exact = false;
     } else {
-      if (!sure_.empty()) note_sure(top.channel, top.value);
+      if (!known_direction_.empty()) record_known_direction(top.channel, top.value);
       note(top.channel, top.value, t);
     }
     if (!is_exact && std::find(open_.begin(), open_.end(), top.channel) == open_.end()) open_.push_back(top.channel);
@@ -424,13 +424,13 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
   for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (int i = step; i < k_last; i += 2 * step) {
     const double theta = NodePolynomial::theta(i);
-    const Snapshot snapshot = look(theta, integrator, dynamics);
+    const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
     const NodePolynomial::Weights* const weights = level > 1 ? &NodePolynomial::weights_at(level - 1, theta) : nullptr;
     // The value in the middle can reveal an extreme that the ends did not indicate. This is checked for all channels, since everything has
     // been evaluated there anyway. Not for fixed steps: near the end of a slip their accuracy of its direction is too low.
     if (level == 1 && integrator.is_adaptive()) {
       for (const std::size_t c : tracked_) {
-        Curve& curve = curve_[c];
+        ChannelSearchState& curve = curve_[c];
         if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c))
           continue; // the rates at the ends already show extremes of positions
                     // and velocities
@@ -475,19 +475,19 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
   // Evaluates, at an end of the stretch, the channels that their bounds had excluded there.
-  const auto look_at_end = [&](int node) {
+  const auto stored_sample = [&](int node) {
     const auto is_missing = [&](std::size_t c) { return screened_slot_[c] >= 0 && std::isnan(node_[node][c]); };
     if (std::none_of(open_.begin(), open_.end(), is_missing)) return;
-    const Snapshot snapshot = look(NodePolynomial::theta(node), integrator, dynamics);
+    const Snapshot snapshot = evaluate_dense(NodePolynomial::theta(node), integrator, dynamics);
     for (const std::size_t c : open_)
       if (is_missing(c)) take(c, t_ + NodePolynomial::theta(node) * (t1_ - t_), snapshot, node_[node].data());
   };
-  look_at_end(0);
-  const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
+  stored_sample(0);
+  const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_samples_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
     if (level == 1)
-      for (const int node : {0, k_last}) look_at_end(node);
+      for (const int node : {0, k_last}) stored_sample(node);
     if (wanted > 1 << level) continue; // oscillating loads between the nodes would be missed
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
     check_tops(level, integrator, dynamics);
@@ -513,7 +513,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
     for (std::size_t place = 0; place < k_places; ++place) {
       const int node = 2 * static_cast<int>(place) + 1;
       const double theta = NodePolynomial::theta(node) + (probe + 1) * k_hair;
-      const Snapshot snapshot = look(theta, integrator, dynamics);
+      const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
       for (std::size_t k = 0; k < open_.size(); ++k) {
         take(open_[k], t_ + theta * (t1_ - t_), snapshot, scratch_.data());
         const double change = std::abs(scratch_[open_[k]] - at(open_[k], node));
@@ -555,7 +555,7 @@ void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
     double low = 0.0, high = std::min(1.0, (r.high.t - t_) / h);
     while (high - low > k_same_crossing) {
       const double middle = 0.5 * (low + high);
-      take(c, t_ + middle * h, look(middle, integrator, dynamics), scratch_.data());
+      take(c, t_ + middle * h, evaluate_dense(middle, integrator, dynamics), scratch_.data());
       (scratch_[c] > 1.0 ? high : low) = middle;
     }
     r.first_above_one = t_ + high * h;

@@ -87,7 +87,7 @@ private:
   /// Smallest pivot of the constraints, the square of a distance in rad²: a state nearer than 0.01 mrad to a singular position is at it.
   static constexpr double k_singular_pivot = 1e-10;
   /// Progress of the search for one channel in the present stretch.
-  struct Curve {
+  struct ChannelSearchState {
     bool is_open = false; ///< an extreme may remain to be found
     double error = 0.0;   ///< error of the polynomial through the nodes
   };
@@ -100,19 +100,19 @@ private:
     std::size_t channel = 0;
     double theta = 0.0, value = 0.0;
   };
-  struct Sure { ///< range while the direction of each slip was known
+  struct KnownDirectionRange { ///< range while the direction of each slip was known
     double low = std::numeric_limits<double>::quiet_NaN(), high = low;
   };
 
   void set_scales();
-  void look_at_slips(const Integrator& integrator, Dynamics& dynamics, bool is_new);
-  void note_sure(std::size_t c, double value);
+  void check_slip_directions(const Integrator& integrator, Dynamics& dynamics, bool is_new);
+  void record_known_direction(std::size_t c, double value);
   void note(std::size_t c, double value, double t);
   void evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything);
   void take(std::size_t c, double t, const Snapshot& snapshot, double* values);
   void take(std::size_t c, double t, double value);
   void pass_between(double t, const Snapshot& snapshot);
-  Snapshot look(double theta, Integrator& integrator, Dynamics& dynamics);
+  Snapshot evaluate_dense(double theta, Integrator& integrator, Dynamics& dynamics);
   void state_at(double t, Integrator& integrator, Dynamics& dynamics);
   void close(double t, Integrator& integrator, Dynamics& dynamics);
   void screen(const Snapshot& snapshot);
@@ -149,7 +149,7 @@ private:
   double t1_ = 0.0;                              ///< end of the stretch
   std::vector<double> before_;                   ///< values at the start of the previous stretch
   std::vector<std::vector<double>> node_;        ///< values at the nodes; 0 and 8 are the ends
-  std::vector<Curve> curve_;
+  std::vector<ChannelSearchState> curve_;
   std::vector<double> curvature_; ///< recent second derivative, per s²
   std::vector<std::size_t> open_; ///< channels still searched in this stretch
   std::vector<Top> unchecked_;    ///< maxima whose error may exceed the tolerance
@@ -164,7 +164,7 @@ private:
   bool is_begun_ = false;
   double slip_ = std::numeric_limits<double>::infinity(); ///< speed of the slowest slip whose direction may change, at the last end, m/s
   bool is_unsure_ = false;                                ///< this speed is below its accuracy
-  std::vector<Sure> sure_;                                ///< per channel; empty until the first unsure slip
+  std::vector<KnownDirectionRange> known_direction_;      ///< per channel; empty until the first unsure slip
   bool is_singular_ = false;                              ///< the last evaluated state is near a singular position of joints
   std::unique_ptr<FormulaExtremes> formulas_;             ///< search for channels that are formulas
 };

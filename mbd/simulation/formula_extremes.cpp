@@ -56,7 +56,7 @@ FormulaExtremes::FormulaExtremes(const System& system, const std::vector<int>& r
     const FormulaChannel* const formula = formula_of(channel);
     if (!formula || !channel.has_extremes) continue;
     is_formula_[c] = 1;
-    Sought& sought = formulas_.emplace_back(Sought{c, formula, {}, channel.unit.empty()});
+    FormulaTarget& sought = formulas_.emplace_back(FormulaTarget{c, formula, {}, channel.unit.empty()});
     for (const FormulaChannel::Leaf& leaf : formula->leaves())
       sought.leaves.push_back(static_cast<std::size_t>(
           std::find_if(leaves.begin(), leaves.end(), [&](const auto& other) { return other.name == leaf.name; }) - leaves.begin()));
@@ -94,7 +94,7 @@ void FormulaExtremes::pass(double h) {
 }
 
 double FormulaExtremes::unclosed(std::size_t channel, const ChannelRange& found) const {
-  for (const Sought& sought : formulas_)
+  for (const FormulaTarget& sought : formulas_)
     if (sought.channel == channel) return std::max({0.0, sought.high_bound - found.high.value, found.low.value - sought.low_bound});
   return 0.0;
 }
@@ -121,29 +121,29 @@ void FormulaExtremes::search(double t, double h, ExtremeSite& site) {
   if (is_empty()) return;
   t_ = t;
   h_ = h;
-  is_straight_ = has_looked_ = false;
+  is_straight_ = has_evaluated_ = false;
   const bool is_known = h_last_ > 0.0;
   if (is_known) {
     bend(h);
     reach(h, error_);
     curves_.begin_straight(first_.data(), last_.data(), error_.data());
   }
-  for (Sought& sought : formulas_)
-    if (!is_known || has_looked_ || is_worth_looking(sought, site)) look_for(sought, site);
+  for (FormulaTarget& sought : formulas_)
+    if (!is_known || has_evaluated_ || may_improve_extremes(sought, site)) search_extremes(sought, site);
 }
 
-void FormulaExtremes::search_straight(double t, double h, ExtremeSite& site) {
+void FormulaExtremes::search_linear_step(double t, double h, ExtremeSite& site) {
   if (is_empty()) return;
   t_ = t;
   h_ = h;
-  is_straight_ = has_looked_ = true;
+  is_straight_ = has_evaluated_ = true;
   std::fill(error_.begin(), error_.end(), 0.0);
   curves_.begin_straight(first_.data(), last_.data(), error_.data());
-  for (Sought& sought : formulas_) look_for(sought, site);
+  for (FormulaTarget& sought : formulas_) search_extremes(sought, site);
 }
 
 // Returns true if the formula may exceed its extremes in this stretch.
-bool FormulaExtremes::is_worth_looking(const Sought& sought, ExtremeSite& site) {
+bool FormulaExtremes::may_improve_extremes(const FormulaTarget& sought, ExtremeSite& site) {
   const ChannelRange& range = site.range(sought.channel);
   const Whole& all = enclose(sought, {0.0, 0.0, 0, 0, 0.0, 1.0});
   if (all.is_partial && !range.had_no_value) return true;
@@ -152,11 +152,11 @@ bool FormulaExtremes::is_worth_looking(const Sought& sought, ExtremeSite& site) 
   return !(all.range.high <= range.high.value + slack) || !(all.range.low >= range.low.value - slack);
 }
 
-void FormulaExtremes::look_for(Sought& sought, ExtremeSite& site) {
-  if (!has_looked_) {
-    curves_.begin(first_.data(), last_.data(), [&site](double theta) { return site.look(theta); });
+void FormulaExtremes::search_extremes(FormulaTarget& sought, ExtremeSite& site) {
+  if (!has_evaluated_) {
+    curves_.begin(first_.data(), last_.data(), [&site](double theta) { return site.evaluate_dense(theta); });
     ++run_panels_;
-    has_looked_ = true;
+    has_evaluated_ = true;
   }
   seek(sought, 1.0, site);
   seek(sought, -1.0, site);
@@ -166,7 +166,7 @@ void FormulaExtremes::look_for(Sought& sought, ExtremeSite& site) {
 
 // --- enclosures -----------------------------------------------------------------------------------
 
-const FormulaExtremes::Whole& FormulaExtremes::enclose(const Sought& sought, const Span& span) {
+const FormulaExtremes::Whole& FormulaExtremes::enclose(const FormulaTarget& sought, const Span& span) {
   for (std::size_t i = 0; i < sought.leaves.size(); ++i) leaf_[i] = curves_.over(span.panel, sought.leaves[i], span.begin, span.end);
   const double begin = t_ + span.begin * h_, end = t_ + span.end * h_;
   std::array<double, OperandCurves::k_degree + 1> c{};
@@ -177,7 +177,7 @@ const FormulaExtremes::Whole& FormulaExtremes::enclose(const Sought& sought, con
                                                              Whole::of_polynomial(c, 4.0 * 0x1p-52 * std::abs(end)), node_.data());
 }
 
-const Enclosure<0>& FormulaExtremes::enclose_at(const Sought& sought, int panel, double theta) {
+const Enclosure<0>& FormulaExtremes::enclose_at(const FormulaTarget& sought, int panel, double theta) {
   for (std::size_t i = 0; i < sought.leaves.size(); ++i) leaf_at_[i] = curves_.at(panel, sought.leaves[i], theta);
   const double t = t_ + theta * h_;
   return evaluate<EnclosingNumbers<0>>(sought.formula->tree(), leaf_at_.data(),
@@ -185,7 +185,7 @@ const Enclosure<0>& FormulaExtremes::enclose_at(const Sought& sought, int panel,
 }
 
 // Returns the value of the motion itself; for time steps that of the straight lines between their ends.
-double FormulaExtremes::real_value(const Sought& sought, double theta, ExtremeSite& site) {
+double FormulaExtremes::real_value(const FormulaTarget& sought, double theta, ExtremeSite& site) {
   double value = 0.0;
   if (is_straight_) {
     thread_local std::vector<double> leaves, values;
@@ -194,7 +194,7 @@ double FormulaExtremes::real_value(const Sought& sought, double theta, ExtremeSi
     for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i] = (1.0 - theta) * first_[sought.leaves[i]] + theta * last_[sought.leaves[i]];
     value = value_of(sought.formula->tree(), leaves.data(), t_ + theta * h_, values.data());
   } else {
-    value = sought.formula->value(site.look(theta));
+    value = sought.formula->value(site.evaluate_dense(theta));
   }
   site.note(sought.channel, value, theta);
   return value;
@@ -207,7 +207,7 @@ long FormulaExtremes::spans_left() const { return run_spans_ < k_run_spans ? k_m
 // Order of intervals with equal bounds: the deeper one first, so that one of many equal peaks is found soon.
 constexpr auto k_further_in = [](const auto& a, const auto& b) { return a.bound < b.bound || (a.bound == b.bound && a.depth < b.depth); };
 
-void FormulaExtremes::push(const Sought& sought, double sign, Span span) {
+void FormulaExtremes::push(const FormulaTarget& sought, double sign, Span span) {
   const Whole& value = enclose(sought, span);
   if (value.range.is_empty()) return;
   span.bound = std::min(span.bound, sign > 0.0 ? value.range.high : -value.range.low);
@@ -228,7 +228,7 @@ bool FormulaExtremes::is_shortest(const Span& span) const {
 }
 
 // Adds both halves of an interval; if its panel has been halved, its parts in each half.
-void FormulaExtremes::push_parts(const Sought& sought, double sign, const Span& span) {
+void FormulaExtremes::push_parts(const FormulaTarget& sought, double sign, const Span& span) {
   const int half = curves_.panel(span.panel).half;
   const double middle = half >= 0 ? curves_.panel(half).end : 0.5 * (span.begin + span.end);
   const int depth = span.depth + 1, first = half >= 0 ? half : span.panel, second = half >= 0 ? half + 1 : span.panel;
@@ -238,29 +238,29 @@ void FormulaExtremes::push_parts(const Sought& sought, double sign, const Span& 
 
 // Returns the increase of the tolerance by a new extreme: 1e-6 of the change of the channel's range, or of its magnitude if it has no unit
 // (extremes.cpp).
-double FormulaExtremes::gained(const Sought& sought, double promised, double record) {
+double FormulaExtremes::gained(const FormulaTarget& sought, double promised, double record) {
   const double gain = promised - record;
   if (!std::isfinite(gain)) return 0.0;
   return ExtremeFinder::k_resolution * (sought.is_number ? std::min(gain, std::max(1.0, std::abs(record))) : gain);
 }
 
 // Halves the panel. Returns true if this improves the bounds of the operands.
-bool FormulaExtremes::improve(const Sought& sought, int panel, ExtremeSite& site) {
+bool FormulaExtremes::improve(const FormulaTarget& sought, int panel, ExtremeSite& site) {
   if (is_straight_ || curves_.panel(panel).depth >= k_deepest_panel) return false;
   if (curves_.panels() >= (run_panels_ < k_run_panels ? k_most_panels : k_few_panels)) return false;
   if (std::none_of(sought.leaves.begin(), sought.leaves.end(), [&](std::size_t leaf) { return curves_.can_improve(panel, leaf); }))
     return false;
-  curves_.halve(panel, [&site](double theta) { return site.look(theta); });
+  curves_.halve(panel, [&site](double theta) { return site.evaluate_dense(theta); });
   run_panels_ += 2;
   return true;
 }
 
-void FormulaExtremes::keep_bound(Sought& sought, double sign, double bound) {
+void FormulaExtremes::keep_bound(FormulaTarget& sought, double sign, double bound) {
   if (sign > 0.0) sought.high_bound = std::max(sought.high_bound, bound);
   else sought.low_bound = std::min(sought.low_bound, -bound);
 }
 
-void FormulaExtremes::seek(Sought& sought, double sign, ExtremeSite& site) {
+void FormulaExtremes::seek(FormulaTarget& sought, double sign, ExtremeSite& site) {
   const ChannelRange& range = site.range(sought.channel);
   const double known = sign * (sign > 0.0 ? range.high.value : range.low.value);
   const double record = std::isnan(known) ? -std::numeric_limits<double>::infinity() : known;
@@ -297,7 +297,7 @@ void FormulaExtremes::seek(Sought& sought, double sign, ExtremeSite& site) {
 
 // Locates the maximum of the curves about a place by golden sections. Within the resolution of the value its time is much less accurate,
 // and this improves it.
-double FormulaExtremes::top_about(const Sought& sought, double sign, double theta, double width) {
+double FormulaExtremes::top_about(const FormulaTarget& sought, double sign, double theta, double width) {
   const auto value = [&](double x) {
     const Interval range = enclose_at(sought, panel_at(x), x).range;
     return range.is_empty() ? -std::numeric_limits<double>::infinity() : sign * range.middle();
@@ -326,14 +326,14 @@ int FormulaExtremes::panel_at(double theta) const {
 
 // Evaluates the motion itself at the maximum. If its value is lower than predicted, the curves are inaccurate, and the error is added to
 // the bounds.
-void FormulaExtremes::check(Sought& sought, double sign, double theta, double promised, ExtremeSite& site) {
+void FormulaExtremes::check(FormulaTarget& sought, double sign, double theta, double promised, ExtremeSite& site) {
   const double value = sign * real_value(sought, theta, site);
   if (value >= promised - std::max(site.tolerance(sought.channel), 0.0)) return;
   keep_bound(sought, sign, std::isfinite(value) ? 2.0 * promised - value : std::numeric_limits<double>::infinity());
 }
 
 // Searches for a time at which the formula has no value, if this is possible.
-void FormulaExtremes::seek_missing(const Sought& sought, ExtremeSite& site) {
+void FormulaExtremes::seek_missing(const FormulaTarget& sought, ExtremeSite& site) {
   spans_.clear();
   spans_.push_back({0.0, 0.0, 0, 0, 0.0, 1.0});
   for (long left = std::min(k_missing_spans, spans_left()); !spans_.empty() && left > 0 && !site.range(sought.channel).had_no_value;
@@ -355,7 +355,7 @@ void FormulaExtremes::seek_missing(const Sought& sought, ExtremeSite& site) {
 }
 
 // Finds the first time at which a channel without unit exceeds 1, from the left.
-void FormulaExtremes::seek_first(const Sought& sought, ExtremeSite& site) {
+void FormulaExtremes::seek_first(const FormulaTarget& sought, ExtremeSite& site) {
   ChannelRange& range = site.range(sought.channel);
   if (range.first_above_one || !(range.high.value > 1.0)) return;
   spans_.clear();

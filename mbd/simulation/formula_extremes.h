@@ -30,7 +30,7 @@ public:
   /// Returns the required accuracy of an extreme of the channel.
   [[nodiscard]] virtual double tolerance(std::size_t channel) const = 0;
   /// Returns the motion at theta of the stretch.
-  [[nodiscard]] virtual Snapshot look(double theta) = 0;
+  [[nodiscard]] virtual Snapshot evaluate_dense(double theta) = 0;
   /// Stores a value of the channel found at theta.
   virtual void note(std::size_t channel, double value, double theta) = 0;
 };
@@ -53,14 +53,14 @@ public:
   /// Searches the stretch of length h from t. Precondition: begin() or pass() at its start, arrive() at its end.
   void search(double t, double h, ExtremeSite& site);
   /// As search(), with linear interpolation between the ends, as between the ends of time steps.
-  void search_straight(double t, double h, ExtremeSite& site);
+  void search_linear_step(double t, double h, ExtremeSite& site);
   /// Makes the end of this stretch, of length h, the start of the next one.
   void pass(double h);
   /// Returns by how much the minimum and maximum of a channel may lie beyond those found; 0 for channels that are not formulas.
   [[nodiscard]] double unclosed(std::size_t channel, const ChannelRange& found) const;
 
 private:
-  struct Sought {
+  struct FormulaTarget {
     std::size_t channel = 0;
     const FormulaChannel* formula = nullptr;
     std::vector<std::size_t> leaves; ///< indices of the formula's operands
@@ -79,34 +79,34 @@ private:
   void read(const Snapshot& snapshot, std::vector<double>& values, std::vector<double>& rates);
   void bend(double h);
   void reach(double h, std::vector<double>& error) const;
-  [[nodiscard]] bool is_worth_looking(const Sought& sought, ExtremeSite& site);
-  void look_for(Sought& sought, ExtremeSite& site);
-  void seek(Sought& sought, double sign, ExtremeSite& site);
-  void push(const Sought& sought, double sign, Span span);
+  [[nodiscard]] bool may_improve_extremes(const FormulaTarget& sought, ExtremeSite& site);
+  void search_extremes(FormulaTarget& sought, ExtremeSite& site);
+  void seek(FormulaTarget& sought, double sign, ExtremeSite& site);
+  void push(const FormulaTarget& sought, double sign, Span span);
   [[nodiscard]] Span pop();
-  void push_parts(const Sought& sought, double sign, const Span& span);
-  [[nodiscard]] static double gained(const Sought& sought, double promised, double record);
-  [[nodiscard]] bool improve(const Sought& sought, int panel, ExtremeSite& site);
-  static void keep_bound(Sought& sought, double sign, double bound);
-  void check(Sought& sought, double sign, double theta, double promised, ExtremeSite& site);
-  void seek_missing(const Sought& sought, ExtremeSite& site);
-  void seek_first(const Sought& sought, ExtremeSite& site);
-  [[nodiscard]] double real_value(const Sought& sought, double theta, ExtremeSite& site);
-  [[nodiscard]] const Whole& enclose(const Sought& sought, const Span& span);
-  [[nodiscard]] const Enclosure<0>& enclose_at(const Sought& sought, int panel, double theta);
+  void push_parts(const FormulaTarget& sought, double sign, const Span& span);
+  [[nodiscard]] static double gained(const FormulaTarget& sought, double promised, double record);
+  [[nodiscard]] bool improve(const FormulaTarget& sought, int panel, ExtremeSite& site);
+  static void keep_bound(FormulaTarget& sought, double sign, double bound);
+  void check(FormulaTarget& sought, double sign, double theta, double promised, ExtremeSite& site);
+  void seek_missing(const FormulaTarget& sought, ExtremeSite& site);
+  void seek_first(const FormulaTarget& sought, ExtremeSite& site);
+  [[nodiscard]] double real_value(const FormulaTarget& sought, double theta, ExtremeSite& site);
+  [[nodiscard]] const Whole& enclose(const FormulaTarget& sought, const Span& span);
+  [[nodiscard]] const Enclosure<0>& enclose_at(const FormulaTarget& sought, int panel, double theta);
   [[nodiscard]] bool is_shortest(const Span& span) const;
-  [[nodiscard]] double top_about(const Sought& sought, double sign, double theta, double width);
+  [[nodiscard]] double top_about(const FormulaTarget& sought, double sign, double theta, double width);
   [[nodiscard]] int panel_at(double theta) const;
   [[nodiscard]] long spans_left() const;
 
-  std::vector<Sought> formulas_;
+  std::vector<FormulaTarget> formulas_;
   std::vector<char> is_formula_;
   OperandCurves curves_;
   std::vector<std::function<double(const Snapshot&)>> rate_; ///< per operand: function for its rate; null: unknown
   std::vector<double> rate_factor_;
 
   double t_ = 0.0, h_ = 0.0, h_last_ = 0.0;
-  bool is_straight_ = false, has_looked_ = false;
+  bool is_straight_ = false, has_evaluated_ = false;
   std::vector<double> first_, last_, before_, first_rate_, last_rate_, curvature_, error_;
   std::vector<Span> spans_; ///< heap
   std::vector<Whole> leaf_, node_;

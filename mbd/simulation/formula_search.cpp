@@ -49,7 +49,7 @@ std::vector<FormulaChannel::Leaf> leaves_of(const FormulaInMotion& in_motion) {
 FormulaSearch::FormulaSearch(const System& system, const ActionGroup* group)
     : y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   std::vector<FormulaInMotion> formulas;
-  for (const auto& force : system.groups) force->enter_formulas(formulas);
+  for (const auto& force : system.groups) force->register_formulas(formulas);
   for (const FormulaInMotion& each : formulas)
     if (each.formula->program().may_peak()) add(k_no_action, each);
   has_forces_ = !sought_.empty();
@@ -63,7 +63,8 @@ void FormulaSearch::add(int action, const FormulaInMotion& in_motion) {
   const FormulaTree& tree = in_motion.formula->tree();
   const FormulaProgram& program = in_motion.formula->program();
   const std::size_t count = in_motion.formula->operands().size(), nodes = std::max(values_.size(), tree.size());
-  Sought& sought = sought_.emplace_back(Sought{action, &tree, OperandCurves(leaves_of(in_motion)), {}, {}, &program, in_motion.unit});
+  MonitoredFormula& sought =
+      sought_.emplace_back(MonitoredFormula{action, &tree, OperandCurves(leaves_of(in_motion)), {}, {}, &program, in_motion.unit});
   // Switches are numbered in the order of the nodes.
   for (std::size_t i = 0; action == k_no_action && program.has_comparisons() && i < tree.size(); ++i) {
     const FormulaOp op = tree[i].op;
@@ -80,7 +81,7 @@ void FormulaSearch::add(int action, const FormulaInMotion& in_motion) {
   node_at_.resize(nodes);
 }
 
-Snapshot FormulaSearch::look(double theta, Integrator& integrator, Dynamics& dynamics) {
+Snapshot FormulaSearch::evaluate_dense(double theta, Integrator& integrator, Dynamics& dynamics) {
   Snapshot snapshot;
   snapshot.t = integrator.t0() + theta * integrator.h();
   integrator.dense(dynamics, theta, y_.data());
@@ -91,7 +92,7 @@ Snapshot FormulaSearch::look(double theta, Integrator& integrator, Dynamics& dyn
 }
 
 double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed) {
-  const auto is_asked = [&](const Sought& sought) {
+  const auto is_asked = [&](const MonitoredFormula& sought) {
     return !sought.is_condition() || (is_armed && (*is_armed)[static_cast<std::size_t>(sought.action)] != 0);
   };
   if (!has_forces_ && std::none_of(sought_.begin(), sought_.end(), is_asked)) {
@@ -99,11 +100,11 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
     return 1.0;
   }
   const auto read = [&](double theta, std::size_t place) {
-    const Snapshot snapshot = look(theta, integrator, dynamics);
-    for (Sought& sought : sought_) sought.curves.read(snapshot, sought.operands[place].data());
+    const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
+    for (MonitoredFormula& sought : sought_) sought.curves.read(snapshot, sought.operands[place].data());
   };
   if (is_known_ && t_last_ == integrator.t0()) {
-    for (Sought& sought : sought_) std::swap(sought.operands[0], sought.operands[2]);
+    for (MonitoredFormula& sought : sought_) std::swap(sought.operands[0], sought.operands[2]);
   } else {
     read(0.0, 0);
   }
@@ -115,7 +116,7 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
   is_behind_event_ = false;
   const bool is_first = integrator.t0() == t_event_;
   double place = 1.0;
-  for (Sought& sought : sought_) {
+  for (MonitoredFormula& sought : sought_) {
     if (!is_asked(sought)) continue;
     place = std::min(place, place_of_peak(sought, integrator, dynamics));
     if (!is_first || sought.comparisons.empty() || sought.unit < 0) continue;
@@ -128,7 +129,7 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
 // Sets the band of a force or rate: its values at the ends and in the middle of the step, and three times their difference on either side.
 // A value in the middle that the ends do not show is compared with the cubic through two more places: no stage may have seen a peak there,
 // and then it is outside. Returns false without a finite value at one of the places.
-bool FormulaSearch::set_band(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
+bool FormulaSearch::set_band(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const auto seen = [&](double theta, const std::vector<double>& operands) { return value(sought, operands.data(), t0 + theta * h); };
   const double first = seen(0.0, sought.operands[0]), middle = seen(0.5, sought.operands[1]), last = seen(1.0, sought.operands[2]);
@@ -140,7 +141,7 @@ bool FormulaSearch::set_band(Sought& sought, Integrator& integrator, Dynamics& d
     double quarter[2];
     for (const std::size_t i : {0U, 1U}) {
       const double theta = i == 0 ? 0.25 : 0.75;
-      sought.curves.read(look(theta, integrator, dynamics), operands_.data());
+      sought.curves.read(evaluate_dense(theta, integrator, dynamics), operands_.data());
       quarter[i] = seen(theta, operands_);
       if (!std::isfinite(quarter[i])) return false;
       low = std::min(low, quarter[i]);
@@ -156,7 +157,7 @@ bool FormulaSearch::set_band(Sought& sought, Integrator& integrator, Dynamics& d
   return true;
 }
 
-double FormulaSearch::place_of_peak(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
+double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h(), t1 = integrator.t1();
   if (sought.is_condition()) {
     sought.high = k_half;
@@ -166,7 +167,7 @@ double FormulaSearch::place_of_peak(Sought& sought, Integrator& integrator, Dyna
   }
   if (!may_be_outside_by_range(sought, t0, t1)) return 1.0;
   sought.curves.begin(sought.operands[0].data(), sought.operands[2].data(),
-                      [&](double theta) { return look(theta, integrator, dynamics); });
+                      [&](double theta) { return evaluate_dense(theta, integrator, dynamics); });
   std::size_t most_spans = k_most_spans;
   if (!sought.is_condition()) {
     const Interval all = range_over(sought, {}, t0, h);
@@ -184,7 +185,7 @@ double FormulaSearch::place_of_peak(Sought& sought, Integrator& integrator, Dyna
     if (!sought.may_be_outside(range_over(sought, span, t0, h))) continue;
     const double middle = 0.5 * (span.begin + span.end);
     if (may_be_outside_at(sought, middle, t0 + middle * h)) {
-      sought.curves.read(look(middle, integrator, dynamics), operands_.data());
+      sought.curves.read(evaluate_dense(middle, integrator, dynamics), operands_.data());
       if (sought.is_outside(value(sought, operands_.data(), t0 + middle * h))) // to the end: the event finder sees that
         return ends_outside && range_over(sought, {middle, 1.0}, t0, h).low > k_half ? 1.0 : middle;
     }
@@ -199,7 +200,7 @@ double FormulaSearch::place_of_peak(Sought& sought, Integrator& integrator, Dyna
 }
 
 // Is a comparison that counts with these bits not for certain what its bit says?
-template <class Value> bool FormulaSearch::may_change(const Sought& sought, SwitchBits bits, const Value& value_at) {
+template <class Value> bool FormulaSearch::may_change(const MonitoredFormula& sought, SwitchBits bits, const Value& value_at) {
   const SwitchBits counting = sought.program->counting(bits);
   for (std::size_t s = 0; s < sought.comparisons.size(); ++s) {
     const SwitchBits mask = SwitchBits{1} << s;
@@ -212,11 +213,11 @@ template <class Value> bool FormulaSearch::may_change(const Sought& sought, Swit
 }
 
 // Returns a place, in parts of the step and to a tenth of itself, where a comparison first differs from the mode; 1: nowhere.
-double FormulaSearch::first_change(Sought& sought, Integrator& integrator, Dynamics& dynamics) {
+double FormulaSearch::first_change(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const SwitchBits bits = dynamics.evaluation().mode[sought.unit];
   sought.curves.begin(sought.operands[0].data(), sought.operands[2].data(),
-                      [&](double theta) { return look(theta, integrator, dynamics); });
+                      [&](double theta) { return evaluate_dense(theta, integrator, dynamics); });
   double first = 1.0;
   spans_.assign(1, {});
   for (std::size_t count = 0; !spans_.empty() && count < k_most_spans_of_force; ++count) {
@@ -225,7 +226,7 @@ double FormulaSearch::first_change(Sought& sought, Integrator& integrator, Dynam
     (void)range_over(sought, span, t0, h);
     if (!may_change(sought, bits, [&](std::size_t node) { return node_[node].range; })) continue;
     const double middle = 0.5 * (span.begin + span.end);
-    sought.curves.read(look(middle, integrator, dynamics), operands_.data());
+    sought.curves.read(evaluate_dense(middle, integrator, dynamics), operands_.data());
     (void)value(sought, operands_.data(), t0 + middle * h);
     if (may_change(sought, bits, [&](std::size_t node) { return Interval{values_[node], values_[node]}; })) {
       first = middle;
@@ -240,7 +241,7 @@ double FormulaSearch::first_change(Sought& sought, Integrator& integrator, Dynam
 }
 
 // Operands within what is seen at three places, and as much again on either side: as of curves that are not smooth.
-bool FormulaSearch::may_be_outside_by_range(const Sought& sought, double t0, double t1) {
+bool FormulaSearch::may_be_outside_by_range(const MonitoredFormula& sought, double t0, double t1) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) {
     const auto [low, high] = std::minmax({sought.operands[0][i], sought.operands[1][i], sought.operands[2][i]});
     const double width = high - low;
@@ -250,7 +251,7 @@ bool FormulaSearch::may_be_outside_by_range(const Sought& sought, double t0, dou
       evaluate<EnclosingNumbers<0>>(*sought.tree, leaf_at_.data(), Enclosure<0>::of_range({t0, t1}), node_at_.data()).range);
 }
 
-Interval FormulaSearch::range_over(const Sought& sought, const Span& span, double t0, double h) {
+Interval FormulaSearch::range_over(const MonitoredFormula& sought, const Span& span, double t0, double h) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) leaf_[i] = sought.curves.over(0, i, span.begin, span.end);
   const double begin = t0 + span.begin * h, end = t0 + span.end * h;
   std::array<double, k_degree + 1> c{};
@@ -261,7 +262,7 @@ Interval FormulaSearch::range_over(const Sought& sought, const Span& span, doubl
       .range;
 }
 
-bool FormulaSearch::may_be_outside_at(const Sought& sought, double theta, double t) {
+bool FormulaSearch::may_be_outside_at(const MonitoredFormula& sought, double theta, double t) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) leaf_at_[i] = sought.curves.at(0, i, theta);
   return sought.may_be_outside(evaluate<EnclosingNumbers<0>>(*sought.tree, leaf_at_.data(),
                                                              Enclosure<0>::of_polynomial({t}, k_rounded_time * std::abs(t)),

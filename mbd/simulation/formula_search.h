@@ -43,7 +43,7 @@ public:
     is_behind_event_ = true;
   }
   /// Returns a place in the last step, as a fraction of it, where a formula is outside its band; 1 if there is none. `is_armed` has a flag per
-  /// action; null: none is armed. Precondition: Integrator::bears_look().
+  /// action; null: none is armed. Precondition: Integrator::dense_output_is_accurate().
   [[nodiscard]] double place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed);
   /// Returns the first time, s, at which it could not be decided whether a condition was true for less than 1e-9 of a step.
   [[nodiscard]] const std::optional<double>& undecided() const { return undecided_; }
@@ -51,7 +51,7 @@ public:
 private:
   static constexpr int k_degree = OperandCurves::k_degree;
   static constexpr int k_no_action = -1;
-  struct Sought {
+  struct MonitoredFormula {
     int action = k_no_action; ///< action with this condition; k_no_action for formulas of forces and states
     const FormulaTree* tree = nullptr;
     OperandCurves curves;
@@ -72,19 +72,19 @@ private:
   };
 
   void add(int action, const FormulaInMotion& in_motion);
-  [[nodiscard]] double place_of_peak(Sought& sought, Integrator& integrator, Dynamics& dynamics);
-  [[nodiscard]] double first_change(Sought& sought, Integrator& integrator, Dynamics& dynamics);
-  template <class Value> [[nodiscard]] static bool may_change(const Sought& sought, SwitchBits bits, const Value& value_at);
-  [[nodiscard]] bool set_band(Sought& sought, Integrator& integrator, Dynamics& dynamics);
-  [[nodiscard]] bool may_be_outside_by_range(const Sought& sought, double t0, double t1);
-  [[nodiscard]] Snapshot look(double theta, Integrator& integrator, Dynamics& dynamics);
-  [[nodiscard]] Interval range_over(const Sought& sought, const Span& span, double t0, double h);
-  [[nodiscard]] bool may_be_outside_at(const Sought& sought, double theta, double t);
-  [[nodiscard]] double value(const Sought& sought, const double* operands, double t) {
+  [[nodiscard]] double place_of_peak(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] double first_change(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics);
+  template <class Value> [[nodiscard]] static bool may_change(const MonitoredFormula& sought, SwitchBits bits, const Value& value_at);
+  [[nodiscard]] bool set_band(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] bool may_be_outside_by_range(const MonitoredFormula& sought, double t0, double t1);
+  [[nodiscard]] Snapshot evaluate_dense(double theta, Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] Interval range_over(const MonitoredFormula& sought, const Span& span, double t0, double h);
+  [[nodiscard]] bool may_be_outside_at(const MonitoredFormula& sought, double theta, double t);
+  [[nodiscard]] double value(const MonitoredFormula& sought, const double* operands, double t) {
     return value_of(*sought.tree, operands, t, values_.data());
   }
 
-  std::vector<Sought> sought_;
+  std::vector<MonitoredFormula> sought_;
   bool has_forces_ = false;
   double t_last_ = 0.0;                                       ///< end of the last step searched, s
   bool is_known_ = false;                                     ///< the operands there are known

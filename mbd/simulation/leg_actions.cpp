@@ -50,7 +50,7 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   start_drives(system_, state_, &change.begins);
   place_what_closes(change, state_);
-  dynamics_.set_time_limit(next_limit());
+  dynamics_.set_left_limit_time(next_limit());
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
   dynamics_.rates(state_.t, y_.data(), dy_.data());
@@ -61,7 +61,7 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
     const UnitMode before_it = state_.mode[u];
     state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
     // Energy lost by the change of mode is included in the difference of stored energies below.
-    if (state_.mode[u] != before_it) (void)unit.group->enter_mode(unit.index, state_.mode[u], dynamics_.evaluation(), state_.inner.data());
+    if (state_.mode[u] != before_it) (void)unit.group->jump_inner(unit.index, state_.mode[u], dynamics_.evaluation(), state_.inner.data());
     if (const EventKind is = sliding_of(*unit.group, state_.mode[u]); is != was)
       record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});
   }
@@ -72,21 +72,21 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
   handler_.take_over(state_, change.closes_rows(), record_->events);
   if (change.closes_rows() && jumps(rates, state_.v)) note_blow(*record_, known, state_.dissipated - dissipated);
   keep_blows();
-  make_parts(before.ledger_.get(), unhurt);
+  project_and_set_up(before.ledger_.get(), unhurt);
 }
 
 // Interrupts the leg and returns true if an action is due. `known`: number of events before the present one was handled.
 bool RunLeg::is_action_due(std::size_t known) {
   if (!actions_ || is_over()) return false;
   const bool is_stepped = integrator_->stepped_state() != nullptr;
-  is_interrupted_ = actions_->look(*group_, system_, state_, is_stepped, std::span(record_->events).subspan(known));
+  is_interrupted_ = actions_->update(*group_, system_, state_, is_stepped, std::span(record_->events).subspan(known));
   return is_interrupted_;
 }
 
 void RunLeg::go_on() {
   is_interrupted_ = false;
   if (is_between_events_) return;
-  dynamics_.set_time_limit(next_limit());
+  dynamics_.set_left_limit_time(next_limit());
   restart();
 }
 

@@ -10,7 +10,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_roundings = 64.0; // in units of a coordinate's rounding: a smaller displacement is rounding, however small the body
-constexpr long k_quiet_looks = 16;   // consecutive states without a new direction, after which recording becomes half as frequent
+constexpr long k_quiet_states = 16;  // consecutive states without a new direction, after which recording becomes half as frequent
 constexpr long k_most_stride = 32;   // largest number of steps between records; a direction hardly ever moves for a shorter time
 constexpr std::size_t k_most_states = 16;
 
@@ -80,7 +80,7 @@ void MotionNotes::begin_leg(std::shared_ptr<const System> system, const System& 
   scratch_ = begin;
   const double t = begin.t;
   legs_.push_back({std::move(system), past_legs, std::move(begin), t, {}, std::move(span)});
-  steps_ = looks_ = quiet_ = 0;
+  steps_ = recorded_states_ = quiet_ = 0;
   next_ = stride_ = keep_stride_ = 1;
 }
 
@@ -90,12 +90,12 @@ void MotionNotes::note(const State& state) {
   if (leg.moved.add(state.t, state.q)) {
     quiet_ = 0;
     stride_ = 1;
-  } else if (++quiet_ >= k_quiet_looks && stride_ < k_most_stride) {
+  } else if (++quiet_ >= k_quiet_states && stride_ < k_most_stride) {
     quiet_ = 0;
     stride_ *= 2;
   }
   next_ = steps_ + stride_;
-  if (looks_++ % keep_stride_ != 0) return;
+  if (recorded_states_++ % keep_stride_ != 0) return;
   leg.states.push_back(state);
   if (leg.states.size() < k_most_states) return;
   for (std::size_t i = 0; 2 * i < leg.states.size(); ++i) std::swap(leg.states[i], leg.states[2 * i]);

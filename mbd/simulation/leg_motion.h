@@ -71,9 +71,9 @@ public:
 private:
   std::vector<LegMotion> legs_;
   State scratch_;
-  long steps_ = 0, next_ = 1;         ///< steps of this leg so far; number of the next step to be recorded
-  long looks_ = 0, quiet_ = 0;        ///< states recorded in this leg; consecutive ones without a new direction
-  long stride_ = 1, keep_stride_ = 1; ///< steps between recorded states; recorded states between those that are kept
+  long steps_ = 0, next_ = 1;            ///< steps of this leg so far; number of the next step to be recorded
+  long recorded_states_ = 0, quiet_ = 0; ///< states recorded in this leg; consecutive ones without a new direction
+  long stride_ = 1, keep_stride_ = 1;    ///< steps between recorded states; recorded states between those that are kept
 };
 
 } // namespace steplap

@@ -106,7 +106,7 @@ public:
   [[nodiscard]] bool is_below(double bound) const { return bound <= best_ + slack_; }
 
   // Searches the part that begins at `from` and has the given width.
-  void look(const Coefficients& b, double from, double width, int cuts) {
+  void subdivide(const Coefficients& b, double from, double width, int cuts) {
     take(b[0], from);
     take(b[degree_], from + width);
     if (is_below(*std::max_element(b.begin(), b.begin() + degree_ + 1)) || cuts == 0) return;
@@ -118,8 +118,8 @@ public:
       left[k] = right[0];
     }
     take(right[0], from + s * width);
-    look(left, from, s * width, cuts - 1);
-    look(right, from + s * width, t * width, cuts - 1);
+    subdivide(left, from, s * width, cuts - 1);
+    subdivide(right, from + s * width, t * width, cuts - 1);
   }
 
   void take(double value, double theta) {
@@ -236,7 +236,7 @@ std::optional<NodePolynomial::Top> NodePolynomial::top_above(double floor, doubl
       b[j] = 0.0;
       for (int i = 0; i <= n; ++i) b[j] += k_tables.bernstein[level_][gap][j][i] * values_[i];
     }
-    search.look(b, from, width, k_most_cuts);
+    search.subdivide(b, from, width, k_most_cuts);
   }
   return search.found();
 }

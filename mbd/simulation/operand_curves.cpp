@@ -102,35 +102,35 @@ void OperandCurves::begin_straight(const double* first, const double* last, cons
   }
 }
 
-void OperandCurves::begin(const double* first, const double* last, const Look& look) {
+void OperandCurves::begin(const double* first, const double* last, const DenseEvaluation& evaluate_dense) {
   panels_.clear();
   curves_.clear();
-  sample(add_panel(0.0, 1.0, 0, -1), look, first, last);
+  sample(add_panel(0.0, 1.0, 0, -1), evaluate_dense, first, last);
   for (std::size_t i = 0; i < leaves_.size(); ++i) fit(0, i, -1, check_[i]);
 }
 
-void OperandCurves::halve(int panel, const Look& look) {
+void OperandCurves::halve(int panel, const DenseEvaluation& evaluate_dense) {
   const Panel whole = panels_[static_cast<std::size_t>(panel)];
   const double middle = 0.5 * (whole.begin + whole.end);
   // Earlier samples are not stored; three more evaluations are a small part of those that follow.
-  read(look(whole.begin), first_.data());
-  read(look(middle), middle_.data());
-  read(look(whole.end), last_.data());
+  read(evaluate_dense(whole.begin), first_.data());
+  read(evaluate_dense(middle), middle_.data());
+  read(evaluate_dense(whole.end), last_.data());
   for (const bool is_second : {false, true}) {
     const int half =
         is_second ? add_panel(middle, whole.end, whole.depth + 1, panel) : add_panel(whole.begin, middle, whole.depth + 1, panel);
-    sample(half, look, is_second ? middle_.data() : first_.data(), is_second ? last_.data() : middle_.data());
+    sample(half, evaluate_dense, is_second ? middle_.data() : first_.data(), is_second ? last_.data() : middle_.data());
     for (std::size_t i = 0; i < leaves_.size(); ++i) fit(half, i, panel, check_[i]);
   }
 }
 
-void OperandCurves::sample(int panel, const Look& look, const double* first, const double* last) {
+void OperandCurves::sample(int panel, const DenseEvaluation& evaluate_dense, const double* first, const double* last) {
   const Panel p = panels_[static_cast<std::size_t>(panel)];
   const double middle = 0.5 * (p.begin + p.end), half = 0.5 * (p.end - p.begin);
   std::copy_n(first, leaves_.size(), nodes_.front().begin());
   std::copy_n(last, leaves_.size(), nodes_.back().begin());
-  for (int i = 1; i < k_last; ++i) read(look(middle + half * k_tables.node[i]), nodes_[i].data());
-  read(look(p.begin + k_check * (p.end - p.begin)), check_.data());
+  for (int i = 1; i < k_last; ++i) read(evaluate_dense(middle + half * k_tables.node[i]), nodes_[i].data());
+  read(evaluate_dense(p.begin + k_check * (p.end - p.begin)), check_.data());
 }
 
 void OperandCurves::fit(int panel, std::size_t leaf, int whole, double checked) {

@@ -36,7 +36,7 @@ public:
     int depth = 0;                 ///< number of halvings
   };
   /// Function that returns the motion at theta.
-  using Look = std::function<Snapshot(double theta)>;
+  using DenseEvaluation = std::function<Snapshot(double theta)>;
 
   /// Takes the operands.
   explicit OperandCurves(std::vector<FormulaChannel::Leaf> leaves);
@@ -49,9 +49,9 @@ public:
   /// Sets straight lines between the values at both ends; each curve is within `error` of its line.
   void begin_straight(const double* first, const double* last, const double* error);
   /// Samples the stretch; the values at both ends are given.
-  void begin(const double* first, const double* last, const Look& look);
+  void begin(const double* first, const double* last, const DenseEvaluation& evaluate_dense);
   /// Samples both halves of a panel.
-  void halve(int panel, const Look& look);
+  void halve(int panel, const DenseEvaluation& evaluate_dense);
 
   /// Returns panel i.
   [[nodiscard]] const Panel& panel(int i) const { return panels_[static_cast<std::size_t>(i)]; }
@@ -72,7 +72,7 @@ public:
 private:
   static constexpr int k_nodes = k_degree + 1;
   int add_panel(double begin, double end, int depth, int whole);
-  void sample(int panel, const Look& look, const double* first, const double* last);
+  void sample(int panel, const DenseEvaluation& evaluate_dense, const double* first, const double* last);
   void fit(int panel, std::size_t leaf, int whole, double checked);
 
   std::vector<FormulaChannel::Leaf> leaves_;

@@ -23,7 +23,7 @@ namespace {
 // progress of the motion.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
-constexpr long k_steps_between_looks = 1L << 16;
+constexpr long k_steps_between_checks = 1L << 16;
 // Relative amount by which a sticking joint may exceed its limit. The mode problem determines wrenches to 1e-9 of the capacities, and
 // events are located to rounding; a thousand times that is an error.
 constexpr double k_held_beyond = 1e-6;
@@ -44,11 +44,11 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   record_->trajectory = std::make_unique<Trajectory>(system, options_.channels);
   start_drives(system_, state_);
-  dynamics_.set_time_limit(next_limit());
+  dynamics_.set_left_limit_time(next_limit());
   handler_.start(state_);
   handler_.note_start(state_, record_->events);
   keep_blows();
-  make_parts(nullptr, system_.initial_memory);
+  project_and_set_up(nullptr, system_.initial_memory);
   if (options_.output_step > 0.0) {
     record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // none are due before the start
     record_sample(state_.t);
@@ -56,14 +56,14 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
 }
 
 // Precondition: the constraints are satisfied to rounding, or to the digits of the file.
-void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& unhurt) {
+void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<double>& unhurt) {
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
   dynamics_.use_coordinates(chosen_coordinates());
   dynamics_.use_stage_code(options_.stage_code);
-  if (options_.kept_layouts > 0) dynamics_.keep_layouts(options_.kept_layouts);
+  if (options_.kept_layouts > 0) dynamics_.set_layout_capacity(options_.kept_layouts);
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
@@ -72,11 +72,11 @@ void RunLeg::make_parts(const PowerLedger* before, const std::vector<double>& un
   if (!system_.integrands.empty()) {
     ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension(), unhurt);
     if (before) ledger_->go_on_from(*before);
-    dynamics_.show_integrals(ledger_.get());
+    dynamics_.set_snapshot_integrals(ledger_.get());
   }
   formula_search_ = std::make_unique<FormulaSearch>(system_, actions_ ? group_ : nullptr);
   if (formula_search_->is_empty()) formula_search_.reset();
-  integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
+  integrator_->expect_dense_evaluations(extremes_ || ledger_ || options_.output_step > 0.0);
   if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
@@ -124,7 +124,7 @@ double RunLeg::next_limit() const {
 // Lets signals be read as left limits of the next breakpoint.
 void RunLeg::approach_limit() {
   limit_ = next_limit();
-  dynamics_.set_time_limit(limit_);
+  dynamics_.set_left_limit_time(limit_);
   const double fastest = system_.fastest_at(0.5 * (state_.t + limit_));
   const double turn = integrator_->is_adaptive() ? Integrator::k_largest_turn : k_turn_of_fixed_steps;
   double longest = fastest > 0.0 ? turn / fastest : std::numeric_limits<double>::infinity();
@@ -145,8 +145,8 @@ void RunLeg::restart(bool is_evaluated) {
     integrator_->restart(dynamics_, state_.t, y_.data());
   }
   if (!integrator_->stepped_state()) {
-    check_holding(state_.t, integrator_->watch0());
-    swallowed_.check(dynamics_, state_.t, integrator_->y0(), state_.mode, integrator_->watch0());
+    check_holding(state_.t, integrator_->event_value0());
+    swallowed_.check(dynamics_, state_.t, integrator_->y0(), state_.mode, integrator_->event_value0());
   }
   if (formula_search_) formula_search_->restart();
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
@@ -174,9 +174,9 @@ void RunLeg::fail_infinite(double t) const {
 
 // A joint that sticks must be within its limit; otherwise the event finder or the mode problem has failed and the results are wrong. For a
 // group that shares a load the event function is that of the group.
-void RunLeg::check_holding(double t, const std::vector<double>& watch) const {
+void RunLeg::check_holding(double t, const std::vector<double>& event_value) const {
   for (const int f : joints_) {
-    const double left = watch[system_.frictions[f].watch];
+    const double left = event_value[system_.frictions[f].first_event];
     if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
     throw ElementFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
                              "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
@@ -230,9 +230,9 @@ void RunLeg::sample_until(double t) {
 std::string RunLeg::owner_of(int slot) const {
   int element = -1;
   for (const Unit& unit : system_.units)
-    if (slot >= unit.watch && slot < unit.watch + unit.watch_count) element = unit.element;
+    if (slot >= unit.first_event && slot < unit.first_event + unit.event_count) element = unit.element;
   for (const FrictionUnit& unit : system_.frictions)
-    if (slot >= unit.watch && slot < unit.watch + k_friction_watches) element = unit.element;
+    if (slot >= unit.first_event && slot < unit.first_event + k_friction_event_count) element = unit.element;
   return element < 0 ? "" : std::string(system_.element_names[element]);
 }
 
@@ -260,17 +260,17 @@ void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
 
 // Throws if the steps have become so small that the run would never end.
 void RunLeg::guard_against_crawl() {
-  if (integrator_->steps() < next_look_) return;
-  const double t = integrator_->t1(), passed = t - last_look_;
-  const bool is_first = next_look_ == 0;
-  next_look_ = integrator_->steps() + k_steps_between_looks;
-  last_look_ = t;
+  if (integrator_->steps() < next_progress_check_) return;
+  const double t = integrator_->t1(), passed = t - last_progress_check_;
+  const bool is_first = next_progress_check_ == 0;
+  next_progress_check_ = integrator_->steps() + k_steps_between_checks;
+  last_progress_check_ = t;
   if (is_first) return;
-  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_looks);
+  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_checks);
   if (!(needed > k_most_steps)) return;
   std::ostringstream message;
-  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed << " s; the rest would take " << needed
-          << " steps. Something is far stiffer or faster than the run is long: '" << integrator_->name()
+  message << "the last " << k_steps_between_checks << " steps to t = " << t << " s passed " << passed << " s; the rest would take "
+          << needed << " steps. Something is far stiffer or faster than the run is long: '" << integrator_->name()
           << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
   throw NumericalFailure(message.str());
 }
@@ -280,7 +280,7 @@ void RunLeg::guard_against_crawl() {
 bool RunLeg::are_joints(const std::vector<int>& slots) const {
   return std::all_of(slots.begin(), slots.end(), [this](int slot) {
     return std::any_of(system_.frictions.begin(), system_.frictions.end(), [slot](const FrictionUnit& unit) {
-      return slot >= unit.watch && slot < unit.watch + k_friction_watches && unit.friction->dimension() > 1;
+      return slot >= unit.first_event && slot < unit.first_event + k_friction_event_count && unit.friction->dimension() > 1;
     });
   });
 }
@@ -299,16 +299,16 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
 // At the tie of options_.other_slip: the slot of `sticks` that is nearest to its bound instead of those of `slips`. The equal run met the
 // tie at the same instant to the last bit.
 std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired) const {
-  const SlipTie& tie = *options_.other_slip;
+  const SimultaneousSlip& tie = *options_.other_slip;
   if (t != tie.t) return fired;
   std::vector<int> slots = fired;
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionUnit& unit = system_.frictions[f];
     const std::string& name = system_.element_names[unit.element];
-    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == unit.watch || slot == unit.watch + 1; });
+    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == unit.first_event || slot == unit.first_event + 1; });
     if (name != tie.sticks) continue;
-    const std::vector<double>& watch = dynamics_.watch();
-    slots.push_back(watch[unit.watch] <= watch[unit.watch + 1] ? unit.watch : unit.watch + 1);
+    const std::vector<double>& event_value = dynamics_.event_value();
+    slots.push_back(event_value[unit.first_event] <= event_value[unit.first_event + 1] ? unit.first_event : unit.first_event + 1);
   }
   return slots;
 }
@@ -318,16 +318,16 @@ void RunLeg::keep_blows() { record_->blows.insert(record_->blows.end(), handler_
 // The integrator still has the step that led to the event.
 void RunLeg::keep_ties(double t) {
   const double before = t - integrator_->t0();
-  for (SlipTie tie : handler_.ties()) {
+  for (SimultaneousSlip tie : handler_.ties()) {
     if (record_->ties.size() >= RunRecord::k_most_ties) return;
     for (const FrictionUnit& unit : system_.frictions)
       if (before > 0.0 && system_.element_names[unit.element] == tie.sticks)
-        tie.rate = (tie.share - share_of_bound(unit, integrator_->watch0())) / before;
+        tie.rate = (tie.share - share_of_bound(unit, integrator_->event_value0())) / before;
     record_->ties.push_back(std::move(tie));
   }
 }
 
-void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before) {
+void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* event_value_before) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
   // Projection begins with factors of this state: after those of a sample it would leave something else within its tolerance.
@@ -335,14 +335,14 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);
-  if (fired.empty()) dynamics_.set_time_limit(limit_ = next_limit()); // on the far side of the breakpoint
+  if (fired.empty()) dynamics_.set_left_limit_time(limit_ = next_limit()); // on the far side of the breakpoint
   if (ledger_ && ledger_->has_stored()) {
     dynamics_.rates(t, y_.data(), dy_.data());
     ledger_->end(dynamics_.snapshot(dy_.data()));
   }
   const std::size_t known = record_->events.size();
-  if (options_.other_slip) handler_.handle(state_, slots_of_other(t, fired), watch_before, record_->events);
-  else handler_.handle(state_, fired, watch_before, record_->events);
+  if (options_.other_slip) handler_.handle(state_, slots_of_other(t, fired), event_value_before, record_->events);
+  else handler_.handle(state_, fired, event_value_before, record_->events);
   if (!handler_.ties().empty()) keep_ties(t);
   keep_blows();
   energy_.check_settled(state_.t, handler_.settled());
@@ -358,7 +358,7 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
 
 // `evaluations`: number of evaluations when the step was made. If there were none since, `dynamics_` is at the end of the step. (An
 // adaptive method may have used it for other purposes.)
-void RunLeg::look_for_extremes(long evaluations, bool is_last) {
+void RunLeg::update_extremes(long evaluations, bool is_last) {
   if (!extremes_) return;
   const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
   extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
@@ -413,7 +413,7 @@ bool RunLeg::advance() {
 // Ends the step where the condition of an armed action becomes true inside it, or a formula leaves the range that the step shows. Returns
 // true if the step is withdrawn for this purpose.
 bool RunLeg::ends_at_peak() {
-  if (!integrator_->bears_look(dynamics_)) return true;
+  if (!integrator_->dense_output_is_accurate(dynamics_)) return true;
   const double place = formula_search_->place_of_peak(*integrator_, dynamics_, actions_ ? &actions_->is_armed : nullptr);
   if (place >= 1.0) return false;
   if (integrator_->is_adaptive()) return integrator_->shorten(dynamics_, place);
@@ -458,16 +458,16 @@ bool RunLeg::pass_step() {
   }
   const double t1 = integrator_->t1();
   keep_ledger(t1);
-  look_for_extremes(evaluations, t1 >= limit);
+  update_extremes(evaluations, t1 >= limit);
   sample_until(t1);
   handler_.clear_fresh();
   if (t1 >= limit && limit < options_.end) {
-    pass_event(t1, integrator_->y1(), {}, &integrator_->watch1());
+    pass_event(t1, integrator_->y1(), {}, &integrator_->event_value1());
     return true;
   }
-  check_holding(t1, integrator_->watch1());
-  check_sticking(system_, state_, dynamics_.sharing(), t1, integrator_->watch1());
-  swallowed_.check(dynamics_, t1, integrator_->y1(), state_.mode, integrator_->watch1());
+  check_holding(t1, integrator_->event_value1());
+  check_sticking(system_, state_, dynamics_.sharing(), t1, integrator_->event_value1());
+  swallowed_.check(dynamics_, t1, integrator_->y1(), state_.mode, integrator_->event_value1());
   energy_.check_step(dynamics_, t1, integrator_->y1());
   if (t1 >= options_.end) {
     integrator_->accept();
@@ -536,7 +536,7 @@ void RunLeg::pass_stepped() {
   state_ = *integrator_->stepped_state();
   statistics_.events += static_cast<long>(record_->events.size() - known);
   if (is_action_due(known)) return;
-  dynamics_.set_time_limit(next_limit());
+  dynamics_.set_left_limit_time(next_limit());
   restart();
   if (t1 >= options_.end) end_run();
 }
@@ -557,7 +557,7 @@ void RunLeg::read_state(State& into) const {
 void RunLeg::displace(const std::vector<double>& by) {
   state_ = current_state();
   for (std::size_t i = 0; i < by.size(); ++i) state_.q[i] += by[i];
-  dynamics_.forget_layouts();
+  dynamics_.clear_layouts();
   dynamics_.use_coordinates(Coordinates::absolute);
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());

@@ -42,7 +42,7 @@ public:
   /// Computes the last values at the interruption.
   void close(bool is_end_of_run);
   /// Sets the interruption if an action is due at state(), given the events from index `known` on.
-  void look_for_actions(std::size_t known) { is_interrupted_ = is_action_due(known); }
+  void interrupt_if_action_due(std::size_t known) { is_interrupted_ = is_action_due(known); }
   /// Returns true at the end of the run, or after an element has ended it.
   [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
 
@@ -65,7 +65,8 @@ public:
   void break_off();
 
 private:
-  void make_parts(const PowerLedger* before, const std::vector<double>& unhurt); // `unhurt`: memory before the impulses at the start
+  void project_and_set_up(const PowerLedger* before,
+                          const std::vector<double>& unhurt); // `unhurt`: memory before the impulses at the start
   void finish_extremes();
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
@@ -73,16 +74,16 @@ private:
   [[nodiscard]] bool conclude_try();
   void restart(bool is_evaluated = false);
   void end_run();
-  void look_for_extremes(long evaluations, bool is_last);
+  void update_extremes(long evaluations, bool is_last);
   void sample_until(double t);
   void record_sample(double t);
   void keep_ledger(double t);
   void check_finite();
-  void check_holding(double t, const std::vector<double>& watch) const;
+  void check_holding(double t, const std::vector<double>& event_value) const;
   void keep_ties(double t);
   void keep_blows();
   [[nodiscard]] std::vector<int> slots_of_other(double t, const std::vector<int>& fired) const;
-  void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before);
+  void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* event_value_before);
   void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
   [[nodiscard]] bool pass_storm(double t, std::size_t known);
@@ -131,10 +132,10 @@ private:
   double limit_ = 0.0;             ///< time up to which signals are read as left limits: the next breakpoint, or the end
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
-  long kinks_ = 0;                  ///< kinks of force laws; not counted in max_events, since tables can have many
-  long next_look_ = 0;              ///< number of steps at which progress is checked next
-  double last_look_ = 0.0;          ///< time of the last check
-  long evaluations_behind_end_ = 0; ///< evaluations for rates at the end, which are not part of the motion
+  long kinks_ = 0;                   ///< kinks of force laws; not counted in max_events, since tables can have many
+  long next_progress_check_ = 0;     ///< number of steps at which progress is checked next
+  double last_progress_check_ = 0.0; ///< time of the last check
+  long evaluations_behind_end_ = 0;  ///< evaluations for rates at the end, which are not part of the motion
   RunStatistics statistics_;
 };
 

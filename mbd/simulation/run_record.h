@@ -31,7 +31,7 @@ struct SimulationOptions {
   bool has_extremes = false;                        ///< compute the extremes of all channels, sampled or not
   bool has_growth = false;                          ///< keep how these have grown (RunResult::growth); needs has_extremes
   bool notes_motion = false;                        ///< keep RunResult::legs. Changes no other result
-  std::optional<SlipTie> other_slip;                ///< at this tie of an earlier, equal run `sticks` slips first instead of `slips`
+  std::optional<SimultaneousSlip> other_slip;       ///< at this tie of an earlier, equal run `sticks` slips first instead of `slips`
   double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
   long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;                         ///< beyond which the run is given up
@@ -74,7 +74,7 @@ struct RunResult {
   std::vector<ExtremesSoFar> growth;      ///< of these, at some tens of times spread over the run, if that was asked for
   std::vector<Event> events;              ///< ascending in time
   std::vector<RigidBlow> blows;           ///< ascending in time; an action that closed joints stands for these
-  std::vector<SlipTie> ties;              ///< ascending in time, at most RunRecord::k_most_ties
+  std::vector<SimultaneousSlip> ties;     ///< ascending in time, at most RunRecord::k_most_ties
   RunStatistics statistics;               ///< what it took, and how exact it was
   State final_state;                      ///< at the end, or where the run stopped
   std::string stop_reason;                ///< reason why an element ended the run early; empty if it reached its end
@@ -88,7 +88,7 @@ struct RunRecord {
   std::unique_ptr<Trajectory> trajectory;          ///< never nullptr
   std::vector<Event> events;                       ///< ascending in time
   std::vector<RigidBlow> blows;                    ///< ascending in time
-  std::vector<SlipTie> ties;                       ///< the first k_most_ties
+  std::vector<SimultaneousSlip> ties;              ///< the first k_most_ties
   static constexpr std::size_t k_most_ties = 1000; ///< ties kept
   std::vector<ExtremesSoFar> growth;               ///< ascending in time; extremes of a leg count from its beginning
   double growth_step = 0.0;                        ///< s, least between two of them; 0: none was kept yet

@@ -36,7 +36,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   if (action_group(system)) actions_ = std::make_unique<ActionFollower>(system);
   leg_ = std::make_unique<RunLeg>(system, initial, std::move(options), actions_ ? &actions_->triggers() : nullptr);
   if (actions_) {
-    leg_->look_for_actions(0);
+    leg_->interrupt_if_action_due(0);
     if (leg_->is_interrupted()) actions_->act(leg_);
   }
   if (motion_) note_leg();

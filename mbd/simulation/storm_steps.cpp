@@ -63,7 +63,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   const double begin = state_.t;
   record_->events.push_back({begin, element, EventKind::storm, "for " + rounded_text(1e3 * (end - begin)) + " ms"});
   dynamics_.use_coordinates(Coordinates::absolute);
-  dynamics_.set_time_limit(end);
+  dynamics_.set_left_limit_time(end);
   const double step = options_.storm_step * storm_window();
   const long parts = stepping_->extra_parts();
   const int division = options_.settings.division;
@@ -104,7 +104,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   record_->events.push_back({state_.t, element, EventKind::storm_over});
   storm_.clear();
   events_at_once_ = 0;
-  dynamics_.set_time_limit(next_limit());
+  dynamics_.set_left_limit_time(next_limit());
   restart();
   energy_.note(dynamics_, state_.t, y_.data()); // steps of order 1 have no energy bound of their own
 }

@@ -11,13 +11,13 @@ SwallowedCheck::SwallowedCheck(const System& system) {
 }
 
 void SwallowedCheck::check(Dynamics& dynamics, double t, const double* y, const std::vector<UnitMode>& modes,
-                           const std::vector<double>& watch) const {
+                           const std::vector<double>& event_value) const {
   const auto motion = [&dynamics, t, y] {
     (void)dynamics.mechanical_energy(t, y); // computes the motions of all bodies
     return static_cast<const Motion<double>*>(dynamics.evaluation().motion);
   };
   for (const SwallowingContacts* group : contacts_) {
-    const int unit = group->first_swallowed(modes, watch, motion);
+    const int unit = group->first_swallowed(modes, event_value, motion);
     if (unit < 0) continue;
     const System& system = dynamics.system();
     const std::string& name = system.element_names[system.units[unit].element];

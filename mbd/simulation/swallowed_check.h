@@ -16,7 +16,8 @@ public:
   explicit SwallowedCheck(const System& system);
   /// Checks the packed state y at time t in s, with the modes of all units and all event functions. Throws ElementFailure that names the
   /// contact.
-  void check(Dynamics& dynamics, double t, const double* y, const std::vector<UnitMode>& modes, const std::vector<double>& watch) const;
+  void check(Dynamics& dynamics, double t, const double* y, const std::vector<UnitMode>& modes,
+             const std::vector<double>& event_value) const;
 
 private:
   std::vector<const SwallowingContacts*> contacts_;

@@ -21,7 +21,7 @@ bool turns_with_slips(const Channel& channel) {
 // Returns true if a slip is so slow that its law is regularised and no longer has a direction.
 bool is_slip_ending(const State& state) {
   return std::any_of(state.friction.begin(), state.friction.end(), [](const FrictionState& friction) {
-    return friction.phase == FrictionPhase::slip && !friction.is_starting && friction.stage != 0;
+    return friction.phase == FrictionPhase::slip && !friction.is_onset && friction.onset_stage != 0;
   });
 }
 
@@ -29,26 +29,26 @@ bool is_slip_ending(const State& state) {
 
 // Updates slip_ at the last evaluation of `dynamics`. At the onset of slip the direction is known from the multipliers, even at zero speed.
 // `is_new`: after an event, where values can become certain again, but not uncertain.
-void ExtremeFinder::look_at_slips(const Integrator& integrator, Dynamics& dynamics, bool is_new) {
+void ExtremeFinder::check_slip_directions(const Integrator& integrator, Dynamics& dynamics, bool is_new) {
   const double before = slip_;
   slip_ = std::numeric_limits<double>::infinity();
   if (integrator.is_adaptive() && dynamics.slip_scales(y_.data()))
     slip_ = *std::min_element(y_.begin(), y_.begin() + dynamics.coordinate_count());
   const bool is_known = slip_ >= k_unsure * integrator.rate_accuracy(dynamics) && !is_slip_ending(dynamics.state());
   is_unsure_ = !is_known && (is_unsure_ || (!is_new && slip_ <= before));
-  if (!is_unsure_ || !sure_.empty()) return;
-  sure_.resize(count_);
-  for (std::size_t c = 0; c < count_; ++c) sure_[c] = {ranges_[c].low.value, ranges_[c].high.value};
+  if (!is_unsure_ || !known_direction_.empty()) return;
+  known_direction_.resize(count_);
+  for (std::size_t c = 0; c < count_; ++c) known_direction_[c] = {ranges_[c].low.value, ranges_[c].high.value};
 }
 
 void ExtremeFinder::begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics) {
-  look_at_slips(integrator, dynamics, true);
+  check_slip_directions(integrator, dynamics, true);
   begin(t, snapshot);
 }
 
-void ExtremeFinder::note_sure(std::size_t c, double value) {
+void ExtremeFinder::record_known_direction(std::size_t c, double value) {
   if ((is_unsure_ && turns_with_slips(*ranges_[c].channel)) || std::isnan(value)) return;
-  Sure& sure = sure_[c];
+  KnownDirectionRange& sure = known_direction_[c];
   if (!(value >= sure.low)) sure.low = value;
   if (!(value <= sure.high)) sure.high = value;
 }

@@ -8,34 +8,34 @@ template <class S> OwnCoordinate<S> no_coordinate() { return {S(0.0), S(0.0)}; }
 
 } // namespace
 
-template <class S, class AtTime> void ActionGroup::watch(Evaluated<S>& e, const AtTime& at_time) const {
+template <class S, class AtTime> void ActionGroup::event_value(EvaluationData<S>& e, const AtTime& at_time) const {
   S quantity[k_most_switches];
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     if (entry.unit < 0) continue;
     const MotionFormula& formula = *entry.trigger.formula;
     const SwitchBits bits = e.mode[entry.unit];
     preset_quantities(formula.program().switch_count(), bits, quantity);
     (void)formula.value(e, no_coordinate<S>(), at_time, bits, quantity);
-    watch_switches(bits, quantity, entry.trigger.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
+    switch_events(bits, quantity, entry.trigger.switches, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
   }
 }
 
-void ActionGroup::add_forces(Evaluation& e) const { watch(e, SignalsNow{e.t}); }
+void ActionGroup::add_forces(Evaluation& e) const { event_value(e, NumericSignalEvaluator{e.t}); }
 
-bool ActionGroup::trace_forces(TracedEvaluation& e) const {
-  watch<Traced>(e, SignalsTraced{e});
+bool ActionGroup::record_forces(TracedEvaluation& e) const {
+  event_value<TapeNumber>(e, TracedSignalEvaluator{e});
   return true;
 }
 
 void ActionGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     if (entry.trigger.formula)
       for (const int body : entry.trigger.formula->bodies()) is_used[body] = 1;
 }
 
-void ActionGroup::enter_turns(TurnTable& turns) const {
-  for (const Entry& entry : entries)
-    if (entry.trigger.formula) entry.trigger.formula->enter_turns(turns);
+void ActionGroup::register_turns(TurnTable& turns) const {
+  for (const ElementData& entry : entries)
+    if (entry.trigger.formula) entry.trigger.formula->register_turns(turns);
 }
 
 UnitMode ActionGroup::initial_mode(int element, const Evaluation& e) const {
@@ -49,7 +49,7 @@ UnitMode ActionGroup::next_mode(int element, UnitMode mode, int slot, const Eval
 }
 
 bool ActionGroup::holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const {
-  const Entry& entry = entries[action];
+  const ElementData& entry = entries[action];
   if (entry.trigger.time) return state.t >= *entry.trigger.time;
   if (!entry.trigger.formula) return false;
   Evaluation e;
@@ -59,7 +59,7 @@ bool ActionGroup::holds(std::size_t action, const State& state, const std::vecto
   FormulaProgram::Bits bits{0, 0};
   if (entry.unit >= 0 && !is_stepped) bits = {state.mode[static_cast<std::size_t>(entry.unit)]};
   else entry.trigger.formula->find_bits(e, no_coordinate<double>(), bits);
-  return entry.trigger.formula->value<double>(e, no_coordinate<double>(), SignalsNow{e.t}, bits.values, nullptr) != 0.0;
+  return entry.trigger.formula->value<double>(e, no_coordinate<double>(), NumericSignalEvaluator{e.t}, bits.values, nullptr) != 0.0;
 }
 
 ActionGroup* action_group(System& system) {

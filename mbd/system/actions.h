@@ -40,26 +40,26 @@ struct ActionTrigger {
 /// All actions of a model, in the order of the file. Applies no forces.
 class ActionGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     std::string name, text; ///< text: all steps, for messages
     ActionTrigger trigger;
     std::vector<ActionStep> steps;
     bool is_once = true, is_armed = true;
-    int unit = -1, watch = 0; ///< mode and event functions of a comparison
+    int unit = -1, first_event = 0; ///< mode and event functions of a comparison
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
   std::shared_ptr<const Model> model;                    ///< completed model with the values at the start of a run
   std::optional<std::vector<std::string>> channels = {}; ///< channels that were requested; not given: all
   /// Changes made to the system after compilation, such as added channels. They are repeated for the systems that actions create.
   std::vector<std::function<void(System&)>> additions = {};
 
   void add_forces(Evaluation& e) const override;
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override;
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_turns(TurnTable& turns) const override;
-  [[nodiscard]] bool follows_jumps() const override { return true; }
+  void register_turns(TurnTable& turns) const override;
+  [[nodiscard]] bool has_discontinuous_events() const override { return true; }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
 
@@ -68,7 +68,7 @@ public:
   [[nodiscard]] bool holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const;
 
 private:
-  template <class S, class AtTime> void watch(Evaluated<S>& e, const AtTime& at_time) const;
+  template <class S, class AtTime> void event_value(EvaluationData<S>& e, const AtTime& at_time) const;
 };
 
 /// Returns the actions of the system, or nullptr.

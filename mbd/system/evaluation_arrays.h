@@ -12,14 +12,15 @@ namespace steplap {
 
 /// Initial values: event functions 1 (not triggered), their rates NaN (unknown), all others 0.
 struct EvaluationArrays {
-  std::vector<BodyForce> force;          ///< per slot (LinkTable)
-  std::vector<double> contact_force;     ///< per contact
-  std::vector<double> watch, watch_rate; ///< per event function
-  std::vector<double> inner_rate;        ///< per inner state
+  std::vector<BodyForce> force;                      ///< per slot (LinkTable)
+  std::vector<double> contact_force;                 ///< per contact
+  std::vector<double> event_value, event_derivative; ///< per event function
+  std::vector<double> inner_rate;                    ///< per inner state
 
   explicit EvaluationArrays(const System& system)
       : force(static_cast<std::size_t>(system.links.slot_count())), contact_force(static_cast<std::size_t>(system.contact_count), 0.0),
-        watch(static_cast<std::size_t>(system.watch_count), 1.0), watch_rate(watch.size(), std::numeric_limits<double>::quiet_NaN()),
+        event_value(static_cast<std::size_t>(system.event_count), 1.0),
+        event_derivative(event_value.size(), std::numeric_limits<double>::quiet_NaN()),
         inner_rate(static_cast<std::size_t>(system.inner_count()), 0.0) {}
 
   /// Makes `e` write to these arrays and read `motion`, which has one entry per slot. Both must outlive `e`.
@@ -27,8 +28,8 @@ struct EvaluationArrays {
     e.motion = e.link_motion = motion.data();
     e.force = e.link_force = force.data();
     e.contact_force = contact_force.data();
-    e.watch = watch.data();
-    e.watch_rate = watch_rate.data();
+    e.event_value = event_value.data();
+    e.event_derivative = event_derivative.data();
     e.inner_rate = inner_rate.data();
   }
 };

@@ -46,17 +46,17 @@ std::unique_ptr<System> instantiate(const Model& given, const ModelValues& value
 // Determines which parts of completion (completion.h) read the field. Markers depend on centres of gravity, bodies on joints, elements on
 // tables such as [[core]], which read bodies and everything completed before them; validation compares the settings of a run with each
 // other.
-Variants::Redone Variants::redone_for(const std::string& path) const {
+Variants::RecompilationScope Variants::recompilation_for(const std::string& path) const {
   const auto if_any_table = [&](bool TableKind::*reads) {
     const bool is_any = std::any_of(given_.tables.begin(), given_.tables.end(), [&](const TableEntry& e) { return e.kind->*reads; });
-    return is_any ? Redone::tables : Redone::nothing;
+    return is_any ? RecompilationScope::tables : RecompilationScope::nothing;
   };
-  if (starts_with_any(path, {"signal.", "gravity."})) return Redone::nothing;
+  if (starts_with_any(path, {"signal.", "gravity."})) return RecompilationScope::nothing;
   if (path.starts_with("parameters.")) {
     const std::optional<std::size_t> parameter = given_.parameters.find(path.substr(std::string("parameters.").size()));
-    Redone redone = Redone::nothing;
+    RecompilationScope redone = RecompilationScope::nothing;
     for (const ParameterUse& use : given_.parameters.uses)
-      if (parameter && given_.parameters.needs(use.formula, *parameter)) redone = std::max(redone, redone_for(use.path));
+      if (parameter && given_.parameters.needs(use.formula, *parameter)) redone = std::max(redone, recompilation_for(use.path));
     return redone;
   }
   if (path.starts_with("element.")) {
@@ -65,18 +65,18 @@ Variants::Redone Variants::redone_for(const std::string& path) const {
     });
     const std::size_t last = path.find_last_not_of("0123456789");
     const bool is_outline = last != std::string::npos && path[last] == '.' && std::isdigit(static_cast<unsigned char>(path[last - 1]));
-    if (is_placing) return Redone::all;
-    return is_outline ? Redone::tables : if_any_table(&TableKind::reads_elements);
+    if (is_placing) return RecompilationScope::all;
+    return is_outline ? RecompilationScope::tables : if_any_table(&TableKind::reads_elements);
   }
   if (path.starts_with("body.")) {
     const bool is_mass = path.ends_with(".mass") || path.ends_with(".inertia");
     const bool is_rate = path.ends_with(".angular_velocity") || path.ends_with(".velocity.0") || path.ends_with(".velocity.1");
     if (is_mass) return if_any_table(&TableKind::reads_masses);
-    if (std::any_of(given_.elements.begin(), given_.elements.end(), may_place)) return Redone::all;
-    return is_rate ? Redone::nothing : Redone::tables;
+    if (std::any_of(given_.elements.begin(), given_.elements.end(), may_place)) return RecompilationScope::all;
+    return is_rate ? RecompilationScope::nothing : RecompilationScope::tables;
   }
   const auto leads_to = [&](const TableEntry& e) { return path.starts_with(e.kind->name + "."); };
-  return std::any_of(given_.tables.begin(), given_.tables.end(), leads_to) ? Redone::tables : Redone::all;
+  return std::any_of(given_.tables.begin(), given_.tables.end(), leads_to) ? RecompilationScope::tables : RecompilationScope::all;
 }
 
 Variants::Variants(const Model& given, std::vector<std::string> paths, const std::vector<std::string>* channels)
@@ -84,14 +84,13 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
   if (channels) channels_ = *channels;
   for (const std::string& path : paths_) {
     static_cast<void>(number_of(given_, path)); // throws unless the path leads to a number
-    redone_ = std::max(redone_, redone_for(path));
+    redone_ = std::max(redone_, recompilation_for(path));
   }
   const bool is_any_builder =
       std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
-  if (redone_ == Redone::tables && is_any_builder)
-    redone_ = Redone::all; // tables that add bodies and markers require a complete
-                           // repetition
-  if (redone_ == Redone::tables) note_tables();
+  // Tables that add bodies and markers require a complete repetition.
+  if (redone_ == RecompilationScope::tables && is_any_builder) redone_ = RecompilationScope::all;
+  if (redone_ == RecompilationScope::tables) note_tables();
 }
 
 // Returns true if the path leads to `head`, or to a parameter on which a field there depends.
@@ -108,7 +107,7 @@ void Variants::note_tables() {
   const std::size_t count = given_.elements.size();
   for (std::size_t i = 0; i < count; ++i)
     if (!is_same(given_.elements[i].kind->fields, given_.elements[i].element.get(), completed_.elements[i].element.get()))
-      redone_ = Redone::all;
+      redone_ = RecompilationScope::all;
   Model without = given_;
   without.tables.clear();
   std::vector<Diagnostic> problems; // none, since completed() has reported them
@@ -122,7 +121,7 @@ void Variants::note_tables() {
     entry.kind->apply(*entry.table, without);
     if (count_others() == before) applied_.push_back(i);
     else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); }))
-      redone_ = Redone::all;
+      redone_ = RecompilationScope::all;
   }
   for (std::size_t i = 0; i < completed_.markers.size(); ++i) // markers made for bodies follow the given ones
     if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);
@@ -160,13 +159,13 @@ std::unique_ptr<System> Variants::make(const std::vector<double>& values) {
   const auto set_all = [&](Model& model) {
     for (std::size_t i = 0; i < paths_.size(); ++i) set_value(model, paths_[i], values[i]);
   };
-  bool is_completed = redone_ != Redone::all;
-  if (redone_ == Redone::tables) {
+  bool is_completed = redone_ != RecompilationScope::all;
+  if (redone_ == RecompilationScope::tables) {
     completed_.elements.erase(completed_.elements.begin() + static_cast<std::ptrdiff_t>(given_.elements.size()), completed_.elements.end());
     completed_.bodies = bodies_;
   }
   if (is_completed) set_all(completed_);
-  if (redone_ == Redone::tables) is_completed = apply_tables();
+  if (redone_ == RecompilationScope::tables) is_completed = apply_tables();
   if (!is_completed) {
     set_all(given_);
     completed_ = completed(given_);

@@ -35,8 +35,8 @@ public:
 
 private:
   /// Extent of the work to be repeated for new values.
-  enum class Redone { nothing, tables, all };
-  [[nodiscard]] Redone redone_for(const std::string& path) const;
+  enum class RecompilationScope { nothing, tables, all };
+  [[nodiscard]] RecompilationScope recompilation_for(const std::string& path) const;
   [[nodiscard]] bool is_set_by(const std::string& path, const std::string& head) const;
   void note_tables();
   void place_at_centres();
@@ -45,8 +45,8 @@ private:
   Model given_, completed_;
   std::vector<std::string> paths_;
   std::optional<std::vector<std::string>> channels_;
-  Redone redone_ = Redone::nothing;
-  // For Redone::tables:
+  RecompilationScope redone_ = RecompilationScope::nothing;
+  // For RecompilationScope::tables:
   std::vector<std::size_t> applied_;                              ///< tables to be applied again: all except plots, criteria and channels
   std::vector<Body> bodies_;                                      ///< bodies before tables were applied
   std::vector<std::size_t> at_centres_;                           ///< markers at the centres of gravity of their bodies

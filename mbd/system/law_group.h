@@ -2,16 +2,16 @@
 //
 // A law is a value type with
 //
-//   static constexpr int k_watches           0: smooth everywhere; n: a unit with n event functions
+//   static constexpr int k_event_count           0: smooth everywhere; n: a unit with n event functions
 //   static constexpr bool k_is_contact       true: its force is a normal force, available to friction
 //   S force(S value, S rate, mode)           force along the gradient of the measure
 //   S elastic_force(S value, mode)           −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
 //
-// and, if k_watches > 0, mode_at(), next_mode() (with the rounding error of the value), watch() and transition(); optionally
-// is_surely_positive(). A law with k_watches_beyond_rounding also gets the rounding errors of value and rate in watch(), and defines
-// watch_kind(slot). The law dissipates (elastic_force − force)·rate. A law whose functions take only double instead of S cannot be recorded
-// for machine code (mbd/tape/traced.h).
+// and, if k_event_count > 0, initial_mode(), next_mode() (with the rounding error of the value), event_value() and event_kind(); optionally
+// is_armed_at_entry(). A law with k_has_events_beyond_rounding also gets the rounding errors of value and rate in event_value(), and
+// defines event_tolerance(slot). The law dissipates (elastic_force − force)·rate. A law whose functions take only double instead of S
+// cannot be recorded for machine code (mbd/tape/traced.h).
 #pragma once
 
 #include "mbd/base/dual.h"
@@ -65,20 +65,20 @@ Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluatio
   return f;
 }
 
-/// Calls the law's is_surely_positive(); false if it has none.
-template <class Law> [[nodiscard]] bool is_surely_positive(const Law& law, UnitMode mode, int slot, double value, double rounding) {
-  if constexpr (requires { law.is_surely_positive(mode, slot, value, rounding); })
-    return law.is_surely_positive(mode, slot, value, rounding);
+/// Calls the law's is_armed_at_entry(); false if it has none.
+template <class Law> [[nodiscard]] bool is_armed_at_entry(const Law& law, UnitMode mode, int slot, double value, double rounding) {
+  if constexpr (requires { law.is_armed_at_entry(mode, slot, value, rounding); }) return law.is_armed_at_entry(mode, slot, value, rounding);
   return false;
 }
 
-template <class Law> inline constexpr bool k_watches_beyond_rounding = requires { requires Law::k_watches_beyond_rounding; };
+template <class Law> inline constexpr bool k_has_events_beyond_rounding = requires { requires Law::k_has_events_beyond_rounding; };
 
 /// Laws whose functions are templates over the number type; these can be recorded for machine code.
 template <class Law>
-concept TraceableLaw = requires(const Law& law, const Traced& x, Traced* watch) {
+concept TraceableLaw = requires(const Law& law, const TapeNumber& x, TapeNumber* event_value) {
   law.elastic_force(x, UnitMode{});
-  requires Law::k_watches == 0 || k_watches_beyond_rounding<Law> || requires { law.watch(x, x, UnitMode{}, watch, watch); };
+  requires Law::k_event_count == 0 || k_has_events_beyond_rounding<Law> ||
+                   requires { law.event_value(x, x, UnitMode{}, event_value, event_value); };
 };
 
 /// Base class in place of GapSource for elements that are not contacts.
@@ -87,31 +87,31 @@ struct NoGaps {};
 template <class Measure, class Law>
 class LawGroup final : public ForceGroup, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
 public:
-  struct Entry {
+  struct ElementData {
     int a = k_ground, b = k_ground;
     Measure measure;
     Law law;
-    int link = 0;    ///< slot of (a, b) in the arrays of motions and forces
-    int unit = 0;    ///< index of its mode
-    int watch = 0;   ///< index of its first event function
-    int contact = 0; ///< index of its normal force
+    int link = 0;        ///< slot of (a, b) in the arrays of motions and forces
+    int unit = 0;        ///< index of its mode
+    int first_event = 0; ///< index of its first event function
+    int contact = 0;     ///< index of its normal force
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override { add_forces_to(e); }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
     if constexpr (TraceableLaw<Law>) add_forces_to(e);
     return TraceableLaw<Law>;
   }
 
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += energy_of(entry, motion);
+    for (const ElementData& entry : entries) sum += energy_of(entry, motion);
     return sum;
   }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const ElementData& entry : entries) {
       const auto law = [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode_of(entry, e)); };
       const Dual<12> f = add_pair_jacobian(entry.a, entry.b, entry.measure, e, law, out);
       if constexpr (Law::k_is_contact) {
@@ -122,24 +122,24 @@ public:
   }
 
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
   }
 
-  void enter_turns(TurnTable& turns) const override {
-    for (const Entry& entry : entries) {
+  void register_turns(TurnTable& turns) const override {
+    for (const ElementData& entry : entries) {
       turns.add(entry.a, entry.b, turning_of(entry.measure));
       if constexpr (std::is_same_v<Measure, AngleMeasure> && requires { entry.law.knots(); })
         for (TurnKnots& knots : entry.law.knots()) turns.add(entry.a, entry.b, std::move(knots));
     }
   }
-  void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  void register_links(LinkTable& links) override {
+    for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
   /// Overrides GapSource::add_gaps() if the law is a contact.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
     if constexpr (Law::k_is_contact)
-      for (const Entry& entry : entries) {
+      for (const ElementData& entry : entries) {
         out.push_back(gap_bounds(entry.measure, entry.law.offset, motion[entry.a], motion[entry.b]));
         out.back().a = entry.a;
         out.back().b = entry.b;
@@ -147,35 +147,35 @@ public:
   }
 
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
-    if constexpr (Law::k_watches > 0) {
+    if constexpr (Law::k_event_count > 0) {
       const auto m = measured(element, e);
-      return entries[element].law.mode_at(m.value, m.rate);
+      return entries[element].law.initial_mode(m.value, m.rate);
     }
     return 0;
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    if constexpr (Law::k_watches > 0) {
+    if constexpr (Law::k_event_count > 0) {
       const auto m = measured(element, e);
       return entries[element].law.next_mode(mode, slot, m.value, m.rate, rounding_of(element, m, e));
     }
     return mode;
   }
-  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+  [[nodiscard]] bool is_armed_at_entry(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const auto m = measured(element, e);
-    return steplap::is_surely_positive(entries[element].law, mode, slot, m.value, rounding_of(element, m, e));
+    return steplap::is_armed_at_entry(entries[element].law, mode, slot, m.value, rounding_of(element, m, e));
   }
-  [[nodiscard]] WatchKind watch_kind(int slot) const override {
-    if constexpr (k_watches_beyond_rounding<Law>) return Law::watch_kind(slot);
-    return WatchKind::exact;
+  [[nodiscard]] EventTolerance event_tolerance(int slot) const override {
+    if constexpr (k_has_events_beyond_rounding<Law>) return Law::event_tolerance(slot);
+    return EventTolerance::none;
   }
-  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
-    if constexpr (Law::k_watches > 0) return Law::transition(from, to);
+  [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override {
+    if constexpr (Law::k_event_count > 0) return Law::event_kind(from, to);
     return EventKind::none;
   }
 
   /// Returns value and rate of one element's measure, for channels.
   [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const {
-    const Entry& entry = entries[element];
+    const ElementData& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
   [[nodiscard]] double force_of(int element, const Evaluation& e) const {
@@ -187,34 +187,34 @@ private:
   [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
     return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
   }
-  template <class S> STEPLAP_INLINE void add_forces_to(Evaluated<S>& e) const {
+  template <class S> STEPLAP_INLINE void add_forces_to(EvaluationData<S>& e) const {
     S dissipation{0.0}; // in a register: a sum in memory would serialise the elements
-    for (const Entry& entry : entries) dissipation += add_force_to(entry, e);
+    for (const ElementData& entry : entries) dissipation += add_force_to(entry, e);
     e.dissipation += dissipation;
   }
 
   /// Returns the dissipated power, W.
-  template <class S> STEPLAP_INLINE static S add_force_to(const Entry& entry, Evaluated<S>& e) {
+  template <class S> STEPLAP_INLINE static S add_force_to(const ElementData& entry, EvaluationData<S>& e) {
     const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
     const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));
     if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
-    if constexpr (k_watches_beyond_rounding<Law>) {
+    if constexpr (k_has_events_beyond_rounding<Law>) {
       const Motion<S>&a = e.motion[entry.a], &b = e.motion[entry.b];
-      entry.law.watch(m.value, m.rate, mode_of(entry, e), S(k_met) + value_rounding(m, a, b), S(k_met) + rate_rounding(m, a, b),
-                      e.watch + entry.watch, e.watch_rate + entry.watch);
-    } else if constexpr (Law::k_watches > 0) {
-      entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch, e.watch_rate + entry.watch);
+      entry.law.event_value(m.value, m.rate, mode_of(entry, e), S(k_met) + value_rounding(m, a, b), S(k_met) + rate_rounding(m, a, b),
+                            e.event_value + entry.first_event, e.event_derivative + entry.first_event);
+    } else if constexpr (Law::k_event_count > 0) {
+      entry.law.event_value(m.value, m.rate, mode_of(entry, e), e.event_value + entry.first_event, e.event_derivative + entry.first_event);
     }
     if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
     return (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
   }
 
-  static double energy_of(const Entry& entry, const Motion<double>* motion) {
+  static double energy_of(const ElementData& entry, const Motion<double>* motion) {
     return entry.law.energy(entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value);
   }
 
-  template <class S> static UnitMode mode_of(const Entry& entry, const Evaluated<S>& e) {
-    if constexpr (Law::k_watches > 0) return e.mode[entry.unit];
+  template <class S> static UnitMode mode_of(const ElementData& entry, const EvaluationData<S>& e) {
+    if constexpr (Law::k_event_count > 0) return e.mode[entry.unit];
     return 0;
   }
 };

@@ -41,7 +41,7 @@ public:
 
   FormulaTree run() {
     const Formula formula(asked_.text, subject_, {});
-    const Made whole = add(formula);
+    const TypedNode whole = add(formula);
     const bool is_zero =
         formula.tree().size() == 1 && formula.tree().front().op == FormulaOp::number && formula.tree().front().number == 0.0;
     const auto wanted = dimension_of(asked_.unit);
@@ -58,13 +58,13 @@ public:
   }
 
 private:
-  struct Made {
+  struct TypedNode {
     int node = 0;
     std::array<double, 3> powers{};
   };
 
-  Made add(const Formula& formula) {
-    std::vector<Made> operands;
+  TypedNode add(const Formula& formula) {
+    std::vector<TypedNode> operands;
     std::vector<std::string> units;
     for (const std::string& name : formula.names()) {
       operands.push_back(operand(name));
@@ -85,12 +85,12 @@ private:
     return {place.back(), dimension.powers};
   }
 
-  static std::array<double, 3> powers_of(const std::string& unit) {
+  static std::array<double, 3> dimension_exponents(const std::string& unit) {
     const auto known = dimension_of(unit);
     return known ? known->powers : std::array<double, 3>{};
   }
 
-  Made enter(const MotionOperand& operand, const std::array<double, 3>& powers) {
+  TypedNode enter(const MotionOperand& operand, const std::array<double, 3>& powers) {
     FormulaNode node;
     node.op = FormulaOp::operand;
     node.operand = static_cast<int>(made_.operands_.size());
@@ -100,20 +100,20 @@ private:
   }
 
   // Returns the operand for a name; the same name always gives the same operand.
-  Made operand(const std::string& name) {
+  TypedNode operand(const std::string& name) {
     const auto known = std::find_if(names_.begin(), names_.end(), [&](const auto& entry) { return entry.first == name; });
     if (known != names_.end()) return known->second;
-    const Made made = find(name);
+    const TypedNode made = find(name);
     names_.emplace_back(name, made);
     return made;
   }
 
-  Made find(const std::string& name) {
+  TypedNode find(const std::string& name) {
     MotionOperand operand;
-    if (name == "value" && asked_.own_value != "-") return enter(operand, powers_of(asked_.own_value));
+    if (name == "value" && asked_.own_value != "-") return enter(operand, dimension_exponents(asked_.own_value));
     if (name == "rate" && asked_.own_rate != "-") {
       operand.kind = MotionOperand::Kind::own_rate;
-      return enter(operand, powers_of(asked_.own_rate));
+      return enter(operand, dimension_exponents(asked_.own_rate));
     }
     constexpr std::string_view k_channel = ".value"; // suffix of a state's channel in `[[channel]]` formulas
     const OwnState* state = find_own_state(builder_.model(), name);
@@ -123,7 +123,7 @@ private:
       const StatePlace place = place_of_state(builder_, *state);
       operand.inner = place.inner;
       operand.unit = place.unit;
-      return enter(operand, powers_of(state->unit));
+      return enter(operand, dimension_exponents(state->unit));
     }
     const Parameters& parameters = builder_.model().parameters;
     if (const auto parameter = parameters.find(name)) {
@@ -141,13 +141,13 @@ private:
     return find_moving(name);
   }
 
-  Made find_moving(const std::string& name) {
+  TypedNode find_moving(const std::string& name) {
     const Model& model = builder_.model();
     const std::size_t point = name.rfind('.');
     const std::string owner = name.substr(0, point), part = point == std::string::npos ? "" : name.substr(point + 1);
     const auto coordinate = static_cast<int>(std::find(k_coordinates.begin(), k_coordinates.end(), part) - k_coordinates.begin());
     if (coordinate < 6) {
-      const std::array<double, 3> powers = powers_of(k_coordinate_units[static_cast<std::size_t>(coordinate)]);
+      const std::array<double, 3> powers = dimension_exponents(k_coordinate_units[static_cast<std::size_t>(coordinate)]);
       if (const Body* const body = model.find_body(owner); body && !body->fixed) return of_body(builder_.body(owner), coordinate, powers);
       const bool is_marker = std::any_of(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == owner; });
       if (is_marker && part.size() <= 2) return of_marker(builder_.marker(owner), coordinate, powers);
@@ -160,7 +160,7 @@ private:
         "; a formula here may hold places, angles and velocities of bodies, markers and measures, states, parameters and t");
   }
 
-  Made of_body(int body, int coordinate, const std::array<double, 3>& powers) {
+  TypedNode of_body(int body, int coordinate, const std::array<double, 3>& powers) {
     MotionOperand operand;
     operand.kind = MotionOperand::Kind::coordinate;
     operand.body = body;
@@ -168,7 +168,7 @@ private:
     return enter(operand, powers);
   }
 
-  Made of_marker(const CompiledMarker& marker, int coordinate, const std::array<double, 3>& powers) {
+  TypedNode of_marker(const CompiledMarker& marker, int coordinate, const std::array<double, 3>& powers) {
     MotionOperand operand;
     operand.kind = MotionOperand::Kind::measure;
     operand.row = row_of(marker.body, k_ground, AxisMeasure{marker.point, Vec2::Zero(), Vec2::Unit(coordinate % 3)});
@@ -176,7 +176,7 @@ private:
     return enter(operand, powers);
   }
 
-  Made of_measure(const Channel& channel) {
+  TypedNode of_measure(const Channel& channel) {
     const MeasuredValue* const measured = measured_by(channel);
     if (!measured)
       throw std::invalid_argument(subject_ + ": '" + channel.name +
@@ -187,13 +187,13 @@ private:
     operand.row = measured->measure;
     operand.zero = measured->zero;
     operand.is_rate = measured->is_rate;
-    return enter(operand, powers_of(channel.unit));
+    return enter(operand, dimension_exponents(channel.unit));
   }
 
-  Made of_channel(const DefinedChannel& channel) {
+  TypedNode of_channel(const DefinedChannel& channel) {
     if (depth_ == k_deepest_channel) throw std::invalid_argument(subject_ + ": channel '" + channel.name + "' leads back to itself");
     ++depth_;
-    const Made made = add(Formula(channel.expression, "channel '" + channel.name + "'", channel.place("expression")));
+    const TypedNode made = add(Formula(channel.expression, "channel '" + channel.name + "'", channel.place("expression")));
     --depth_;
     return made;
   }
@@ -218,7 +218,7 @@ private:
   MotionFormula& made_;
   std::string subject_;
   FormulaTree tree_;
-  std::vector<std::pair<std::string, Made>> names_;
+  std::vector<std::pair<std::string, TypedNode>> names_;
   int depth_ = 0;
 };
 
@@ -254,7 +254,7 @@ MotionFormula::MotionFormula(SystemBuilder& builder, const MotionFormulaText& te
 void MotionFormula::find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const {
   auto& room = motion_formula::Room<double>::kept();
   room.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, NumericSignalEvaluator{e.t}, room.operands.data());
   (void)program().find_bits(room.operands.data(), e.t, bits, room.values.data());
 }
 
@@ -263,7 +263,7 @@ double MotionFormula::differentiate(const Evaluation& e, const OwnCoordinate<dou
   auto& duals = motion_formula::Room<Chunk>::kept();
   room.grow(operands_.size(), 1);
   duals.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, NumericSignalEvaluator{e.t}, room.operands.data());
   double value = 0.0;
   const std::size_t count = operands_.size();
   for (std::size_t first = 0; first == 0 || first < count; first += k_chunk) {
@@ -283,7 +283,7 @@ std::vector<double> MotionFormula::gains(const Evaluation& e, const OwnCoordinat
   auto& duals = motion_formula::Room<Chunk>::kept();
   room.grow(operands_.size(), 1);
   duals.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, NumericSignalEvaluator{e.t}, room.operands.data());
   std::vector<double> gains(static_cast<std::size_t>(program().switch_count()), 0.0);
   std::vector<Chunk> quantity(gains.size());
   for (std::size_t k = 0; k < operands_.size(); ++k) {
@@ -347,7 +347,7 @@ std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluatio
   return scales;
 }
 
-void MotionFormula::enter_turns(TurnTable& turns) const {
+void MotionFormula::register_turns(TurnTable& turns) const {
   constexpr int k_angle = 2; // index of the angle among a body's coordinates
   const bool is_linear = !is_valid() || program().is_linear();
   for (const MotionOperand& operand : operands_) {

@@ -65,11 +65,11 @@ public:
   [[nodiscard]] const std::vector<int>& bodies() const { return bodies_; }
 
   /// Adds the angles on which the formula depends nonlinearly, except its own coordinate.
-  void enter_turns(TurnTable& turns) const;
+  void register_turns(TurnTable& turns) const;
 
   /// Returns the value. `at_time(signal)` returns the value of a signal; `quantity` receives the switch quantities, as in FormulaProgram.
   template <class S, class AtTime>
-  S value(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const;
+  S value(const EvaluationData<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const;
   /// Sets the bits of its switches for the current values, except those already given.
   void find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const;
   /// Returns the value; writes its derivatives by all operands to `derivatives`, one number each.
@@ -79,7 +79,7 @@ public:
 
 private:
   class Resolver;
-  template <class S, class AtTime> void read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
+  template <class S, class AtTime> void read(const EvaluationData<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
 
   std::vector<FormulaProgram> programs_; ///< empty if the formula is not valid
   std::vector<MotionOperand> operands_;
@@ -115,11 +115,11 @@ template <class S> void preset_quantities(int count, SwitchBits bits, S* quantit
 }
 /// Computes the event functions after an evaluation; they are ≥ 0 while the bits are valid.
 template <class S>
-void watch_switches(SwitchBits bits, const S* quantity, const std::vector<SwitchScale>& scales, S* watch, S* watch_rate) {
+void switch_events(SwitchBits bits, const S* quantity, const std::vector<SwitchScale>& scales, S* event_value, S* event_derivative) {
   for (std::size_t s = 0; s < scales.size(); ++s) {
     const bool is_set = ((bits >> static_cast<unsigned>(s)) & 1U) != 0;
-    watch[s] = S(scales[s].weight) * (is_set ? quantity[s] : -quantity[s]) + S(scales[s].slack);
-    watch_rate[s] = S(std::numeric_limits<double>::quiet_NaN());
+    event_value[s] = S(scales[s].weight) * (is_set ? quantity[s] : -quantity[s]) + S(scales[s].slack);
+    event_derivative[s] = S(std::numeric_limits<double>::quiet_NaN());
   }
 }
 /// Returns one scale per switch, for the current motion.
@@ -132,13 +132,13 @@ void watch_switches(SwitchBits bits, const S* quantity, const std::vector<Switch
 [[nodiscard]] const Signal& clock_signal();
 
 /// Value of a signal in an evaluation with doubles, and on a tape.
-struct SignalsNow {
+struct NumericSignalEvaluator {
   double t;
   double operator()(const Signal& signal) const { return &signal == &clock_signal() ? t : signal.value(t); }
 };
-struct SignalsTraced {
+struct TracedSignalEvaluator {
   TracedEvaluation& e;
-  Traced operator()(const Signal& signal) const { return e.of_time({&signal}); }
+  TapeNumber operator()(const Signal& signal) const { return e.record_signal_input({&signal}); }
 };
 
 // ---------------------------------------------------------------------------------------------
@@ -166,7 +166,7 @@ template <class S> struct Room {
 } // namespace motion_formula
 
 template <class S, class AtTime>
-void MotionFormula::read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const {
+void MotionFormula::read(const EvaluationData<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const {
   for (const MotionOperand& operand : operands_) {
     switch (operand.kind) {
     case MotionOperand::Kind::own_value: *x = own.value; break;
@@ -185,7 +185,7 @@ void MotionFormula::read(const Evaluated<S>& e, const OwnCoordinate<S>& own, con
 }
 
 template <class S, class AtTime>
-S MotionFormula::value(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const {
+S MotionFormula::value(const EvaluationData<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const {
   auto& room = motion_formula::Room<S>::kept();
   room.grow(operands_.size(), static_cast<std::size_t>(program().size()));
   read(e, own, at_time, room.operands.data());

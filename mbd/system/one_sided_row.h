@@ -87,22 +87,24 @@ public:
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation&, const FrictionState&, const double*, double* wrench) const override { wrench[0] = 0.0; }
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double*) const override { return 0.0; }
-  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
-    watch[0] = rest_tension - wrench[0];
-    watch[1] = is_long() ? shortest_part(e.motion).length - k_least_part * length : 1.0;
+  void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
+    event_value[0] = rest_tension - wrench[0];
+    event_value[1] = is_long() ? shortest_part(e.motion).length - k_least_part * length : 1.0;
   }
-  void watch_slip(const Evaluation&, const FrictionState&, const double*, double* watch) const override { watch[0] = watch[1] = 1.0; }
-  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+  void slip_events(const Evaluation&, const FrictionState&, const double*, double* event_value) const override {
+    event_value[0] = event_value[1] = 1.0;
+  }
+  [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     return state.phase == FrictionPhase::slip ? left(e.motion) + dead_band : 1.0;
   }
-  void begin_slip(const Evaluation&, FrictionState&, const double*) const override {}
+  void set_onset_direction(const Evaluation&, FrictionState&, const double*) const override {}
   void aim(FrictionState& state, const double*) const override { state.sign = 0; }
   /// Tension only: w ≤ 0.
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
+  [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
                                           bool /*kinetic*/) const override {
-    FrictionBlock block;
+    BlockSolution block;
     const double wanted = a[0] > 0.0 ? -b[0] / a[0] : 0.0;
-    block.is_inside = a[0] > 0.0 ? wanted <= 0.0 : !(b[0] < 0.0);
+    block.sticks = a[0] > 0.0 ? wanted <= 0.0 : !(b[0] < 0.0);
     block.wrench[0] = std::min(wanted, 0.0);
     return block;
   }

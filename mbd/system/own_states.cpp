@@ -74,27 +74,28 @@ const OwnStateGroup* own_state_group(const System& system) {
   return nullptr;
 }
 
-void OwnStateGroup::add_forces(Evaluation& e) const { add_rates(e, SignalsNow{e.t}); }
+void OwnStateGroup::add_forces(Evaluation& e) const { add_rates(e, NumericSignalEvaluator{e.t}); }
 
-bool OwnStateGroup::trace_forces(TracedEvaluation& e) const {
-  add_rates<Traced>(e, SignalsTraced{e});
+bool OwnStateGroup::record_forces(TracedEvaluation& e) const {
+  add_rates<TapeNumber>(e, TracedSignalEvaluator{e});
   return true;
 }
 
-template <class S, class AtTime> void OwnStateGroup::add_rates(Evaluated<S>& e, const AtTime& at_time) const {
+template <class S, class AtTime> void OwnStateGroup::add_rates(EvaluationData<S>& e, const AtTime& at_time) const {
   S quantity[k_most_switches];
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const SwitchBits bits = entry.unit < 0 ? 0 : e.mode[entry.unit];
     preset_quantities(entry.rate.program().switch_count(), bits, quantity);
     const S rate = entry.rate.value(e, OwnCoordinate<S>{}, at_time, bits, quantity);
     e.inner_rate[entry.place.inner] = rate / S(entry.place.unit);
-    if (entry.unit >= 0) watch_switches(bits, quantity, entry.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
+    if (entry.unit >= 0)
+      switch_events(bits, quantity, entry.switches, e.event_value + entry.first_event, e.event_derivative + entry.first_event);
   }
 }
 
 void OwnStateGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) const {
   static thread_local std::vector<double> derivatives;
-  for (const Entry& entry : entries) {
+  for (const ElementData& entry : entries) {
     const auto& operands = entry.rate.operands();
     derivatives.resize(std::max(derivatives.size(), operands.size()));
     (void)entry.rate.differentiate(e, k_no_coordinate, entry.unit < 0 ? 0 : e.mode[entry.unit], derivatives.data());
@@ -111,17 +112,17 @@ void OwnStateGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) 
   }
 }
 
-void OwnStateGroup::enter_formulas(std::vector<FormulaInMotion>& out) const {
-  for (const Entry& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit});
+void OwnStateGroup::register_formulas(std::vector<FormulaInMotion>& out) const {
+  for (const ElementData& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit});
 }
 
 void OwnStateGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries)
+  for (const ElementData& entry : entries)
     for (const int body : entry.rate.bodies()) is_used[body] = 1;
 }
 
-void OwnStateGroup::enter_turns(TurnTable& turns) const {
-  for (const Entry& entry : entries) entry.rate.enter_turns(turns);
+void OwnStateGroup::register_turns(TurnTable& turns) const {
+  for (const ElementData& entry : entries) entry.rate.register_turns(turns);
 }
 
 UnitMode OwnStateGroup::initial_mode(int element, const Evaluation& e) const {

@@ -42,32 +42,32 @@ struct StatePlace {
 /// All own states of a model, as a force group without forces.
 class OwnStateGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct ElementData {
     MotionFormula rate;
     StatePlace place;
-    int unit = -1; ///< index of its mode; −1: the formula has no switches
-    int watch = 0; ///< index of its first event function
+    int unit = -1;       ///< index of its mode; −1: the formula has no switches
+    int first_event = 0; ///< index of its first event function
     std::vector<SwitchScale> switches = {};
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
   int first_inner = -1; ///< first index in State::inner, the others follow; −1: not yet assigned
 
   void add_forces(Evaluation& e) const override;
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override;
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
-  [[nodiscard]] bool follows_jumps() const override { return true; }
+  [[nodiscard]] bool has_discontinuous_events() const override { return true; }
   [[nodiscard]] bool are_inner_states_stepped() const override { return true; }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
-  void enter_formulas(std::vector<FormulaInMotion>& out) const override;
+  void register_formulas(std::vector<FormulaInMotion>& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
-  void enter_turns(TurnTable& turns) const override;
+  void register_turns(TurnTable& turns) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
-  [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
+  [[nodiscard]] EventKind event_kind(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
 private:
-  template <class S, class AtTime> void add_rates(Evaluated<S>& e, const AtTime& at_time) const;
+  template <class S, class AtTime> void add_rates(EvaluationData<S>& e, const AtTime& at_time) const;
 };
 
 /// Returns the own states of the system, or nullptr.

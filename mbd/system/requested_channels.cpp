@@ -19,26 +19,26 @@ namespace {
 constexpr const char* k_whole = "whole";
 
 // Power dissipated and supplied by one element at a snapshot.
-struct Alone {
+struct ElementPower {
   double dissipation = 0.0, work = 0.0;
 };
 
-Alone evaluate_alone(const ForceGroup& share, const System& system, const Snapshot& s) {
+ElementPower evaluate_element_power(const ForceGroup& share, const System& system, const Snapshot& s) {
   struct Scratch {
     std::vector<BodyForce> force;
-    std::vector<double> contact_force, watch, watch_rate, inner_rate;
+    std::vector<double> contact_force, event_value, event_derivative, inner_rate;
   };
   thread_local Scratch scratch;
   scratch.force.resize(std::max<std::size_t>(scratch.force.size(), static_cast<std::size_t>(system.links.slot_count())));
   scratch.contact_force.resize(std::max(scratch.contact_force.size(), static_cast<std::size_t>(system.contact_count)));
-  scratch.watch.resize(std::max(scratch.watch.size(), static_cast<std::size_t>(system.watch_count)));
-  scratch.watch_rate.resize(scratch.watch.size());
+  scratch.event_value.resize(std::max(scratch.event_value.size(), static_cast<std::size_t>(system.event_count)));
+  scratch.event_derivative.resize(scratch.event_value.size());
   scratch.inner_rate.resize(std::max(scratch.inner_rate.size(), static_cast<std::size_t>(system.inner_count())));
   Evaluation e = *s.evaluation;
   e.force = e.link_force = scratch.force.data();
   e.contact_force = scratch.contact_force.data();
-  e.watch = scratch.watch.data();
-  e.watch_rate = scratch.watch_rate.data();
+  e.event_value = scratch.event_value.data();
+  e.event_derivative = scratch.event_derivative.data();
   e.inner_rate = scratch.inner_rate.data();
   e.dissipation = e.work = 0.0;
   share.add_forces(e);
@@ -237,7 +237,7 @@ void RequestedChannels::add_share(const Share& share) {
     Integrand integrand;
     integrand.power = [self, givers, frictions](const Snapshot& s) {
       double power = 0.0;
-      for (const ForceGroup* group : givers) power += evaluate_alone(*group, *self, s).dissipation;
+      for (const ForceGroup* group : givers) power += evaluate_element_power(*group, *self, s).dissipation;
       for (const std::size_t f : frictions) power += power_of_friction(*self, f, s);
       return power;
     };
@@ -255,7 +255,7 @@ void RequestedChannels::add_share(const Share& share) {
     Integrand integrand;
     integrand.power = [self, workers, driven](const Snapshot& s) {
       double power = 0.0;
-      for (const ForceGroup* group : workers) power += evaluate_alone(*group, *self, s).work;
+      for (const ForceGroup* group : workers) power += evaluate_element_power(*group, *self, s).work;
       for (const std::size_t r : driven) power += s.row_force[r] * evaluate_row<false>(self->rows[r], s.motion).rate;
       return power;
     };

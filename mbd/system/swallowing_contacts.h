@@ -13,9 +13,9 @@ class SwallowingContacts {
 public:
   virtual ~SwallowingContacts() = default;
   /// Returns the index in System::units of the first closed contact with one body completely inside the other; −1 if there is none. `modes`
-  /// has one entry per unit, `watch` one per event function; `motion` returns the motions of all bodies and is called only if the event
-  /// functions do not decide.
-  [[nodiscard]] virtual int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& watch,
+  /// has one entry per unit, `event_value` one per event function; `motion` returns the motions of all bodies and is called only if the
+  /// event functions do not decide.
+  [[nodiscard]] virtual int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& event_value,
                                             const std::function<const Motion<double>*()>& motion) const = 0;
 };
 

@@ -215,16 +215,16 @@ namespace {
 // A contact that does not act: always open, zero normal force.
 class InactiveContacts final : public ForceGroup {
 public:
-  struct Entry {
-    int contact = 0, unit = 0, watch = 0;
+  struct ElementData {
+    int contact = 0, unit = 0, first_event = 0;
   };
-  std::vector<Entry> entries;
+  std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) e.contact_force[entry.contact] = 0.0;
+    for (const ElementData& entry : entries) e.contact_force[entry.contact] = 0.0;
   }
-  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
-    for (const Entry& entry : entries) e.contact_force[entry.contact] = Traced(0.0);
+  [[nodiscard]] bool record_forces(TracedEvaluation& e) const override {
+    for (const ElementData& entry : entries) e.contact_force[entry.contact] = TapeNumber(0.0);
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
@@ -269,14 +269,14 @@ void SystemBuilder::compile_inactive(const ElementEntry& entry, RequestedChannel
 void SystemBuilder::finish() {
   System& s = *system_;
   for (FrictionUnit& unit : s.frictions) {
-    unit.watch = s.watch_count;
-    s.watch_count += k_friction_watches;
+    unit.first_event = s.event_count;
+    s.event_count += k_friction_event_count;
   }
   s.is_body_used.assign(s.bodies.size(), 0);
   for (const auto& group : s.groups) group->mark_bodies(s.is_body_used);
   for (const FrictionUnit& unit : s.frictions) unit.friction->mark_bodies(s.is_body_used);
   s.links.start(s.body_count());
-  for (const auto& group : s.groups) group->enter_links(s.links);
+  for (const auto& group : s.groups) group->register_links(s.links);
   s.force_link_count = s.links.size();
   for (const RowSpec& row : s.rows) s.links.add(row.a, row.b);
   for (const FrictionUnit& unit : s.frictions) {

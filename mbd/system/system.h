@@ -113,17 +113,17 @@ struct RowBlock {
 
 /// A force element with modes.
 struct Unit {
-  const ForceGroup* group = nullptr; ///< never nullptr
-  int index = 0;                     ///< in its group
-  int watch = 0, watch_count = 0;    ///< index of its first event function, and their number
-  int element = 0;                   ///< index in System::element_names
+  const ForceGroup* group = nullptr;    ///< never nullptr
+  int index = 0;                        ///< in its group
+  int first_event = 0, event_count = 0; ///< index of its first event function, and their number
+  int element = 0;                      ///< index in System::element_names
 };
 
 /// A friction element with its indices in the arrays of a run.
 struct FrictionUnit {
   std::unique_ptr<FrictionElement> friction; ///< never nullptr
   int row = 0;                               ///< index of its first component in Snapshot::friction_force
-  int watch = 0;                             ///< index of its first event function
+  int first_event = 0;                       ///< index of its first event function
   int element = 0;                           ///< index in System::element_names
 };
 
@@ -161,8 +161,8 @@ public:
   std::vector<const ForceGroup*> inner_groups;                 ///< groups with inner states
   std::vector<char> is_body_used;                              ///< per body: a force or friction element acts on it
   bool has_work = false;                                       ///< a load, motor or drive may do work
-  int contact_count = 0;                                       ///< number of normal forces (Evaluated::contact_force)
-  int watch_count = 0;                                         ///< number of event functions
+  int contact_count = 0;                                       ///< number of normal forces (EvaluationData::contact_force)
+  int event_count = 0;                                         ///< number of event functions
   int friction_row_count = 0;                                  ///< number of rows of all friction elements
 
   /// Returns the number of bodies, including the ground.
@@ -204,7 +204,7 @@ struct CompiledMarker {
 
 /// Indices of the normal force and of the unit of a contact.
 struct ContactIndex {
-  int force = 0, unit = 0; ///< in Evaluated::contact_force; in System::units
+  int force = 0, unit = 0; ///< in EvaluationData::contact_force; in System::units
 };
 
 /// Use of a signal by an element. A force is averaged exactly over a step of any length by the integral of the signal. A signal used in
@@ -252,7 +252,7 @@ public:
   /// Returns the group of type Group, which is created on the first call. Elements append to its `entries`.
   template <class Group> Group& group();
   /// Makes the last entry of the group a unit: assigns its mode and the indices of its event functions.
-  template <class Group> void add_unit(Group& group, int watch_count);
+  template <class Group> void add_unit(Group& group, int event_count);
   /// Adds a normal force for the current element and returns its index. The contact is pressed while `unit` is in mode 1.
   int add_contact(int unit);
   /// Reserves two numbers in State::memory, a base and its rate. Returns the index of the base.
@@ -379,12 +379,12 @@ Channel& SystemBuilder::offer_channel(std::string_view name, std::string_view un
   return channel;
 }
 
-template <class Group> void SystemBuilder::add_unit(Group& group, int watch_count) {
+template <class Group> void SystemBuilder::add_unit(Group& group, int event_count) {
   auto& entry = group.entries.back();
   entry.unit = static_cast<int>(system_->units.size());
-  entry.watch = system_->watch_count;
-  system_->units.push_back({&group, static_cast<int>(group.entries.size()) - 1, entry.watch, watch_count, element_});
-  system_->watch_count += watch_count;
+  entry.first_event = system_->event_count;
+  system_->units.push_back({&group, static_cast<int>(group.entries.size()) - 1, entry.first_event, event_count, element_});
+  system_->event_count += event_count;
 }
 
 } // namespace steplap

@@ -101,7 +101,7 @@ void enter_row(const RowSpec& row, TurnTable& turns) {
 
 } // namespace
 
-void ForceGroup::enter_turns(TurnTable& turns) const {
+void ForceGroup::register_turns(TurnTable& turns) const {
   std::vector<char> is_used(turns.body_count(), 0);
   mark_bodies(is_used);
   turns.add_marked(is_used);
@@ -109,7 +109,7 @@ void ForceGroup::enter_turns(TurnTable& turns) const {
 
 TurnTable turn_table_of(const System& system) {
   TurnTable turns(system.bodies.size());
-  for (const auto& group : system.groups) group->enter_turns(turns);
+  for (const auto& group : system.groups) group->register_turns(turns);
   for (const RowSpec& row : system.rows) enter_row(row, turns);
   for (const FrictionUnit& unit : system.frictions)
     for (int i = 0; i < unit.friction->dimension(); ++i) enter_row(unit.friction->rows({})[i], turns);

@@ -2,8 +2,9 @@
 //
 // A constant angular velocity is integrated exactly, so error control allows steps of many turns, although the tip of the body may pass an
 // obstacle in each turn. Step control therefore limits the change of these angles in one step (mbd/integrators/turn_limit.h), so that the
-// samples within a step resolve them. Groups declare their pairs (ForceGroup::enter_turns); those of rows follow from the measure. Curves
-// over such an angle, for example the lift of a cam, may have features between any two knots; a step therefore also ends at each knot.
+// samples within a step resolve them. Groups declare their pairs (ForceGroup::register_turns); those of rows follow from the measure.
+// Curves over such an angle, for example the lift of a cam, may have features between any two knots; a step therefore also ends at each
+// knot.
 #pragma once
 
 #include "mbd/system/row.h"

@@ -27,7 +27,7 @@ public:
       : tape_(tape), rules_(rules), values_(tape.steps.size()), free_(rules.registers == 32 ? ~0u : (1u << rules.registers) - 1) {
     arrange(order);
     list_outputs();
-    look_at_steps();
+    visit_steps();
     find_next_uses();
   }
 
@@ -101,7 +101,7 @@ private:
   }
 
   OperandPlace place_of_output(std::int32_t k) {
-    const OutputPlace to = tape_.places.empty() ? OutputPlace{0, k} : tape_.places[at(k)];
+    const OutputLocation to = tape_.places.empty() ? OutputLocation{0, k} : tape_.places[at(k)];
     plan_.arrays |= 1u << static_cast<unsigned>(to.array);
     return {OperandPlace::Kind::output, static_cast<std::int8_t>(to.array), to.place};
   }
@@ -109,10 +109,10 @@ private:
   static OperandPlace place(OperandPlace::Kind kind, std::int32_t index) { return {kind, 0, index}; }
 
   // Inputs and constants are in memory; sine and cosine of the same argument are computed together.
-  void look_at_steps() {
+  void visit_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
-      if (s.operation == TapeOperation::call) look_at_call(i);
+      if (s.operation == TapeOperation::call) visit_call(i);
       if (is_given(s.operation)) values_[i].home = place_of_given(s);
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
@@ -127,7 +127,7 @@ private:
   }
 
   // All calls share the slots of arguments. Results have slots of their own, since they may be used later.
-  void look_at_call(std::size_t i) {
+  void visit_call(std::size_t i) {
     const TapeStep& s = tape_.steps[i];
     Call& call = calls_[static_cast<std::int32_t>(i)];
     call.arguments = arguments_of(tape_, s);
@@ -227,7 +227,7 @@ private:
     values_[at(step)].reg = static_cast<std::int8_t>(r);
   }
 
-  void free_register_of(Value& v) {
+  void release_register_if_dead(Value& v) {
     const bool goes = v.next == k_never && v.reg >= 0; // both cases are equally frequent, so branches are avoided
     free_ |= std::uint32_t{goes} << (v.reg & 31);
     v.reg = static_cast<std::int8_t>(goes ? -1 : v.reg);
@@ -307,8 +307,8 @@ private:
 
   // Frees the registers of operands that are not used any more.
   void let_operands_go(const TapeStep& s) {
-    free_register_of(values_[at(s.a)]);
-    if (takes_two(s.operation)) free_register_of(values_[at(s.b)]);
+    release_register_if_dead(values_[at(s.a)]);
+    if (takes_two(s.operation)) release_register_if_dead(values_[at(s.b)]);
     free_ |= std::exchange(passing_, 0u);
   }
 
@@ -393,7 +393,7 @@ private:
         store(r, to);
       }
       v.next = call.next[k];
-      free_register_of(v);
+      release_register_if_dead(v);
       free_slot_of(v);
     }
     let_registers_go();
@@ -444,7 +444,7 @@ private:
     v.next = next_[p].result;
     if (p > stores_)
       for (std::int32_t k = v.output; k != k_none; k = next_output_[at(k)]) store_output(v, r, k);
-    free_register_of(v);
+    release_register_if_dead(v);
   }
 
   void store_output(Value& v, int r, std::int32_t k) {
@@ -474,7 +474,7 @@ private:
       v.next = output_next_[k];
       if (v.reg >= 0) store_output(v, v.reg, static_cast<std::int32_t>(k));
       else copy_output(v, static_cast<std::int32_t>(k));
-      free_register_of(v);
+      release_register_if_dead(v);
       free_slot_of(v);
     }
   }

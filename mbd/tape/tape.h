@@ -72,10 +72,10 @@ struct TapeStep {
 }
 
 /// Location of an output: number of the array (CodeArrays) and index in it.
-struct OutputPlace {
+struct OutputLocation {
   std::int32_t array = 0, place = 0;
 
-  friend bool operator==(const OutputPlace&, const OutputPlace&) = default;
+  friend bool operator==(const OutputLocation&, const OutputLocation&) = default;
 };
 
 /// A recorded computation.
@@ -83,12 +83,12 @@ struct Tape {
   std::vector<TapeStep> steps;
   std::vector<double> constants; ///< values in the recorded evaluation; other evaluations have others in the same places
   int input_count = 0;
-  std::vector<std::int32_t> outputs;    ///< steps whose values are outputs
-  std::size_t usual_outputs = 0;        ///< number of outputs, the first ones, that may be requested alone (MachineCode::run); 0: all or
-                                        ///< none
-  std::int32_t first_inputs = 0;        ///< number of inputs, the first ones, that code reads from a separate array; 0: all are in one
-                                        ///< array
-  std::vector<OutputPlace> places = {}; ///< location of each output for code; empty: all in the first array, in order
+  std::vector<std::int32_t> outputs;       ///< steps whose values are outputs
+  std::size_t usual_outputs = 0;           ///< number of outputs, the first ones, that may be requested alone (MachineCode::run); 0: all or
+                                           ///< none
+  std::int32_t first_inputs = 0;           ///< number of inputs, the first ones, that code reads from a separate array; 0: all are in one
+                                           ///< array
+  std::vector<OutputLocation> places = {}; ///< location of each output for code; empty: all in the first array, in order
 };
 
 /// Returns the steps that are the arguments of a call, in order.

@@ -30,7 +30,7 @@ void TapeWriter::grow() {
   constant = first_constant + kept;
 }
 
-void Traced::start(const Tape* known) {
+void TapeNumber::start(const Tape* known) {
   TapeWriter& to = writer();
   if (to.steps.empty()) to.grow();
   to.step = to.steps.data();
@@ -42,7 +42,7 @@ void Traced::start(const Tape* known) {
   TapeWriter::now = &to;
 }
 
-bool Traced::finish(Tape* tape) {
+bool TapeNumber::finish(Tape* tape) {
   const TapeWriter& from = writer();
   TapeWriter::now = nullptr;
   if (!tape) return false;
@@ -62,39 +62,39 @@ bool Traced::finish(Tape* tape) {
          tape->outputs == known.outputs && std::memcmp(from.steps.data(), known.steps.data(), size * sizeof(TapeStep)) == 0;
 }
 
-Traced Traced::made_after_growing(TapeOperation operation, const Traced& a, const Traced& b, double value) {
+TapeNumber TapeNumber::made_after_growing(TapeOperation operation, const TapeNumber& a, const TapeNumber& b, double value) {
   TapeWriter::now->grow();
   return made(operation, a, b, value);
 }
 
-Traced Traced::input(double value) {
-  Traced x(value);
+TapeNumber TapeNumber::input(double value) {
+  TapeNumber x(value);
   TapeWriter::now->make_room();
   x.step_ = TapeWriter::now->put(TapeOperation::input, TapeWriter::now->input_count++, 0);
   return x;
 }
 
-void Traced::output(const Traced& x) {
+void TapeNumber::output(const TapeNumber& x) {
   TapeWriter::now->make_room();
   TapeWriter::now->outputs.push_back(x.step());
 }
 
-void Traced::call(TapeFunction function, std::span<const Traced> arguments, std::span<Traced> results) {
+void TapeNumber::call(TapeFunction function, std::span<const TapeNumber> arguments, std::span<TapeNumber> results) {
   static thread_local std::vector<double> given, found;
-  const Traced address(std::bit_cast<double>(function));
+  const TapeNumber address(std::bit_cast<double>(function));
   given.assign(1, value_of(address));
-  for (const Traced& x : arguments) given.push_back(value_of(x));
+  for (const TapeNumber& x : arguments) given.push_back(value_of(x));
   found.assign(results.size(), 0.0);
   function(given.data(), found.data());
-  for (std::size_t i = 0; i < results.size(); ++i) results[i] = Traced(found[i]);
-  if (std::all_of(arguments.begin(), arguments.end(), [](const Traced& x) { return x.is_constant(); })) return;
-  const auto put_argument = [](const Traced& x, std::int32_t before) {
+  for (std::size_t i = 0; i < results.size(); ++i) results[i] = TapeNumber(found[i]);
+  if (std::all_of(arguments.begin(), arguments.end(), [](const TapeNumber& x) { return x.is_constant(); })) return;
+  const auto put_argument = [](const TapeNumber& x, std::int32_t before) {
     TapeWriter::now->make_room();
     const std::int32_t step = x.step();
     return TapeWriter::now->put(TapeOperation::argument, step, before);
   };
   std::int32_t last = put_argument(address, -1);
-  for (const Traced& x : arguments) last = put_argument(x, last);
+  for (const TapeNumber& x : arguments) last = put_argument(x, last);
   TapeWriter::now->make_room();
   const std::int32_t made = TapeWriter::now->put(TapeOperation::call, last, static_cast<std::int32_t>(results.size()));
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -103,7 +103,7 @@ void Traced::call(TapeFunction function, std::span<const Traced> arguments, std:
   }
 }
 
-bool Traced::decided(const Traced& a, const Traced& b) {
+bool TapeNumber::decided(const TapeNumber& a, const TapeNumber& b) {
   const bool is_less = a.value_ < b.value_;
   if (a.is_constant() && b.is_constant()) return is_less;
   TapeWriter::now->make_room();

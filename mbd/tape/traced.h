@@ -58,66 +58,66 @@ struct TapeWriter {
 };
 
 /// A recorded number.
-class Traced {
+class TapeNumber {
 public:
-  Traced() = default;
-  Traced(double constant) : value_(constant) {} // conversion of constants
+  TapeNumber() = default;
+  TapeNumber(double constant) : value_(constant) {} // conversion of constants
 
   /// Starts recording in this thread, until finish() moves the result to `tape` or discards it (null). With a `known` tape only constants
   /// are stored in `tape`, and finish() returns whether everything else equals the known one.
   static void start(const Tape* known = nullptr);
   static bool finish(Tape* tape);
   /// Returns the next input, with its present value.
-  [[nodiscard]] static Traced input(double value);
+  [[nodiscard]] static TapeNumber input(double value);
   /// Makes x the next output.
-  static void output(const Traced& x);
+  static void output(const TapeNumber& x);
   /// Records a call of `function`, for operations that a tape does not have. It computes `results` from its own address and `arguments`. If
   /// all arguments are constants, so are the results; a function that depends on anything else needs an argument that is not constant.
-  static void call(TapeFunction function, std::span<const Traced> arguments, std::span<Traced> results);
+  static void call(TapeFunction function, std::span<const TapeNumber> arguments, std::span<TapeNumber> results);
   /// Marks the outputs so far as the usual ones (Tape::usual_outputs).
   static void end_usual_outputs() { TapeWriter::now->usual_outputs = TapeWriter::now->outputs.size(); }
 
   /// Returns true if the value is the same for all inputs.
   [[nodiscard]] bool is_constant() const { return step_ < 0; }
-  friend double value_of(const Traced& x) { return x.value_; }
+  friend double value_of(const TapeNumber& x) { return x.value_; }
 
-  friend Traced operator+(const Traced& a, const Traced& b) { return made(TapeOperation::add, a, b, a.value_ + b.value_); }
-  friend Traced operator-(const Traced& a, const Traced& b) { return made(TapeOperation::subtract, a, b, a.value_ - b.value_); }
-  friend Traced operator*(const Traced& a, const Traced& b) { return made(TapeOperation::multiply, a, b, a.value_ * b.value_); }
-  friend Traced operator/(const Traced& a, const Traced& b) { return made(TapeOperation::divide, a, b, a.value_ / b.value_); }
-  friend Traced operator-(const Traced& a) { return made(TapeOperation::negate, a, a, -a.value_); }
-  Traced& operator+=(const Traced& o) { return *this = *this + o; }
-  Traced& operator-=(const Traced& o) { return *this = *this - o; }
-  Traced& operator*=(const Traced& o) { return *this = *this * o; }
+  friend TapeNumber operator+(const TapeNumber& a, const TapeNumber& b) { return made(TapeOperation::add, a, b, a.value_ + b.value_); }
+  friend TapeNumber operator-(const TapeNumber& a, const TapeNumber& b) { return made(TapeOperation::subtract, a, b, a.value_ - b.value_); }
+  friend TapeNumber operator*(const TapeNumber& a, const TapeNumber& b) { return made(TapeOperation::multiply, a, b, a.value_ * b.value_); }
+  friend TapeNumber operator/(const TapeNumber& a, const TapeNumber& b) { return made(TapeOperation::divide, a, b, a.value_ / b.value_); }
+  friend TapeNumber operator-(const TapeNumber& a) { return made(TapeOperation::negate, a, a, -a.value_); }
+  TapeNumber& operator+=(const TapeNumber& o) { return *this = *this + o; }
+  TapeNumber& operator-=(const TapeNumber& o) { return *this = *this - o; }
+  TapeNumber& operator*=(const TapeNumber& o) { return *this = *this * o; }
 
-  friend bool operator<(const Traced& a, const Traced& b) { return decided(a, b); }
-  friend bool operator>(const Traced& a, const Traced& b) { return decided(b, a); }
+  friend bool operator<(const TapeNumber& a, const TapeNumber& b) { return decided(a, b); }
+  friend bool operator>(const TapeNumber& a, const TapeNumber& b) { return decided(b, a); }
 
-  friend Traced sqrt(const Traced& a) { return made(TapeOperation::square_root, a, a, std::sqrt(a.value_)); }
-  friend Traced abs(const Traced& a) { return made(TapeOperation::absolute, a, a, std::abs(a.value_)); }
+  friend TapeNumber sqrt(const TapeNumber& a) { return made(TapeOperation::square_root, a, a, std::sqrt(a.value_)); }
+  friend TapeNumber abs(const TapeNumber& a) { return made(TapeOperation::absolute, a, a, std::abs(a.value_)); }
   /// Minimum and maximum with the conventions of std::min and std::max for equal numbers and NaN.
-  friend Traced least_of(const Traced& a, const Traced& b) {
+  friend TapeNumber least_of(const TapeNumber& a, const TapeNumber& b) {
     return made(TapeOperation::minimum, b, a, b.value_ < a.value_ ? b.value_ : a.value_);
   }
-  friend Traced greatest_of(const Traced& a, const Traced& b) {
+  friend TapeNumber greatest_of(const TapeNumber& a, const TapeNumber& b) {
     return made(TapeOperation::maximum, a, b, a.value_ < b.value_ ? b.value_ : a.value_);
   }
-  friend void find_sin_cos(const Traced& a, Traced& sine, Traced& cosine) {
+  friend void find_sin_cos(const TapeNumber& a, TapeNumber& sine, TapeNumber& cosine) {
     const portable::SinCos turn = portable::sin_cos(a.value_);
     sine = made(TapeOperation::sine, a, a, turn.sin);
     cosine = made(TapeOperation::cosine, a, a, turn.cos);
   }
-  friend Traced atan2(const Traced& y, const Traced& x) {
-    const Traced arguments[] = {y, x};
-    Traced angle;
+  friend TapeNumber atan2(const TapeNumber& y, const TapeNumber& x) {
+    const TapeNumber arguments[] = {y, x};
+    TapeNumber angle;
     call([](const double* of, double* found) { *found = portable::atan2(of[1], of[2]); }, arguments, {&angle, 1});
     return angle;
   }
 
 private:
   // Calls nothing except as the last statement, when memory must grow, so that the compiler saves no registers.
-  static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value) {
-    Traced x(value);
+  static TapeNumber made(TapeOperation operation, const TapeNumber& a, const TapeNumber& b, double value) {
+    TapeNumber x(value);
     if (a.is_constant() && b.is_constant()) return x;
     TapeWriter& to = *TapeWriter::now;
     if (!to.has_room()) [[unlikely]]
@@ -127,8 +127,8 @@ private:
     x.step_ = to.put(operation, first, second);
     return x;
   }
-  static Traced made_after_growing(TapeOperation operation, const Traced& a, const Traced& b, double value);
-  static bool decided(const Traced& a, const Traced& b);
+  static TapeNumber made_after_growing(TapeOperation operation, const TapeNumber& a, const TapeNumber& b, double value);
+  static bool decided(const TapeNumber& a, const TapeNumber& b);
   // Precondition for a constant: has_room().
   [[nodiscard]] std::int32_t step() const { return step_ >= 0 ? step_ : TapeWriter::now->put_constant(value_); }
 
@@ -138,7 +138,7 @@ private:
 
 /// Returns true if x is zero for all inputs; for a double, if it is zero. Skipping such terms does not change a sum that began with +0.
 inline bool is_surely_zero(double x) { return x == 0.0; }
-inline bool is_surely_zero(const Traced& x) { return x.is_constant() && value_of(x) == 0.0; }
+inline bool is_surely_zero(const TapeNumber& x) { return x.is_constant() && value_of(x) == 0.0; }
 
 inline double least_of(double a, double b) { return b < a ? b : a; }
 inline double greatest_of(double a, double b) { return a < b ? b : a; }

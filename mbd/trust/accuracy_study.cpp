@@ -16,7 +16,7 @@ namespace {
 
 constexpr double k_slope_ceiling = 1e-2; // larger errors do not follow the tolerance yet and are not fitted
 constexpr double k_slope_floor = 10.0;   // times the resolution; smaller errors contain the reference's own error
-constexpr long k_steps_between_looks = 512;
+constexpr long k_steps_between_checks = 512;
 
 constexpr double k_cost_power = 0.2;  // number of steps ~ tolerance^(−1/5): order 5
 constexpr double k_least_cost = 1e-6; // s; replaces a measured time of zero
@@ -31,7 +31,7 @@ RunResult run_within(const System& system, const State& initial, const Simulatio
   const double start = thread_cpu_seconds();
   Simulation simulation(system, initial, options);
   for (long steps = 0; simulation.advance(); ++steps)
-    if (steps % k_steps_between_looks == 0 && thread_cpu_seconds() - start > cpu_limit)
+    if (steps % k_steps_between_checks == 0 && thread_cpu_seconds() - start > cpu_limit)
       throw OutOfTime("needs more than " + number_text(cpu_limit) + " s of CPU time; at t = " + rounded_text(simulation.state().t, 12) +
                       " s by then");
   return std::move(simulation).result();

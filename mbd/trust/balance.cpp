@@ -214,8 +214,8 @@ private:
     const double t = simulation_.state().t;
     if (progress_) progress_(t); // throws if the run is to be aborted
     if (evaluations() > most_evaluations_)
-      throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
-                            " s of a run from nudged poses");
+      throw EvaluationBudgetExceeded("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
+                                     " s of a run from nudged poses");
     return goes_on;
   }
 
@@ -291,8 +291,8 @@ public:
     while (plus.advance()) {
       while (minus.now().t < plus.now().t && minus.advance()) {}
       if (plus.evaluations() + minus.evaluations() > most_evaluations_)
-        throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(plus.now().t) +
-                              " s of two runs from nudged poses");
+        throw EvaluationBudgetExceeded("given up after " + number_text(most_evaluations_) +
+                                       " evaluations, at t = " + number_text(plus.now().t) + " s of two runs from nudged poses");
       grown = std::max(grown, std::abs(course.shape.dot(difference(plus, minus))) / from);
       if (grown > k_grown_nudge) return true;
     }
@@ -343,8 +343,8 @@ private:
     while (plus.advance()) {
       while (minus.now().t < plus.now().t && minus.advance()) {}
       if (plus.evaluations() + minus.evaluations() > most_evaluations_)
-        throw EstimateTooDear("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(plus.now().t) +
-                              " s of two runs from nudged poses");
+        throw EvaluationBudgetExceeded("given up after " + number_text(most_evaluations_) +
+                                       " evaluations, at t = " + number_text(plus.now().t) + " s of two runs from nudged poses");
       const double from = plus.step_begin(), step = plus.now().t - from;
       for (int part = 1; part <= k_parts_of_step; ++part) {
         const double t = from + step * part / k_parts_of_step;

@@ -40,7 +40,7 @@ inline constexpr double k_grown_nudge = 100.0;
 inline constexpr double k_far_grown_nudge = 1e4;
 
 /// Returns the first unstable equilibrium of `run`, or nothing. `run` was made from `initial` with `options` and recorded its motion
-/// (SimulationOptions::notes_motion). Throws EstimateTooDear if the nudged runs need more than `most_evaluations` evaluations.
+/// (SimulationOptions::notes_motion). Throws EvaluationBudgetExceeded if the nudged runs need more than `most_evaluations` evaluations.
 [[nodiscard]] std::optional<Balance> balance_of(const System& system, const State& initial, const SimulationOptions& options,
                                                 const RunResult& run, double most_evaluations);
 

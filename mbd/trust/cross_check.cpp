@@ -34,8 +34,8 @@ constexpr double k_momentum_allowed = 1e-6;
 constexpr double k_rest_share = 1e-9; // share of the bodies' size: smaller position errors count as rest (run_comparison.cpp)
 // Rest limit over tolerance · size of the bodies: 100 · 1e-3, because errors are absolute to 1e-3 of the size (Integrator).
 constexpr double k_rest_errors = 0.1;
-constexpr long k_steps_between_looks = 8; // limits are checked every so many steps, since a step of time stepping may take milliseconds
-constexpr double k_closer = 0.25;         // factor on steps and sample spacing of a repetition
+constexpr long k_steps_between_checks = 8; // limits are checked every so many steps, since a step of time stepping may take milliseconds
+constexpr double k_closer = 0.25;          // factor on steps and sample spacing of a repetition
 
 constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // steps of the coarsest level over the whole run
 
@@ -48,7 +48,7 @@ RunResult run_within(const System& system, const State& initial, const Simulatio
     throw NumericalFailure("needs more than " + what + "; at t = " + number_text(simulation.state().t) + " s by then");
   };
   for (long steps = 0; simulation.advance(); ++steps) {
-    if (steps % k_steps_between_looks != 0) continue;
+    if (steps % k_steps_between_checks != 0) continue;
     if (thread_cpu_seconds() - start > cpu_limit) stop(rounded_text(cpu_limit, 2) + " s of CPU time, its part of what all may take");
     if (simulation.statistics().evaluations > limits.evaluation_limit) stop(std::to_string(limits.evaluation_limit) + " evaluations");
   }
@@ -134,7 +134,7 @@ private:
       bool is_number = is_finite(r.result);
       for (const RunResult& coarser : method.coarser) is_number = is_number && is_finite(coarser);
       if (is_number) sound.push_back(std::move(method));
-      else note({Doubt::not_a_number, r.setting.integrator, "", "", 0.0, INFINITY, "the result is no number"});
+      else note({DisagreementKind::not_a_number, r.setting.integrator, "", "", 0.0, INFINITY, "the result is no number"});
     }
     methods_ = std::move(sound);
     if (methods_.empty()) return;
@@ -182,21 +182,21 @@ private:
     // A residual that does not shrink shows that the step is too long for the model: the run is discarded.
     if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) dismiss(i);
     if (exchanged > 0.0 && methods_[i].is_adaptive)
-      note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
+      note({DisagreementKind::energy, name_of_run(i), "", "", base_.end, residual / allowed,
             number_text(residual) + " J of " + number_text(exchanged) + " J"});
     const bool has_steps_alone = is_stepping(i);
     const double share = methods_[i].is_adaptive ? k_law_share : k_stepped_law_share;
     const int persistent = has_steps_alone ? k_persistent : 1;
     for (const AuditFinding& f : audit(system_, r.result, share, persistent)) {
       if (!has_steps_alone)
-        note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
+        note({DisagreementKind::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
               number_text(f.value) + ", allowed " + number_text(f.bound)});
       else if (f.ratio() > 1.0 && !is_smaller_than_before(f, audit(system_, methods_[i].coarser.back(), share, persistent))) dismiss(i);
     }
     if (options_.free_groups.empty()) return;
     const AuditFinding change = momentum_change(system_, options_.free_groups, r.result);
     const double bound = methods_[i].is_adaptive ? k_momentum_allowed : k_stepped_law_share;
-    note({Doubt::momentum, name_of_run(i), "", "group of '" + change.where + "'", change.t, change.value / bound,
+    note({DisagreementKind::momentum, name_of_run(i), "", "group of '" + change.where + "'", change.t, change.value / bound,
           number_text(change.value) + " of its own"});
   }
 
@@ -232,7 +232,7 @@ private:
       for (const ErrorKind kind : {ErrorKind::position, ErrorKind::velocity}) {
         const WorstError own = curves_[i]->largest(kind);
         const double bound = std::max({k_own_doubt, 2.0 * (*stepping)->largest(kind).value, error_of_rest(i, kind, own.where)});
-        note({Doubt::self, name_of_run(i), "", own.where, base_.end, own.value / bound,
+        note({DisagreementKind::self, name_of_run(i), "", own.where, base_.end, own.value / bound,
               "its own estimate is " + number_text(own.value) + ", time stepping's " + number_text((*stepping)->largest(kind).value)});
       }
     }
@@ -273,7 +273,7 @@ private:
       const std::size_t column = kind == ErrorKind::reaction ? columns.force : (kind == ErrorKind::velocity ? columns.rate : columns.place);
       return x.run().trajectory->value(row, column) + y.run().trajectory->value(row, column);
     };
-    Disagreement worst{Doubt::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
+    Disagreement worst{DisagreementKind::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
       const double floor = (channel.kind == ErrorKind::reaction ? k_reaction_floor : k_floor) * channel.scale;
@@ -310,7 +310,7 @@ private:
     const double energy_allowed = k_margin * (x.dissipated_error() + y.dissipated_error()) +
                                   k_integral_floor * std::max(energy_scale(system_, x.run()), energy_scale(system_, y.run())) +
                                   energy_of_rest(i) + energy_of_rest(j) + 1e-300;
-    Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
+    Disagreement worst{DisagreementKind::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
       // A slip in several coordinates that passes through rest is invisible to steps that end before and after it.
@@ -347,7 +347,7 @@ private:
     const auto one = [&](const char* what, double x, double y, double estimates) {
       const double allowed = k_margin * estimates + k_integral_floor * scale + energy_of_rest(i) + energy_of_rest(j);
       if (allowed > 0.0)
-        note({Doubt::integral, name_of_run(i), name_of_run(j), what, base_.end, std::abs(x - y) / allowed,
+        note({DisagreementKind::integral, name_of_run(i), name_of_run(j), what, base_.end, std::abs(x - y) / allowed,
               number_text(std::abs(x - y)) + " J, estimates " + number_text(estimates) + " J"});
     };
     one("dissipated energy", a.dissipated, b.dissipated, curves_[i]->dissipated_error() + curves_[j]->dissipated_error());
@@ -357,7 +357,7 @@ private:
   void compare_verdicts(std::size_t i, std::size_t j) {
     const CrossRun &a = run_of(i), &b = run_of(j);
     if (a.verdict == b.verdict || std::min(a.known_until, b.known_until) < base_.end * (1.0 - 1e-6)) return;
-    note({Doubt::verdict, name_of_run(i), name_of_run(j), "", base_.end, INFINITY, a.verdict + " against " + b.verdict});
+    note({DisagreementKind::verdict, name_of_run(i), name_of_run(j), "", base_.end, INFINITY, a.verdict + " against " + b.verdict});
   }
 
   void conclude() {
@@ -391,7 +391,7 @@ private:
 };
 
 // Returns true if a disagreement could disappear with smaller steps and denser samples.
-bool is_worth_a_closer_look(const CrossCheck& check) {
+bool is_worth_refining(const CrossCheck& check) {
   return std::any_of(check.disagreements.begin(), check.disagreements.end(), [&](const Disagreement& d) {
     return std::any_of(check.runs.begin(), check.runs.end(), [&](const CrossRun& run) {
       const std::string& name = run.setting.integrator;
@@ -402,17 +402,17 @@ bool is_worth_a_closer_look(const CrossCheck& check) {
 
 } // namespace
 
-const char* name_of(Doubt doubt) {
+const char* name_of(DisagreementKind doubt) {
   switch (doubt) {
-  case Doubt::channel: return "channel";
-  case Doubt::event: return "event";
-  case Doubt::verdict: return "verdict";
-  case Doubt::integral: return "energy account";
-  case Doubt::energy: return "energy balance";
-  case Doubt::momentum: return "momentum";
-  case Doubt::law: return "law";
-  case Doubt::not_a_number: return "not a number";
-  case Doubt::self: return "own estimate";
+  case DisagreementKind::channel: return "channel";
+  case DisagreementKind::event: return "event";
+  case DisagreementKind::verdict: return "verdict";
+  case DisagreementKind::integral: return "energy account";
+  case DisagreementKind::energy: return "energy balance";
+  case DisagreementKind::momentum: return "momentum";
+  case DisagreementKind::law: return "law";
+  case DisagreementKind::not_a_number: return "not a number";
+  case DisagreementKind::self: return "own estimate";
   }
   return "";
 }
@@ -437,7 +437,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
   SimulationOptions sampling = base;
   CrossCheck check = Checker(system, initial, sampling, used).made();
   double last = thread_cpu_seconds() - start;
-  for (int look = 1; look <= options.closer_looks && is_worth_a_closer_look(check); ++look) {
+  for (int look = 1; look <= options.refinements && is_worth_refining(check); ++look) {
     const double begin = thread_cpu_seconds();
     used.cpu_limit = options.cpu_limit - (begin - start);
     if (last / k_closer > used.cpu_limit) break; // the repetition would exceed the CPU time
@@ -451,7 +451,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
     };
     if (stops(closer) > stops(check)) break; // the repetition ran out of time: keep the first result
     check = std::move(closer);
-    check.closer_looks = look;
+    check.refinements = look;
     last = thread_cpu_seconds() - begin;
   }
   return check;

@@ -56,7 +56,7 @@ struct CrossCheckOptions {
   std::vector<CrossMethod> methods; ///< empty: usual_methods()
   double cpu_limit = 60.0;          ///< CPU time of all runs together, s; each method gets an equal part of the rest
   long evaluation_limit = std::numeric_limits<long>::max(); ///< most evaluations of one run; independent of the speed of the computer
-  int closer_looks = 2;                                     ///< most repetitions with smaller fixed steps after a disagreement
+  int refinements = 2;                                      ///< most repetitions with smaller fixed steps after a disagreement
   EventFilter is_event_counted;                             ///< selects friction events to compare; empty: all
   /// Returns the verdict on a run as one word. If empty, verdicts are not compared.
   std::function<std::string(const RunResult& run)> verdict;
@@ -65,11 +65,11 @@ struct CrossCheckOptions {
   std::function<void(const std::string& text)> progress;
 };
 
-enum class Doubt { channel, event, verdict, integral, energy, momentum, law, not_a_number, self };
-[[nodiscard]] const char* name_of(Doubt doubt);
+enum class DisagreementKind { channel, event, verdict, integral, energy, momentum, law, not_a_number, self };
+[[nodiscard]] const char* name_of(DisagreementKind doubt);
 
 struct Disagreement {
-  Doubt doubt = Doubt::channel;
+  DisagreementKind doubt = DisagreementKind::channel;
   std::string first, second; ///< methods; `second` is empty if the first alone violates a law
   std::string where;         ///< channel, or element and event
   double t = 0.0;
@@ -102,7 +102,7 @@ struct CrossCheck {
   /// does not balance. Without time stepping: that of the least accurate method.
   double known_until = 0.0;
   double worst_ratio = 0.0;
-  int closer_looks = 0; ///< number of repetitions made
+  int refinements = 0; ///< number of repetitions made
 };
 
 /// Safety factor on estimates. They are differences at single instants, first order near events, and good to a factor of about two.

@@ -148,7 +148,7 @@ void FrozenLeg::linearise(const State& state, const Variant& variant) {
   if (linearised_ == &variant && state.t == at_run_.t && state.q == at_run_.q && state.v == at_run_.v) return;
   linearised_ = &variant;
   at_run_ = at_rest_ = state;
-  dynamics_.forget_layouts();
+  dynamics_.clear_layouts();
   dynamics_.set_state(at_run_);
   y_.resize(static_cast<std::size_t>(system_.largest_dimension()));
   std::vector<double> dy(y_.size());

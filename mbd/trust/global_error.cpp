@@ -263,7 +263,7 @@ void forget(const RunResult& run, GlobalErrorEstimate& estimate) {
   if (run.statistics.dissipated != 0.0) estimate.dissipated = unknown;
   if (run.statistics.work != 0.0) estimate.work = unknown;
   estimate.error.worst.fill({unknown, "", 0.0});
-  estimate.unknown_because = "no finer run took shorter steps, so that none tells an error";
+  estimate.reason_unknown = "no finer run took shorter steps, so that none tells an error";
 }
 
 // Sets the error of event times to unknown if an event has no partner.
@@ -335,16 +335,16 @@ void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, Glob
       estimate.channels[c].first_above_one = channels[c].first_above_one;
   for (std::size_t i = 0; i < run.events.size(); ++i)
     if (run.events[i].t < t) estimate.event_times[i] = times[i];
-  estimate.unknown_because = "two runs by " + tolerances_of(pair) + " part at t = " + rounded_text(t, 4) +
-                             " s, so that the motion from there on depends on the last digits, and no run tells it";
+  estimate.reason_unknown = "two runs by " + tolerances_of(pair) + " part at t = " + rounded_text(t, 4) +
+                            " s, so that the motion from there on depends on the last digits, and no run tells it";
 }
 
 // Estimates the errors of `run` by reference runs. Returns false if there are none.
 bool measure_by_references(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
                            const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
-  const double parts = parts_evaluated(system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));
-  const double most =
-      std::max(times_of_finer_runs(system, options) * static_cast<double>(run.statistics.evaluations), k_little / std::max(parts, 1.0));
+  const double parts = evaluation_cost(system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));
+  const double most = std::max(relative_cost_of_finer_runs(system, options) * static_cast<double>(run.statistics.evaluations),
+                               k_little / std::max(parts, 1.0));
   std::optional<ReferenceRuns> pair = reference_runs(system, initial, options, run, is_counted, most, budget);
   if (!pair) return false;
   estimate.finer = {pair->coarse_options, pair->options};
@@ -420,14 +420,14 @@ std::vector<SimulationOptions> finer_options(const System& system, const Simulat
   return {finer, finest};
 }
 
-double times_of_finer_runs(const System& system, const SimulationOptions& options) {
+double relative_cost_of_finer_runs(const System& system, const SimulationOptions& options) {
   if (is_adaptive(system, options.integrator)) return k_finer_cost;
   double times = 0.0;
   for (const SimulationOptions& finer : finer_options(system, options)) times += options.settings.step / finer.settings.step;
   return times;
 }
 
-double parts_evaluated(const System& system, const RunStatistics& run) {
+double evaluation_cost(const System& system, const RunStatistics& run) {
   return static_cast<double>(run.evaluations) * static_cast<double>(system.bodies.size() + system.element_names.size());
 }
 

@@ -21,7 +21,7 @@ constexpr double k_most_own_error = 1.0 / 3.0; // share of the run's difference 
 constexpr double k_safety = 1.5;               // because no error is exactly proportional to the tolerance
 constexpr double k_parted = 0.01;              // share of a range; more than a million times the larger tolerance
 constexpr double k_fewest_rows = 100.0;        // least number of samples of the coarse run, so that the relevant oscillations are resolved
-constexpr long k_steps_between_looks = 64;     // checks of the cost, every so many steps
+constexpr long k_steps_between_checks = 64;    // checks of the cost, every so many steps
 
 // Returns the options of the coarse run: every stride-th sample of the reference. With few samples, or samples of some channels only,
 // extremes are located instead.
@@ -71,9 +71,9 @@ RunResult EvaluationBudget::simulate(const System& system, const State& initial,
   };
   try {
     for (long steps = 0; simulation.advance(); ++steps)
-      if (steps % k_steps_between_looks == 0 && static_cast<double>(simulation.statistics().evaluations) > most)
-        throw EstimateTooDear("given up after " + number_text(std::min(most_of_run, most_)) +
-                              " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
+      if (steps % k_steps_between_checks == 0 && static_cast<double>(simulation.statistics().evaluations) > most)
+        throw EvaluationBudgetExceeded("given up after " + number_text(std::min(most_of_run, most_)) +
+                                       " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
   } catch (const NumericalFailure&) {
     count(simulation.statistics());
     throw;

@@ -28,7 +28,7 @@ class EvaluationBudget {
 public:
   explicit EvaluationBudget(double most) : most_(most) {}
 
-  /// Runs the simulation. Throws EstimateTooDear if it needs more evaluations than are left, or more than `most_of_run`.
+  /// Runs the simulation. Throws EvaluationBudgetExceeded if it needs more evaluations than are left, or more than `most_of_run`.
   [[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options,
                                    double most_of_run = std::numeric_limits<double>::infinity());
   /// Returns the cost of all runs so far, including those that were given up.

@@ -86,7 +86,7 @@ std::vector<LoneSlip> lone_slips(const RunResult& run, const RunResult& finer) {
 double spread_of(const ChannelRange* range) { return range ? range->high.value - range->low.value : 0.0; }
 
 // Returns the largest range of the channels with this unit.
-double largest_spread(const std::string& unit, const RunResult& run) {
+double largest_channel_range(const std::string& unit, const RunResult& run) {
   double largest = 0.0;
   for (const ChannelRange& range : run.ranges)
     if (range.channel->unit == unit && std::isfinite(spread_of(&range))) largest = std::max(largest, spread_of(&range));
@@ -104,7 +104,7 @@ bool changes_slide(const std::string& element, const System& system, const RunRe
     const ChannelRange *mine = find_range(run, element + part), *theirs = find_range(finer, element + part);
     if (!mine || !theirs || (has_slide && std::string(part) == ".slip_rate")) continue;
     const std::string& unit = mine->channel->unit;
-    const double negligible = std::max(k_slide_share * largest_spread(unit, run), k_size_share * (unit == "m" ? size : 1.0));
+    const double negligible = std::max(k_slide_share * largest_channel_range(unit, run), k_size_share * (unit == "m" ? size : 1.0));
     const double larger = std::max(spread_of(mine), spread_of(theirs));
     if (std::abs(spread_of(mine) - spread_of(theirs)) > std::max(k_most_trusted_error * larger, negligible)) return true;
   }
@@ -172,7 +172,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
   }
   take_over_open(judgement);
   distrust(judgement, of_slips);
-  if (!estimate.unknown_because.empty()) return leave_open(judgement, estimate.unknown_because);
+  if (!estimate.reason_unknown.empty()) return leave_open(judgement, estimate.reason_unknown);
   const WorstError& worst = estimate.error.of(ErrorKind::position);
   if (worst.value <= k_most_trusted_error) return;
   if (!estimate.references.empty() && !std::isnan(worst.value))

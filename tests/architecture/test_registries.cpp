@@ -101,7 +101,7 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
         {"elements/limit.cpp", "a coordinate"},
         {"elements/joint_friction.cpp", "a coordinate"},
         {"elements/formula_force.cpp", "a coordinate"}}},
-      {"step_lap_joint", {{"tools/study/scene.cpp", "channels that every verdict needs"}}},
+      {"step_lap_joint", {{"tools/study/sample_simulator.cpp", "channels that every verdict needs"}}},
       {"spring_damper", {{"mbd/model/model.h", "an example"}}},
   };
   int kinds = 0;

@@ -22,7 +22,7 @@ constexpr double k_rounding = 1e-11;
 // third derivatives without bound where it starts.
 bool is_near_kink(Probe& probe, const Pose& pose) {
   probe.forces(pose);
-  for (const double w : probe.watch())
+  for (const double w : probe.event_value())
     if (std::abs(w) < 4e-3) return true;
   return false;
 }
@@ -262,13 +262,13 @@ TEST_CASE("conformance: Jacobians of inner states against differences") {
 TEST_CASE("conformance: watch values are continuous and their rates are their rates") {
   for_each_draw(false, [](const ConformanceScene&, Probe& probe, const Pose& pose) {
     probe.forces(pose);
-    const std::vector<double> rate = probe.watch_rate();
+    const std::vector<double> rate = probe.event_derivative();
     const double h = 1e-6;
     const auto at = [&](double t) {
       Pose p = pose;
       p.q += t * pose.v;
       probe.forces(p);
-      return probe.watch();
+      return probe.event_value();
     };
     const std::vector<double> ahead = at(h), behind = at(-h), nearer = at(0.1 * h), now = at(0.0);
     for (std::size_t i = 0; i < now.size(); ++i) {

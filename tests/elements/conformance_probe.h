@@ -1,5 +1,5 @@
 // Evaluates a compiled two-body scene at any pose and velocity, outside of Dynamics: forces of all
-// groups, watch values, energy, rows.
+// groups, event functions, energy, rows.
 #pragma once
 
 #include "elements/catalog.h"
@@ -53,8 +53,8 @@ public:
   [[nodiscard]] const Evaluation& evaluation() const { return e_; }
   [[nodiscard]] State& state() { return state_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
-  [[nodiscard]] const std::vector<double>& watch() const { return arrays_.watch; }
-  [[nodiscard]] const std::vector<double>& watch_rate() const { return arrays_.watch_rate; }
+  [[nodiscard]] const std::vector<double>& event_value() const { return arrays_.event_value; }
+  [[nodiscard]] const std::vector<double>& event_derivative() const { return arrays_.event_derivative; }
 
   void place(const Pose& pose) {
     const std::vector<double> q(pose.q.data(), pose.q.data() + 9), v(pose.v.data(), pose.v.data() + 9);
@@ -71,7 +71,7 @@ public:
   /// As if the run had begun at this pose: whether a foot is past the end of its face.
   void start_at(const Pose& pose) {
     place(pose);
-    for (const ForceGroup* group : system_->inner_groups) group->start_inner(motion_.data(), state_.inner.data());
+    for (const ForceGroup* group : system_->inner_groups) group->relax_inner(motion_.data(), state_.inner.data());
     choose_modes(pose);
   }
   /// Generalised forces on ground, a and b, each about its own centre.
@@ -121,7 +121,7 @@ private:
     place(start);
     for (std::size_t f = 0; f < system_->frictions.size(); ++f) {
       const FrictionElement& friction = *system_->frictions[f].friction;
-      if (system_->element_kinds[system_->frictions[f].element] == "polygon_contact") friction.change_place(e_, state_.friction[f]);
+      if (system_->element_kinds[system_->frictions[f].element] == "polygon_contact") friction.switch_contact_point(e_, state_.friction[f]);
     }
   }
 

@@ -197,7 +197,7 @@ TEST_CASE("conformance: friction opposes slip, with all that its set allows") {
     const int n = friction.dimension();
     FrictionState state;
     const Wrench rate = draw.wrench(1.0), other = draw.wrench(1.0);
-    Wrench wrench{}, watch{};
+    Wrench wrench{}, event_value{};
     friction.aim(state, rate.data());
     friction.slip_wrench(e, state, rate.data(), wrench.data());
     const double power = -dot(wrench, rate, n), most = friction.support(e, state, rate.data());
@@ -209,8 +209,8 @@ TEST_CASE("conformance: friction opposes slip, with all that its set allows") {
     } else {
       CHECK(power == doctest::Approx(most).epsilon(1e-9)); // both coefficients are the same: −∇h(ν)·ν = h(ν)
     }
-    friction.watch_slip(e, state, rate.data(), watch.data());
-    CHECK(watch[0] >= 0.0);
+    friction.slip_events(e, state, rate.data(), event_value.data());
+    CHECK(event_value[0] >= 0.0);
     // h is homogeneous and convex.
     Wrench twice{}, sum{};
     for (int k = 0; k < 3; ++k) {
@@ -235,15 +235,15 @@ TEST_CASE("conformance: the set, its gauge and the watch values agree") {
     const Wrench another = draw.wrench(100.0);
     CHECK(dot(normal, another, n) <= friction.gauge(e, state, another.data(), ignored.data()) * (1.0 + 1e-9));
     for (const double share : {0.0, 0.99, 1.01}) {
-      Wrench scaled{}, watch{1.0, 1.0, 1.0};
+      Wrench scaled{}, event_value{1.0, 1.0, 1.0};
       for (int k = 0; k < n; ++k) scaled[k] = share / usage * w[k];
-      friction.watch_stick(e, state, scaled.data(), watch.data());
-      CHECK((std::min(watch[0], watch[1]) >= 0.0) == (share <= 1.0));
+      friction.stick_events(e, state, scaled.data(), event_value.data());
+      CHECK((std::min(event_value[0], event_value[1]) >= 0.0) == (share <= 1.0));
       CHECK((-dot(scaled, rate, n) <= friction.support(e, state, rate.data())) >= (share <= 1.0)); // it takes no more than h
       if (share <= 1.0) continue;
       FrictionState begun = state;
-      begun.is_starting = true;
-      friction.begin_slip(e, begun, scaled.data());
+      begun.is_onset = true;
+      friction.set_onset_direction(e, begun, scaled.data());
       Wrench onset{};
       const Wrench still{};
       friction.slip_wrench(e, begun, still.data(), onset.data());
@@ -271,7 +271,7 @@ TEST_CASE("conformance: the mode problem's blocks are solved") {
     const double size = n == 1 ? 30.0 : 3000.0;
     const Wrench b = draw.wrench(size);
     for (const bool is_kinetic : {false, true}) {
-      const FrictionBlock block = friction.solve_block(e, state, a, b.data(), is_kinetic);
+      const BlockSolution block = friction.solve_block(e, state, a, b.data(), is_kinetic);
       Wrench left{}, w{}, ignored{};
       for (int r = 0; r < n; ++r) {
         w[r] = block.wrench[r];
@@ -281,7 +281,7 @@ TEST_CASE("conformance: the mode problem's blocks are solved") {
       const double slack = 1e-8 * size;
       if (n == 1) CHECK(std::abs(w[0]) <= (is_kinetic ? bounds_of(scene, probe, w[0]).slip : bounds_of(scene, probe, w[0]).stick));
       else CHECK(friction.gauge(e, state, w.data(), ignored.data()) <= 1.0 + 1e-8);
-      if (block.is_inside) {
+      if (block.sticks) {
         CHECK(std::sqrt(dot(left, left, n)) < slack);
         continue;
       }

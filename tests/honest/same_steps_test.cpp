@@ -188,7 +188,7 @@ TEST_CASE("no estimate is too small where records, harmonics and outputs cut the
                  << estimate.finest.statistics.steps);
     if (std::isnan(estimated)) {
       ++unknown;
-      CHECK_FALSE(estimate.unknown_because.empty());
+      CHECK_FALSE(estimate.reason_unknown.empty());
       continue;
     }
     // The closed form sums some thousand terms of rounding.

@@ -1,9 +1,9 @@
-// What is said for certain of a function between the places where it is known (PartPolynomial, WatchNodes), on thousands of
+// What is said for certain of a function between the places where it is known (PartPolynomial, EventNodes), on thousands of
 // sums of harmonics whose least value is known: none that is below zero may pass.
 #include "mbd/base/part_polynomial.h"
+#include "mbd/integrators/event_nodes.h"
 #include "mbd/integrators/tableau_dop853.h"
 #include "mbd/integrators/tableau_tsit5.h"
-#include "mbd/integrators/watch_nodes.h"
 #include "tests/random/random_number.h"
 
 #include <doctest/doctest.h>
@@ -82,7 +82,7 @@ Wave random_dip(RandomNumber& random, double depth, double& bottom) {
 
 PartPolynomial polynomial_of(const Wave& f) {
   PartPolynomial::Values values;
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = f.at(PartPolynomial::place(k));
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = f.at(PartPolynomial::node(k));
   PartPolynomial p;
   p.fit(values);
   return p;
@@ -90,12 +90,12 @@ PartPolynomial polynomial_of(const Wave& f) {
 
 bool is_positive_at_places(const Wave& f) {
   for (std::size_t k = 0; k <= PartPolynomial::k_order; ++k)
-    if (!(f.at(PartPolynomial::place(k)) > 0.0)) return false;
+    if (!(f.at(PartPolynomial::node(k)) > 0.0)) return false;
   return true;
 }
 
-template <class Places> WatchNodes nodes_of(const Wave& f, const Places& places) {
-  WatchNodes nodes(1);
+template <class Places> EventNodes nodes_of(const Wave& f, const Places& places) {
+  EventNodes nodes(1);
   for (const double x : places) {
     const double value = f.at(x);
     nodes.add(x, &value, true);
@@ -105,7 +105,7 @@ template <class Places> WatchNodes nodes_of(const Wave& f, const Places& places)
   return nodes;
 }
 
-WatchedStep watched(const Wave& f, bool has_slopes, bool is_merged = false) {
+EventStep watched(const Wave& f, bool has_slopes, bool is_merged = false) {
   return {0, is_merged, false, {f.at(0.0), has_slopes ? f.slope(0.0) : k_unknown}, {f.at(1.0), has_slopes ? f.slope(1.0) : k_unknown}};
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("a polynomial of order 6 is what it goes through, and up to order 4 ce
       return sum;
     };
     PartPolynomial::Values values;
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = f(PartPolynomial::place(k));
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = f(PartPolynomial::node(k));
     PartPolynomial p;
     p.fit(values);
     for (double x = 0.0; x <= 1.0; x += 0.01) CHECK(std::abs(p.at(x) - f(x)) < 1e-14 * 7.0);
@@ -148,7 +148,7 @@ TEST_CASE("no dip of a sum of harmonics is clear by the polynomial through its p
     const Wave dip = random_dip(random, depth, bottom);
     if (is_positive_at_places(dip)) {
       ++dips;
-      CHECK(polynomial_of(dip).doubtful_gap(0.0, 0, 6) >= 0);
+      CHECK(polynomial_of(dip).first_uncertain_gap(0.0, 0, 6) >= 0);
     }
     // The other way about: what is above zero by more than the polynomial may be off is clear, or there would be no end.
     const Wave miss = random_dip(random, -depth, bottom);
@@ -156,7 +156,7 @@ TEST_CASE("no dip of a sum of harmonics is clear by the polynomial through its p
     double at = 0.0;
     if (least_of(miss, at) <= 2.1 * p.error() + 1e-14) continue;
     ++above;
-    if (p.doubtful_gap(0.0, 0, 6) < 0) ++clear;
+    if (p.first_uncertain_gap(0.0, 0, 6) < 0) ++clear;
   }
   CHECK(dips > k_cases / 2);
   CHECK(above > k_cases / 4);
@@ -178,12 +178,12 @@ TEST_CASE("a bottom that is a place of both parts beside it is not between them"
       parts.pop_back();
       PartPolynomial::Values values;
       for (std::size_t k = 0; k < values.size(); ++k) {
-        values[k] = f.at(begin + PartPolynomial::place(k) * (end - begin));
+        values[k] = f.at(begin + PartPolynomial::node(k) * (end - begin));
         is_found = is_found || values[k] < 0.0;
       }
       PartPolynomial p;
       p.fit(values);
-      if (is_found || p.doubtful_gap(0.0, 0, 6) < 0) continue;
+      if (is_found || p.first_uncertain_gap(0.0, 0, 6) < 0) continue;
       const double cut = begin + std::clamp(p.lowest(0, 6), 0.1, 0.9) * (end - begin);
       parts.push_back({begin, cut});
       parts.push_back({cut, end});
@@ -204,7 +204,7 @@ TEST_CASE("a fall through zero is single if it is, and not certain if it is none
     }();
     const PartPolynomial p = polynomial_of(f);
     for (std::size_t gap = 0; gap < 6; ++gap) {
-      const double a = PartPolynomial::place(gap), b = PartPolynomial::place(gap + 1);
+      const double a = PartPolynomial::node(gap), b = PartPolynomial::node(gap + 1);
       if (!(f.at(a) > 0.0 && f.at(b) < 0.0)) continue;
       ++falls;
       int crossings = 0;
@@ -228,7 +228,7 @@ TEST_CASE("no dip of a sum of harmonics is certain or far by the places of any m
       double bottom = 0.0;
       const Wave f = random_dip(random, random.decades(-13.0, -0.5), bottom);
       if (f.at(0.0) < 0.0 || f.at(1.0) < 0.0) continue;
-      const WatchNodes nodes = nodes_of(f, places);
+      const EventNodes nodes = nodes_of(f, places);
       CAPTURE(places.size());
       CAPTURE(i);
       CHECK(2.0 * nodes.low(0) <= nodes.high(0));
@@ -268,7 +268,7 @@ TEST_CASE("values of merged joints are judged by the places that have looked at 
   f.omega = {1.6};
   f.phase = {3.141592653589793 - 1.6 * 0.46};
   f.c = 1.0 - 1e-3;
-  WatchNodes nodes(1);
+  EventNodes nodes(1);
   double last = f.at(0.0);
   for (std::size_t s = 1; s < 11; ++s) {
     const bool is_look = s == 4 || s == 8;

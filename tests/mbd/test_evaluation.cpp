@@ -74,13 +74,13 @@ TEST_CASE("multipliers are those of the last evaluation, whatever is projected o
   e.dynamics.project(0.0, off.data(), 1e-12);
   CHECK(e.dynamics.multipliers() == lambda);
   std::vector<double> change(e.y.size(), 1e-3);
-  e.dynamics.keep_allowed(change.data());
+  e.dynamics.project_onto_null_space(change.data());
   CHECK(e.dynamics.multipliers() == lambda);
   const RowSpec* const row = e.dynamics.layout().active[0].spec;
-  Dynamics::Candidates candidates;
+  Dynamics::ModeProblem candidates;
   candidates.rows = {row};
   e.dynamics.rates(0.0, e.y.data(), e.dy.data());
-  e.dynamics.respond(candidates, e.dy.data());
+  e.dynamics.compute_mode_problem(candidates, e.dy.data());
   CHECK(e.dynamics.multipliers() == lambda);
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("what acted on a body in other modes acts no more when it rides on ano
   for (std::size_t f = 0; f < system->frictions.size(); ++f) {
     if (system->frictions[f].friction->dimension() == 1) continue;
     sliding.friction[f].phase = FrictionPhase::slip;
-    sliding.friction[f].is_starting = true;
+    sliding.friction[f].is_onset = true;
     sliding.friction[f].direction[0] = 1.0;
     ++joints;
   }
@@ -236,27 +236,27 @@ TEST_CASE("a joint inside a cluster is looked at from one step's end near its li
     dynamics.pack(state, y.data());
     dynamics.begin_stages();
     const double x = y[0];
-    const double* const watch = &dynamics.watch()[static_cast<std::size_t>(system->frictions[0].watch)];
+    const double* const event_value = &dynamics.event_value()[static_cast<std::size_t>(system->frictions[0].first_event)];
     const auto at = [&](Request request, double force) {
       y[0] = x - force / 1e4;
       dynamics.evaluate(request, 0.0, y.data(), dy.data());
     };
     const auto left_of = [&](double force) { // of its capacity, the share that is left
       at(Request::end, force);
-      return std::min(watch[0], watch[1]);
+      return std::min(event_value[0], event_value[1]);
     };
     // Of stages nobody looks at the joint; code is made of them all the same, and is believed for what it finds there.
     for (int stage = 0; stage < 6; ++stage) at(Request::stage, 10.0 + stage);
     CHECK((dynamics.coded_stages() > 0) == (code == StageCode::at_once && MachineCode::is_available()));
-    CHECK(!dynamics.looks_at_merged(false));
+    CHECK(!dynamics.needs_rigid_joint_events(false));
     CHECK(std::abs(left_of(40.0) - (1.0 - 0.75 * 40.0 / 400.0)) < 1e-6); // known to the polygons' sums
-    CHECK(!dynamics.looks_at_merged(false));
+    CHECK(!dynamics.needs_rigid_joint_events(false));
     CHECK(left_of(440.0) < 0.5);
-    CHECK(dynamics.looks_at_merged(false));
+    CHECK(dynamics.needs_rigid_joint_events(false));
     CHECK(left_of(44.0) > 0.5);
-    CHECK(dynamics.looks_at_merged(false)); // the step that ends here began near the limit
+    CHECK(dynamics.needs_rigid_joint_events(false)); // the step that ends here began near the limit
     CHECK(left_of(48.0) > 0.5);
-    CHECK(!dynamics.looks_at_merged(false));
+    CHECK(!dynamics.needs_rigid_joint_events(false));
   }
 }
 

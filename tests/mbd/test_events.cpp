@@ -205,7 +205,7 @@ stiffness = 1e4
   integrator->restart(dynamics, 0.0, y.data());
   integrator->step(dynamics, 1.0);
   EventFinder finder(*system, dynamics.dimension());
-  CHECK(finder.find(*integrator, dynamics, std::vector<char>(system->watch_count, 0)));
+  CHECK(finder.find(*integrator, dynamics, std::vector<char>(system->event_count, 0)));
   CHECK(finder.theta() < 1e-3); // at once
   CHECK(finder.fired() == std::vector<int>{0});
 }
@@ -250,7 +250,7 @@ stiffness = 1e4
   integrator->step(dynamics, 1.0);
   const long before = dynamics.evaluations();
   EventFinder finder(*system, dynamics.dimension());
-  REQUIRE(finder.find(*integrator, dynamics, std::vector<char>(system->watch_count, 0)));
+  REQUIRE(finder.find(*integrator, dynamics, std::vector<char>(system->event_count, 0)));
   const double t = integrator->t0() + finder.theta() * integrator->h();
   CHECK(std::abs(t - std::sqrt(2.0 / 9.81)) < 1e-14); // of rounding in y over the velocity, 2e-16/4.4, and of t
   CHECK(dynamics.evaluations() - before <= 6);

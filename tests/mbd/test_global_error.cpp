@@ -318,7 +318,7 @@ TEST_CASE("finer runs are given up beyond the evaluations granted, wherever thes
   const auto needed = static_cast<double>(estimate_global_error(*system, initial, coarse, run).cost.evaluations);
   CHECK_NOTHROW((void)estimate_global_error(*system, initial, coarse, run, {}, needed));
   for (const double share : {0.0, 0.1, 0.5})
-    CHECK_THROWS_AS((void)estimate_global_error(*system, initial, coarse, run, {}, share * needed), EstimateTooDear);
+    CHECK_THROWS_AS((void)estimate_global_error(*system, initial, coarse, run, {}, share * needed), EvaluationBudgetExceeded);
 }
 
 // Below 1e-14 rounding makes the steps: there is no finer tolerance.
@@ -329,7 +329,7 @@ TEST_CASE("where no run is finer all errors are unknown but those of what never 
   finest.has_extremes = true;
   const RunResult run = simulate(*system, initial, finest);
   const GlobalErrorEstimate estimate = estimate_global_error(*system, initial, finest, run);
-  CHECK_FALSE(estimate.unknown_because.empty());
+  CHECK_FALSE(estimate.reason_unknown.empty());
   CHECK(std::isnan(estimate.error.of(ErrorKind::position).value));
   for (std::size_t c = 0; c < run.ranges.size(); ++c) {
     if (run.ranges[c].channel->name == "mass.x") CHECK(std::isnan(estimate.channels[c].high));
@@ -459,10 +459,10 @@ TEST_CASE("from where two references part errors are unknown, however well the r
     return estimate_global_error(*system, initial, fixed, run);
   };
   const GlobalErrorEstimate early = estimate_to(1.0), late = estimate_to(40.0);
-  CHECK(early.unknown_because.empty());
+  CHECK(early.reason_unknown.empty());
   CHECK_FALSE(early.references.empty());
   CHECK(early.error.of(ErrorKind::position).value < 1e-6);
-  CHECK(late.unknown_because.find("part at t = ") != std::string::npos);
+  CHECK(late.reason_unknown.find("part at t = ") != std::string::npos);
   CHECK(late.references.empty());
   CHECK(std::isnan(late.error.of(ErrorKind::position).value));
   for (const ChannelError& error : late.channels)

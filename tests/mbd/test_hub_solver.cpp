@@ -16,7 +16,7 @@ using namespace steplap;
 namespace {
 
 // A deck or two, and small bodies that each hold on to one of them, or to a neighbour; a few rows hold the decks themselves.
-struct Scene {
+struct HubProblem {
   std::vector<SchurRow> rows;
   MatX j, w; ///< rows × 3·bodies; inverse masses
   [[nodiscard]] MatX matrix() const { return j * w * j.transpose(); }
@@ -51,8 +51,8 @@ public:
         rows_.back().wj[side][c] *= factor;
       }
   }
-  [[nodiscard]] Scene scene() const {
-    Scene s;
+  [[nodiscard]] HubProblem scene() const {
+    HubProblem s;
     s.rows = rows_;
     s.w = Eigen::Map<const VecX>(w_.data(), static_cast<Eigen::Index>(w_.size())).asDiagonal();
     s.j = MatX::Zero(static_cast<Eigen::Index>(rows_.size()), s.w.rows());
@@ -89,14 +89,14 @@ Builder crowd(const Kind& kind, int blocks, std::mt19937& generator) {
   return builder;
 }
 
-SchurSolver factored(const Scene& scene, SchurSolver::Hubs hubs, double shift = 0.0) {
+SchurSolver factored(const HubProblem& scene, SchurSolver::HubElimination hubs, double shift = 0.0) {
   SchurSolver solver;
   solver.analyze(scene.rows, static_cast<int>(scene.rows.size()), {}, hubs);
   solver.factor(scene.rows, shift);
   return solver;
 }
 
-VecX solved(const SchurSolver& solver, const Scene& scene, VecX right) {
+VecX solved(const SchurSolver& solver, const HubProblem& scene, VecX right) {
   solver.solve(scene.rows, right.data());
   return right;
 }
@@ -114,13 +114,14 @@ TEST_CASE("constraint equations with hubs: against a dense factorisation, and ot
                            Kind{.decks = 2, .chained = 20, .outer = 4}, Kind{.outer = 1, .is_locked = true}})
     for (const int blocks : {64, 100, 160})
       for (int draw = 0; draw < 4; ++draw) {
-        const Scene scene = crowd(kind, blocks, generator).scene();
+        const HubProblem scene = crowd(kind, blocks, generator).scene();
         const MatX a = scene.matrix();
         const Eigen::SelfAdjointEigenSolver<MatX> eigen(a, Eigen::EigenvaluesOnly);
         const double condition = eigen.eigenvalues()[a.rows() - 1] / std::max(1e-300, eigen.eigenvalues()[0]);
         if (condition > 1e6) continue;
         ++compared;
-        const SchurSolver with = factored(scene, SchurSolver::Hubs::apart), without = factored(scene, SchurSolver::Hubs::as_others);
+        const SchurSolver with = factored(scene, SchurSolver::HubElimination::apart),
+                          without = factored(scene, SchurSolver::HubElimination::as_others);
         const VecX right = VecX::Random(a.rows()), x = solved(with, scene, right), y = solved(without, scene, right);
         if (!are_same(x, y)) ++apart;
         // Rounding of a factorisation, and the two digits of which B may be smaller than A.
@@ -142,9 +143,9 @@ TEST_CASE("constraint equations with hubs: against a dense factorisation, and ot
 
 TEST_CASE("constraint equations with hubs: what is not for them is solved as if there were none, to the bit") {
   std::mt19937 generator(32);
-  const auto check_same = [](const Scene& scene, double shift) {
-    const SchurSolver with = factored(scene, SchurSolver::Hubs::apart, shift),
-                      without = factored(scene, SchurSolver::Hubs::as_others, shift);
+  const auto check_same = [](const HubProblem& scene, double shift) {
+    const SchurSolver with = factored(scene, SchurSolver::HubElimination::apart, shift),
+                      without = factored(scene, SchurSolver::HubElimination::as_others, shift);
     const VecX right = scene.matrix() * VecX::Random(static_cast<Eigen::Index>(scene.rows.size()));
     CHECK(are_same(solved(with, scene, right), solved(without, scene, right)));
     CHECK(with.is_singular() == without.is_singular());
@@ -170,9 +171,9 @@ TEST_CASE("constraint equations with hubs: what is not for them is solved as if 
 // The same solver goes from one to the other and back: what it makes hangs on the numbers that it has now.
 TEST_CASE("constraint equations with hubs: by turns with numbers that are not for them") {
   std::mt19937 generator(33);
-  const Scene scene = crowd({}, 100, generator).scene();
+  const HubProblem scene = crowd({}, 100, generator).scene();
   SchurSolver solver;
-  solver.analyze(scene.rows, 100, {}, SchurSolver::Hubs::apart);
+  solver.analyze(scene.rows, 100, {}, SchurSolver::HubElimination::apart);
   const VecX right = VecX::Random(100);
   solver.factor(scene.rows);
   const VecX first = solved(solver, scene, right);

@@ -27,13 +27,13 @@ std::string drive(const std::string& body, const std::string& coordinate) {
 }
 const char* k_still = "[[signal]]\nname = \"still\"\nkind = \"constant\"\nvalue = 0.0\n";
 
-struct Made {
+struct CompiledLayout {
   std::unique_ptr<System> system;
   Layout layout;
 };
 
-Made make(const std::string& text) {
-  Made made;
+CompiledLayout make(const std::string& text) {
+  CompiledLayout made;
   made.system = compile(scene(text));
   made.layout = make_layout(*made.system, made.system->initial_state());
   return made;
@@ -42,7 +42,7 @@ Made make(const std::string& text) {
 } // namespace
 
 TEST_CASE("welded bodies become one cluster about their common centre") {
-  const Made m = make(bodies(3) + joint("weld", "a", "b") + joint("weld", "c", "b"));
+  const CompiledLayout m = make(bodies(3) + joint("weld", "a", "b") + joint("weld", "c", "b"));
   REQUIRE(m.layout.cluster_count() == 1);
   CHECK(m.layout.active.empty());
   const Cluster& k = m.layout.clusters[0];
@@ -54,31 +54,32 @@ TEST_CASE("welded bodies become one cluster about their common centre") {
 }
 
 TEST_CASE("a loop of welds leaves one redundant block, a weld to the ground stays rows") {
-  const Made loop = make(bodies(3) + joint("weld", "a", "b") + joint("weld", "b", "c") + joint("weld", "c", "a"));
+  const CompiledLayout loop = make(bodies(3) + joint("weld", "a", "b") + joint("weld", "b", "c") + joint("weld", "c", "a"));
   CHECK(loop.layout.cluster_count() == 1);
   CHECK(loop.layout.redundant_blocks.size() == 1);
   CHECK(loop.layout.active.empty());
-  const Made grounded = make(bodies(2) + joint("weld", "a", "b") + joint("weld", "a", "ground"));
+  const CompiledLayout grounded = make(bodies(2) + joint("weld", "a", "b") + joint("weld", "a", "ground"));
   CHECK(grounded.layout.cluster_count() == 1);
   CHECK(grounded.layout.active.size() == 3);
 }
 
 TEST_CASE("a driven coordinate of a body alone is locked; of a merged body, or driven twice, it is a row") {
-  const Made locked = make(bodies(2) + k_still + drive("a", "x") + drive("a", "angle"));
+  const CompiledLayout locked = make(bodies(2) + k_still + drive("a", "x") + drive("a", "angle"));
   CHECK(locked.layout.locks.size() == 2);
   CHECK(locked.layout.active.empty());
   CHECK(locked.layout.clusters[0].w[0] == 0.0);
   CHECK(locked.layout.clusters[0].w[1] > 0.0);
   CHECK(locked.layout.clusters[0].w[2] == 0.0);
   CHECK(locked.layout.driven_rows.empty());
-  const Made merged = make(bodies(2) + k_still + joint("weld", "a", "b") + drive("a", "x"));
+  const CompiledLayout merged = make(bodies(2) + k_still + joint("weld", "a", "b") + drive("a", "x"));
   CHECK(merged.layout.locks.empty());
   CHECK(merged.layout.active.size() == 1);
   CHECK(merged.layout.driven_rows.size() == 1);
 }
 
 TEST_CASE("fixed bodies vanish, joints to them are joints to the ground") {
-  const Made m = make(bodies(1) + "[[body]]\nname = \"wall\"\nfixed = true\nposition = [5.0, 1.0]\n" + joint("distance", "a", "wall"));
+  const CompiledLayout m =
+      make(bodies(1) + "[[body]]\nname = \"wall\"\nfixed = true\nposition = [5.0, 1.0]\n" + joint("distance", "a", "wall"));
   CHECK(m.system->body_count() == 2); // the ground and a
   CHECK(m.layout.cluster_count() == 1);
   CHECK(m.layout.active.size() == 1);

@@ -147,7 +147,7 @@ TEST_CASE("linearisation: joints, welded bodies off their common centre, a drive
   options.end = 1.0;
   Simulation simulation(*system, system->initial_state(), options);
   Dynamics dynamics(*system);
-  dynamics.set_time_limit(2.0);
+  dynamics.set_left_limit_time(2.0);
   int looks = 0;
   for (double next = 0.0; simulation.advance();) {
     const State state = simulation.current_state();
@@ -209,7 +209,7 @@ rotational_damping = 2.0
 )"));
   Dynamics dynamics(*system);
   dynamics.use_coordinates(Coordinates::joint);
-  dynamics.set_time_limit(1.0);
+  dynamics.set_left_limit_time(1.0);
   const State state = system->initial_state();
   dynamics.set_state(state);
   REQUIRE(dynamics.layout().has_mechanisms());
@@ -238,7 +238,7 @@ TEST_CASE("linearisation: pendulums that weight alone moves") {
     const auto system = compile(scene(text));
     Dynamics dynamics(*system);
     dynamics.use_coordinates(Coordinates::joint);
-    dynamics.set_time_limit(1.0);
+    dynamics.set_left_limit_time(1.0);
     const State state = system->initial_state();
     dynamics.set_state(state);
     REQUIRE(dynamics.coordinate_count() == count);
@@ -281,7 +281,7 @@ TEST_CASE("linearisation: a joint that slides, and nothing else") {
     State state = system->initial_state();
     state.friction[0].phase = FrictionPhase::slip;
     Dynamics dynamics(*system);
-    dynamics.set_time_limit(1.0);
+    dynamics.set_left_limit_time(1.0);
     dynamics.set_state(state);
     REQUIRE(dynamics.layout().sliding.size() == 1);
     CHECK(deviation(dynamics, state, k_step, k_step) < 1e-5); // the slip law's own differences
@@ -327,7 +327,7 @@ unloading = [[0.0, 0.0], [0.1, 400.0]]
     state.friction[0].phase = FrictionPhase::slip;
     state.friction[0].sign = static_cast<std::int8_t>(sign);
     Dynamics dynamics(*system);
-    dynamics.set_time_limit(1.0);
+    dynamics.set_left_limit_time(1.0);
     dynamics.set_state(state);
     REQUIRE(dynamics.layout().sliding.size() == 1);
     CHECK(deviation(dynamics, state, k_step, k_step) < 1e-6); // the slip law's own differences
@@ -352,14 +352,14 @@ TEST_CASE("linearisation: the paper's transformer sticking, sliding, with feet l
     options.end = 0.3;
     Simulation simulation(*system, system->initial_state(), options);
     Dynamics dynamics(*system);
-    dynamics.set_time_limit(1.0);
+    dynamics.set_left_limit_time(1.0);
     int phases[4] = {}, open = 0, looks = 0;
     for (double next = 0.0; simulation.advance();) {
       const State state = simulation.current_state();
-      bool is_starting = false;
+      bool is_onset = false;
       for (std::size_t f = 0; f < state.friction.size(); ++f)
-        if (system->frictions[f].friction->dimension() == 3 && state.friction[f].is_starting) is_starting = true;
-      if (state.t < next || is_starting) continue; // a starting joint's law bends within 1e-7 s
+        if (system->frictions[f].friction->dimension() == 3 && state.friction[f].is_onset) is_onset = true;
+      if (state.t < next || is_onset) continue; // a starting joint's law bends within 1e-7 s
       next = state.t + 0.01;
       for (const FrictionState& f : state.friction) ++phases[static_cast<int>(f.phase)];
       for (const UnitMode mode : state.mode) open += mode == k_contact_open ? 1 : 0;
@@ -466,7 +466,7 @@ TEST_CASE("linearisation: inner states of a joint between bodies that ride on ot
   options.end = 0.01;
   Simulation simulation(*system, system->initial_state(), options);
   Dynamics dynamics(*system);
-  dynamics.set_time_limit(1.0);
+  dynamics.set_left_limit_time(1.0);
   int looks = 0, yields = 0;
   for (double next = 0.0; simulation.advance();) {
     const State state = simulation.current_state();
@@ -497,7 +497,7 @@ TEST_CASE("linearisation: inner states of a joint that slides at a corner of its
   options.end = 0.0175;
   Simulation simulation(*system, system->initial_state(), options);
   Dynamics dynamics(*system);
-  dynamics.set_time_limit(1.0);
+  dynamics.set_left_limit_time(1.0);
   int looks = 0;
   for (double next = 0.0145; simulation.advance();) {
     const State state = simulation.current_state();

@@ -144,7 +144,7 @@ TEST_CASE("a scene without friction and contact has nothing of that machinery, a
   CHECK(system->units.empty());
   CHECK(system->frictions.empty());
   CHECK(system->contact_count == 0);
-  CHECK(system->watch_count == 0); // so that the event finder returns before it looks at anything
+  CHECK(system->event_count == 0); // so that the event finder returns before it looks at anything
   const Layout layout = make_layout(*system, system->initial_state());
   CHECK(layout.sliding.empty());
   CHECK(layout.holding.empty());
@@ -167,7 +167,7 @@ TEST_CASE("the same bodies with springs only cost the plain steps") {
            entry.kind->name == "step_lap_interface";
   });
   const auto system = compile(model);
-  CHECK(system->watch_count == 0);
+  CHECK(system->event_count == 0);
   SimulationOptions o = options({"rk4", 1e-4, 0.2});
   o.output_step = 0.0;
   const RunStatistics s = simulate(*system, system->initial_state(), o).statistics;

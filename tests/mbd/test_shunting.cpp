@@ -18,13 +18,13 @@ namespace {
 
 constexpr double k_pi = std::numbers::pi;
 
-struct Given {
+struct ShuntingCase {
   double m = 87e3, other = 80e3, v = 2.0, other_v = 0.0;
   std::string curves = "buffer = [[0, 0], [0.3, 1.68e6]]";
   double start = 0.1;
 };
 
-Signal pulse_of(const Given& g) {
+Signal pulse_of(const ShuntingCase& g) {
   const auto n = [](double x) { return std::to_string(x); };
   const Model model =
       parse_model("[[signal]]\nname = 'meeting'\nkind = 'shunting'\nmass = " + n(g.m) + "\nother_mass = " + n(g.other) +
@@ -39,16 +39,16 @@ Signal pulse_of(const Given& g) {
 
 double end_of(const Signal& s) { return s.breakpoints().back(); }
 double velocity_change(const Signal& s) { return s.mean(0.0, end_of(s)) * end_of(s); }
-double reduced(const Given& g) { return g.m * g.other / (g.m + g.other); }
+double reduced(const ShuntingCase& g) { return g.m * g.other / (g.m + g.other); }
 
 // What the wagons part with, of the energy of their closing.
-double given_back(const Given& g, const Signal& s) {
+double given_back(const ShuntingCase& g, const Signal& s) {
   const double closing = g.v - g.other_v, parting = closing + velocity_change(s) * g.m / reduced(g);
   return parting * parting / (closing * closing);
 }
 
 // Closing x as a function of time, from the pulse alone: ẍ = a m/μ.
-double closed(const Given& g, const Signal& s, double t) {
+double closed(const ShuntingCase& g, const Signal& s, double t) {
   return (g.v - g.other_v) * t + s.drive(g.start + t, DriveLevel::acceleration).value * g.m / reduced(g);
 }
 
@@ -58,7 +58,7 @@ double closed(const Given& g, const Signal& s, double t) {
 // lasts π √(μ/k).
 TEST_CASE("linear buffers make a half sine") {
   for (const double v : {2.0, -1.5}) {
-    Given g;
+    ShuntingCase g;
     if (v > 0.0) g.v = v;
     else g.v = 0.0, g.other_v = -v;
     const double k = 1.68e6 / 0.3, mu = reduced(g), duration = k_pi * std::sqrt(mu / k), peak = -v * std::sqrt(k * mu) / g.m;
@@ -76,7 +76,7 @@ TEST_CASE("linear buffers make a half sine") {
 // A constant force: uniform deceleration until they move together, then they are pushed apart by the share η of it: they part with
 // √η of the closing speed.
 TEST_CASE("a constant force with hysteresis is known in closed form") {
-  Given g;
+  ShuntingCase g;
   g.curves = "buffer = [[0, 4e5], [0.3, 4e5]]\nunloading = [[0, 1e5], [0.3, 1e5]]";
   const Signal s = pulse_of(g);
   const double mu = reduced(g), force = 8e5, stop = mu * g.v / force; // two buffers beside each other
@@ -88,7 +88,7 @@ TEST_CASE("a constant force with hysteresis is known in closed form") {
 
 // An impact oscillator with damping: x = v/ω_d e^{−ζωt} sin ω_d t while the buffers push.
 TEST_CASE("a damped buffer follows the damped oscillator and does not pull") {
-  Given g;
+  ShuntingCase g;
   const double k = 5.6e6, mu = reduced(g), zeta = 0.3, omega = std::sqrt(k / mu), omega_d = omega * std::sqrt(1.0 - zeta * zeta);
   g.curves += "\ndamping = " + std::to_string(2.0 * zeta * omega * mu); // of one buffer: as of all together
   const Signal s = pulse_of(g);
@@ -103,7 +103,7 @@ TEST_CASE("a damped buffer follows the damped oscillator and does not pull") {
 }
 
 TEST_CASE("an end stop is met at its travel and pushes with its stiffness") {
-  Given g;
+  ShuntingCase g;
   g.v = 3.0;
   g.curves = "buffer = [[0, 0], [0.1, 5e5]]\nstop_stiffness = 5e7";
   const Signal s = pulse_of(g);
@@ -127,7 +127,7 @@ TEST_CASE("energy and momentum balance for random buffers") {
     return std::round(1e3 * (low + (high - low) * (static_cast<double>(random()) / 4294967295.0))) / 1e3;
   };
   for (int i = 0; i < 200; ++i) {
-    Given g;
+    ShuntingCase g;
     g.m = between(2e4, 2e5);
     g.other = between(2e4, 2e5);
     g.v = between(0.5, 3.0);
@@ -155,7 +155,7 @@ TEST_CASE("energy and momentum balance for random buffers") {
 }
 
 TEST_CASE("what is not two wagons is refused with one error") {
-  const auto refused = [](const Given& g, const std::string& part) {
+  const auto refused = [](const ShuntingCase& g, const std::string& part) {
     try {
       static_cast<void>(pulse_of(g));
       FAIL(part);
@@ -165,11 +165,11 @@ TEST_CASE("what is not two wagons is refused with one error") {
     }
   };
   const auto with = [](const std::string& curves) {
-    Given g;
+    ShuntingCase g;
     g.curves = curves;
     return g;
   };
-  Given same;
+  ShuntingCase same;
   same.other_v = same.v;
   refused(same, "never meet");
   refused(with("buffer = [[0, 0]]"), "two points or more");
@@ -181,14 +181,14 @@ TEST_CASE("what is not two wagons is refused with one error") {
   refused(with("buffer = [[0, 0], [0.1, 1e5]]\nunloading = [[0, 0], [0.05, 9e4], [0.1, 1e5]]"), "give back more");
   refused(with("buffer = [[0, 0], [0.1, 1e5]]"), "J are left: give the 'stop_stiffness'");
   refused(with(""), "buffer");
-  Given light;
+  ShuntingCase light;
   light.m = 0.0;
   refused(light, "mass");
 }
 
 // The other way to the same pulse: two bodies and a contact as stiff as the four buffers, run by the equations of motion.
 TEST_CASE("the pulse is that of two wagons that are simulated") {
-  Given g;
+  ShuntingCase g;
   const Signal s = pulse_of(g);
   const Model model =
       parse_model("gravity = [0, 0]\n[simulation]\nend = 0.5\n[[body]]\nname = 'wagon'\nmass = 87e3\ninertia = 1\nvelocity = [2, 0]\n"

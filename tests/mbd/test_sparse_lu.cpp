@@ -13,14 +13,14 @@ using namespace steplap;
 
 namespace {
 
-struct Entry {
+struct MatrixPosition {
   int row, column;
 };
 
 // A few entries in each row and column, some places twice; the diagonal may be missing.
-std::vector<Entry> random_pattern(int n, std::mt19937& random) {
+std::vector<MatrixPosition> random_pattern(int n, std::mt19937& random) {
   std::uniform_int_distribution<int> any(0, n - 1);
-  std::vector<Entry> entries;
+  std::vector<MatrixPosition> entries;
   for (int i = 0; i < n; ++i) {
     entries.push_back({i, (i + 1) % n}); // a cycle: not singular by its structure
     if (i % 3 != 0) entries.push_back({i, i});
@@ -30,7 +30,7 @@ std::vector<Entry> random_pattern(int n, std::mt19937& random) {
 }
 
 // Largest error of A x = b, relative; -1 if the matrix was found singular.
-double error(SparseLu& lu, int n, const std::vector<Entry>& entries, const std::vector<double>& values) {
+double error(SparseLu& lu, int n, const std::vector<MatrixPosition>& entries, const std::vector<double>& values) {
   MatX a = MatX::Zero(n, n);
   lu.begin(n);
   for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -59,7 +59,7 @@ TEST_CASE("sparse factors solve as dense ones do, through changes of numbers and
   SparseLu lu;
   for (const int n : {1, 2, 5, 40, 40, 120, 40}) {
     CAPTURE(n);
-    std::vector<Entry> entries = random_pattern(n, random);
+    std::vector<MatrixPosition> entries = random_pattern(n, random);
     for (int repeat = 0; repeat < 20; ++repeat) {
       if (repeat == 8) entries.push_back({0, n - 1}); // one entry more
       if (repeat == 12) std::swap(entries.front(), entries.back());
@@ -75,7 +75,7 @@ TEST_CASE("sparse factors solve as dense ones do, through changes of numbers and
 TEST_CASE("sparse factors choose other pivots where those of before vanish, and tell of singular "
           "matrices") {
   SparseLu lu;
-  const std::vector<Entry> entries = {{0, 0}, {0, 1}, {1, 0}, {1, 1}};
+  const std::vector<MatrixPosition> entries = {{0, 0}, {0, 1}, {1, 0}, {1, 1}};
   CHECK(error(lu, 2, entries, {1.0, 2.0, 3.0, 4.0}) <= 1e-15);
   CHECK(error(lu, 2, entries, {0.0, 2.0, 3.0, 4.0}) <= 1e-15);
   CHECK(error(lu, 2, entries, {3.0, 4.0, 0.0, 2.0}) <= 1e-15); // the pivot of before is zero

@@ -25,14 +25,14 @@ struct Faulty : Element {
 
 class FaultyGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct FaultyElement {
     int body = 0;
     double told = 1.0, push = 0.0;
   };
-  std::vector<Entry> entries;
+  std::vector<FaultyElement> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const FaultyElement& entry : entries) {
       const Motion<double>& m = e.motion[entry.body];
       e.force[entry.body].fx += entry.push - k_stiffness * m.x;
       e.dissipation -= entry.push * m.vx;
@@ -40,11 +40,11 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += entry.told * 0.5 * k_stiffness * motion[entry.body].x * motion[entry.body].x;
+    for (const FaultyElement& entry : entries) sum += entry.told * 0.5 * k_stiffness * motion[entry.body].x * motion[entry.body].x;
     return sum;
   }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>& out) const override {
-    for (const Entry& entry : entries) {
+    for (const FaultyElement& entry : entries) {
       PairJacobian& j = out.emplace_back();
       j.a = entry.body;
       j.b = k_ground;
@@ -54,7 +54,7 @@ public:
     }
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.body] = 1;
+    for (const FaultyElement& entry : entries) is_used[entry.body] = 1;
   }
 };
 

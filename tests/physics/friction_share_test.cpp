@@ -129,7 +129,7 @@ TEST_CASE("ties are noted with share and rate, and the other outcome is that of 
     REQUIRE(r.event_times(slips).size() == 1);
     CHECK(r.event_times(sticks).empty());
     REQUIRE(r.result.ties.size() == 1);
-    const SlipTie& tie = r.result.ties.front();
+    const SimultaneousSlip& tie = r.result.ties.front();
     CHECK(tie.slips == slips);
     CHECK(tie.sticks == sticks);
     CHECK(1.0 - tie.share ==

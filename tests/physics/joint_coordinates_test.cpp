@@ -57,16 +57,16 @@ struct Outcome {
 Outcome outcome_at(const System& system, const State& state, Coordinates coordinates) {
   Dynamics dynamics(system);
   dynamics.use_coordinates(coordinates);
-  dynamics.set_time_limit(state.t + 1.0);
+  dynamics.set_left_limit_time(state.t + 1.0);
   dynamics.set_state(state);
   std::vector<double> y(dynamics.dimension()), dy(y.size());
   dynamics.pack(state, y.data());
   dynamics.rates(state.t, y.data(), dy.data());
   Outcome outcome;
-  Dynamics::Candidates candidates;
+  Dynamics::ModeProblem candidates;
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
     if (state.friction[f].phase == FrictionPhase::slip) candidates.rows.push_back(system.frictions[f].friction->rows(state.friction[f]));
-  dynamics.respond(candidates, dy.data());
+  dynamics.compute_mode_problem(candidates, dy.data());
   outcome.compliance = candidates.compliance;
   outcome.along = candidates.acceleration;
   const Snapshot snapshot = dynamics.snapshot(dy.data());

@@ -50,7 +50,7 @@ struct Bench {
   explicit Bench(unsigned seed, bool is_any_pose = true) {
     state.friction[0].phase = FrictionPhase::stick;
     dynamics.set_state(state);
-    dynamics.set_time_limit(9.0);
+    dynamics.set_left_limit_time(9.0);
     n = dynamics.coordinate_count();
     y.resize(dynamics.dimension());
     dy.resize(y.size());

@@ -310,12 +310,12 @@ TEST_CASE("a locked clutch that holds back is found out, by the run and by the a
     const auto system = compile(model);
     State state = system->initial_state();
     state.friction[0].phase = FrictionPhase::stick;
-    std::vector<double> watch(static_cast<std::size_t>(system->watch_count), 1.0);
+    std::vector<double> event_value(static_cast<std::size_t>(system->event_count), 1.0);
     // Bounds less what it bears, either way: of the way that it locks nothing is known but that it is far.
     const auto holds_back = [&](double couple) {
-      watch[system->frictions[0].watch] = OneWayLock::k_without_bound;
-      watch[system->frictions[0].watch + 1] = drags - couple;
-      check_sticking(*system, state, nullptr, 0.5, watch);
+      event_value[system->frictions[0].first_event] = OneWayLock::k_without_bound;
+      event_value[system->frictions[0].first_event + 1] = drags - couple;
+      check_sticking(*system, state, nullptr, 0.5, event_value);
     };
     CHECK_NOTHROW(holds_back(drags - 0.1));
     CHECK_NOTHROW(holds_back(drags + 1e-9)); // of 2 kg m² (π/s)²: a part of 5e-11

@@ -124,7 +124,7 @@ TEST_CASE("dense output: one step's error inside it falls with the order it clai
       const State initial = start.state();
       Dynamics dynamics(*system);
       dynamics.set_state(initial);
-      dynamics.set_time_limit(1.0);
+      dynamics.set_left_limit_time(1.0);
       std::vector<double> y(dynamics.dimension()), out(y), z(y);
       dynamics.pack(initial, y.data());
       const auto step = [&](const char* name, double size, int count, double theta, std::vector<double>& result) {

@@ -450,12 +450,12 @@ TEST_CASE("what cannot be done with a rope over pulleys is told, and where") {
 namespace {
 
 // What a run says as it breaks off, and when.
-struct Told {
+struct ReportedEvent {
   std::string text = "nothing";
   double t = -1.0;
 };
 
-Told told_of(const std::string& text, double end, const std::string& method, double step = 1e-3) {
+ReportedEvent told_of(const std::string& text, double end, const std::string& method, double step = 1e-3) {
   Run r;
   r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
   try {
@@ -463,7 +463,7 @@ Told told_of(const std::string& text, double end, const std::string& method, dou
     o.settings.step = step;
     (void)simulate(*r.system, r.system->initial_state(), o);
   } catch (const NumericalFailure& failure) {
-    Told told{failure.what()};
+    ReportedEvent told{failure.what()};
     if (const std::size_t at = told.text.find("t = "); at != std::string::npos) told.t = std::stod(told.text.substr(at + 4));
     return told;
   }
@@ -482,7 +482,7 @@ TEST_CASE("an elastic rope: a load that is pulled up to its pulley ends the run,
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4", "moreau"}) {
     CAPTURE(std::string(method));
     const double step = 1e-4;
-    const Told told =
+    const ReportedEvent told =
         told_of(atwood(3.0, 2.0, -1.0, -0.5, "")
                     .replace(atwood(3.0, 2.0, -1.0, -0.5, "").find("inextensible = true"), 19, "stiffness = 1e6\ndamping = 1e3"),
                 2.0, method, step);
@@ -502,7 +502,7 @@ TEST_CASE("a winch that pulls its load up to the pulley, on a rope that stretche
         CAPTURE(std::string(law));
         CAPTURE(aside);
         CAPTURE(std::string(method));
-        const Told told =
+        const ReportedEvent told =
             told_of(point_body("winch", 10.0, -2.0, 0.0) + point_body("load", 200.0, aside, -2.0) + ground_marker("pulley", 0.0, 0.0) +
                         guide("winch", "ground", "[1.0, 0.0]", -2.0, 0.0) + signal_entry("constant", "speed", "value = -0.5") +
                         element("prescribed_motion", "hoist", "a = \"winch\"; coordinate = \"x\"; signal = \"speed\"; as = \"velocity\"") +

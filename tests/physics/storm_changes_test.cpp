@@ -39,7 +39,7 @@ struct Change {
   double t = 0.0; ///< s
 };
 
-struct Scene {
+struct StormCase {
   std::string text;            ///< of what changes, without storm
   std::vector<Change> changes; ///< that are known in closed form
 };
@@ -73,7 +73,7 @@ public:
 
   double wake = 0.0;
   bool is_between = false;
-  Scene scene;
+  StormCase scene;
 
 private:
   // A time inside the storm, mostly.

@@ -99,7 +99,7 @@ TEST_CASE("a table's segments: found in any number, and several passed at once")
   CHECK(table.segment_beyond(10, true, 1.00005) == table.segment_at(1.00005)); // a jump
   CHECK(std::abs(table.integral(2.0) - 8.0 / 3.0) < 2.0 * 1e-8 / 12.0 * 2.0 + 1e-12);
   TabulatedSpring law{table, table, 0.0, 1.0};
-  const UnitMode mode = law.mode_at(2.5, -1.5);
+  const UnitMode mode = law.initial_mode(2.5, -1.5);
   CHECK(TabulatedSpring::spring_segment(mode) == table.segment_at(2.5));
   CHECK(TabulatedSpring::damper_segment(mode) == table.segment_at(-1.5));
   CHECK(std::abs(law.force(2.5, -1.5, mode) + 2.5 * 2.5 + 1.5 * 1.5) < 1e-8);

@@ -67,7 +67,7 @@ bool is_known(const std::string& file, const CrossCheck& check) {
   const bool is_listed = file.ends_with("redundant_loop.toml") || file.ends_with("weak_clamping.toml");
   return is_listed && std::all_of(check.disagreements.begin(), check.disagreements.end(), [](const Disagreement& d) {
            const bool is_force = d.where.find(".force") != std::string::npos || d.where.find("joint.f") != std::string::npos;
-           return d.doubt == Doubt::channel && is_force && d.ratio < 20.0;
+           return d.doubt == DisagreementKind::channel && is_force && d.ratio < 20.0;
          });
 }
 

@@ -63,7 +63,7 @@ CrossCheck checked(const std::string& text, double end, const std::vector<CrossM
   return check;
 }
 
-bool has(const CrossCheck& check, Doubt doubt) {
+bool has(const CrossCheck& check, DisagreementKind doubt) {
   return std::any_of(check.disagreements.begin(), check.disagreements.end(), [&](const Disagreement& d) { return d.doubt == doubt; });
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("a method that is wrong without knowing it is found out") {
                                     {"rodas5p", {{"rodas5p", 1e-6, false}, {"rodas5p", 1e-8, false}}},
                                     fixed("moreau", {2e-3, 1e-3, 5e-4})});
   CHECK(check.outcome == CrossOutcome::disagree);
-  CHECK(has(check, Doubt::channel));
+  CHECK(has(check, DisagreementKind::channel));
   for (const Disagreement& d : check.disagreements) CHECK((d.first == "tsit5" || d.second == "tsit5"));
 }
 
@@ -211,7 +211,7 @@ TEST_CASE("what is free of the ground is known by its elements, and its momentum
   REQUIRE(groups.size() == 1);
   CHECK(groups[0] == std::vector<int>{1, 2});
   const CrossCheck check = checked(balls + k_pendulum, 1.0, {});
-  CHECK_FALSE(has(check, Doubt::momentum));
+  CHECK_FALSE(has(check, DisagreementKind::momentum));
 }
 
 // Three feet of one body, each with a friction of its own, held all together until it tilts by more than rounding. Which of them

@@ -416,14 +416,14 @@ struct Picky : Element {
 
 class PickyGroup final : public ForceGroup {
 public:
-  struct Entry {
+  struct BoundedBody {
     int body = 0;
     double limit = 0.0;
   };
-  std::vector<Entry> entries;
+  std::vector<BoundedBody> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
+    for (const BoundedBody& entry : entries) {
       const double x = e.motion[entry.body].x;
       if (x > entry.limit) throw NumericalFailure("the spring gives up at " + std::to_string(1e9 * e.t) + " ns");
       e.force[entry.body].fx -= 50.0 * x;
@@ -431,12 +431,12 @@ public:
   }
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += 25.0 * motion[entry.body].x * motion[entry.body].x;
+    for (const BoundedBody& entry : entries) sum += 25.0 * motion[entry.body].x * motion[entry.body].x;
     return sum;
   }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[static_cast<std::size_t>(entry.body)] = 1;
+    for (const BoundedBody& entry : entries) is_used[static_cast<std::size_t>(entry.body)] = 1;
   }
 };
 

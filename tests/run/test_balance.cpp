@@ -200,7 +200,8 @@ TEST_CASE("what hangs far away, drifts or slides off does not balance") {
 TEST_CASE("nudged runs that take more evaluations than granted are given up") {
   const Run run = run_model(load_model_text(Rod{0.5}.text(true, 5.0), "balance.toml"));
   const State initial = initial_state_of(*run.loaded);
-  CHECK_THROWS_AS((void)balance_of(*run.loaded->system, initial, simulation_options(*run.loaded, {}), run.result, 1.0), EstimateTooDear);
+  CHECK_THROWS_AS((void)balance_of(*run.loaded->system, initial, simulation_options(*run.loaded, {}), run.result, 1.0),
+                  EvaluationBudgetExceeded);
 }
 
 TEST_CASE("a column bears its load straight up to where it buckles") {

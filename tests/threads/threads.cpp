@@ -25,15 +25,15 @@ namespace {
 
 constexpr int k_threads = 3;
 
-struct Scene {
+struct SharedModel {
   Model given;
   std::unique_ptr<System> system;
   SimulationOptions options;
 };
 
 // `end`, s: so far that it slips, swings, or is loaded once.
-Scene scene(const std::string& file, const std::string& method, double end) {
-  Scene s;
+SharedModel scene(const std::string& file, const std::string& method, double end) {
+  SharedModel s;
   s.given = read_given_model(STEPLAP_MODELS "/" + file + ".toml", transformer_catalog());
   s.system = instantiate(s.given, {});
   s.options.end = end;
@@ -44,8 +44,8 @@ Scene scene(const std::string& file, const std::string& method, double end) {
   return s;
 }
 
-std::vector<Scene> scenes() {
-  std::vector<Scene> all;
+std::vector<SharedModel> scenes() {
+  std::vector<SharedModel> all;
   all.push_back(scene("paper/no_interference", "dop853", 0.09));      // joints that hold, an event, a drive
   all.push_back(scene("benchmarks/andrews", "tsit5", 2e-3));          // joint coordinates
   all.push_back(scene("benchmarks/stick_slip_belt", "rodas5p", 0.5)); // Jacobians
@@ -71,7 +71,7 @@ void in_threads(int count, const std::function<void(int)>& job) {
 }
 
 // One scene: runs on its system, which all share, beside systems made of its model, which all share, and of variants.
-std::vector<double> all_of(const Scene& s, const std::string& path, double value) {
+std::vector<double> all_of(const SharedModel& s, const std::string& path, double value) {
   std::vector<double> results = run(*s.system, s.options);
   const auto append = [&results](const std::vector<double>& more) { results.insert(results.end(), more.begin(), more.end()); };
   if (path.empty()) return results;
@@ -88,7 +88,7 @@ std::vector<double> all_of(const Scene& s, const std::string& path, double value
 }
 
 int shared() {
-  const std::vector<Scene> all = scenes();
+  const std::vector<SharedModel> all = scenes();
   std::vector<std::vector<double>> alone, together(all.size() * k_threads);
   const auto job = [&all](std::size_t k) { return all_of(all[k], k == 0 ? "element.tank bottom.static_friction" : "", 0.33); };
   in_threads(k_threads, [&](int thread) {
@@ -105,7 +105,7 @@ int shared() {
 }
 
 int dynamics_of_two() {
-  const Scene s = scene("benchmarks/andrews", "dop853", 0.0);
+  const SharedModel s = scene("benchmarks/andrews", "dop853", 0.0);
   const State start = s.system->initial_state();
   Dynamics dynamics(*s.system);
   dynamics.set_state(start);
@@ -119,7 +119,7 @@ int dynamics_of_two() {
 }
 
 int system_of_two() {
-  Scene s = scene("benchmarks/andrews", "dop853", 1e-4);
+  SharedModel s = scene("benchmarks/andrews", "dop853", 1e-4);
   in_threads(2, [&s](int thread) {
     if (thread == 0) s.system->gravity.y() = -9.80665;
     else (void)run(*s.system, s.options);

@@ -47,20 +47,22 @@ public:
   [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& s, const double* wrench, double* normal) const override {
     return real_->gauge(e, s, wrench, normal);
   }
-  void watch_stick(const Evaluation& e, const FrictionState& s, const double* wrench, double* watch) const override {
-    if (fault_ == Fault::blind_watch) watch[0] = watch[1] = 1.0;
-    else real_->watch_stick(e, s, wrench, watch);
+  void stick_events(const Evaluation& e, const FrictionState& s, const double* wrench, double* event_value) const override {
+    if (fault_ == Fault::blind_watch) event_value[0] = event_value[1] = 1.0;
+    else real_->stick_events(e, s, wrench, event_value);
   }
-  void begin_slip(const Evaluation& e, FrictionState& s, const double* wrench) const override { real_->begin_slip(e, s, wrench); }
+  void set_onset_direction(const Evaluation& e, FrictionState& s, const double* wrench) const override {
+    real_->set_onset_direction(e, s, wrench);
+  }
   // Where it begins to move the mode problem is asked how it goes on.
-  void watch_slip(const Evaluation&, const FrictionState&, const double* rate, double* watch) const override {
-    watch[0] = 1e-9 - std::abs(rate[0]);
-    watch[1] = 1.0;
+  void slip_events(const Evaluation&, const FrictionState&, const double* rate, double* event_value) const override {
+    event_value[0] = 1e-9 - std::abs(rate[0]);
+    event_value[1] = 1.0;
   }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& s, const double* a, const double* b,
+  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState& s, const double* a, const double* b,
                                           bool is_kinetic) const override {
-    FrictionBlock block = real_->solve_block(e, s, a, b, is_kinetic);
-    if (fault_ == Fault::deaf_mode_problem) block.is_inside = true;
+    BlockSolution block = real_->solve_block(e, s, a, b, is_kinetic);
+    if (fault_ == Fault::deaf_mode_problem) block.sticks = true;
     return block;
   }
 
@@ -69,11 +71,11 @@ private:
   Fault fault_;
 };
 
-struct Scene {
+struct CheckedModel {
   Model model;
   std::unique_ptr<System> system;
 
-  explicit Scene(const std::string& text) : model(parse_model(text, "scene.toml", transformer_catalog())), system(compile(model)) {}
+  explicit CheckedModel(const std::string& text) : model(parse_model(text, "scene.toml", transformer_catalog())), system(compile(model)) {}
   void make(Fault fault) {
     std::unique_ptr<FrictionElement>& friction = system->frictions.front().friction;
     friction = std::make_unique<Faulty>(std::move(friction), fault);
@@ -87,10 +89,10 @@ TEST_CASE("a joint that goes on holding below a margin of 1 stops the run, and i
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4"}) {
     CAPTURE(method);
     const std::string text = pulled("step = 1e-3\nintegrator = \"" + std::string(method) + "\"");
-    REQUIRE(Scene(text).run().events.size() == 1); // as it should be: it slips
-    CHECK(Scene(text).run().events.front().t == doctest::Approx(k_onset).epsilon(1e-8));
+    REQUIRE(CheckedModel(text).run().events.size() == 1); // as it should be: it slips
+    CHECK(CheckedModel(text).run().events.front().t == doctest::Approx(k_onset).epsilon(1e-8));
 
-    Scene deaf(text);
+    CheckedModel deaf(text);
     deaf.make(Fault::deaf_mode_problem);
     Simulation simulation(*deaf.system, deaf.system->initial_state(), options_of(deaf.model));
     std::string message;
@@ -107,18 +109,18 @@ TEST_CASE("a joint that goes on holding below a margin of 1 stops the run, and i
 }
 
 TEST_CASE("joints that are only monitored, and those that a model lets slip, are no contradiction") {
-  const Scene monitored(pulled("", "mode = \"monitor\""));
+  const CheckedModel monitored(pulled("", "mode = \"monitor\""));
   const RunResult beyond = monitored.run();
   CHECK(beyond.final_state.t == 0.5);
   const Judgement judgement = judge(monitored.model, *monitored.system, beyond, "");
   CHECK(judgement.distrust.empty());
   CHECK(judgement.verdict == Verdict::inspect); // it would slip
-  const Scene real(pulled(""));
+  const CheckedModel real(pulled(""));
   CHECK(judge(real.model, *real.system, real.run(), "").distrust.empty());
 }
 
 TEST_CASE("a joint that is said to hold with a margin below 1 leaves the verdict open") {
-  Scene blind(pulled(""));
+  CheckedModel blind(pulled(""));
   blind.make(Fault::blind_watch);
   const RunResult result = blind.run();
   REQUIRE(result.events.empty());
@@ -132,7 +134,7 @@ namespace {
 
 // A run to `end`, judged as if its finer run had pulled with `finer_peak` instead of the peak of 100 N.
 std::string distrust_of(const std::string& end, const std::string& peak, const std::string& finer_peak) {
-  Scene mine(pulled("", "", peak)), other(pulled("", "", finer_peak));
+  CheckedModel mine(pulled("", "", peak)), other(pulled("", "", finer_peak));
   SimulationOptions options = options_of(mine.model);
   options.end = std::stod(end);
   const RunResult run = simulate(*mine.system, mine.system->initial_state(), options);

@@ -60,7 +60,7 @@ void take(Reading& largest, double value, std::size_t event, char axis, double b
   else if (value > largest.value) largest.value = value, largest.event = event, largest.axis = axis, largest.bandwidth = bandwidth;
 }
 
-void look_at_record(const DecisionCriterion& c, const Assessment& a, std::size_t r, Reading& largest) {
+void check_record(const DecisionCriterion& c, const Assessment& a, std::size_t r, Reading& largest) {
   const RecordEvents& record = a.records[r];
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -82,7 +82,7 @@ Reading largest_reading(const DecisionCriterion& c, const Assessment& a) {
   for (std::size_t r = 0; r < a.records.size(); ++r) {
     const RecordLayout& layout = a.records[r].recording.layout;
     if (layout.is_peaks || (c.axis != "any" ? !a.records[r].axis(c.axis.front()) : layout.axes.size() < k_axes)) largest.is_known = false;
-    if (!layout.is_peaks) look_at_record(c, a, r, largest);
+    if (!layout.is_peaks) check_record(c, a, r, largest);
     for (const PeakEntry& entry : a.records[r].recording.peaks) // for a table of peaks at least its own bandwidth
       for (const double value : {entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude})
         if (c.quantity == "peak" && std::abs(value) > largest.value) largest.value = std::abs(value), largest.event = Reading::k_no_event;

@@ -20,15 +20,15 @@ void SignalWatch::note(bool is_begin, double t, std::size_t axis, double value) 
 void SignalWatch::put(double t, const double* plain, const double* filtered) {
   for (std::size_t i = 0; i < axes_; ++i) {
     greatest_[i] = std::max(greatest_[i], std::abs(filtered[i]));
-    if (samples_ < k_looked_at && !is_noted_ && std::abs(plain[i]) > level_) note(true, t, i, plain[i]);
+    if (samples_ < k_inspected && !is_noted_ && std::abs(plain[i]) > level_) note(true, t, i, plain[i]);
   }
-  std::copy(plain, plain + axes_, last_[samples_++ % k_looked_at].begin());
+  std::copy(plain, plain + axes_, last_[samples_++ % k_inspected].begin());
   t_ = t;
 }
 
 void SignalWatch::end_segment() {
   is_noted_ = false;
-  for (std::size_t k = 0; k < std::min(samples_, k_looked_at); ++k)
+  for (std::size_t k = 0; k < std::min(samples_, k_inspected); ++k)
     for (std::size_t i = 0; i < axes_; ++i)
       if (!is_noted_ && std::abs(last_[k][i]) > level_) note(false, t_, i, last_[k][i]);
 }

@@ -34,12 +34,12 @@ public:
 
 private:
   void note(bool is_begin, double t, std::size_t axis, double value);
-  static constexpr std::size_t k_looked_at = 3; // samples inspected at an end; a single one may be a zero crossing
+  static constexpr std::size_t k_inspected = 3; // samples inspected at an end; a single one may be a zero crossing
   double level_;
   std::size_t axes_ = 0, samples_ = 0;
   std::array<char, 3> letters_{};
   std::array<double, 3> greatest_{};
-  std::array<std::array<double, 3>, k_looked_at> last_{};
+  std::array<std::array<double, 3>, k_inspected> last_{};
   bool is_noted_ = false;
   double t_ = 0.0;
   End end_;

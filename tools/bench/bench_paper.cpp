@@ -20,17 +20,17 @@ namespace {
 constexpr double k_sliding = 0.10;  // s; the active part slides and the load is near its peak
 constexpr double k_stretch = 0.005; // s of motion that the step benchmark repeats
 
-struct Scene {
+struct PaperRun {
   Model model;
   std::unique_ptr<System> system;
   State state; ///< at k_sliding
 };
 
-const Scene& scene(const std::string& path) {
-  static std::map<std::string, std::unique_ptr<Scene>> scenes;
-  std::unique_ptr<Scene>& entry = scenes[path];
+const PaperRun& scene(const std::string& path) {
+  static std::map<std::string, std::unique_ptr<PaperRun>> scenes;
+  std::unique_ptr<PaperRun>& entry = scenes[path];
   if (entry) return *entry;
-  entry = std::make_unique<Scene>();
+  entry = std::make_unique<PaperRun>();
   entry->model = read_model(STEPLAP_MODELS "/" + path, transformer_catalog());
   entry->system = compile(entry->model);
   SimulationOptions options = options_of(entry->model);
@@ -40,7 +40,7 @@ const Scene& scene(const std::string& path) {
 }
 
 void evaluation(benchmark::State& state, const std::string& path) {
-  const Scene& s = scene(path);
+  const PaperRun& s = scene(path);
   Dynamics dynamics(*s.system);
   dynamics.use_coordinates(Coordinates::automatic);
   dynamics.set_state(s.state);
@@ -56,7 +56,7 @@ void evaluation(benchmark::State& state, const std::string& path) {
 
 // Repeats steps over a short interval, without event search and samples.
 void step(benchmark::State& state, const std::string& path, const std::string& method) {
-  const Scene& s = scene(path);
+  const PaperRun& s = scene(path);
   Dynamics dynamics(*s.system);
   dynamics.use_coordinates(Coordinates::automatic);
   dynamics.set_state(s.state);
@@ -78,7 +78,7 @@ void step(benchmark::State& state, const std::string& path, const std::string& m
 
 // Measures a whole run with the settings of the model, without samples: events are located and handled.
 void whole_run(benchmark::State& state, const std::string& path, const std::string& method) {
-  const Scene& s = scene(path);
+  const PaperRun& s = scene(path);
   SimulationOptions options = options_of(s.model);
   options.integrator = method;
   options.output_step = 0.0;

@@ -19,13 +19,13 @@ namespace {
 
 constexpr int k_solutions = 6; // stages of rodas5p that solve a linear system with the same factors
 
-struct Entry {
+struct MatrixPosition {
   int row = 0, column = 0;
 };
 
 struct Matrix {
   int n = 0;
-  std::vector<Entry> entries;              ///< positions may occur repeatedly; their values are added
+  std::vector<MatrixPosition> entries;     ///< positions may occur repeatedly; their values are added
   std::vector<std::vector<double>> values; ///< values for several steps
 };
 
@@ -43,7 +43,7 @@ Matrix coupled(const std::vector<std::pair<int, int>>& pairs, int bodies) {
     for (const auto& [row, column] : {std::pair{a, a}, std::pair{a, b}, std::pair{b, a}, std::pair{b, b}}) add_block(row, column);
   for (int step = 0; step < 8; ++step) {
     std::vector<double>& values = m.values.emplace_back();
-    for (const Entry& e : m.entries) values.push_back(e.row == e.column ? 4.0 + any(random) : 0.3 * any(random));
+    for (const MatrixPosition& e : m.entries) values.push_back(e.row == e.column ? 4.0 + any(random) : 0.3 * any(random));
   }
   return m;
 }
@@ -93,14 +93,14 @@ public:
   explicit Klu(const Matrix& m) : m_(m), begin_(static_cast<std::size_t>(m.n) + 1, 0) {
     klu_defaults(&common_);
     std::vector<std::vector<int>> rows(static_cast<std::size_t>(m.n));
-    for (const Entry& e : m.entries) rows[e.column].push_back(e.row);
+    for (const MatrixPosition& e : m.entries) rows[e.column].push_back(e.row);
     for (int j = 0; j < m.n; ++j) {
       std::sort(rows[j].begin(), rows[j].end());
       rows[j].erase(std::unique(rows[j].begin(), rows[j].end()), rows[j].end());
       index_.insert(index_.end(), rows[j].begin(), rows[j].end());
       begin_[j + 1] = static_cast<int>(index_.size());
     }
-    for (const Entry& e : m.entries) {
+    for (const MatrixPosition& e : m.entries) {
       const auto first = index_.begin() + begin_[e.column], last = index_.begin() + begin_[e.column + 1];
       place_.push_back(static_cast<int>(std::lower_bound(first, last, e.row) - index_.begin()));
     }

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int k_repeats = 5;
 
-struct Entry {
+struct SolverCost {
   double tolerance, error, milliseconds, evaluations, steps;
 };
 
@@ -45,8 +45,8 @@ double difference(const RunResult& a, const RunResult& b) {
   return worst;
 }
 
-Entry measure(const System& system, const Model& model, const std::string& method, double tolerance, const RunResult& reference) {
-  Entry entry{tolerance, difference(run(system, model, method, tolerance, true), reference), 1e300, 0.0, 0.0};
+SolverCost measure(const System& system, const Model& model, const std::string& method, double tolerance, const RunResult& reference) {
+  SolverCost entry{tolerance, difference(run(system, model, method, tolerance, true), reference), 1e300, 0.0, 0.0};
   for (int i = 0; i < k_repeats; ++i) {
     const RunStatistics s = run(system, model, method, tolerance, false).statistics;
     entry.milliseconds = std::min(entry.milliseconds, 1e3 * s.cpu_seconds);
@@ -57,7 +57,7 @@ Entry measure(const System& system, const Model& model, const std::string& metho
 }
 
 // Returns the smallest cost for this error, by power-law interpolation between neighbouring tolerances; NaN if it is not reached.
-double cost_at(const std::vector<Entry>& ladder, double error, double Entry::*cost) {
+double cost_at(const std::vector<SolverCost>& ladder, double error, double SolverCost::*cost) {
   double least = std::nan("");
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     double here = std::nan("");
@@ -88,7 +88,7 @@ int main() {
     const RunResult reference = run(*system, model, "dop853", 1e-12, true);
     const double agreement = difference(run(*system, model, "rodas5p", 1e-10, true), reference);
     for (const std::string method : {"dop853", "rodas5p"}) {
-      std::vector<Entry> ladder;
+      std::vector<SolverCost> ladder;
       for (double tolerance = 1e-2; tolerance > 0.9e-9; tolerance *= 0.1) {
         try {
           ladder.push_back(measure(*system, model, method, tolerance, reference));
@@ -96,13 +96,13 @@ int main() {
           std::printf("%8.0e %8s %9.0e fails: %s\n", scale, method.c_str(), tolerance, failure.what());
           continue;
         }
-        const Entry& e = ladder.back();
+        const SolverCost& e = ladder.back();
         std::printf("%8.0e %8s %9.0e %10.1e %8.0f %12.0f %8.3f\n", scale, method.c_str(), tolerance, e.error, e.steps, e.evaluations,
                     e.milliseconds);
       }
       for (const double error : {1e-3, 1e-4, 1e-5, 1e-6})
         std::printf("%8.0e %8s  at error %.0e: %10.0f evaluations, %8.3f ms\n", scale, method.c_str(), error,
-                    cost_at(ladder, error, &Entry::evaluations), cost_at(ladder, error, &Entry::milliseconds));
+                    cost_at(ladder, error, &SolverCost::evaluations), cost_at(ladder, error, &SolverCost::milliseconds));
     }
     std::printf("%8.0e the two references differ by %.1e\n", scale, agreement);
   }

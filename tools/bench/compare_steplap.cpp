@@ -34,7 +34,7 @@ using peers::Rung;
 constexpr double k_tightest = 1e-13;
 constexpr double k_longest_run = 10.0; // CPU time, s; slower settings have no row
 
-struct Scene {
+struct ComparedModel {
   Model model;
   std::unique_ptr<const System> system;
   std::vector<std::string> channels; // channels in the order in which `error` reads them
@@ -44,18 +44,18 @@ struct Scene {
 struct Problem {
   std::string name;         // name used by the peers
   bool is_against_tightest; // otherwise the solution is known
-  std::vector<Scene> scenes;
+  std::vector<ComparedModel> scenes;
   // Computes the error from the channels of one run and of the run with the tightest tolerance.
   std::function<double(const std::vector<std::vector<double>>&, const std::vector<std::vector<double>>&)> error;
 };
 
-Scene scene(const std::string& file, std::vector<std::string> channels, double sample_step) {
+ComparedModel scene(const std::string& file, std::vector<std::string> channels, double sample_step) {
   Model model = read_model(STEPLAP_MODELS "/" + file + ".toml", transformer_catalog());
   auto system = compile(model);
   return {std::move(model), std::move(system), std::move(channels), sample_step};
 }
 
-RunResult run(const Scene& scene, const std::string& method, double tolerance, bool is_sampled) {
+RunResult run(const ComparedModel& scene, const std::string& method, double tolerance, bool is_sampled) {
   SimulationOptions options = options_of(scene.model);
   options.integrator = method;
   options.settings.tolerance = tolerance;
@@ -70,7 +70,7 @@ RunResult run(const Scene& scene, const std::string& method, double tolerance, b
   return std::move(simulation).result();
 }
 
-std::vector<std::vector<double>> series(const Scene& scene, const RunResult& result) {
+std::vector<std::vector<double>> series(const ComparedModel& scene, const RunResult& result) {
   std::vector<std::vector<double>> all;
   for (const std::string& channel : scene.channels) all.push_back(result.trajectory->series(channel));
   return all;
@@ -112,7 +112,7 @@ Problem ending(const char* name, const std::string& file, std::vector<std::strin
                double factor = 1.0) {
   Problem problem{
       name, false, {}, [exact = std::move(exact), factor](const Series& a, const Series&) { return at_the_end(a, exact, factor); }};
-  Scene s = scene("benchmarks/" + file, std::move(channels), 0.0);
+  ComparedModel s = scene("benchmarks/" + file, std::move(channels), 0.0);
   s.sample_step = s.model.simulation.end;
   problem.scenes.push_back(std::move(s));
   return problem;
@@ -155,7 +155,7 @@ Rung measure(const Problem& problem, const std::string& method, double tolerance
   std::snprintf(setting, sizeof setting, "%.1e", tolerance);
   Rung rung{problem.name, "steplap " + method, setting};
   for (std::size_t s = 0; s < problem.scenes.size(); ++s) {
-    const Scene& scene = problem.scenes[s];
+    const ComparedModel& scene = problem.scenes[s];
     rung.error = std::max(rung.error, problem.error(series(scene, run(scene, method, tolerance, true)), tightest[s]));
     const RunStatistics counts = run(scene, method, tolerance, false).statistics;
     rung.steps += counts.steps;
@@ -163,14 +163,14 @@ Rung measure(const Problem& problem, const std::string& method, double tolerance
     rung.events += counts.events;
   }
   rung.cpu_ms = peers::least_ms([&] {
-    for (const Scene& scene : problem.scenes) (void)run(scene, method, tolerance, false);
+    for (const ComparedModel& scene : problem.scenes) (void)run(scene, method, tolerance, false);
   });
   return rung;
 }
 
 void climb(const Problem& problem, std::vector<Rung>& rungs) {
   std::vector<Series> tightest;
-  for (const Scene& scene : problem.scenes)
+  for (const ComparedModel& scene : problem.scenes)
     if (!problem.is_against_tightest) tightest.emplace_back();
     else tightest.push_back(series(scene, run(scene, "dop853", k_tightest, true)));
   for (const char* method : {"dop853", "tsit5", "auto"})

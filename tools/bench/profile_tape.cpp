@@ -69,7 +69,7 @@ int profile(const char* path, double time) {
     return 3;
   }
   inputs.insert(inputs.begin(), y.begin(), y.begin() + 2 * dynamics.coordinate_count() + dynamics.inner_count());
-  for (const TimeInput& signal : traced.signals) inputs.push_back(signal.at(state.t));
+  for (const SignalInput& signal : traced.signals) inputs.push_back(signal.at(state.t));
   Tape tape;
   const double simplifying = nanoseconds(100, [&] { tape = simplified(traced.tape); });
   const double making = nanoseconds(20, [&] { (void)MachineCode(tape); });

@@ -39,7 +39,7 @@ Gate::Gate(unsigned short port, std::string token)
 
 bool Gate::is_first_path(const std::string& target) const { return is_same_secret(target, first_path_); }
 
-std::string Gate::refusal(const Knock& knock) const {
+std::string Gate::refusal(const RequestHead& knock) const {
   if (knock.method != "GET" && knock.method != "POST") return "only GET and POST are served";
   if (knock.host_headers != 1 || knock.host != host_) return "the server is to be called by its own address";
   const bool is_own = knock.origin == origin_;
@@ -54,7 +54,7 @@ std::string Gate::refusal(const Knock& knock) const {
   return "";
 }
 
-bool Gate::takes_first(const Knock& knock) {
+bool Gate::takes_first(const RequestHead& knock) {
   if (is_taken_ || knock.method != "GET" || !is_first_path(knock.target)) return false;
   return is_taken_ = true;
 }

@@ -10,7 +10,7 @@
 namespace steplap {
 
 /// Parts of a request that are checked. Missing headers are "".
-struct Knock {
+struct RequestHead {
   std::string method;       ///< "GET"
   std::string target;       ///< "/TOKEN/run?…"
   std::string host;         ///< header Host
@@ -43,9 +43,9 @@ public:
   [[nodiscard]] const std::string& first_path() const { return first_path_; }
 
   /// Returns the reason for refusing a request; "" if it is permitted. Requests for first_path() always pass here.
-  [[nodiscard]] std::string refusal(const Knock& knock) const;
+  [[nodiscard]] std::string refusal(const RequestHead& knock) const;
   /// Returns true for the first request for first_path(), false for every later one.
-  [[nodiscard]] bool takes_first(const Knock& knock);
+  [[nodiscard]] bool takes_first(const RequestHead& knock);
 
 private:
   [[nodiscard]] bool is_first_path(const std::string& target) const;

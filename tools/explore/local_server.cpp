@@ -23,7 +23,7 @@ using Response = http::response<http::string_body>;
 
 std::string text_of(boost::string_view text) { return std::string(text.data(), text.size()); }
 
-Knock knock_of(const http::request<http::string_body>& request) {
+RequestHead knock_of(const http::request<http::string_body>& request) {
   const auto header = [&](boost::string_view name) {
     const auto found = request.find(name);
     return found == request.end() ? std::string() : text_of(found->value());
@@ -87,7 +87,7 @@ private:
       return send({400, "text/plain; charset=utf-8", "That is no request.\n"}, false);
     if (error) return; // closed or timed out
     const http::request<http::string_body>& request = parser_->get();
-    const Knock knock = knock_of(request);
+    const RequestHead knock = knock_of(request);
     keeps_open_ = request.keep_alive();
     if (const std::string why = shared_->gate.refusal(knock); !why.empty())
       return send({403, "text/plain; charset=utf-8", "Refused: " + why + ".\n"}, false);
@@ -101,7 +101,7 @@ private:
     hand_over(knock, request.body());
   }
 
-  void hand_over(const Knock& knock, const std::string& body) {
+  void hand_over(const RequestHead& knock, const std::string& body) {
     const std::string rest = knock.target.substr(shared_->gate.folder().size());
     const std::size_t mark = rest.find('?');
     PageRequest asked{knock.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};

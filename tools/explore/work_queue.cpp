@@ -21,7 +21,7 @@ bool WorkQueue::add(Urgency urgency, const std::string& owner, Task task) {
     const std::lock_guard lock(mutex_);
     if (waiting_.size() >= k_most_waiting) return false;
     if (urgency == Urgency::drag && !owner.empty()) {
-      for (Entry& entry : waiting_)
+      for (QueuedTask& entry : waiting_)
         if (entry.urgency == urgency && entry.owner == owner) *entry.is_stale = true;
       if (active_stale_ && active_owner_ == owner) *active_stale_ = true;
     }
@@ -32,11 +32,11 @@ bool WorkQueue::add(Urgency urgency, const std::string& owner, Task task) {
 }
 
 // Returns the most urgent task; among equally urgent ones the oldest.
-std::deque<WorkQueue::Entry>::iterator WorkQueue::most_urgent() {
-  return std::max_element(waiting_.begin(), waiting_.end(), [](const Entry& a, const Entry& b) { return a.urgency < b.urgency; });
+std::deque<WorkQueue::QueuedTask>::iterator WorkQueue::most_urgent() {
+  return std::max_element(waiting_.begin(), waiting_.end(), [](const QueuedTask& a, const QueuedTask& b) { return a.urgency < b.urgency; });
 }
 
-bool WorkQueue::is_stale(const Entry& entry) {
+bool WorkQueue::is_stale(const QueuedTask& entry) {
   const std::lock_guard lock(mutex_);
   if (is_ending_ || *entry.is_stale) return true;
   return entry.urgency == Urgency::background && !waiting_.empty() && most_urgent()->urgency > entry.urgency;
@@ -48,7 +48,7 @@ void WorkQueue::work() {
     something_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
     if (is_ending_) return;
     const auto next = most_urgent();
-    const Entry entry = std::move(*next);
+    const QueuedTask entry = std::move(*next);
     waiting_.erase(next);
     active_stale_ = entry.is_stale;
     active_owner_ = entry.urgency == Urgency::drag ? entry.owner : "";

@@ -33,7 +33,7 @@ public:
   [[nodiscard]] bool add(Urgency urgency, const std::string& owner, Task task);
 
 private:
-  struct Entry {
+  struct QueuedTask {
     Urgency urgency;
     std::string owner;
     Task task;
@@ -41,12 +41,12 @@ private:
   };
 
   void work();
-  [[nodiscard]] bool is_stale(const Entry& entry);
-  [[nodiscard]] std::deque<Entry>::iterator most_urgent();
+  [[nodiscard]] bool is_stale(const QueuedTask& entry);
+  [[nodiscard]] std::deque<QueuedTask>::iterator most_urgent();
 
   std::mutex mutex_;
   std::condition_variable something_;
-  std::deque<Entry> waiting_;
+  std::deque<QueuedTask> waiting_;
   std::shared_ptr<bool> active_stale_;
   std::string active_owner_;
   bool is_ending_ = false;

@@ -14,7 +14,7 @@ namespace steplap::python {
 namespace {
 
 // Returns a read-only array that refers to the block without copying and keeps it alive.
-py::array look_into(const std::shared_ptr<const Columns>& columns, py::ssize_t first, py::ssize_t count, bool is_flat) {
+py::array inspect(const std::shared_ptr<const Columns>& columns, py::ssize_t first, py::ssize_t count, bool is_flat) {
   const auto* const owner = new std::shared_ptr<const Columns>(columns);
   const py::capsule keeper(owner, [](void* held) { delete static_cast<const std::shared_ptr<const Columns>*>(held); });
   const auto rows = static_cast<py::ssize_t>(columns->values.rows());
@@ -32,7 +32,7 @@ py::array series(const PyRun& run, const std::string& name) {
   const auto found = std::find(run.columns->names.begin(), run.columns->names.end(), name);
   if (found == run.columns->names.end())
     throw py::key_error("no channel '" + name + "' is written" + did_you_mean(name, run.columns->names));
-  return look_into(run.columns, found - run.columns->names.begin(), 1, true);
+  return inspect(run.columns, found - run.columns->names.begin(), 1, true);
 }
 
 py::dict extremes(const PyRun& run, const std::string& name) {
@@ -149,10 +149,10 @@ void add_run(py::module_& module) {
       .def_property_readonly(
           "units", [](const PyRun& r) { return r.columns->units; }, "SI, of names")
       .def_property_readonly(
-          "values", [](const PyRun& r) { return look_into(r.columns, 0, static_cast<py::ssize_t>(r.columns->values.cols()), false); },
+          "values", [](const PyRun& r) { return inspect(r.columns, 0, static_cast<py::ssize_t>(r.columns->values.cols()), false); },
           "all samples: shape (rows, names), SI, not copied, read only")
       .def_property_readonly(
-          "t", [](const PyRun& r) { return look_into(r.columns, 0, 1, true); }, "s, shape (rows,)")
+          "t", [](const PyRun& r) { return inspect(r.columns, 0, 1, true); }, "s, shape (rows,)")
       .def("__getitem__", series, py::arg("channel"), "A channel: shape (rows,), SI, not copied. Raises KeyError.")
       .def("__len__", [](const PyRun& r) { return r.columns->values.rows(); })
       .def("extremes", extremes, py::arg("channel"),

@@ -24,7 +24,7 @@ constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
 // A number taken from each run: a channel and one of its values.
 struct Response {
   std::string channel;
-  enum class Which { low, high, first, final } which = Which::high;
+  enum class ResponseValue { low, high, first, final } which = ResponseValue::high;
 };
 
 Response response_of(const std::pair<std::string, std::string>& given, const System& system) {
@@ -33,10 +33,10 @@ Response response_of(const std::pair<std::string, std::string>& given, const Sys
   for (const Channel& c : system.channels) known.push_back(c.name);
   if (std::find(known.begin(), known.end(), channel) == known.end())
     throw py::value_error("there is no channel '" + channel + "'" + did_you_mean(channel, known));
-  if (which == "low") return {channel, Response::Which::low};
-  if (which == "high") return {channel, Response::Which::high};
-  if (which == "first") return {channel, Response::Which::first};
-  if (which == "final") return {channel, Response::Which::final};
+  if (which == "low") return {channel, Response::ResponseValue::low};
+  if (which == "high") return {channel, Response::ResponseValue::high};
+  if (which == "first") return {channel, Response::ResponseValue::first};
+  if (which == "final") return {channel, Response::ResponseValue::final};
   throw py::value_error("of '" + channel + "': 'low', 'high', 'first' or 'final', not '" + which + "'");
 }
 
@@ -44,10 +44,10 @@ double value_in(const Report& report, const Response& response) {
   const ChannelRange* const range = report.find(response.channel);
   if (!range) return k_none;
   switch (response.which) {
-  case Response::Which::low: return range->low.value;
-  case Response::Which::high: return range->high.value;
-  case Response::Which::first: return range->first;
-  case Response::Which::final: return range->final;
+  case Response::ResponseValue::low: return range->low.value;
+  case Response::ResponseValue::high: return range->high.value;
+  case Response::ResponseValue::first: return range->first;
+  case Response::ResponseValue::final: return range->final;
   }
   return k_none;
 }

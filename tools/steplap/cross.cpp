@@ -23,8 +23,9 @@ constexpr std::size_t k_shown_disagreements = 6;
 std::string where_text(const Disagreement& d) {
   if (d.ratio == 0.0) return "-";
   std::string text = d.where;
-  if (d.doubt == Doubt::event || d.doubt == Doubt::channel || d.doubt == Doubt::law) text += " at " + time_text(d.t) + " s";
-  if (text.empty() || d.doubt == Doubt::self || d.doubt == Doubt::momentum)
+  if (d.doubt == DisagreementKind::event || d.doubt == DisagreementKind::channel || d.doubt == DisagreementKind::law)
+    text += " at " + time_text(d.t) + " s";
+  if (text.empty() || d.doubt == DisagreementKind::self || d.doubt == DisagreementKind::momentum)
     text = std::string(name_of(d.doubt)) + (text.empty() ? "" : ", " + text);
   return text;
 }

@@ -27,9 +27,8 @@ ShownRun overview_of_run(const Report& report, const std::string& folder, ShownD
 
 ShownRun shown_run(const Report& report, const std::string& folder) {
   const RunResult& result = report.run.result;
-  return {
-      summary_document(report), events_of(report), folder,
-      MakingOfRun{result.statistics.cpu_seconds, report.estimate.cost, result.trajectory->size(), result.trajectory->channels().size()}};
+  return {summary_document(report), events_of(report), folder,
+          RunCost{result.statistics.cpu_seconds, report.estimate.cost, result.trajectory->size(), result.trajectory->channels().size()}};
 }
 
 bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs) {

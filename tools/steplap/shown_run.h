@@ -14,7 +14,7 @@
 namespace steplap {
 
 /// Data that differ between repetitions of a run and are therefore in no file.
-struct MakingOfRun {
+struct RunCost {
   double cpu_seconds = 0.0;
   std::optional<double> cost_of_estimate; ///< s, if errors were not estimated because of this cost
   std::size_t rows = 0, channels = 0;     ///< of the written trajectory
@@ -25,7 +25,7 @@ struct ShownRun {
   OrderedJson summary;             ///< contents of summary.json (run/summary.h)
   std::vector<ResultEvent> events; ///< empty if only the overview is shown
   std::string folder;              ///< folder of its files
-  std::optional<MakingOfRun> making;
+  std::optional<RunCost> making;
 };
 
 /// Returns the main part of the summary of a new run, without events, for the overview.

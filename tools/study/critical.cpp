@@ -54,74 +54,77 @@ private:
   long bad_ = 0;
 };
 
-struct Look {
+struct LineSamples {
   std::vector<double> x, g;
 };
 
-void look_at(Line& line, std::vector<double> more, Look& look) {
+void sample_line(Line& line, std::vector<double> more, LineSamples& line_samples) {
   std::sort(more.begin(), more.end());
   more.erase(std::unique(more.begin(), more.end()), more.end());
   const std::vector<double> values = line.at(more);
   std::vector<std::pair<double, double>> all;
-  for (std::size_t i = 0; i < look.x.size(); ++i) all.emplace_back(look.x[i], look.g[i]);
+  for (std::size_t i = 0; i < line_samples.x.size(); ++i) all.emplace_back(line_samples.x[i], line_samples.g[i]);
   for (std::size_t i = 0; i < more.size(); ++i) all.emplace_back(more[i], values[i]);
   std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
-  look = {};
-  for (const auto& [x, g] : all) look.x.push_back(x), look.g.push_back(g);
+  line_samples = {};
+  for (const auto& [x, g] : all) line_samples.x.push_back(x), line_samples.g.push_back(g);
 }
 
 // Finds points at which the expression has the same sign as, and is closer to zero than, both neighbours: it may touch zero or cross it
 // twice. The closest to zero come first.
-std::vector<std::size_t> turns_of(const Look& look) {
+std::vector<std::size_t> turns_of(const LineSamples& line_samples) {
   constexpr std::size_t k_most = 6;
   std::vector<std::size_t> turns;
-  for (std::size_t i = 1; i + 1 < look.x.size(); ++i) {
-    const double before = look.g[i - 1], here = look.g[i], after = look.g[i + 1];
+  for (std::size_t i = 1; i + 1 < line_samples.x.size(); ++i) {
+    const double before = line_samples.g[i - 1], here = line_samples.g[i], after = line_samples.g[i + 1];
     const bool is_one_side = before * after > 0.0 && here * before >= 0.0;
     if (is_one_side && std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after)) turns.push_back(i);
   }
-  std::stable_sort(turns.begin(), turns.end(), [&](std::size_t l, std::size_t r) { return std::abs(look.g[l]) < std::abs(look.g[r]); });
+  std::stable_sort(turns.begin(), turns.end(),
+                   [&](std::size_t l, std::size_t r) { return std::abs(line_samples.g[l]) < std::abs(line_samples.g[r]); });
   if (turns.size() > k_most) turns.resize(k_most);
   return turns;
 }
 
-void look_closer(Line& line, Look& look) {
+void refine_line(Line& line, LineSamples& line_samples) {
   constexpr int k_rounds = 4, k_parts = 8;
   for (int round = 0; round < k_rounds; ++round) {
     std::vector<double> more;
-    for (const std::size_t i : turns_of(look))
+    for (const std::size_t i : turns_of(line_samples))
       for (int k = 1; k < k_parts; ++k)
-        for (const std::size_t from : {i - 1, i}) more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
+        for (const std::size_t from : {i - 1, i})
+          more.push_back(line_samples.x[from] + (line_samples.x[from + 1] - line_samples.x[from]) * k / k_parts);
     if (more.empty()) return;
-    look_at(line, std::move(more), look);
+    sample_line(line, std::move(more), line_samples);
   }
 }
 
 // Decides for neighbouring points at which the expression is zero whether it is zero everywhere between or only at these points.
-void look_into_flats(Line& line, Look& look) {
+void sample_flats(Line& line, LineSamples& line_samples) {
   constexpr int k_parts = 4;
   std::vector<double> more;
-  for (std::size_t i = 1; i < look.x.size(); ++i)
-    for (int k = 1; k < k_parts && look.g[i - 1] == 0.0 && look.g[i] == 0.0; ++k)
-      more.push_back(look.x[i - 1] + (look.x[i] - look.x[i - 1]) * k / k_parts);
-  if (!more.empty()) look_at(line, std::move(more), look);
+  for (std::size_t i = 1; i < line_samples.x.size(); ++i)
+    for (int k = 1; k < k_parts && line_samples.g[i - 1] == 0.0 && line_samples.g[i] == 0.0; ++k)
+      more.push_back(line_samples.x[i - 1] + (line_samples.x[i] - line_samples.x[i - 1]) * k / k_parts);
+  if (!more.empty()) sample_line(line, std::move(more), line_samples);
 }
 
-std::string where_nearest(const Look& look) {
-  std::size_t best = look.g.size();
-  for (std::size_t i = 0; i < look.g.size(); ++i)
-    if (!std::isnan(look.g[i]) && (best == look.g.size() || std::abs(look.g[i]) < std::abs(look.g[best]))) best = i;
+std::string where_nearest(const LineSamples& line_samples) {
+  std::size_t best = line_samples.g.size();
+  for (std::size_t i = 0; i < line_samples.g.size(); ++i)
+    if (!std::isnan(line_samples.g[i]) && (best == line_samples.g.size() || std::abs(line_samples.g[i]) < std::abs(line_samples.g[best])))
+      best = i;
   char text[80];
-  std::snprintf(text, sizeof text, "; nearest to zero at %.6g, where it is %.3g", look.x[best], look.g[best]);
+  std::snprintf(text, sizeof text, "; nearest to zero at %.6g, where it is %.3g", line_samples.x[best], line_samples.g[best]);
   return text;
 }
 
-std::string monotonic_text(const Look& look) {
+std::string monotonic_text(const LineSamples& line_samples) {
   bool rises = false, falls = false, is_known = true;
-  for (std::size_t i = 1; i < look.g.size(); ++i) {
-    is_known = is_known && !std::isnan(look.g[i]) && !std::isnan(look.g[i - 1]);
-    rises = rises || look.g[i] > look.g[i - 1];
-    falls = falls || look.g[i] < look.g[i - 1];
+  for (std::size_t i = 1; i < line_samples.g.size(); ++i) {
+    is_known = is_known && !std::isnan(line_samples.g[i]) && !std::isnan(line_samples.g[i - 1]);
+    rises = rises || line_samples.g[i] > line_samples.g[i - 1];
+    falls = falls || line_samples.g[i] < line_samples.g[i - 1];
   }
   if (!is_known) return "may be monotonic or not: some runs gave no value";
   if (rises && falls) return "is not monotonic over the range: all crossings that the looks tell apart are given";
@@ -141,16 +144,17 @@ void add_flat(double low, double high, const std::string& variable, long samples
 }
 
 // Finds intervals with different signs at their ends, and points that are zeros.
-std::vector<Crossing> crossings_of(const Look& look, const std::string& variable, long samples, Answer& answer) {
+std::vector<Crossing> crossings_of(const LineSamples& line_samples, const std::string& variable, long samples, Answer& answer) {
   std::vector<Crossing> crossings;
-  const auto is_zero = [&](std::size_t i) { return i < look.g.size() && look.g[i] == 0.0; };
-  for (std::size_t i = 0; i < look.x.size(); ++i) {
-    const double here = look.g[i];
-    if (here == 0.0 && !is_zero(i + 1) && !(i > 0 && is_zero(i - 1))) crossings.push_back({look.x[i], look.x[i], here, here});
-    if (i + 1 == look.x.size()) break;
-    const double next = look.g[i + 1];
-    if (here == 0.0 && next == 0.0) add_flat(look.x[i], look.x[i + 1], variable, samples, answer);
-    if (here * next < 0.0) crossings.push_back({look.x[i], look.x[i + 1], here, next});
+  const auto is_zero = [&](std::size_t i) { return i < line_samples.g.size() && line_samples.g[i] == 0.0; };
+  for (std::size_t i = 0; i < line_samples.x.size(); ++i) {
+    const double here = line_samples.g[i];
+    if (here == 0.0 && !is_zero(i + 1) && !(i > 0 && is_zero(i - 1)))
+      crossings.push_back({line_samples.x[i], line_samples.x[i], here, here});
+    if (i + 1 == line_samples.x.size()) break;
+    const double next = line_samples.g[i + 1];
+    if (here == 0.0 && next == 0.0) add_flat(line_samples.x[i], line_samples.x[i + 1], variable, samples, answer);
+    if (here * next < 0.0) crossings.push_back({line_samples.x[i], line_samples.x[i + 1], here, next});
   }
   return crossings;
 }
@@ -184,15 +188,15 @@ Answer run_critical(StudyRun& run) {
   const Variable& v = run.study().variables[static_cast<std::size_t>(run.study().index_of_variable(s.variable))];
   const double low = v.range[0], width = v.range[1] - v.range[0];
   Line line(run);
-  Look look;
+  LineSamples line_samples;
   for (long k = 0; k < s.points; ++k)
-    look.x.push_back(k + 1 == s.points ? v.range[1] : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
-  look.g = line.at(look.x);
-  look_into_flats(line, look);
-  look_closer(line, look);
+    line_samples.x.push_back(k + 1 == s.points ? v.range[1] : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
+  line_samples.g = line.at(line_samples.x);
+  sample_flats(line, line_samples);
+  refine_line(line, line_samples);
 
   Answer answer;
-  std::vector<Crossing> crossings = crossings_of(look, s.variable, run.evaluator.asked(), answer);
+  std::vector<Crossing> crossings = crossings_of(line_samples, s.variable, run.evaluator.asked(), answer);
   say_if_dense(crossings.size(), s.points, answer);
   close_crossings(crossings, s.tolerance * width,
                   [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
@@ -207,14 +211,15 @@ Answer run_critical(StudyRun& run) {
   if (answer.findings.empty()) {
     Finding f{"critical", s.variable, "critical value"};
     f.samples = run.evaluator.asked();
-    const auto known = std::find_if(look.g.begin(), look.g.end(), [](double g) { return !std::isnan(g); });
-    f.status = known == look.g.end() ? "no run gave a value"
-                                     : std::string("none in the range: the expression is ") + (*known < 0.0 ? "negative" : "positive") +
-                                           " wherever it was looked at" + where_nearest(look);
+    const auto known = std::find_if(line_samples.g.begin(), line_samples.g.end(), [](double g) { return !std::isnan(g); });
+    f.status = known == line_samples.g.end()
+                   ? "no run gave a value"
+                   : std::string("none in the range: the expression is ") + (*known < 0.0 ? "negative" : "positive") +
+                         " wherever it was looked at" + where_nearest(line_samples);
     answer.findings.push_back(f);
     answer.degrade(Standing::not_met);
   }
-  answer.notes.push_back("The expression " + monotonic_text(look) + ".");
+  answer.notes.push_back("The expression " + monotonic_text(line_samples) + ".");
   char text[200];
   std::snprintf(text, sizeof text,
                 "Looks lie %.3g apart: two crossings nearer to each other may lie between them unseen, where nothing "

@@ -17,15 +17,15 @@ namespace steplap::study {
 
 namespace {
 
-enum class Look { holds, fails, bad };
+enum class LimitState { holds, fails, bad };
 
-struct Seen {
+struct RayPoint {
   double at = 0.0, g = 0.0; // radius and value
-  Look look = Look::holds;
+  LimitState state = LimitState::holds;
 };
 
-Seen seen_at(double at, const LimitValue& value) {
-  return {at, value.g, value.is_bad ? Look::bad : value.g < 0.0 ? Look::fails : Look::holds};
+RayPoint ray_point_at(double at, const LimitValue& value) {
+  return {at, value.g, value.is_bad ? LimitState::bad : value.g < 0.0 ? LimitState::fails : LimitState::holds};
 }
 
 struct Stratum {
@@ -33,8 +33,8 @@ struct Stratum {
   double low, high;           // radii; infinity at the end of a ray
   double tail_low, tail_high; // probability of a larger radius
   bool is_last = false;
-  Seen own{};
-  Seen beside[4]{}; // points outside the stratum and outside the whole from which it was divided: two before, two after
+  RayPoint own{};
+  RayPoint beside[4]{}; // points outside the stratum and outside the whole from which it was divided: two before, two after
 
   [[nodiscard]] double probability() const { return tail_low - tail_high; }
 
@@ -42,12 +42,12 @@ struct Stratum {
   [[nodiscard]] bool is_to_cut() const {
     constexpr double k_fine = 0.1; // of the probability outside the stratum; rays differ by more than this
     if (is_last || probability() <= k_fine * tail_low) return false;
-    return beside[1].look != beside[2].look || comes_to_zero(beside[0], beside[1]) || comes_to_zero(beside[3], beside[2]);
+    return beside[1].state != beside[2].state || comes_to_zero(beside[0], beside[1]) || comes_to_zero(beside[3], beside[2]);
   }
 
 private:
-  [[nodiscard]] bool comes_to_zero(const Seen& far, const Seen& near) const {
-    if (far.look != near.look || near.look == Look::bad || far.at == near.at) return false;
+  [[nodiscard]] bool comes_to_zero(const RayPoint& far, const RayPoint& near) const {
+    if (far.state != near.state || near.state == LimitState::bad || far.at == near.at) return false;
     const double zero = near.at - near.g * (near.at - far.at) / (near.g - far.g); // NaN if both values are equal
     return zero > low && zero < high;
   }
@@ -56,7 +56,7 @@ private:
 // Several rays at a time, which uses all processors.
 class Rays {
 public:
-  Rays(LimitFunction& limit, const CounterRandom& random, std::uint64_t first, std::size_t count, const Seen& origin)
+  Rays(LimitFunction& limit, const CounterRandom& random, std::uint64_t first, std::size_t count, const RayPoint& origin)
       : limit_(limit), random_(random), first_(first), n_(limit.dimension()), draws_(count, 0) {
     constexpr double k_beyond = 1e-16; // probability left for the last stratum
     const double reach = std::sqrt(2.0 * OT::DistFunc::qGamma(0.5 * static_cast<double>(n_), k_beyond, true));
@@ -70,9 +70,9 @@ public:
         strata_.push_back(s);
       }
     }
-    take_looks(strata_);
+    sample_rays(strata_);
     for (std::size_t k = 0; k < strata_.size(); ++k) {
-      Seen* const beside = strata_[k].beside;
+      RayPoint* const beside = strata_[k].beside;
       const std::size_t place = k % k_strata;
       beside[1] = place == 0 ? origin : strata_[k - 1].own;
       beside[0] = place == 0 ? origin : place == 1 ? origin : strata_[k - 2].own;
@@ -86,7 +86,7 @@ public:
   template <class Wanted> std::vector<double> probabilities(const Wanted& wanted) const {
     std::vector<double> sums(draws_.size(), 0.0);
     for (const Stratum& s : strata_)
-      if (wanted(s.own.look)) sums[s.ray] += s.probability();
+      if (wanted(s.own.state)) sums[s.ray] += s.probability();
     return sums;
   }
   [[nodiscard]] long bad() const { return bad_; }
@@ -113,14 +113,14 @@ private:
     s.own.at = s.is_last ? std::max(at, s.low) : std::clamp(at, s.low, s.high);
   }
 
-  void take_looks(std::vector<Stratum>& strata) {
+  void sample_rays(std::vector<Stratum>& strata) {
     if (strata.empty()) return;
     std::vector<double> points;
     for (const Stratum& s : strata)
       for (std::size_t d = 0; d < n_; ++d) points.push_back(s.own.at * directions_[s.ray * n_ + d]);
     const std::vector<LimitValue>& values = limit_.at(points);
     for (std::size_t k = 0; k < strata.size(); ++k) {
-      strata[k].own = seen_at(strata[k].own.at, values[k]);
+      strata[k].own = ray_point_at(strata[k].own.at, values[k]);
       bad_ += values[k].is_bad;
     }
   }
@@ -140,8 +140,8 @@ private:
         part.low = s.low + (s.high - s.low) * k / k_parts;
         part.high = k + 1 == k_parts ? s.high : s.low + (s.high - s.low) * (k + 1) / k_parts;
         measure(part);
-        const bool has_look = part.own.at >= part.low && (part.own.at < part.high || k + 1 == k_parts);
-        if (!has_look) {
+        const bool has_sample = part.own.at >= part.low && (part.own.at < part.high || k + 1 == k_parts);
+        if (!has_sample) {
           place(part);
           fresh.push_back(part);
           places.push_back(next.size());
@@ -150,7 +150,7 @@ private:
       }
     }
     if (cuts.empty()) return false;
-    take_looks(fresh);
+    sample_rays(fresh);
     for (std::size_t i = 0; i < fresh.size(); ++i) next[places[i]].own = fresh[i].own;
     for (const std::size_t first : cuts) set_beside(&next[first]);
     strata_ = std::move(next);
@@ -159,8 +159,8 @@ private:
 
   // Sets the neighbours of three parts: each other, and those of the whole.
   static void set_beside(Stratum* part) {
-    const Seen *const outside = part[0].beside,
-                      seen[] = {outside[0], outside[1], part[0].own, part[1].own, part[2].own, outside[2], outside[3]};
+    const RayPoint *const outside = part[0].beside,
+                          seen[] = {outside[0], outside[1], part[0].own, part[1].own, part[2].own, outside[2], outside[3]};
     for (int k = 0; k < k_parts; ++k) {
       part[k].beside[0] = seen[k];
       part[k].beside[1] = seen[k + 1];
@@ -190,15 +190,15 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
   SamplingCourse course(limit, target);
   Estimate e;
   e.method = "directional";
-  const Seen origin = seen_at(0.0, limit.at_point(std::vector<double>(limit.dimension(), 0.0)));
+  const RayPoint origin = ray_point_at(0.0, limit.at_point(std::vector<double>(limit.dimension(), 0.0)));
   std::uint64_t ray = 0;
   WeightedMean safe, unsafe;
   const auto draw_until = [&](long count) {
     while (safe.count() < count && !course.is_over()) {
       const Rays rays(limit, random, ray, k_rays, origin);
       ray += k_rays;
-      for (const double p : rays.probabilities([](Look l) { return l == Look::fails; })) safe.add(p);
-      for (const double p : rays.probabilities([](Look l) { return l != Look::holds; })) unsafe.add(p);
+      for (const double p : rays.probabilities([](LimitState l) { return l == LimitState::fails; })) safe.add(p);
+      for (const double p : rays.probabilities([](LimitState l) { return l != LimitState::holds; })) unsafe.add(p);
       e.bad += rays.bad();
       course.set(e, share_of(safe, false, target), share_of(unsafe, false, target));
       course.note(e);

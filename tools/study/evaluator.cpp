@@ -60,7 +60,7 @@ class Workers {
 public:
   Workers(const LoadedStudy& loaded, int threads) : width_(loaded.study.variables.size()), has_models_(!loaded.models.empty()) {
     const int count = threads > 0 ? threads : omp_get_max_threads();
-    for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<Scene>(loaded));
+    for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<SampleSimulator>(loaded));
   }
 
   /// Runs every `stride`-th point from `first` on.
@@ -80,7 +80,7 @@ public:
   [[nodiscard]] bool is_derived(const StoredSample& sample) { return scenes_.front()->is_derived(sample.values, sample.outcome); }
 
 private:
-  std::vector<std::unique_ptr<Scene>> scenes_;
+  std::vector<std::unique_ptr<SampleSimulator>> scenes_;
   std::size_t width_;
   bool has_models_;
 };

@@ -63,22 +63,22 @@ Moments moments_of(const Variable& v) {
 
 // Checks that every field given is used by the distribution.
 void check_fields(const Variable& v) {
-  struct Given {
+  struct FieldUse {
     const char* name;
     bool is_given;
     const char* of; ///< distributions that use it
   };
-  const Given all[] = {{"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
-                       {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
-                       {"cov", v.cov.has_value(), "normal lognormal uniform weibull gumbel beta"},
-                       {"low", v.low.has_value(), "uniform triangular beta"},
-                       {"high", v.high.has_value(), "uniform triangular beta"},
-                       {"mode", v.mode.has_value(), "triangular"},
-                       {"shape", v.shape.has_value(), "weibull beta"},
-                       {"shape2", v.shape2.has_value(), "beta"},
-                       {"scale", v.scale.has_value(), "weibull gumbel exponential"},
-                       {"location", v.location.has_value(), "lognormal weibull gumbel exponential"}};
-  for (const Given& given : all)
+  const FieldUse all[] = {{"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
+                          {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
+                          {"cov", v.cov.has_value(), "normal lognormal uniform weibull gumbel beta"},
+                          {"low", v.low.has_value(), "uniform triangular beta"},
+                          {"high", v.high.has_value(), "uniform triangular beta"},
+                          {"mode", v.mode.has_value(), "triangular"},
+                          {"shape", v.shape.has_value(), "weibull beta"},
+                          {"shape2", v.shape2.has_value(), "beta"},
+                          {"scale", v.scale.has_value(), "weibull gumbel exponential"},
+                          {"location", v.location.has_value(), "lognormal weibull gumbel exponential"}};
+  for (const FieldUse& given : all)
     if (given.is_given && (" " + std::string(given.of) + " ").find(" " + v.distribution + " ") == std::string::npos)
       complain(v, "a " + v.distribution + " distribution has no '" + given.name + "'");
   const bool has_moments = v.mean || v.standard_deviation || v.cov;

@@ -51,7 +51,7 @@ OT::Distribution fitted(const std::string& kind, const OT::Sample& sample) {
 using Pair = std::array<double, 2>;
 
 // Minimises a function of two numbers by the Nelder-Mead simplex.
-template <class Function> Pair least_of(const Function& function, const Pair& start, double step) {
+template <class Function> Pair minimise_nelder_mead(const Function& function, const Pair& start, double step) {
   struct Corner {
     Pair at;
     double value;
@@ -142,7 +142,8 @@ OT::Distribution fitted_within(const Variable& v, const std::vector<double>& val
   };
   Pair at = beginning(v.distribution, values);
   double step = v.distribution == "normal" || v.distribution == "gumbel" ? 0.5 * std::exp(at[1]) : 0.3;
-  for (int i = 0; i < 3; ++i, step *= 0.3) at = least_of(surprise, at, step); // repeated, because a simplex may collapse too early
+  for (int i = 0; i < 3; ++i, step *= 0.3)
+    at = minimise_nelder_mead(surprise, at, step); // repeated, because a simplex may collapse too early
   return unbounded(v.distribution, at);
 }
 

@@ -7,7 +7,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/input_files.h"
 #include "tools/study/finding.h"
-#include "tools/study/scene.h"
+#include "tools/study/sample_simulator.h"
 
 struct sqlite3;
 struct sqlite3_stmt;

@@ -15,27 +15,27 @@ namespace steplap::assess {
 namespace {
 
 /// A quantity for criteria, the unit of its limit, and whether it takes 'at_most', 'at_least' or no limit.
-struct Asked {
+struct CriterionQuantity {
   const char* name;
   const char* unit;
   enum class Limit { none, most, least } limit;
 };
-using Limit = Asked::Limit;
-constexpr Asked k_quantities[] = {{"peak", "m/s^2", Limit::most},
-                                  {"velocity_change", "m/s", Limit::most},
-                                  {"slip", "", Limit::none},
-                                  {"slid", "m", Limit::most},
-                                  {"overlap_left", "", Limit::least},
-                                  {"margin", "", Limit::least},
-                                  {"comes_apart", "", Limit::none},
-                                  {"lift", "", Limit::none},
-                                  {"acceptance", "", Limit::none},
-                                  {"slip_probability", "", Limit::most},
-                                  {"damage_probability", "", Limit::most}};
+using Limit = CriterionQuantity::Limit;
+constexpr CriterionQuantity k_quantities[] = {{"peak", "m/s^2", Limit::most},
+                                              {"velocity_change", "m/s", Limit::most},
+                                              {"slip", "", Limit::none},
+                                              {"slid", "m", Limit::most},
+                                              {"overlap_left", "", Limit::least},
+                                              {"margin", "", Limit::least},
+                                              {"comes_apart", "", Limit::none},
+                                              {"lift", "", Limit::none},
+                                              {"acceptance", "", Limit::none},
+                                              {"slip_probability", "", Limit::most},
+                                              {"damage_probability", "", Limit::most}};
 
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names;
-  for (const Asked& q : k_quantities) names.push_back(q.name);
+  for (const CriterionQuantity& q : k_quantities) names.push_back(q.name);
   return names;
 }
 
@@ -108,8 +108,8 @@ private:
     criteria_.criteria.push_back(std::move(criterion));
   }
   void read_limits(const Node& entry, DecisionCriterion& c) {
-    const auto& q =
-        *std::find_if(std::begin(k_quantities), std::end(k_quantities), [&](const Asked& each) { return c.quantity == each.name; });
+    const auto& q = *std::find_if(std::begin(k_quantities), std::end(k_quantities),
+                                  [&](const CriterionQuantity& each) { return c.quantity == each.name; });
     const auto at = [&](const char* key) { return entry.find(key) ? entry.find(key)->where() : entry.where(); };
     const auto add = [&](const char* key, const std::string& message) {
       problems_.push_back({at(key), "criterion '" + c.name + "': " + message});

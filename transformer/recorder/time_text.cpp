@@ -41,7 +41,7 @@ int days_in(int year, int month) {
   return k_days[static_cast<std::size_t>(month - 1)] + (month == 2 && is_leap ? 1 : 0);
 }
 
-bool is_day(int year, int month, int day) {
+bool is_valid_date(int year, int month, int day) {
   return year >= 1970 && year < 2200 && month >= 1 && month <= 12 && day >= 1 && day <= days_in(year, month);
 }
 
@@ -95,14 +95,14 @@ int full_year(int year, std::size_t digits) { return digits == 2 ? 2000 + year :
 bool fits(const DateParts& p, unsigned order, int& year, int& month, int& day) {
   if (order == k_year_first) {
     year = full_year(p.first, p.first_digits), month = p.second, day = p.third;
-    return p.named != 1 && is_year(p.first_digits) && p.third_digits <= 2 && is_day(year, month, day);
+    return p.named != 1 && is_year(p.first_digits) && p.third_digits <= 2 && is_valid_date(year, month, day);
   }
   year = full_year(p.third, p.third_digits);
   const bool is_month_first = order == k_month_first;
   month = is_month_first ? p.first : p.second;
   day = is_month_first ? p.second : p.first;
   if (p.named != 0 && is_month_first != (p.named == 1)) return false;
-  return p.first_digits <= 2 && is_year(p.third_digits) && is_day(year, month, day);
+  return p.first_digits <= 2 && is_year(p.third_digits) && is_valid_date(year, month, day);
 }
 
 unsigned orders_of(const DateParts& parts) {

@@ -98,7 +98,7 @@ private:
     double true_one, pushed;
     int sign; ///< 0: ambiguous
   };
-  Side side_of(const Vec2& along, const Vec2& from_edge, const Vec2& push) {
+  Side perturbed_orientation(const Vec2& along, const Vec2& from_edge, const Vec2& push) {
     const double size = along.lpNorm<1>(), d = steplap::cross(along, from_edge), by = steplap::cross(along, push);
     Side side{d, d + by, 0};
     if (std::abs(d) > margin_ * size) {
@@ -113,9 +113,9 @@ private:
   void cross_edges(std::size_t i, std::size_t j) {
     const Vec2 &a = corner(0, i), &b = corner(1, j), &a_end = corner(0, next(0, i)), &b_end = corner(1, next(1, j));
     const Vec2 along_a = a_end - a, along_b = b_end - b;
-    const Side a0 = side_of(along_b, a - b, -push_), a1 = side_of(along_b, a_end - b, -push_);
+    const Side a0 = perturbed_orientation(along_b, a - b, -push_), a1 = perturbed_orientation(along_b, a_end - b, -push_);
     if (a0.sign * a1.sign > 0) return;
-    const Side b0 = side_of(along_a, b - a, push_), b1 = side_of(along_a, b_end - a, push_);
+    const Side b0 = perturbed_orientation(along_a, b - a, push_), b1 = perturbed_orientation(along_a, b_end - a, push_);
     if (b0.sign * b1.sign > 0) return;
     if (a0.sign * a1.sign * b0.sign * b1.sign == 0 || a1.sign == b1.sign) {
       is_certain_ = false;

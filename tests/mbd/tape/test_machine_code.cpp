@@ -342,15 +342,15 @@ TEST_CASE("sines of all sizes side by side have the bits of portable::sin_cos") 
        {0.78539816339744828, 0x1p-28, 1e6, 0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     for (const double x : {edge, -edge, std::nextafter(edge, 0.0), std::nextafter(edge, 1e7)}) all.push_back(x);
   REQUIRE(all.size() % 8 == 0);
-  struct Way {
+  struct SineKernel {
     int count;
     void (*sin_cos)(const double*, double*, double*);
   };
-  std::vector<Way> ways{{8, sin_cos_of_block}};
+  std::vector<SineKernel> ways{{8, sin_cos_of_block}};
   if (MachineCode::is_available()) ways.push_back({2, sin_cos_of_two});
   if (MachineCode::best_instructions() >= InstructionSet::avx2) ways.push_back({4, sin_cos_of_four});
   if (MachineCode::best_instructions() >= InstructionSet::avx512) ways.push_back({8, sin_cos_of_eight});
-  for (const Way& way : ways) {
+  for (const SineKernel& way : ways) {
     CAPTURE(way.count);
     int wrong = 0;
     for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(way.count)) {

@@ -153,11 +153,11 @@ TEST_CASE("what a literal does nothing to is left as it is, to the sign of a zer
 }
 
 TEST_CASE("ones and zeros that are written down are literals, all other constants the sample's") {
-  Traced::start();
-  const Traced x = Traced::input(0.5);
-  Traced::output(x * 1.0 + 0.0 + x * -1.0 + 3.0 * x + (x - -0.0));
+  TapeNumber::start();
+  const TapeNumber x = TapeNumber::input(0.5);
+  TapeNumber::output(x * 1.0 + 0.0 + x * -1.0 + 3.0 * x + (x - -0.0));
   Tape tape;
-  REQUIRE(Traced::finish(&tape));
+  REQUIRE(TapeNumber::finish(&tape));
   CHECK(tape.constants == std::vector<double>{3.0});
   CHECK(std::count(tape.steps.begin(), tape.steps.end(), TapeStep{constant, k_minus_zero, 0}) == 1);
   double output = 0.0;
@@ -231,18 +231,18 @@ TEST_CASE("what a tape calls is written down with its results, and is a constant
     found[1] = of[1] - of[2];
   };
   Tape tape;
-  Traced::start();
-  const Traced x = Traced::input(0.75), given[] = {x, Traced(2.0)}, known[] = {Traced(3.0), Traced(2.0)};
-  Traced found[2], fixed[2];
-  Traced::call(add_up, given, found);
-  Traced::call(add_up, known, fixed);
+  TapeNumber::start();
+  const TapeNumber x = TapeNumber::input(0.75), given[] = {x, TapeNumber(2.0)}, known[] = {TapeNumber(3.0), TapeNumber(2.0)};
+  TapeNumber found[2], fixed[2];
+  TapeNumber::call(add_up, given, found);
+  TapeNumber::call(add_up, known, fixed);
   CHECK(fixed[0].is_constant());
   CHECK(value_of(fixed[1]) == 1.0);
   CHECK_FALSE(found[0].is_constant());
   CHECK(value_of(found[1]) == -1.25);
-  for (const Traced& y : found) Traced::output(y * x);
-  Traced::output(atan2(x, Traced(2.0)));
-  REQUIRE(Traced::finish(&tape));
+  for (const TapeNumber& y : found) TapeNumber::output(y * x);
+  TapeNumber::output(atan2(x, TapeNumber(2.0)));
+  REQUIRE(TapeNumber::finish(&tape));
   double output[3];
   const double other = 1.5;
   REQUIRE(replay(tape, &other, tape.constants.data(), output));
@@ -281,26 +281,26 @@ struct Written {
   int turns = 3;
 
   void write() const {
-    const Traced a = Traced::input(x), b = Traced::input(x + 1.0);
-    Traced sum(0.0);
+    const TapeNumber a = TapeNumber::input(x), b = TapeNumber::input(x + 1.0);
+    TapeNumber sum(0.0);
     for (int i = 0; i < turns; ++i) sum += number * a - b / (number + i);
     if (sum < b) sum = sqrt(abs(sum));
-    Traced::output(sum);
-    Traced::end_usual_outputs();
-    Traced::output(sum * number);
+    TapeNumber::output(sum);
+    TapeNumber::end_usual_outputs();
+    TapeNumber::output(sum * number);
   }
   [[nodiscard]] Tape tape() const {
     Tape tape;
-    Traced::start();
+    TapeNumber::start();
     write();
-    REQUIRE(Traced::finish(&tape));
+    REQUIRE(TapeNumber::finish(&tape));
     return tape;
   }
   [[nodiscard]] bool is(const Tape& known, std::vector<double>& constants) const {
     Tape tape;
-    Traced::start(&known);
+    TapeNumber::start(&known);
     write();
-    const bool is_same = Traced::finish(&tape);
+    const bool is_same = TapeNumber::finish(&tape);
     constants = tape.constants;
     return is_same;
   }

@@ -42,7 +42,7 @@ struct Row {
 struct Part { ///< a shock along x, or vibration
   double from = 0.0, length = 0.0, peak = 0.0, frequency = 0.0;
 };
-struct Made {
+struct SampledRecord {
   double rate = 0.0; ///< Hz
   std::vector<Row> rows;
   std::vector<Part> parts;
@@ -57,8 +57,8 @@ double value_of(const Part& p, double t) {
 }
 
 // Some seconds at 250 or 500 Hz: shocks of 10 samples to 120 ms, of 0.3 to 2.5 g, or some seconds of vibration, and noise of 5 mg.
-Made make_voyage(Draw& draw) {
-  Made made;
+SampledRecord make_voyage(Draw& draw) {
+  SampledRecord made;
   made.rate = draw.happens(0.2) ? 500.0 : 250.0;
   const double duration = draw.uniform(3.5, 5.5);
   double t = 1.2;
@@ -102,7 +102,7 @@ struct Bench {
     assess_test::write(options.criteria,
                        "name = \"models\"\n[[criterion]]\nname = \"models\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n");
   }
-  void say_voyage(const Made& made) {
+  void say_voyage(const SampledRecord& made) {
     options.voyage = parse_voyage(std::to_string(made.rows.front().t) + "," + std::to_string(made.rows.back().t));
   }
   // How far the block slides at most when all of the record drives it.
@@ -144,12 +144,12 @@ const char* const k_damages[] = {"its end is missing",
                                  "an axis is not read"};
 constexpr std::size_t k_ways = std::size(k_damages);
 
-const Part& strongest(const Made& made) {
+const Part& strongest(const SampledRecord& made) {
   return *std::max_element(made.parts.begin(), made.parts.end(),
                            [](const Part& a, const Part& b) { return std::abs(a.peak) < std::abs(b.peak); });
 }
 
-std::string damaged(std::size_t way, Made made, Draw& draw, AssessmentOptions& options) {
+std::string damaged(std::size_t way, SampledRecord made, Draw& draw, AssessmentOptions& options) {
   std::vector<Row>& rows = made.rows;
   const Part part = strongest(made);
   const auto at = [&](double t) {
@@ -210,7 +210,7 @@ TEST_CASE("no decision on a damaged record is more favourable than the truth, an
   long open = 0, kept = 0, harmful = 0, energised = 0;
   for (std::uint64_t number = 1; kept < damages; ++number) {
     Draw draw(number);
-    const Made made = make_voyage(draw);
+    const SampledRecord made = make_voyage(draw);
     Bench bench(draw.uniform(0.3, 0.7));
     bench.say_voyage(made);
     assess_test::write(bench.record, csv_of(made.rows));

@@ -12,13 +12,13 @@ namespace {
 constexpr unsigned short k_port = 4242;
 const std::string k_token = "0123456789abcdef0123456789abcdef";
 
-Knock good(const std::string& method) {
-  Knock knock{method,
-              "/" + k_token + "/run",
-              "127.0.0.1:4242",
-              method == "POST" ? "http://127.0.0.1:4242" : "",
-              "",
-              method == "POST" ? "application/json" : ""};
+RequestHead good(const std::string& method) {
+  RequestHead knock{method,
+                    "/" + k_token + "/run",
+                    "127.0.0.1:4242",
+                    method == "POST" ? "http://127.0.0.1:4242" : "",
+                    "",
+                    method == "POST" ? "application/json" : ""};
   return knock;
 }
 
@@ -28,7 +28,7 @@ TEST_CASE("what the page itself asks is let in") {
   const Gate gate(k_port, k_token);
   CHECK(gate.refusal(good("GET")) == "");
   CHECK(gate.refusal(good("POST")) == "");
-  Knock typed = good("GET"); // into the address line
+  RequestHead typed = good("GET"); // into the address line
   typed.fetch_site = "none";
   CHECK(gate.refusal(typed) == "");
 }
@@ -38,42 +38,42 @@ TEST_CASE("one thing that is wrong is enough to be refused") {
   for (const char* method : {"GET", "POST"}) {
     for (const char* target : {"", "/", "/0123456789abcdef0123456789abcdee/run", "/0123456789abcdef0123456789abcdef", "/0123456789abcdef/",
                                "0123456789abcdef0123456789abcdef/"}) {
-      Knock knock = good(method);
+      RequestHead knock = good(method);
       knock.target = target;
       CHECK_MESSAGE(gate.refusal(knock) != "", target);
     }
     for (const char* host :
          {"", "127.0.0.1", "127.0.0.1:4243", "localhost:4242", "evil.example:4242", "127.0.0.1:4242.evil.example", "[::1]:4242"}) {
-      Knock knock = good(method);
+      RequestHead knock = good(method);
       knock.host = host;
       CHECK_MESSAGE(gate.refusal(knock) != "", host);
     }
     for (const char* origin :
          {"null", "http://evil.example", "https://127.0.0.1:4242", "http://127.0.0.1", "http://localhost:4242", "http://127.0.0.1:4242/"}) {
-      Knock knock = good(method);
+      RequestHead knock = good(method);
       knock.origin = origin;
       CHECK_MESSAGE(gate.refusal(knock) != "", origin);
     }
     for (const char* site : {"cross-site", "same-site", "anything"}) {
-      Knock knock = good(method);
+      RequestHead knock = good(method);
       knock.fetch_site = site;
       CHECK_MESSAGE(gate.refusal(knock) != "", site);
     }
-    Knock twice = good(method);
+    RequestHead twice = good(method);
     twice.host_headers = 2;
     CHECK(gate.refusal(twice) != "");
   }
   for (const char* method : {"HEAD", "PUT", "OPTIONS", "get", ""}) {
-    Knock knock = good("GET");
+    RequestHead knock = good("GET");
     knock.method = method;
     CHECK_MESSAGE(gate.refusal(knock) != "", method);
   }
-  Knock nameless = good("POST");
+  RequestHead nameless = good("POST");
   nameless.origin = "";
   CHECK(gate.refusal(nameless) != "");
   for (const char* type :
        {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data"}) { // what a form of another site can send
-    Knock form = good("POST");
+    RequestHead form = good("POST");
     form.content_type = type;
     CHECK_MESSAGE(gate.refusal(form) != "", type);
   }
@@ -81,13 +81,13 @@ TEST_CASE("one thing that is wrong is enough to be refused") {
 
 TEST_CASE("the first address serves once, from nowhere else") {
   Gate gate(k_port, k_token);
-  Knock first = good("GET");
+  RequestHead first = good("GET");
   first.target = gate.first_path();
-  Knock foreign = first;
+  RequestHead foreign = first;
   foreign.origin = "http://evil.example";
   CHECK(gate.refusal(foreign) != "");
   CHECK(gate.refusal(first) == "");
-  Knock near = first;
+  RequestHead near = first;
   near.target.back() = near.target.back() == '0' ? '1' : '0';
   CHECK_FALSE(gate.takes_first(near));
   CHECK(gate.takes_first(first));

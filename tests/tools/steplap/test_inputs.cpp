@@ -18,14 +18,14 @@ using namespace steplap::testing;
 namespace {
 
 // What the program says of a shell's command, both streams.
-struct Said {
+struct CommandOutput {
   int code = 0;
   std::string text;
 };
-Said shell(const std::string& command) {
+CommandOutput shell(const std::string& command) {
   std::FILE* const pipe = popen(("exec 2>&1; " + command).c_str(), "r");
   REQUIRE(pipe);
-  Said said;
+  CommandOutput said;
   char part[4096];
   while (const std::size_t count = std::fread(part, 1, sizeof part, pipe)) said.text.append(part, count);
   const int status = pclose(pipe);
@@ -276,7 +276,7 @@ TEST_CASE("what has no end, or is no file, is refused in words") {
   const std::string fifo = bench.at("fifo");
   REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
   const auto refused = [](const std::string& path, const std::string& why) {
-    const Said said = shell("timeout 20 " + k_program + " check " + path);
+    const CommandOutput said = shell("timeout 20 " + k_program + " check " + path);
     CAPTURE(said.text);
     CHECK(said.code == 3);
     CHECK(has(said.text, why));
@@ -300,18 +300,18 @@ TEST_CASE("limits of a file's size and of processor time, and readers that have 
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
   const std::string run = k_program + " simulate " + model + " --set output.step=1e-4 -o ";
-  const Said full = shell("ulimit -f 20; " + run + bench.at("full") + " -q");
+  const CommandOutput full = shell("ulimit -f 20; " + run + bench.at("full") + " -q");
   CHECK(full.code == 2);
   CHECK(has(full.text, "File too large"));
   CHECK_FALSE(fs::exists(bench.at("full")));
-  const Said slow = shell("ulimit -S -t 1; " + k_program + " simulate " + bench.write("long.toml", k_oscillator) +
-                          " -q --set simulation.end=1e6 --set output.step=10 -o " + bench.at("slow"));
+  const CommandOutput slow = shell("ulimit -S -t 1; " + k_program + " simulate " + bench.write("long.toml", k_oscillator) +
+                                   " -q --set simulation.end=1e6 --set output.step=10 -o " + bench.at("slow"));
   CHECK((slow.code == -SIGXCPU || slow.code == 128 + SIGXCPU)); // as the shell hands it on
   CHECK(has(text_of(bench.at("slow/long/partial_summary.json")), "stopped by SIGXCPU"));
   CHECK(bench.content("slow") == std::set<std::string>{"long", "long/partial_drawing.json", "long/partial_events.csv",
                                                        "long/partial_model.toml", "long/partial_summary.json",
                                                        "long/partial_trajectory.csv"});
-  const Said closed = shell(run + bench.at("closed") + " | true");
+  const CommandOutput closed = shell(run + bench.at("closed") + " | true");
   CHECK_FALSE(has(closed.text, "error"));
   CHECK(fs::exists(bench.at("closed/a/summary.json")));
   CHECK(bench.content("closed").size() == 6);

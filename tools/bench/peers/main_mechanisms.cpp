@@ -19,7 +19,7 @@
 namespace steplap::peers {
 namespace {
 
-struct Entry {
+struct ProgramRuns {
   std::string problem;
   std::string program;
   std::vector<double> settings;
@@ -39,7 +39,7 @@ MechanismResult judged(const AndrewsResult& r, AndrewsVariant variant) {
   return result;
 }
 
-void add_andrews(std::vector<Entry>& all) {
+void add_andrews(std::vector<ProgramRuns>& all) {
   for (const AndrewsVariant v : {AndrewsVariant::test_set, AndrewsVariant::a03}) {
     const std::string problem = v == AndrewsVariant::a03 ? "B1 A03 0.05 s" : "B1 Andrews 0.03 s";
     auto add = [&](const char* name, AndrewsResult (*run)(AndrewsVariant, double), double last) {
@@ -57,7 +57,7 @@ void add_andrews(std::vector<Entry>& all) {
   }
 }
 
-void add_four_bar(std::vector<Entry>& all, bool slow) {
+void add_four_bar(std::vector<ProgramRuns>& all, bool slow) {
   for (const FourBarExact& exact : k_four_bar_exact) {
     const bool large = exact.windows > 2;
     const std::string problem = "B2 N = " + std::to_string(exact.windows);
@@ -75,7 +75,7 @@ void add_four_bar(std::vector<Entry>& all, bool slow) {
   }
 }
 
-void add_pendulum(std::vector<Entry>& all) {
+void add_pendulum(std::vector<ProgramRuns>& all) {
   all.push_back({"B3 pendulum", "angle, own DOP853", decades(1e-2, 1e-13), run_pendulum_dop853});
 #ifdef STEPLAP_PEER_ARKODE
   all.push_back({"B3 pendulum", "angle, ARKODE", decades(1e-2, 1e-13), run_pendulum_arkode});
@@ -88,7 +88,7 @@ void add_pendulum(std::vector<Entry>& all) {
 #ifdef STEPLAP_PEER_ARKODE
 constexpr double k_bounce_tightest = 1e-14;
 
-void add_switching(std::vector<Entry>& all) {
+void add_switching(std::vector<ProgramRuns>& all) {
   all.push_back({"B4a belt", "ARKODE with roots", decades(1e-2, 1e-13), run_belt_arkode});
   all.push_back({"B4b Den Hartog", "ARKODE with roots", decades(1e-2, 1e-13), run_den_hartog_arkode});
   std::vector<double> reference;
@@ -109,7 +109,7 @@ void add_switching(std::vector<Entry>& all) {
 }
 #endif
 
-Rung measure(const Entry& entry, double setting) {
+Rung measure(const ProgramRuns& entry, double setting) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1e", setting);
   MechanismResult result = entry.run(setting);
@@ -133,7 +133,7 @@ int main(int argc, char** argv) {
     if (i + 1 < argc && std::strcmp(argv[i], "--csv") == 0) csv = argv[i + 1];
     if (i + 1 < argc && std::strcmp(argv[i], "--only") == 0) only = argv[i + 1];
   }
-  std::vector<Entry> all;
+  std::vector<ProgramRuns> all;
   add_andrews(all);
   add_four_bar(all, slow);
   add_pendulum(all);
@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
   add_switching(all);
 #endif
   std::vector<Rung> rungs;
-  for (const Entry& entry : all) {
+  for (const ProgramRuns& entry : all) {
     if (!only.empty() && entry.problem.compare(0, only.size(), only) != 0) continue;
     for (const double setting : entry.settings) rungs.push_back(measure(entry, setting));
   }

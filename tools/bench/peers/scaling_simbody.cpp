@@ -15,7 +15,7 @@ using SimTK::MobilizedBody;
 using SimTK::Transform;
 using SimTK::Vec3;
 
-struct Scene {
+struct SimbodyModel {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
   SimTK::GeneralForceSubsystem forces{system};
@@ -27,7 +27,7 @@ SimTK::Body::Rigid flat_body(double inertia, const Vec3& centre) {
   return SimTK::Body::Rigid(SimTK::MassProperties(1.0, centre, about_centre.shiftFromMassCenter(centre, 1.0)));
 }
 
-ScalingResult run(const Scene& scene, const SimTK::State& start, int bodies, const MobilizedBody& last, const Vec3& point) {
+ScalingResult run(const SimbodyModel& scene, const SimTK::State& start, int bodies, const MobilizedBody& last, const Vec3& point) {
   SimTK::RungeKuttaMersonIntegrator integrator(scene.system);
   integrator.setFixedStepSize(k_scaling_step);
   integrator.setAccuracy(0.9); // no step is rejected
@@ -52,7 +52,7 @@ ScalingResult run(const Scene& scene, const SimTK::State& start, int bodies, con
 } // namespace
 
 ScalingResult run_chain_simbody(int rods) {
-  Scene scene;
+  SimbodyModel scene;
   const SimTK::Body::Rigid rod = flat_body(k_rod_inertia, Vec3(0.5, 0, 0));
   MobilizedBody last = scene.matter.Ground();
   for (int i = 0; i < rods; ++i) last = MobilizedBody::Pin(last, Transform(Vec3(i == 0 ? 0.0 : 1.0, 0, 0)), rod, Transform());
@@ -61,7 +61,7 @@ ScalingResult run_chain_simbody(int rods) {
 }
 
 ScalingResult run_grid_simbody(int side) {
-  Scene scene;
+  SimbodyModel scene;
   const SimTK::Body::Rigid mass = flat_body(0.01, Vec3(0));
   std::vector<MobilizedBody::Planar> bodies;
   const auto spring = [&scene](const MobilizedBody& a, const MobilizedBody& b, const Vec3& at) {

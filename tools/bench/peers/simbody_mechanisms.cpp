@@ -28,7 +28,7 @@ SimTK::Body::Rigid flat_body(double mass, double inertia, const Vec3& centre) {
   return SimTK::Body::Rigid(SimTK::MassProperties(mass, centre, about_centre.shiftFromMassCenter(centre, mass)));
 }
 
-struct Scene {
+struct SimbodyModel {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
   SimTK::GeneralForceSubsystem forces{system};
@@ -40,7 +40,7 @@ struct Scene {
 enum class Projection { own_choice, every_step };
 constexpr double k_tight_constraints = 1e-9;
 
-MechanismResult integrate(const Scene& scene, SimTK::State& state, double end, double accuracy, Projection projection) {
+MechanismResult integrate(const SimbodyModel& scene, SimTK::State& state, double end, double accuracy, Projection projection) {
   SimTK::RungeKuttaMersonIntegrator integrator(scene.system);
   integrator.setAccuracy(accuracy);
   if (projection == Projection::every_step) {
@@ -66,7 +66,7 @@ MechanismResult integrate(const Scene& scene, SimTK::State& state, double end, d
 } // namespace
 
 MechanismResult run_pendulum_simbody(double accuracy) {
-  Scene scene;
+  SimbodyModel scene;
   SimTK::Force::UniformGravity(scene.forces, scene.matter, Vec3(0, -9.81, 0));
   const SimTK::Body::Rigid point(SimTK::MassProperties(1.0, Vec3(0, -1, 0), SimTK::Inertia(Vec3(0, -1, 0), 1.0)));
   MobilizedBody::Pin arm(scene.matter.Ground(), Transform(), point, Transform());
@@ -79,7 +79,7 @@ MechanismResult run_pendulum_simbody(double accuracy) {
 }
 
 MechanismResult run_four_bar_simbody(const FourBarExact& exact, double accuracy) {
-  Scene scene;
+  SimbodyModel scene;
   SimTK::Force::UniformGravity(scene.forces, scene.matter, Vec3(0, -9.81, 0));
   const SimTK::Body::Rigid rod = flat_body(1.0, 1.0 / 12.0, Vec3(0, 0.5, 0));
   const SimTK::Body::Rigid bar = flat_body(1.0, 1.0 / 12.0, Vec3(0.5, 0, 0));
@@ -102,7 +102,7 @@ MechanismResult run_four_bar_simbody(const FourBarExact& exact, double accuracy)
 }
 
 MechanismResult run_andrews_simbody(AndrewsVariant variant, double accuracy) {
-  Scene scene;
+  SimbodyModel scene;
   auto& ground = scene.matter.Ground();
   const Transform a(Vec3(-0.06934, -0.00227, 0));
   const Transform b(Vec3(-0.03635, 0.03273, 0));

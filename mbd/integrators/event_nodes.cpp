@@ -1,4 +1,4 @@
-#include "mbd/integrators/watch_nodes.h"
+#include "mbd/integrators/event_nodes.h"
 
 #include "mbd/integrators/explicit_runge_kutta.h"
 
@@ -41,7 +41,7 @@ template <class Curve> bool tells_bend(const Curve& c) {
 
 } // namespace
 
-void WatchNodes::add(double theta, const double* watch, bool has_merged) {
+void EventNodes::add(double theta, const double* event_value, bool has_merged) {
   if (count_ == k_most || !(theta > 0.0 && theta < 1.0)) return;
   int place = count_;
   for (; place > 0 && theta_[order_[place - 1]] > theta; --place) order_[place] = order_[place - 1];
@@ -49,24 +49,25 @@ void WatchNodes::add(double theta, const double* watch, bool has_merged) {
     for (int i = place; i < count_; ++i) order_[i] = order_[i + 1];
     // Two stages at the same node, the midpoints of rk4, deviate by h² a/8 in opposite directions, so their mean is used.
     double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
-    for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
+    for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + event_value[k]);
     has_merged_[order_[place - 1]] = has_merged_[order_[place - 1]] && has_merged;
     return;
   }
   order_[place] = count_;
   theta_[count_] = theta;
   has_merged_[count_] = has_merged;
-  std::copy_n(watch, slots_, values_.data() + static_cast<std::ptrdiff_t>(count_) * stride_);
+  std::copy_n(event_value, slots_, values_.data() + static_cast<std::ptrdiff_t>(count_) * stride_);
   ++count_;
 }
 
-void WatchNodes::close(const double* watch0, const double* watch1) {
+void EventNodes::close(const double* event_value0, const double* event_value1) {
   for_numbers(
-      slots_, [ watch0, watch1, values = values_.data(), count = count_, stride = stride_, low = low_.data(),
-                high = high_.data() ]<class S>(int i) __attribute__((always_inline)) {
+      slots_,
+      [ event_value0, event_value1, values = values_.data(), count = count_, stride = stride_, low = low_.data(),
+        high = high_.data() ]<class S>(int i) __attribute__((always_inline)) {
         S first, last, value;
-        read_numbers(watch0 + i, first);
-        read_numbers(watch1 + i, last);
+        read_numbers(event_value0 + i, first);
+        read_numbers(event_value1 + i, last);
         S least = first < last ? first : last, most = first < last ? last : first;
         const double* at = values + i;
         for (int k = 0; k < count; ++k, at += stride) { // NaN: the previous value is kept
@@ -82,7 +83,7 @@ void WatchNodes::close(const double* watch0, const double* watch1) {
   for (int i = 0; i < slots_; ++i) low_[i] -= k_unseen_by_one * (high_[i] - low_[i]);
 }
 
-WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
+EventNodes::Curve EventNodes::curve_of(const EventStep& watched) const {
   Curve c;
   int n = 0;
   c.x[0] = 0.0;
@@ -116,7 +117,7 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
 // (g − u)/g, wherever in the gap it is; this corresponds to M = 2 (jump)/g. Second differences underestimate it if neighbouring gaps are
 // wide. The jump is the difference between the slopes of the adjacent chords, or larger: the flanks of a point that passes on a circle get
 // steeper towards the kink, by at most k_steeper in a step that turns by a radian. (If a slope is unknown, comparisons with NaN are false.)
-double WatchNodes::Curve::bound(int gap) const {
+double EventNodes::Curve::bound(int gap) const {
   const auto chord = [this](int i) { return (w[i + 1] - w[i]) / (x[i + 1] - x[i]); };
   const double before = gap > 0 ? chord(gap - 1) : start_slope, after = gap + 1 < last ? chord(gap + 1) : end_slope;
   const double kink = 2.0 * k_steeper * std::abs(after - before) / (x[gap + 1] - x[gap]);
@@ -124,19 +125,19 @@ double WatchNodes::Curve::bound(int gap) const {
   return last > k_few ? seen : std::max(seen, most_bend);
 }
 
-bool WatchNodes::Curve::is_positive_in(int gap) const {
+bool EventNodes::Curve::is_positive_in(int gap) const {
   const double m = bound(gap), g = x[gap + 1] - x[gap];
   if (is_positive_between(w[gap], w[gap + 1], g, m)) return true;
   // Leaves zero at the start, or approaches it at the end, with a known slope (comparisons with NaN are false).
   return (gap == 0 && start_slope > 0.5 * m * g) || (gap == last - 1 && -end_slope > 0.5 * m * g);
 }
 
-bool WatchNodes::Curve::falls_once_in(int gap) const {
+bool EventNodes::Curve::falls_once_in(int gap) const {
   const double g = x[gap + 1] - x[gap];
   return w[gap] - w[gap + 1] > 0.5 * bound(gap) * g * g || bend[gap] * bend[gap + 1] > 0.0;
 }
 
-bool WatchNodes::is_surely_positive(const WatchedStep& watched) const {
+bool EventNodes::is_surely_positive(const EventStep& watched) const {
   const Curve c = curve_of(watched);
   if (!(c.w[0] >= 0.0 && c.w[c.last] >= 0.0) || !tells_bend(c)) return false;
   for (int j = 1; j < c.last; ++j)
@@ -146,7 +147,7 @@ bool WatchNodes::is_surely_positive(const WatchedStep& watched) const {
   return true;
 }
 
-bool WatchNodes::crosses_once(const WatchedStep& watched) const {
+bool EventNodes::crosses_once(const EventStep& watched) const {
   const Curve c = curve_of(watched);
   if (!tells_bend(c)) return false;
   int gap = 0;

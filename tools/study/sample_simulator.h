@@ -38,9 +38,9 @@ struct Outcome {
 };
 
 /// Runs samples. Each thread needs its own object.
-class Scene {
+class SampleSimulator {
 public:
-  explicit Scene(const LoadedStudy& loaded);
+  explicit SampleSimulator(const LoadedStudy& loaded);
 
   /// Runs a sample. Failures of the sample do not throw; they are part of the outcome.
   void run(const double* values, Outcome& outcome);
@@ -48,20 +48,20 @@ public:
   /// Returns true if all numbers defined by formulas agree with these formulas, for a stored outcome.
   [[nodiscard]] bool is_derived(const std::vector<double>& values, const Outcome& outcome);
 
-  ~Scene();
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
+  ~SampleSimulator();
+  SampleSimulator(const SampleSimulator&) = delete;
+  SampleSimulator& operator=(const SampleSimulator&) = delete;
 
 private:
-  struct Runner;
-  void run_model(Runner& runner, const double* values, Outcome& outcome);
-  void run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome);
-  void run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome);
-  void look(const Runner& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome);
-  void compare(const Runner& runner, const RunResult& result, Outcome& outcome) const;
+  struct SharedRunData;
+  void run_model(SharedRunData& runner, const double* values, Outcome& outcome);
+  void run_system(const SharedRunData& runner, const Model& whole, System& system, Outcome& outcome);
+  void run_judged(const SharedRunData& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome);
+  void evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome);
+  void compare(const SharedRunData& runner, const RunResult& result, Outcome& outcome) const;
 
   const LoadedStudy& loaded_;
-  std::vector<std::unique_ptr<Runner>> runners_;                ///< one per model
+  std::vector<std::unique_ptr<SharedRunData>> runners_;         ///< one per model
   std::vector<std::pair<std::size_t, Expression>> expressions_; ///< formulas, with the index of the number that they define
   std::vector<double> values_;                                  ///< values of variables and numbers
 };

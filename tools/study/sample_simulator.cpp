@@ -1,4 +1,4 @@
-#include "tools/study/scene.h"
+#include "tools/study/sample_simulator.h"
 
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
@@ -106,17 +106,17 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
 }
 
 /// Running extremes of the channels of a response.
-struct Race {
+struct RunningExtremes {
   double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
 };
 
-using Races = std::vector<std::shared_ptr<Race>>; // channels of a run refer to them
+using RunningExtremesList = std::vector<std::shared_ptr<RunningExtremes>>; // channels of a run refer to them
 
 // Bounds of expensive channels. They exclude extremes that are not needed: for a channel in a race, values that another channel has already
 // exceeded, even if the channel continues to change at its last rate.
 class AskedBounds {
 public:
-  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const Races& races)
+  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const RunningExtremesList& races)
       : bounds_(std::move(bounds)), ends_(ends) {
     for (const std::size_t race : ends.low_races) low_races_.push_back(races[race]);
     for (const std::size_t race : ends.high_races) high_races_.push_back(races[race]);
@@ -145,19 +145,19 @@ private:
 
   std::function<ValueBounds(const Snapshot&)> bounds_;
   AskedEnds ends_;
-  Races low_races_, high_races_;
+  RunningExtremesList low_races_, high_races_;
   ValueBounds last_, reach_;
   double t_ = -std::numeric_limits<double>::infinity();
 };
 
-void leave_out_others(Channel& channel, const AskedEnds& ends, const Races& races) {
+void leave_out_others(Channel& channel, const AskedEnds& ends, const RunningExtremesList& races) {
   if (channel.bounds && !(ends.high && ends.low)) channel.bounds = AskedBounds(std::move(channel.bounds), ends, races);
   const auto note = [&](const std::vector<std::size_t>& of, const auto& noted) {
     for (const std::size_t race : of)
       channel.value = [value = std::move(channel.value), noted, own = races[race]](const Snapshot& s) { return noted(*own, value(s)); };
   };
-  note(ends.low_races, [](Race& race, double value) { return race.lowest = std::min(race.lowest, value), value; });
-  note(ends.high_races, [](Race& race, double value) { return race.highest = std::max(race.highest, value), value; });
+  note(ends.low_races, [](RunningExtremes& race, double value) { return race.lowest = std::min(race.lowest, value), value; });
+  note(ends.high_races, [](RunningExtremes& race, double value) { return race.highest = std::max(race.highest, value), value; });
 }
 
 // Returns the extremes that decide whether a run can be trusted. For the margin of a joint only values below 1 matter.
@@ -195,7 +195,7 @@ Model model_with(const LoadedStudy& loaded, const StudyModel& model, const doubl
 
 // Data that all runs of a model share. Extremes of all channels would take a quarter of a run's time, so only those requested are computed,
 // and those that show whether a run can be trusted.
-struct Scene::Runner {
+struct SampleSimulator::SharedRunData {
   /// Number `variable` of the study, set at a path as it is or multiplied by the model's value.
   struct Setting {
     std::size_t variable;
@@ -212,7 +212,7 @@ struct Scene::Runner {
   std::vector<double> numbers; ///< values of the settings
   std::unique_ptr<Variants> variants;
 
-  Runner(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
+  SharedRunData(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
     for (const Response& r : loaded.study.responses)
       if (r.model == model.name && r.expression.empty()) ask(r);
     for (const History& h : loaded.study.histories)
@@ -255,7 +255,7 @@ private:
   }
 };
 
-Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
+SampleSimulator::SampleSimulator(const LoadedStudy& loaded) : loaded_(loaded) {
   std::vector<std::string> names = loaded.variable_names();
   const Study& study = loaded.study;
   for (std::size_t i = 0; i < study.responses.size(); ++i) {
@@ -269,13 +269,13 @@ Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
     names.push_back(l.name);
   }
   values_.resize(names.size());
-  for (const auto& model : loaded.models) runners_.push_back(std::make_unique<Runner>(loaded, *model));
+  for (const auto& model : loaded.models) runners_.push_back(std::make_unique<SharedRunData>(loaded, *model));
 }
 
-Scene::~Scene() = default;
+SampleSimulator::~SampleSimulator() = default;
 
 // Writes the channels of histories at their times to their positions among all values.
-void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outcome) const {
+void SampleSimulator::compare(const SharedRunData& runner, const RunResult& result, Outcome& outcome) const {
   std::size_t place = 0;
   for (const History& h : loaded_.study.histories) {
     if (h.model == runner.model.name) compare_times(h, runner.sampling, *result.trajectory, &outcome.curve[place]);
@@ -283,7 +283,8 @@ void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outc
   }
 }
 
-void Scene::look(const Runner& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome) {
+void SampleSimulator::evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result,
+                                         Outcome& outcome) {
   if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
   if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
   const RunStatistics& s = result.statistics;
@@ -299,9 +300,9 @@ void Scene::look(const Runner& runner, const Judgement& judgement, const RunResu
   if (!loaded_.study.histories.empty()) compare(runner, result, outcome);
 }
 
-void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
-  Races races;
-  for (std::size_t i = 0; i < runner.races; ++i) races.push_back(std::make_shared<Race>());
+void SampleSimulator::run_system(const SharedRunData& runner, const Model& whole, System& system, Outcome& outcome) {
+  RunningExtremesList races;
+  for (std::size_t i = 0; i < runner.races; ++i) races.push_back(std::make_shared<RunningExtremes>());
   for (Channel& c : system.channels) {
     const auto asked = runner.extremes.find(c.name);
     c.has_extremes = c.has_extremes && asked != runner.extremes.end();
@@ -321,12 +322,12 @@ void Scene::run_system(const Runner& runner, const Model& whole, System& system,
   }
   const RunResult result = std::move(simulation).result();
   outcome.evaluations += static_cast<double>(result.statistics.evaluations);
-  if (failure.empty()) look(runner, judge(whole, system, result, ""), result, outcome);
+  if (failure.empty()) evaluate_responses(runner, judge(whole, system, result, ""), result, outcome);
   else worsen(outcome, SampleStatus::gave_up, failure);
 }
 
 // Computes the verdict as the command line does, with findings, and with errors from finer runs if these are cheap.
-void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
+void SampleSimulator::run_judged(const SharedRunData& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
   if (!whole.output.channels.empty())
     whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
   if (runner.sampling.step > 0.0) whole.output.step = runner.sampling.step;
@@ -335,10 +336,10 @@ void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System
   outcome.evaluations += static_cast<double>(result.statistics.evaluations);
   if (report.estimate.errors) outcome.evaluations += static_cast<double>(report.estimate.errors->cost.evaluations);
   if (report.run.failure) worsen(outcome, SampleStatus::gave_up, report.run.failure->text);
-  else look(runner, report.judgement, result, outcome);
+  else evaluate_responses(runner, report.judgement, result, outcome);
 }
 
-void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
+void SampleSimulator::run_model(SharedRunData& runner, const double* values, Outcome& outcome) {
   try {
     const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
     std::unique_ptr<System> system;
@@ -363,7 +364,7 @@ void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   }
 }
 
-bool Scene::is_derived(const std::vector<double>& values, const Outcome& outcome) {
+bool SampleSimulator::is_derived(const std::vector<double>& values, const Outcome& outcome) {
   std::copy(values.begin(), values.end(), values_.begin());
   std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(values.size()));
   const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
@@ -375,7 +376,7 @@ bool Scene::is_derived(const std::vector<double>& values, const Outcome& outcome
                      [&](const auto& of) { return is_same(of.second(values_.data()), outcome.numbers[of.first]); });
 }
 
-void Scene::run(const double* values, Outcome& outcome) {
+void SampleSimulator::run(const double* values, Outcome& outcome) {
   const std::size_t variables = loaded_.study.variables.size(), numbers = loaded_.number_count();
   outcome.status = SampleStatus::ok;
   outcome.reason.clear();

@@ -20,39 +20,39 @@
 namespace steplap {
 
 /// Value and slope of an event function at an end of a step. The slope refers to the step as unit of time; NaN if unknown.
-struct WatchEnd {
+struct EventEnd {
   double value = 0.0, slope = 0.0;
 };
 
 /// An event function in a step.
-struct WatchedStep {
+struct EventStep {
   int slot = 0;
   bool is_merged = false;   ///< belongs to a merged joint: not all nodes have its value
   bool is_of_joint = false; ///< belongs to a joint whose capacity is a fraction of its clamping
-  WatchEnd start, end;
+  EventEnd start, end;
 };
 /// Event functions at the nodes of one step.
 
-class WatchNodes {
+class EventNodes {
 public:
-  explicit WatchNodes(int slots)
+  explicit EventNodes(int slots)
       : slots_(slots), stride_((slots + k_block - 1) / k_block * k_block), values_(static_cast<std::size_t>(k_most) * stride_),
         low_(stride_), high_(stride_) {}
 
   void clear() { count_ = 0; }
   /// Adds the values at `theta` (0 start, 1 end of the step). Values at the ends and beyond the capacity are ignored. `has_merged`: values
   /// of merged joints were computed at this node and are not older ones.
-  void add(double theta, const double* watch, bool has_merged);
+  void add(double theta, const double* event_value, bool has_merged);
 
   /// Computes the range of each event function. To be called once after the last add(), before the functions below.
-  void close(const double* watch0, const double* watch1);
+  void close(const double* event_value0, const double* event_value1);
   [[nodiscard]] double low(int slot) const { return low_[slot]; }
   [[nodiscard]] double high(int slot) const { return high_[slot]; }
   /// Returns true if the function is certainly positive in the step, except at the ends themselves.
-  [[nodiscard]] bool is_surely_positive(const WatchedStep& watched) const;
+  [[nodiscard]] bool is_surely_positive(const EventStep& watched) const;
   /// Returns true if the function certainly has exactly one root up to the first node where it is negative. Precondition: positive at the
   /// start and negative at the end.
-  [[nodiscard]] bool crosses_once(const WatchedStep& watched) const;
+  [[nodiscard]] bool crosses_once(const EventStep& watched) const;
 
 private:
   static constexpr int k_most = 18;
@@ -66,7 +66,7 @@ private:
     [[nodiscard]] bool is_positive_in(int gap) const;
     [[nodiscard]] bool falls_once_in(int gap) const;
   };
-  [[nodiscard]] Curve curve_of(const WatchedStep& watched) const;
+  [[nodiscard]] Curve curve_of(const EventStep& watched) const;
   static constexpr int k_block = 4; ///< alignment of the values of a node
   int slots_, stride_, count_ = 0;
   std::array<double, k_most> theta_{};
