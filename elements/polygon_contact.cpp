@@ -3,6 +3,7 @@
 #include "elements/convex_outline.h"
 #include "elements/coulomb_friction.h"
 #include "elements/share_channel.h"
+#include "elements/support_points.h"
 #include "mbd/system/approximate_place.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/swallowing_contacts.h"
@@ -438,7 +439,39 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).gap; });
   builder.add_channel("force", "N", {"size of the normal force, zero while open", "positive: it presses"},
                       [contact](const Snapshot& s) { return s.evaluation->contact_force[contact]; });
+  if (is_plane)
+    builder.add_endless_face(contact, group.entries.back().a, a->corners, e.b, e.normal.value_or(Vec2(0.0, 1.0)),
+                             "leave out 'normal', so that the outline of b ends it");
   if (e.static_friction) add_friction(e, group.entries.back(), builder);
+}
+
+// Half of the width of the thinner outline; for a half-plane the whole width of the other. Without outlines there is no limit.
+std::optional<double> depth_limit(const PolygonContact& e, const Model& model) {
+  const auto width = [&](const std::vector<Vec2>& given, const std::string& marker) -> std::optional<double> {
+    const Body* const body = place_of(model, marker).body;
+    const std::vector<Vec2>* const outline = !given.empty() ? &given : body ? &body->outline : nullptr;
+    return outline && !outline->empty() ? std::optional(width_of(convex_outline(*outline, CompiledMarker{}))) : std::nullopt;
+  };
+  const std::optional<double> a = width(e.outline_a, e.a), b = e.normal ? std::nullopt : width(e.outline_b, e.b);
+  if (!a) return b ? std::optional(0.5 * *b) : std::nullopt;
+  return b ? 0.5 * std::min(*a, *b) : *a;
+}
+
+ContactDescription describe(const Element& element, const Model& model) {
+  const auto& e = static_cast<const PolygonContact&>(element);
+  ContactDescription contact;
+  contact.a = e.a;
+  contact.b = e.b;
+  contact.standing = ContactDescription::Standing::both;
+  contact.depth_limit = depth_limit(e, model);
+  contact.points = [](const Element& outlines, const ScenePose& pose) {
+    const auto& of = static_cast<const PolygonContact&>(outlines);
+    const ScenePose::PlacedMarker b = pose.marker(of.b);
+    const std::vector<Vec2> corners_b = of.normal ? std::vector<Vec2>() : pose.outline(of.b, of.outline_b);
+    const Vec2 up = rotated(of.normal.value_or(Vec2(0.0, 1.0)), b.angle).normalized();
+    return support_points(pose.outline(of.a, of.outline_a), corners_b, b.point, up);
+  };
+  return contact;
 }
 
 } // namespace
@@ -470,6 +503,7 @@ const ElementKind& polygon_contact_kind() {
         .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_polygon;
+    k.contact = describe;
     k.friction = [](const Element& element) {
       const auto& e = static_cast<const T&>(element);
       return GivenFriction{"static_friction", e.static_friction.value_or(0.0), e.source};

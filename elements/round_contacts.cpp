@@ -3,7 +3,10 @@
 #include "elements/contact_laws.h"
 #include "elements/restitution.h"
 #include "elements/round_measures.h"
+#include "mbd/system/contact_description.h"
 #include "mbd/system/system.h"
+
+#include <algorithm>
 
 namespace steplap {
 
@@ -51,6 +54,40 @@ bool check(const RoundContact& e, SystemBuilder& builder) {
   if (e.law != "hunt_crossley" && (e.exponent != 1.0 || e.dissipation != 0.0))
     fail("'exponent' and 'dissipation' belong to law = \"hunt_crossley\"");
   return !is_bad;
+}
+
+ContactDescription describe_circle(const Element& element, const Model&) {
+  const auto& e = static_cast<const CircleContact&>(element);
+  ContactDescription contact;
+  contact.a = e.a;
+  contact.b = e.b;
+  if (!e.inside) contact.depth_limit = e.radius_a + e.radius_b; // deeper, the direction between the circles is lost
+  contact.points = [](const Element& circle, const ScenePose& pose) {
+    const auto& of = static_cast<const CircleContact&>(circle);
+    const Vec2 a = pose.marker(of.a).point, b = pose.marker(of.b).point;
+    if (a == b) return std::vector<ContactPoint>{};
+    const Vec2 outwards = (a - b).normalized(), normal = of.inside ? Vec2(-outwards) : outwards;
+    return std::vector<ContactPoint>{{a - of.radius_a * normal, normal}};
+  };
+  return contact;
+}
+
+ContactDescription describe_segment(const Element& element, const Model&) {
+  const auto& e = static_cast<const SegmentContact&>(element);
+  ContactDescription contact;
+  contact.a = e.a;
+  contact.b = e.b;
+  contact.depth_limit = e.radius + 0.5 * e.thickness;
+  contact.points = [](const Element& segment, const ScenePose& pose) {
+    const auto& of = static_cast<const SegmentContact&>(segment);
+    const Vec2 a = pose.marker(of.a).point;
+    const ScenePose::PlacedMarker b = pose.marker(of.b);
+    const Vec2 from = b.point + rotated(of.from, b.angle), along = b.point + rotated(of.to, b.angle) - from;
+    const double share = std::clamp((a - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const Vec2 normal = (a - from - share * along).normalized();
+    return std::vector<ContactPoint>{{a - of.radius * normal, normal}};
+  };
+  return contact;
 }
 
 void compile_circle(const Element& element, SystemBuilder& builder) {
@@ -165,6 +202,7 @@ const ElementKind& circle_contact_kind() {
     add_fields<T>(f);
     k.holds<T>();
     k.compile = compile_circle;
+    k.contact = describe_circle;
     return k;
   }();
   return kind;
@@ -187,6 +225,7 @@ const ElementKind& segment_contact_kind() {
     add_fields<T>(f);
     k.holds<T>();
     k.compile = compile_segment;
+    k.contact = describe_segment;
     return k;
   }();
   return kind;

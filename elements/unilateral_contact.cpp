@@ -4,6 +4,7 @@
 #include "elements/ended_contact.h"
 #include "elements/restitution.h"
 #include "mbd/base/portable_math.h"
+#include "mbd/system/contact_description.h"
 #include "mbd/system/system.h"
 
 namespace steplap {
@@ -85,9 +86,22 @@ bool check(const UnilateralContact& e, SystemBuilder& builder) {
   return !is_bad;
 }
 
-void compile_contact(const Element& element, SystemBuilder& builder) {
+ContactDescription describe(const Element& element, const Model& model) {
   const auto& e = static_cast<const UnilateralContact&>(element);
-  if (!check(e, builder)) return;
+  ContactDescription contact;
+  contact.a = e.a;
+  contact.b = e.b;
+  contact.standing = ContactDescription::Standing::a;
+  if (!e.ends) contact.depth_limit = thickness_behind(model, e.b, e.normal); // beyond the end of a face the depth has no meaning
+  contact.points = [](const Element& foot, const ScenePose& pose) {
+    const auto& of = static_cast<const UnilateralContact&>(foot);
+    return std::vector<ContactPoint>{{pose.marker(of.a).point, rotated(of.normal, pose.marker(of.b).angle).normalized()}};
+  };
+  return contact;
+}
+
+// Adds the contact with its law.
+void add_contact(const UnilateralContact& e, SystemBuilder& builder) {
   const ContactGeometry g = contact_geometry(e, builder);
   const Motion<double>&a = builder.reference(g.a), &b = builder.reference(g.b);
   if (g.gap.is_axis_in_a) {
@@ -114,6 +128,16 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   else // forces along n through p_A and through the tip have the same line of action
     with_cheapest(AxisMeasure{g.gap.point_a, g.gap.point_b, g.gap.normal},
                   [&](const auto& measure) { damp(add(g, measure, kelvin_voigt, builder), e, g, builder); });
+}
+
+void compile_contact(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const UnilateralContact&>(element);
+  if (!check(e, builder)) return;
+  add_contact(e, builder);
+  const ContactIndex* const contact = builder.contact(e.name);
+  if (e.ends || !contact) return;
+  const CompiledMarker a = builder.marker(e.a);
+  builder.add_endless_face(contact->force, a.body, {a.point}, e.b, e.normal, "give it 'ends', or take a polygon_contact");
 }
 
 } // namespace
@@ -168,6 +192,7 @@ const ElementKind& unilateral_contact_kind() {
         .doc("where the face ends, [low, high] along (n_y, -n_x) from marker b; beyond it nothing is carried; default: endless");
     k.holds<T>();
     k.compile = compile_contact;
+    k.contact = describe;
     return k;
   }();
   return kind;

@@ -2,7 +2,7 @@
 
 #include "elements/joints.h"
 #include "mbd/base/number_text.h"
-#include "run/places.h"
+#include "mbd/system/places.h"
 #include "run/quantity_text.h"
 
 #include <cmath>

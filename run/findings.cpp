@@ -371,8 +371,7 @@ static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Int
 }
 
 std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result) {
-  Findings findings = feet_beyond_edges(loaded, result.final_state);
-  for (Finding& finding : findings) finding.text = "at the end " + finding.text;
+  Findings findings = contacts_beyond_edges(loaded, result);
   for (const ChannelRange& range : result.ranges)
     if (range.channel->is_on_request && range.had_no_value)
       warn(findings, "channel_without_value",

@@ -4,8 +4,8 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/system/places.h"
 #include "run/body_reach.h"
-#include "run/places.h"
 #include "run/quantity_text.h"
 #include "run/range_index.h"
 

@@ -2,7 +2,7 @@
 
 #include "elements/round_contacts.h"
 #include "mbd/base/number_text.h"
-#include "run/places.h"
+#include "mbd/system/places.h"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,4 @@
 // Finds contradictions between the initial state and other data of the model.
-#include "elements/contact_depth.h"
 #include "elements/limit.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/base/decompositions.h"
@@ -7,10 +6,10 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/system/actions.h"
+#include "mbd/system/contact_description.h"
 #include "mbd/system/own_states.h"
 #include "run/body_reach.h"
 #include "run/findings.h"
-#include "run/places.h"
 #include "run/quantity_text.h"
 #include "run/start_balance.h"
 #include "run/start_contacts.h"
@@ -167,7 +166,7 @@ private:
     const VecX gradient = balance_.gap_gradient(contact.contact);
     if (gradient.size() == 0) return;
     const StartBalance::Opening opening = balance_.opening(gradient);
-    const auto most = largest_depth(element, loaded_.model);
+    const auto most = contact_of(*contact.entry, loaded_.model)->depth_limit;
     const bool is_through = most && depth > k_through * *most;
     if (!is_through && !springs_apart(opening)) return;
     const int body = contact.a != k_ground ? contact.a : contact.b;

@@ -2,7 +2,7 @@
 
 #include "elements/coulomb_stick.h"
 #include "elements/unilateral_contact.h"
-#include "run/places.h"
+#include "mbd/system/places.h"
 #include "run/quantity_text.h"
 
 #include <algorithm>

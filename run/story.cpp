@@ -1,13 +1,9 @@
 #include "run/story.h"
 
-#include "elements/machinery/tyre.h"
-#include "elements/polygon_contact.h"
-#include "elements/round_contacts.h"
-#include "elements/unilateral_contact.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/action.h"
-#include "run/places.h"
+#include "mbd/system/contact_description.h"
 
 #include <algorithm>
 #include <array>
@@ -133,35 +129,32 @@ private:
     return entry && entry->kind->name.ends_with("rope");
   }
 
-  bool is_tyre(const std::string& element) const {
-    const ElementEntry* entry = entry_of(element);
-    return entry && dynamic_cast<const Tyre*>(entry->element.get());
+  std::optional<ContactDescription> contact_at(const std::string& element) const {
+    const ElementEntry* const entry = entry_of(element);
+    return entry ? contact_of(*entry, report_.run.loaded->model) : std::nullopt;
+  }
+
+  bool opening_ends_slip(const std::string& element) const {
+    const std::optional<ContactDescription> contact = contact_at(element);
+    return contact && contact->opening_ends_slip;
   }
 
   // Returns true if the contact supports a body against gravity, so that its opening is a lift.
   bool is_upright(const std::string& element) const {
-    const ElementEntry* entry = entry_of(element);
-    const Model& model = report_.run.loaded->model;
-    if (!entry) return false;
-    Vec2 normal = Vec2::Zero(); // from b to a, in the model's axes
-    const auto angle_of = [](const Place& b) { return b.angle + (b.body ? b.body->angle : 0.0); };
-    const auto in_ground = [](const Place& place, const Vec2& point) {
-      const Vec3 pose = place.body ? place.body->reference_pose() : Vec3::Zero();
-      return Vec2(Vec2(pose.x(), pose.y()) + rotated(Vec2(place.point + rotated(point, place.angle)), pose.z()));
-    };
-    if (const auto* const flat = dynamic_cast<const UnilateralContact*>(entry->element.get())) {
-      normal = rotated(flat->normal, angle_of(place_of(model, flat->b)));
-    } else if (const auto* const tyre = dynamic_cast<const Tyre*>(entry->element.get())) {
-      normal = rotated(Vec2(0.0, 1.0), angle_of(place_of(model, tyre->b)));
-    } else if (const auto* const round = dynamic_cast<const SegmentContact*>(entry->element.get())) {
-      const Place a = place_of(model, round->a), b = place_of(model, round->b);
-      const Vec2 along = rotated(Vec2(round->to - round->from), angle_of(b));
-      normal = Vec2(-along.y(), along.x());
-      if (normal.dot(in_ground(a, Vec2::Zero()) - in_ground(b, round->from)) < 0.0) normal = -normal; // a is on this side
-    }
+    const auto [known, is_new] = is_upright_.try_emplace(element, false);
+    if (is_new) known->second = points_up(element);
+    return known->second;
+  }
+  bool points_up(const std::string& element) const {
+    const std::optional<ContactDescription> contact = contact_at(element);
+    if (!contact) return false;
+    const LoadedModel& loaded = *report_.run.loaded;
+    const State reference = loaded.system->initial_state();
+    const auto points = contact->points(*entry_of(element)->element, ScenePose(loaded.model, *loaded.system, reference));
+    if (points.empty()) return false;
+    const Vec2 &normal = points.front().normal, &gravity = loaded.model.header.gravity;
     constexpr double k_upright = 0.7; // cosine; less than 45° from the vertical
-    const double size = normal.norm() * model.header.gravity.norm();
-    return size > 0.0 && -normal.dot(model.header.gravity) > k_upright * size;
+    return -normal.dot(gravity) > k_upright * gravity.norm();
   }
 
   static std::string place_name(StorySubject what, const std::string& who) {
@@ -244,10 +237,10 @@ private:
     case EventKind::sticks:
     case EventKind::loses_normal_force: return end(StorySubject::slips, event, error);
     case EventKind::force_reaches_zero:
-      if (is_tyre(event.element)) end(StorySubject::slips, event, error); // a tyre has one friction element for contact and tread
+      if (opening_ends_slip(event.element)) end(StorySubject::slips, event, error);
       return;
     case EventKind::opens:
-      if (is_tyre(event.element)) end(StorySubject::slips, event, error);
+      if (opening_ends_slip(event.element)) end(StorySubject::slips, event, error);
       return toggle(true, event, error);
     case EventKind::enters_gap:
     case EventKind::reaches_lower_stop:
@@ -315,12 +308,10 @@ private:
   void add_tipped() {
     std::unordered_set<std::string> standing, guided;
     for (const ElementEntry& entry : report_.run.loaded->model.elements) {
-      if (const auto* contact = dynamic_cast<const UnilateralContact*>(entry.element.get())) {
-        note_body(contact->a, standing);
-      } else if (const auto* faces = dynamic_cast<const PolygonContact*>(entry.element.get())) {
-        note_body(faces->a, standing);
-        note_body(faces->b, standing);
-      }
+      const std::optional<ContactDescription> contact = contact_of(entry, report_.run.loaded->model);
+      if (!contact) continue;
+      if (contact->standing != ContactDescription::Standing::none) note_body(contact->a, standing);
+      if (contact->standing == ContactDescription::Standing::both) note_body(contact->b, standing);
     }
     if (standing.empty()) return;
     const System& system = *report_.run.loaded->system;
@@ -342,6 +333,7 @@ private:
   std::unordered_map<std::string, const ElementEntry*> entry_of_;
   std::unordered_map<std::string, std::size_t> place_; // key: element and What
   std::unordered_map<std::string, SubjectDirection> ways_;
+  mutable std::unordered_map<std::string, bool> is_upright_; // results of points_up()
   std::vector<Happening> found_;
 };
 

@@ -2,11 +2,8 @@
 
 #include "elements/joints.h"
 #include "elements/machinery/rope.h"
-#include "elements/polygon_contact.h"
-#include "elements/round_contacts.h"
 #include "elements/spring_damper.h"
-#include "elements/unilateral_contact.h"
-#include "run/places.h"
+#include "mbd/system/places.h"
 
 #include <algorithm>
 
@@ -19,11 +16,6 @@ struct Tie {
   std::vector<int> bodies;
   std::vector<Vec2> points; ///< per body; empty if it also exerts couples or forces elsewhere
 };
-
-bool is_contact(const Element& element) {
-  return dynamic_cast<const UnilateralContact*>(&element) || dynamic_cast<const SegmentContact*>(&element) ||
-         dynamic_cast<const CircleContact*>(&element) || dynamic_cast<const PolygonContact*>(&element);
-}
 
 void add_force(BodyForce& sum, const Vec2& centre, const Vec2& point, const Vec2& force) {
   const Vec2 lever = point - centre;
@@ -40,7 +32,7 @@ public:
     found_.is_hung.assign(system_.bodies.size(), 0);
     found_.correction.assign(system_.bodies.size(), BodyForce{});
     for (const ElementEntry& entry : loaded.model.elements) {
-      const bool is_open = is_contact(*entry.element) && std::find(touching.begin(), touching.end(), entry.element->name) == touching.end();
+      const bool is_open = entry.kind->contact && std::find(touching.begin(), touching.end(), entry.element->name) == touching.end();
       ties_.push_back(is_open ? Tie{} : tie_of(entry));
     }
   }

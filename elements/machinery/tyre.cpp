@@ -2,6 +2,7 @@
 
 #include "elements/machinery/tyre_contact.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/system/contact_description.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 namespace steplap {
 
 namespace {
+
+const Vec2 k_up(0.0, 1.0); // of a flat road, in marker b's axes
 
 bool check(const Tyre& e, SystemBuilder& builder) {
   const auto fail = [&](const std::string& message) {
@@ -84,7 +87,27 @@ void compile_tyre(const Element& element, SystemBuilder& builder) {
   group.entries.push_back(std::move(entry));
   builder.add_unit(group, TyreGroup::k_event_count);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
+  builder.add_endless_face(group.entries.back().contact, a.body, {a.point}, e.b, k_up,
+                           "give the part that carries the wheel its whole outline");
   add_channels(group, static_cast<int>(group.entries.size()) - 1, builder);
+}
+
+ContactDescription describe(const Element& element, const Model& model) {
+  const auto& e = static_cast<const Tyre&>(element);
+  ContactDescription contact;
+  contact.a = e.a;
+  contact.b = e.b;
+  contact.opening_ends_slip = true; // one friction element for contact and tread
+  contact.depth_limit = std::min(e.radius, thickness_behind(model, e.b, k_up).value_or(e.radius));
+  contact.points = [](const Element& wheel, const ScenePose& pose) {
+    const auto& of = static_cast<const Tyre&>(wheel);
+    const ScenePose::PlacedMarker centre = pose.marker(of.a), road = pose.marker(of.b);
+    const Vec2 on_road = rotated(centre.point - road.point, -road.angle);
+    const double slope = of.road.empty() ? 0.0 : Road(of.road).nearest(on_road.x(), on_road.y()).slope;
+    const Vec2 normal = rotated(Vec2(-slope, 1.0).normalized(), road.angle);
+    return std::vector<ContactPoint>{{centre.point - of.radius * normal, normal}};
+  };
+  return contact;
 }
 
 } // namespace
@@ -127,6 +150,7 @@ tread_damping = 500.0
 )";
     k.holds<T>();
     k.compile = compile_tyre;
+    k.contact = describe;
     return k;
   }();
   return kind;

@@ -21,6 +21,7 @@
 namespace steplap {
 
 class SystemBuilder;
+struct ContactDescription;
 struct ElementJudgement;
 struct Model;
 struct RunResult;
@@ -103,6 +104,8 @@ struct ElementKind {
   /// For kinds whose dry friction can state its origin: returns it. Null for kinds without dry friction, and for tyres and sheets, which have
   /// ranges of their own.
   GivenFriction (*friction)(const Element& element) = nullptr;
+  /// For kinds with a contact: returns what other parts of the program ask about it (mbd/system/contact_description.h). Null otherwise.
+  ContactDescription (*contact)(const Element& element, const Model& model) = nullptr;
   /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 

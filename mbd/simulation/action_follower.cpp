@@ -210,6 +210,7 @@ void ActionFollower::change_over(std::unique_ptr<RunLeg>& leg, const Arrangement
     auto next = std::make_unique<RunLeg>(*leg, change);
     statistics_.push_back(leg->statistics());
     ranges_.push_back(leg->ranges());
+    for (FaceTravel& travel : leg->face_travels()) face_travels_.push_back(std::move(travel));
     leg = std::move(next);
   } catch (const ModelError& error) { // the elements are inconsistent after the changes
     throw NumericalFailure("at t = " + rounded_text(leg->state().t, 12) + " s action '" + group_.entries[at_once_.back()].name +

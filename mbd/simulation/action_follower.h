@@ -32,6 +32,8 @@ public:
   [[nodiscard]] RunStatistics add_statistics(const RunStatistics& last) const;
   /// Returns the channel ranges of all legs together; `last` are those of the last leg.
   [[nodiscard]] std::vector<ChannelRange> joined_ranges(std::vector<ChannelRange> last) const;
+  /// Returns the travels of all past legs.
+  [[nodiscard]] const std::vector<FaceTravel>& face_travels() const { return face_travels_; }
   /// Returns the final state of `leg` converted to the first system.
   [[nodiscard]] State in_first_system(const RunLeg& leg) const;
 
@@ -67,6 +69,7 @@ private:
   std::string ended_by_;
   std::vector<RunStatistics> statistics_;
   std::vector<std::vector<ChannelRange>> ranges_;
+  std::vector<FaceTravel> face_travels_;
 };
 
 } // namespace steplap

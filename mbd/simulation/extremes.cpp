@@ -53,7 +53,8 @@ const Extreme& ChannelRange::largest() const { return std::abs(low.value) > std:
 ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     : system_(system), count_(system.channels.size()), ranges_(count_), kind_(count_), screened_slot_(count_, -1),
       before_(count_, k_unknown), node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_), curvature_(count_, 0.0),
-      step_t_(k_longest + 1), stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_) {
+      step_t_(k_longest + 1), stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_),
+      faces_(system) {
   step_y_.resize(stride_ * (k_longest + 1));
   step_k_.resize(stride_ * (k_longest + 1));
   std::vector<std::string> units;
@@ -147,6 +148,7 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   for (const std::size_t c : dimensionless_)
     if (!ranges_[c].first_above_one && node_[0][c] > 1.0) ranges_[c].first_above_one = t;
   formulas_->begin(snapshot);
+  faces_.begin(snapshot);
   t_ = t;
   h_last_ = 0.0;
   steps_ = 0;
@@ -245,6 +247,7 @@ void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integ
   screen(snapshot);
   evaluate(t, snapshot, node_[k_last].data(), false);
   formulas_->arrive(snapshot);
+  faces_.arrive(snapshot);
   const bool is_unsure = is_unsure_;
   is_unsure_ = was_unsure; // applies to the inside of the stretch
   close(t, integrator, dynamics);

@@ -19,6 +19,7 @@
 #pragma once
 
 #include "mbd/integrators/integrator.h"
+#include "mbd/simulation/face_travel.h"
 #include "mbd/simulation/formula_extremes.h"
 
 #include <limits>
@@ -74,6 +75,9 @@ public:
 
   /// Returns the ranges in the order of the system's channels; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
+
+  /// Returns how far contacts pressed beyond the ends of their parts.
+  [[nodiscard]] std::vector<FaceTravel> face_travels() const { return faces_.travels(); }
 
   static constexpr double k_resolution = 1e-6; ///< relative to the range of the channel
   static constexpr double k_at_pole = 1e9;     ///< a channel without unit beyond this value counts as a pole
@@ -166,7 +170,8 @@ private:
   bool is_unsure_ = false;                                ///< this speed is below its accuracy
   std::vector<KnownDirectionRange> known_direction_;      ///< per channel; empty until the first unsure slip
   bool is_singular_ = false;                              ///< the last evaluated state is near a singular position of joints
-  std::unique_ptr<FormulaExtremes> formulas_;             ///< search for channels that are formulas
+  FaceWatch faces_;
+  std::unique_ptr<FormulaExtremes> formulas_; ///< search for channels that are formulas
 };
 
 } // namespace steplap

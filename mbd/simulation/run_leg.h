@@ -61,6 +61,8 @@ public:
   [[nodiscard]] RunStatistics statistics() const;
   /// Returns the ranges of all channels, if requested; complete after close() or the end.
   [[nodiscard]] std::vector<ChannelRange> ranges() const { return extremes_ ? extremes_->ranges() : std::vector<ChannelRange>{}; }
+  /// Returns how far contacts pressed beyond the ends of their parts in this leg; with the ranges.
+  [[nodiscard]] std::vector<FaceTravel> face_travels() const { return extremes_ ? extremes_->face_travels() : std::vector<FaceTravel>{}; }
   /// Computes the last values of a failed run, as far as known.
   void break_off();
 

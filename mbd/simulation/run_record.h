@@ -71,14 +71,16 @@ struct ExtremesSoFar {
 struct RunResult {
   std::unique_ptr<Trajectory> trajectory; ///< samples; not null
   std::vector<ChannelRange> ranges;       ///< for every channel of the system, if requested
-  std::vector<ExtremesSoFar> growth;      ///< of these, at some tens of times spread over the run, if that was asked for
-  std::vector<Event> events;              ///< ascending in time
-  std::vector<RigidBlow> blows;           ///< ascending in time; an action that closed joints stands for these
-  std::vector<SimultaneousSlip> ties;     ///< ascending in time, at most RunRecord::k_most_ties
-  RunStatistics statistics;               ///< what it took, and how exact it was
-  State final_state;                      ///< at the end, or where the run stopped
-  std::string stop_reason;                ///< reason why an element ended the run early; empty if it reached its end
-  std::string ended_by;                   ///< name of the action that ended the run; empty: none
+  /// How far contacts pressed beyond the ends of their parts, leg by leg; with the ranges.
+  std::vector<FaceTravel> face_travels;
+  std::vector<ExtremesSoFar> growth;  ///< of these, at some tens of times spread over the run, if that was asked for
+  std::vector<Event> events;          ///< ascending in time
+  std::vector<RigidBlow> blows;       ///< ascending in time; an action that closed joints stands for these
+  std::vector<SimultaneousSlip> ties; ///< ascending in time, at most RunRecord::k_most_ties
+  RunStatistics statistics;           ///< what it took, and how exact it was
+  State final_state;                  ///< at the end, or where the run stopped
+  std::string stop_reason;            ///< reason why an element ended the run early; empty if it reached its end
+  std::string ended_by;               ///< name of the action that ended the run; empty: none
   /// Motion of each leg (leg_motion.h); null if not requested.
   std::shared_ptr<const std::vector<LegMotion>> legs;
 };

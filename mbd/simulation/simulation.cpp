@@ -88,6 +88,8 @@ RunResult Simulation::result() && {
   result.ranges = leg_->ranges();
   if (actions_) result.ranges = actions_->joined_ranges(std::move(result.ranges));
   for (std::size_t c = 0; c < result.ranges.size(); ++c) result.ranges[c].channel = &system_.channels[c];
+  if (actions_) result.face_travels = actions_->face_travels();
+  for (FaceTravel& travel : leg_->face_travels()) result.face_travels.push_back(std::move(travel));
   result.statistics = statistics();
   result.final_state = actions_ ? actions_->in_first_system(*leg_) : leg_->state();
   result.trajectory = std::move(leg_->record().trajectory);

@@ -4,6 +4,7 @@
 #include "mbd/model/method.h"
 #include "mbd/system/measured_channel.h"
 #include "mbd/system/own_states.h"
+#include "mbd/system/places.h"
 #include "mbd/system/requested_channels.h"
 
 #include <algorithm>
@@ -381,6 +382,33 @@ const ElementEntry* SystemBuilder::element(const std::string& name) const {
 int SystemBuilder::add_contact(int unit) {
   contact_index_[system_->element_names[element_]] = {system_->contact_count, unit};
   return system_->contact_count++;
+}
+
+void SystemBuilder::add_endless_face(int contact, int a, std::vector<Vec2> points, const std::string& b, const Vec2& normal,
+                                     std::string remedy) {
+  const Body* const part = place_of(model_, b).body;
+  if (!part || part->outline.empty()) return;
+  const CompiledMarker frame = marker(b);
+  EndlessFace face;
+  face.element = element_;
+  face.contact = contact;
+  face.a = a;
+  face.b = frame.body;
+  face.points = std::move(points);
+  face.origin = frame.point;
+  face.normal = direction(frame, normal);
+  face.part = part->name;
+  face.remedy = std::move(remedy);
+  face.low = std::numeric_limits<double>::infinity();
+  face.high = -face.low;
+  const Vec2 along(face.normal.y(), -face.normal.x());
+  const Vec3 pose = frame.body == k_ground ? part->reference_pose() : Vec3::Zero(); // a fixed body belongs to the ground
+  for (const Vec2& corner : part->outline) {
+    const double at = along.dot(Vec2(pose.x(), pose.y()) + rotated(corner - part->cg, pose.z()));
+    face.low = std::min(face.low, at);
+    face.high = std::max(face.high, at);
+  }
+  system_->endless_faces.push_back(std::move(face));
 }
 
 int SystemBuilder::add_memory(double base, double base_rate) {

@@ -4,6 +4,7 @@
 
 #include "mbd/model/model.h"
 #include "mbd/model/signal_network.h"
+#include "mbd/system/endless_face.h"
 #include "mbd/system/roles.h"
 #include "mbd/system/scene_units.h"
 
@@ -162,6 +163,7 @@ public:
   std::vector<char> is_body_used;                              ///< per body: a force or friction element acts on it
   bool has_work = false;                                       ///< a load, motor or drive may do work
   int contact_count = 0;                                       ///< number of normal forces (EvaluationData::contact_force)
+  std::vector<EndlessFace> endless_faces;                      ///< faces of contacts that go on where their part has ended
   int event_count = 0;                                         ///< number of event functions
   int friction_row_count = 0;                                  ///< number of rows of all friction elements
 
@@ -255,6 +257,10 @@ public:
   template <class Group> void add_unit(Group& group, int event_count);
   /// Adds a normal force for the current element and returns its index. The contact is pressed while `unit` is in mode 1.
   int add_contact(int unit);
+  /// States that the contact with this index continues beyond the end of the part at marker `b`: `points` of body a, in its axes, press on
+  /// the line through marker b with `normal`, in the marker's axes. `remedy` says, as a clause, how a model gives the face an end. Without an
+  /// outline of the part nothing is added.
+  void add_endless_face(int contact, int a, std::vector<Vec2> points, const std::string& b, const Vec2& normal, std::string remedy);
   /// Reserves two numbers in State::memory, a base and its rate. Returns the index of the base.
   int add_memory(double base = 0.0, double base_rate = 0.0);
   /// Adds one internal state with initial value `start` for an element of `group`. Returns its index.

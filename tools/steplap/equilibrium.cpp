@@ -95,8 +95,8 @@ ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
     try {
       const Equilibrium found = equilibrium_of(*loaded);
       if (console.verbosity != Verbosity::quiet) print_equilibrium(console.out, *loaded, found);
-      for (const Finding& finding : feet_beyond_edges(*loaded, found.state))
-        log_warning("'" + loaded->path + "': at rest " + text_with_place(finding));
+      for (const Finding& finding : contacts_beyond_edges(*loaded, found.state))
+        log_warning("'" + loaded->path + "': " + text_with_place(finding));
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;

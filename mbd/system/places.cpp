@@ -1,4 +1,4 @@
-#include "run/places.h"
+#include "mbd/system/places.h"
 
 #include <algorithm>
 

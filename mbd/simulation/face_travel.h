@@ -1,0 +1,48 @@
+// How far contacts on endless faces (endless_face.h) have pressed beyond the ends of their parts during a run.
+#pragma once
+
+#include "mbd/system/system.h"
+
+#include <vector>
+
+namespace steplap {
+
+/// The farthest that a contact has pressed beyond the end of its part.
+struct FaceTravel {
+  EndlessFace face;    ///< its contact and bodies are those of the leg in which it happened
+  double beyond = 0.0; ///< m, above 0
+  double t = 0.0;      ///< s
+};
+
+/// Finds the travels of one leg of a run, from the motion at the ends of steps and the cubic between them.
+class FaceWatch {
+public:
+  /// Keeps a reference to the system.
+  explicit FaceWatch(const System& system);
+
+  /// Starts a smooth stretch of motion.
+  void begin(const Snapshot& snapshot);
+  /// Ends a stretch, and starts the next.
+  void arrive(const Snapshot& snapshot);
+
+  /// Returns the travels of faces that were left.
+  [[nodiscard]] std::vector<FaceTravel> travels() const;
+
+private:
+  struct End { ///< one end of a stretch
+    bool is_pressed = false;
+    FacePlace place;
+  };
+  struct Farthest {
+    double beyond, t;
+  };
+  [[nodiscard]] static End end_of(const EndlessFace& face, const Snapshot& snapshot);
+  void note(std::size_t face, double along, double t);
+
+  const std::vector<EndlessFace>& faces_;
+  std::vector<Farthest> farthest_; ///< of each face
+  std::vector<End> before_;
+  double t_ = 0.0; ///< start of the stretch, s
+};
+
+} // namespace steplap
