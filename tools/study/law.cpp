@@ -250,16 +250,44 @@ JointLaw::~JointLaw() = default;
 
 double JointLaw::quantile(std::size_t place, double p) const { return marginals_[place].at(normal_quantile(p)); }
 
+// z = L u.
+std::vector<double> JointLaw::correlated(const double* u) const {
+  std::vector<double> z(u, u + random_.size());
+  if (root_.empty()) return z;
+  for (std::size_t i = 0; i < random_.size(); ++i) {
+    z[i] = 0.0;
+    for (std::size_t j = 0; j <= i; ++j) z[i] += root_[i * (i + 1) / 2 + j] * u[j];
+  }
+  return z;
+}
+
 void JointLaw::values_at(const double* u, double* values) const {
   std::copy(nominal_.begin(), nominal_.end(), values);
-  for (std::size_t i = 0; i < random_.size(); ++i) {
-    double z = u[i];
-    if (!root_.empty()) {
-      z = 0.0;
-      for (std::size_t j = 0; j <= i; ++j) z += root_[i * (i + 1) / 2 + j] * u[j];
-    }
-    values[random_[i]] = marginals_[i].at(z);
+  const std::vector<double> z = correlated(u);
+  for (std::size_t i = 0; i < random_.size(); ++i) values[random_[i]] = marginals_[i].at(z[i]);
+}
+
+double JointLaw::mean(std::size_t place) const { return marginals_[place].distribution.getMean()[0]; }
+double JointLaw::standard_deviation(std::size_t place) const { return marginals_[place].distribution.getStandardDeviation()[0]; }
+
+// β = |u| with u = L⁻¹ z and z_i = Φ⁻¹(F_i(x_i)), so that ∂β/∂p = (u/β)ᵀ L⁻¹ ∂z/∂p at fixed x. If the distribution moves by δ,
+// ∂z_i/∂δ = −1/(dx_i/dz_i); if it is stretched by 1 + ε about its mean m_i, ∂z_i/∂ε = −(x_i − m_i)/(dx_i/dz_i).
+std::vector<JointLaw::IndexSlope> JointLaw::index_slopes(const std::vector<double>& u, double beta) const {
+  const std::size_t n = random_.size();
+  std::vector<double> w(n); // L⁻ᵀ u/β
+  for (std::size_t i = n; i-- > 0;) {
+    double sum = u[i] / beta;
+    for (std::size_t k = i + 1; k < n && !root_.empty(); ++k) sum -= root_[k * (k + 1) / 2 + i] * w[k];
+    w[i] = root_.empty() ? sum : sum / root_[i * (i + 1) / 2 + i];
   }
+  const std::vector<double> z = correlated(u.data());
+  std::vector<IndexSlope> slopes;
+  for (std::size_t i = 0; i < n; ++i) {
+    constexpr double h = 1e-4; // error h² of the quotient, 1e-12 by rounding
+    const double slope = (marginals_[i].at(z[i] + h) - marginals_[i].at(z[i] - h)) / (2.0 * h), x = marginals_[i].at(z[i]);
+    slopes.push_back({-w[i] / slope, -w[i] * (x - mean(i)) / (slope * standard_deviation(i))});
+  }
+  return slopes;
 }
 
 namespace {

@@ -216,7 +216,33 @@ private:
             {"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""), std::nan(""), points_.samples});
       }
     }
+    if (const DesignPoint* const nearest = best(); nearest && nearest->beta != 0.0) report_influence(*nearest);
     if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
+  }
+
+  // What another mean or scatter of each variable would change, to first order at the design point. With the limit state linear there, β = m/s
+  // with s² = Σ s_i², of which variable i has the share α_i². Its scatter times c gives β/√(1 − (1 − c²) α_i²).
+  void report_influence(const DesignPoint& point) {
+    const auto& random = run_.law.random();
+    const auto slopes = run_.law.index_slopes(point.u, point.beta);
+    const auto put = [&](const std::string& quantity, double value) {
+      answer_.findings.push_back({"form", "design point 1", quantity, value, std::nan(""), std::nan(""), points_.samples});
+    };
+    for (std::size_t i = 0; i < random.size(); ++i) {
+      const std::string& name = run_.study().variables[random[i]].name;
+      put("beta by mean of " + name, slopes[i].by_mean);
+      put("beta by standard deviation of " + name, slopes[i].by_deviation);
+      put("probability with a mean 10 % larger of " + name,
+          normal_cdf(-(point.beta + slopes[i].by_mean * 0.1 * std::abs(run_.law.mean(i)))));
+      if (!run_.law.is_independent()) continue;
+      const double share = point.alpha[i] * point.alpha[i];
+      put("probability with half the scatter of " + name, normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * share)));
+      put("omission factor of " + name, 1.0 / std::sqrt(1.0 - std::min(share, 1.0 - 1e-12)));
+    }
+    if (!run_.law.is_independent())
+      answer_.notes.push_back(
+          "The variables are correlated: shares of single variables in the scatter are not defined, and importances are "
+          "those of the independent variables from which they are made, in their order");
   }
 
   void add(const char* method, const char* quantity, double value, const std::string& status) {
@@ -290,7 +316,12 @@ StudyKind reliability_kind() {
   kind.holds<ReliabilitySettings>();
   kind.shown = {"methods", "limit_states", "combination", "cov", "confidence"};
   kind.draws_jointly = true;
-  kind.parts = {{"probability", "probability", UnitOf::none, 4},
+  kind.parts = {{"half scatter", "probability with half the scatter of ", UnitOf::none, 4},
+                {"larger mean", "probability with a mean 10 % larger of ", UnitOf::none, 4},
+                {"slope", "beta by mean of ", UnitOf::quotient, 4},
+                {"slope", "beta by standard deviation of ", UnitOf::quotient, 4},
+                {"omission", "omission factor of ", UnitOf::none, 4},
+                {"probability", "probability", UnitOf::none, 4},
                 {"beta", "beta", UnitOf::none, 5},
                 {"importance", "importance of "},
                 {"factor", "factor"}}; // ratio of a probability by theory to one by sampling

@@ -59,6 +59,50 @@ TEST_CASE("FORM and SORM of three correlated variables are those that pystra's t
   CHECK(std::abs(bench.find("sorm", "beta (Hohenbichler)").value - 3.8582) < 4e-4);
 }
 
+TEST_CASE("what another mean or scatter of a variable would change is that of the closed form") {
+  // g = R − S with normal variables: β = (m_R − m_S)/s with s² = s_R² + s_S².
+  const double mr = 10.0, sr = 2.0, ms = 5.0, ss = 1.0, s = std::hypot(sr, ss), beta = (mr - ms) / s;
+  StudyBench bench;
+  (void)bench.run(text_of_case({"", {normal(mr, sr), normal(ms, ss)}, "x1 - x2", 0.0, 0.0, {}}, {"form"}, ""));
+  const auto value = [&](const std::string& quantity) { return bench.find("form", quantity, "design point 1").value; };
+  const auto close = [](double x) { return doctest::Approx(x).epsilon(1e-5); }; // the design point is known to 1e-6
+  CHECK(value("beta by mean of x1") == close(1.0 / s));
+  CHECK(value("beta by mean of x2") == close(-1.0 / s));
+  CHECK(value("beta by standard deviation of x1") == close(-sr * beta / (s * s)));
+  CHECK(value("beta by standard deviation of x2") == close(-ss * beta / (s * s)));
+  CHECK(value("probability with a mean 10 % larger of x1") == close(study::normal_cdf(-(1.1 * mr - ms) / s)));
+  CHECK(value("probability with half the scatter of x1") == close(study::normal_cdf(-(mr - ms) / std::hypot(0.5 * sr, ss))));
+  CHECK(value("omission factor of x2") == close(s / sr));
+}
+
+TEST_CASE("slopes of the index by correlated and by lognormal variables are those of a second study") {
+  // By differences of studies whose distributions were moved; their own error is the square of the step, 1e-4.
+  const auto text = [](double mean, double location, double rho) {
+    std::string all = text_of_case({"",
+                                    {"distribution = \"lognormal\"\nmean = " + std::to_string(mean) +
+                                         "\nstandard_deviation = 0.3\nlocation = " + std::to_string(location) + "\n",
+                                     normal(1.0, 0.25)},
+                                    "x1 - x2",
+                                    0.0,
+                                    0.0,
+                                    {}},
+                                   {"form"}, "");
+    return all + "[[correlation]]\nbetween = [\"x1\", \"x2\"]\nrho = " + std::to_string(rho) + "\n";
+  };
+  for (const double rho : {0.0001, 0.4, -0.5}) {
+    CAPTURE(rho);
+    const auto beta = [&](double by) {
+      StudyBench bench;
+      (void)bench.run(text(2.0 + by, by, rho)); // moved as a whole
+      return bench.find("form", "beta", "g").value;
+    };
+    StudyBench bench;
+    (void)bench.run(text(2.0, 0.0, rho));
+    CHECK(bench.find("form", "beta by mean of x1", "design point 1").value ==
+          doctest::Approx((beta(0.01) - beta(-0.01)) / 0.02).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("traps of FORM are told") {
   const std::vector<KnownCase> all = known_cases();
   const auto called = [&](const std::string& name) {

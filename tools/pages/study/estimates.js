@@ -80,17 +80,18 @@ study.estimates = (() => {
     if (!findings.length) return;
     const section = open('design-points');
     const box = make('div', { class: 'columns' });
-    section.append(make('p', { class: 'note' }, 'Of all ways to fail the most likely: values of the variables, and which share of the distance each of them makes up (alpha², the importance).'), box);
+    section.append(make('p', { class: 'note' }, 'Of all ways to fail the most likely: values of the variables, and which share of the distance each of them makes up (alpha², the importance). To first order: the probability if a variable scattered half as much, and if its mean were 10 % larger.'), box);
     for (const [subject, list] of bySubject(findings)) {
       const beta = list.find((f) => f.role === 'beta');
       const rows = list.filter((f) => f.role === 'design point').map((f) => {
         const share = list.find((g) => g.role === 'importance' && g.variable === f.variable), size = share ? share.value : 0;
         const bar = make('span', { class: 'bar', title: `${data.plain(100 * size, 3)} %` });
         bar.style.width = `${Math.max(0, Math.min(1, size)) * 75}%`;
-        return [f.variable, quantity(f), { text: `${data.plain(100 * size, 3)} %` }, { text: bar, class: 'bars' }];
+        const changed = (role) => { const found = list.find((g) => g.role === role && g.variable === f.variable); return found ? found.text : ''; };
+        return [f.variable, quantity(f), { text: `${data.plain(100 * size, 3)} %` }, { text: bar, class: 'bars' }, changed('half scatter'), changed('larger mean')];
       });
       box.append(make('div', { class: 'card', 'data-point': subject }, make('h3', {}, `${subject}${beta ? `: beta ${minus(beta.text)}` : ''}`),
-        ...(beta && beta.status ? [make('p', { class: 'doubt' }, beta.status)] : []), scroll(table(['variable', 'value', 'importance', ''], rows, [1, 2]))));
+        ...(beta && beta.status ? [make('p', { class: 'doubt' }, beta.status)] : []), scroll(table(['variable', 'value', 'importance', '', 'P, half the scatter', 'P, mean + 10 %'], rows, [1, 2, 4, 5]))));
     }
   }
 
