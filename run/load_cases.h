@@ -25,7 +25,7 @@ struct CaseLimit {
 
 /// Result of one case.
 struct CaseResult {
-  LoadCase load;
+  LoadCase load;                      ///< as the model states it
   std::vector<std::string> overrides; ///< all "path=value" with which the model was loaded
   Judgement judgement;                ///< verdict, and reasons against "hold"
   std::string reason;                 ///< reason of the verdict, one sentence
@@ -49,7 +49,7 @@ struct LoadCaseResults {
 
 /// One limit in all cases.
 struct LimitRow {
-  std::string name;
+  std::string name;                      ///< as in CaseLimit
   std::vector<const CaseLimit*> in_case; ///< one for each case; nullptr: does not apply there
   std::size_t governing = 0;             ///< index of the governing case
 };

@@ -21,6 +21,8 @@ namespace steplap {
 struct Rope : Element {
   std::string a, b = "ground";
   std::vector<std::string> over; ///< markers between its ends, in order
+  double across = 0.0;           ///< distance of its ends across the plane, m
+  long count = 1;                ///< equal ropes
   std::optional<double> stiffness;
   bool inextensible = false;
   double damping = 0.0;
