@@ -348,8 +348,7 @@ const ElementKind& rope_kind() {
     k.name = "rope";
     k.doc = "A rope from marker a over any number of points to marker b: it pulls, it never pushes. The tension is the same "
             "all along; a point that it runs over is a pulley without size or friction. A lashing is a rope with a pretension. With "
-            "`across` it "
-            "leads out of the plane, and the part of its force in the plane acts.";
+            "`across` it leads out of the plane, and the part of its force in the plane acts.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker at its beginning");
     f.add("b", &T::b).as(FieldType::marker).doc("marker at its end");

@@ -168,6 +168,7 @@ inline std::vector<ConformanceScene> rope_scenes() {
        "a = \"A\"\nb = \"B\"\nradius_a = @+0.1\nradius_b = @+0.1\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
       {"wound_rope", "a = \"A\"\nb = \"B\"\nradius_a = @-0.15\nstiffness = 800.0\n"},
       {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
+      {"tie", "a = \"A\"\nb = \"B\"\nacross = 0.7\nstiffness = 800.0\ndamping = 30.0\npreload = 9.0\nacts = \"both\"\n", false, true},
       {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npreload = 9.0\nacts = \"both\"\nstrength = 1e6\n", false, true},
       {"tie", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\nacts = \"both\"\ncount = 2\n"}};
 }

@@ -242,10 +242,10 @@ TEST_CASE("the lorry's chains carry what statics demands, and less than twice th
   const Json found = cases_of(STEPLAP_MODELS "/cases/lorry.toml");
   CHECK(found["verdict"] == "hold");
   CHECK(found["cases"].size() == 6);
-  // Sliding balance with friction μ, a chain from (1.0, 1.6) to (-0.5, 0.0): T (cos + μ sin) = m (a − μ g). The slide of some millimetres
-  // turns the chain by 1 %; a load that acts at once would double the force of a spring, and this one acts slowly.
-  const double mass = 25e3, friction = 0.3, length = std::hypot(1.5, 1.6);
-  const double needed = mass * (0.8 - friction) * 9.80665 / (1.5 / length + friction * 1.6 / length);
+  // Sliding balance of EN 12195-1 with friction μ and two chains of 1.5 m along, 1.6 m up and 0.7 m across: 2 T (1.5 + μ 1.6)/L = m (a − μ g).
+  // The slide of some millimetres turns the chains by 1 %; a load that acts at once would double the force of a spring, and this acts slowly.
+  const double mass = 25e3, friction = 0.3, length = std::sqrt(1.5 * 1.5 + 1.6 * 1.6 + 0.7 * 0.7);
+  const double needed = mass * (0.8 * 9.80665 - friction * k_g) * length / (2.0 * (1.5 + friction * 1.6));
   const double force = found["cases"][0]["judgement"]["criteria"][0]["value"].get<double>();
   CHECK(force > 0.99 * needed);
   CHECK(force < 2.0 * needed);
