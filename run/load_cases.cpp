@@ -126,7 +126,7 @@ std::string LoadCaseResults::reason() const {
   const auto first = std::find_if(cases.begin(), cases.end(), decides);
   const auto count = static_cast<std::size_t>(std::count_if(cases.begin(), cases.end(), decides));
   return "'" + first->load.name + "': " + first->reason +
-         (count > 1 ? " So do " + counted(count - 1, "more case", "more cases") + "." : "");
+         (count > 1 ? " " + counted(count - 1, "more case has", "more cases have") + " the same verdict." : "");
 }
 
 LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunOptions& options) {

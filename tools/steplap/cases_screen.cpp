@@ -28,8 +28,8 @@ std::string use_text(const CaseLimit* limit) {
   return outcome == Verdict::hold ? "met" : outcome == Verdict::open ? "open" : "not met";
 }
 
-std::string quantity_text(const std::optional<double>& value, const std::string& unit) {
-  return value ? cut(shown_quantity(*value, unit), k_quantity) : "-";
+std::string cell_text(const std::optional<double>& value, const std::string& unit, ShownDigits digits = {}) {
+  return value ? cut(shown_quantity(*value, unit, {}, digits), k_quantity) : "-";
 }
 
 void print_cases(std::ostream& out, const std::vector<CaseResult>& cases) {
@@ -51,9 +51,9 @@ void print_limits(std::ostream& out, const std::vector<LimitRow>& rows) {
   table.add_row({"limit", "case", "value", "at limit", "margin", "error"});
   for (const LimitRow& row : rows) {
     const CriterionResult& worst = row.in_case[row.governing]->result;
-    table.add_row({name_text(row.name), std::to_string(row.governing + 1), quantity_text(worst.value, worst.unit),
-                   quantity_text(worst.limit, worst.unit), quantity_text(worst.reserve, worst.unit),
-                   quantity_text(worst.error, worst.unit)});
+    table.add_row({name_text(row.name), std::to_string(row.governing + 1), cell_text(worst.value, worst.unit),
+                   cell_text(worst.limit, worst.unit), cell_text(worst.reserve, worst.unit),
+                   cell_text(worst.error, worst.unit, {.most = 1})});
   }
   out << "\n" << table;
 }
