@@ -14,14 +14,15 @@
     return `${percent(limit.utilisation)}${limit.outcome === 'open' ? ' ?' : ''}`;
   }
   const marked = (text, outcome) => ({ text, class: outcome === 'hold' ? 'met' : 'beyond' });
+  const word = (text) => ({ text, class: 'word' }); // is not broken
   function caseRow(one, k) {
     const governing = one.governing_limit;
-    return [String(k + 1), one.name, one.plane || '–', one.source, marked(one.verdict, one.verdict), governing || '–', governing ? used(one, governing) : '–'];
+    return [String(k + 1), one.name, word(one.plane || '–'), one.source, marked(one.verdict, one.verdict), governing || '–', governing ? used(one, governing) : '–'];
   }
   function limitRow({ limit, governing_case: governing }) {
     const worst = cases.find((one) => one.name === governing), i = limitOf(worst, limit), c = worst.judgement.criteria[i], { margin } = worst.limits[i];
     return [`${limit} (${c.criterion}${c.reason ? `; ${c.reason}` : ''})`, ...cases.map((one) => { const own = one.limits[limitOf(one, limit)]; return own ? marked(used(one, limit), own.outcome) : '–'; }),
-      String(cases.indexOf(worst) + 1), quantity(c.value, c.unit), quantity(margin, c.unit), c.error === null ? '–' : quantity(c.error, c.unit, 1)];
+      String(cases.indexOf(worst) + 1), quantity(c.value, c.unit), quantity(margin, c.unit), c.error === null ? '–' : quantity(c.error, c.unit, 2)];
   }
   const signature = (who) => make('div', {}, make('p', { class: 'who' }, who), ...['Name', 'Date', 'Signature'].map((what) => make('p', {}, what)));
 
@@ -39,7 +40,7 @@
   const run = steplap.data.runs[0];
   run.poseOf = () => null; // every body stays in its reference pose
   const scene = new steplap.Scene(run);
-  at('drawing').append(scene.svg);
+  at('drawing').append(scene.svg, make('p', { class: 'names' }, [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`).join(' · ')));
   // Letters as large as one page allows. Below the smallest size the sheet continues on a second page; nothing is left out.
   const height = () => (186 * at('sheet').getBoundingClientRect().height) / at('sheet').getBoundingClientRect().width;
   steplap.Scene.fitAll([scene], 'ground', 1, [at('drawing').clientWidth], 0.34 * at('drawing').clientWidth);
