@@ -384,14 +384,10 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
   return findings;
 }
 
-namespace {
-
 bool is_judged(const Model& model) {
   return !model.criteria.empty() ||
          std::any_of(model.elements.begin(), model.elements.end(), [](const ElementEntry& entry) { return entry.kind->judge != nullptr; });
 }
-
-} // namespace
 
 std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   if (result.ranges.empty() || !judgement.has_criteria) return {}; // extremes were not computed, or nothing is judged

@@ -29,5 +29,7 @@ struct RunResult;
 [[nodiscard]] std::vector<Finding> start_findings(const LoadedModel& loaded);
 /// Returns findings on implausible values: cores, loads without effect, quantities of very different size (plausible_scene.h).
 [[nodiscard]] std::vector<Finding> implausible_findings(const LoadedModel& loaded);
+/// Returns true if a criterion, of the model or built into one of its elements, can judge a run.
+[[nodiscard]] bool is_judged(const Model& model);
 
 } // namespace steplap

@@ -268,8 +268,8 @@ Overview overview_of(const Report& report, ShownDigits digits) {
   overview.is_judged = report.judgement.has_criteria || !report.judgement.distrust.empty() || report.run.failure;
   overview.story = story_of(report, ranges, digits);
   overview.utilisations = utilisations_of(report, ranges, digits);
-  const auto judged =
-      std::find_if(overview.utilisations.begin(), overview.utilisations.end(), [](const Utilisation& u) { return u.is_judged; });
+  const auto judged = std::find_if(overview.utilisations.begin(), overview.utilisations.end(),
+                                   [](const Utilisation& u) { return u.criterion.has_value(); });
   if (judged != overview.utilisations.end()) overview.worst_instant = judged->at;
   else if (!overview.utilisations.empty()) overview.worst_instant = overview.utilisations.front().at;
   overview.trust = trust_of(report);

@@ -261,35 +261,6 @@ Json joints_json(const Report& report) {
   return json;
 }
 
-Json judgement_json(const Judgement& judgement) {
-  const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
-  Json criteria = Json::array();
-  for (const CriterionResult& c : judgement.criteria) {
-    criteria.push_back({{"name", c.name},
-                        {"criterion", c.text},
-                        {"reason", c.reason},
-                        {"is_met", c.outcome == Verdict::open ? Json() : Json(c.outcome == Verdict::hold)},
-                        {"consequence", name_of(c.consequence)},
-                        {"outcome", name_of(c.outcome)},
-                        {"where", c.where},
-                        {"value", optional(c.value)},
-                        {"limit", optional(c.limit)},
-                        {"unit", c.unit},
-                        {"t", optional(c.t)},
-                        {"error", optional(c.error)},
-                        {"error_t", optional(c.t_error)},
-                        {"doubt", c.doubt}});
-    if (c.value) note_infinity(criteria.back(), "value", *c.value);
-    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // without this entry null means: not estimated
-    if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
-  }
-  return {{"verdict", name_of(judgement.verdict)},
-          {"so_far", name_of(judgement.so_far)},
-          {"distrust", judgement.distrust},
-          {"capped_by", judgement.caps},
-          {"criteria", std::move(criteria)}};
-}
-
 Json second_opinion_json(const SecondOpinion& opinion) {
   return {{"method", opinion.method},
           {"drawn_step", opinion.drawn_step > 0.0 ? Json(opinion.drawn_step) : Json()},
@@ -362,17 +333,51 @@ Json state_json(const System& system, const State& state, const Report& report) 
 
 } // namespace
 
+OrderedJson model_json(const LoadedModel& loaded) {
+  Json json{{"file", loaded.path},
+            {"name", loaded.name},
+            {"title", loaded.model.header.title},
+            {"overrides", loaded.overrides},
+            {"inputs", inputs_json(loaded.inputs)}};
+  if (!loaded.model.parameters.entries.empty()) json["parameters"] = parameters_json(loaded.model.parameters);
+  return json;
+}
+
+OrderedJson judgement_json(const Judgement& judgement) {
+  const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
+  Json criteria = Json::array();
+  for (const CriterionResult& c : judgement.criteria) {
+    criteria.push_back({{"name", c.name},
+                        {"criterion", c.text},
+                        {"reason", c.reason},
+                        {"is_met", c.outcome == Verdict::open ? Json() : Json(c.outcome == Verdict::hold)},
+                        {"consequence", name_of(c.consequence)},
+                        {"outcome", name_of(c.outcome)},
+                        {"where", c.where},
+                        {"value", optional(c.value)},
+                        {"limit", optional(c.limit)},
+                        {"unit", c.unit},
+                        {"t", optional(c.t)},
+                        {"error", optional(c.error)},
+                        {"error_t", optional(c.t_error)},
+                        {"doubt", c.doubt}});
+    if (c.value) note_infinity(criteria.back(), "value", *c.value);
+    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // without this entry null means: not estimated
+    if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
+  }
+  return {{"verdict", name_of(judgement.verdict)},
+          {"so_far", name_of(judgement.so_far)},
+          {"distrust", judgement.distrust},
+          {"capped_by", judgement.caps},
+          {"criteria", std::move(criteria)}};
+}
+
 OrderedJson summary_head(const Report& report, ShownDigits digits) {
   const Run& run = report.run;
   const LoadedModel& loaded = *run.loaded;
   Json json = object_with_room(32); // includes the entries of summary_document()
   json["program"] = {{"name", "steplap"}, {"version", k_version}};
-  json["model"] = {{"file", loaded.path},
-                   {"name", loaded.name},
-                   {"title", loaded.model.header.title},
-                   {"overrides", loaded.overrides},
-                   {"inputs", inputs_json(loaded.inputs)}};
-  if (!loaded.model.parameters.entries.empty()) json["model"]["parameters"] = parameters_json(loaded.model.parameters);
+  json["model"] = model_json(loaded);
   json["overview"] = overview_json(overview_of(report, digits), digits);
   json["completed"] = !run.failure;
   if (run.failure) json["failure"] = run.failure->text;

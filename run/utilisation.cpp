@@ -86,8 +86,10 @@ private:
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!all[i].value || !all[i].limit || !std::isfinite(*all[i].value)) continue;
       const std::size_t of_elements = all.size() - own.size();
+      const std::size_t before = found_.size();
       if (i < of_elements) add_of_element(all[i]);
       else add_of_model(all[i], own[i - of_elements]);
+      if (found_.size() > before) found_.back().criterion = i;
     }
   }
 
@@ -103,7 +105,6 @@ private:
     u.unit = c.unit;
     u.at = c.t;
     u.beyond = c.outcome == Verdict::inspect || c.outcome == Verdict::reject;
-    u.is_judged = !c.name.empty();
     const bool is_settled = u.beyond && !c.reserve; // it slipped or broke, independently of rounding
     if (c.error && !is_settled) u.error = std::abs(*c.error * share->slope);
     u.detail = detail;

@@ -18,17 +18,17 @@ namespace steplap {
 
 /// Utilisation of one limit.
 struct Utilisation {
-  std::string name;                   ///< "front joint: friction", or the name of the criterion
-  std::string channel;                ///< channel whose extreme was used
-  double share = 0.0;                 ///< 1: the limit; above: exceeded; at most k_most_share
-  std::optional<double> value, limit; ///< SI; empty for friction, where both change with time
-  std::string unit;                   ///< of value and limit
-  std::optional<double> at;           ///< time of the extreme, s
-  bool is_judged = false;             ///< true for a criterion that counts for the verdict
-  bool beyond = false;                ///< the limit was exceeded: criterion not met, slipped or broke
-  std::optional<double> error;        ///< error of the share; NaN: unknown
-  std::string detail;                 ///< "274 kN of 300 kN", "1.32, at least 1.2"
-  std::string text;                   ///< "91 % of the limit: 274 kN of 300 kN"
+  std::string name;                     ///< "front joint: friction", or the name of the criterion
+  std::string channel;                  ///< channel whose extreme was used
+  double share = 0.0;                   ///< 1: the limit; above: exceeded; at most k_most_share
+  std::optional<double> value, limit;   ///< SI; empty for friction, where both change with time
+  std::string unit;                     ///< of value and limit
+  std::optional<double> at;             ///< time of the extreme, s
+  std::optional<std::size_t> criterion; ///< index in Judgement::criteria; empty for friction and ties that no criterion limits
+  bool beyond = false;                  ///< the limit was exceeded: criterion not met, slipped or broke
+  std::optional<double> error;          ///< error of the share; NaN: unknown
+  std::string detail;                   ///< "274 kN of 300 kN", "1.32, at least 1.2"
+  std::string text;                     ///< "91 % of the limit: 274 kN of 300 kN"
 
   static constexpr double k_most_share = 1000.0; ///< used if the capacity is zero
 };

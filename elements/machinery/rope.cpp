@@ -1,6 +1,7 @@
 #include "elements/machinery/rope.h"
 
 #include "elements/contact_laws.h"
+#include "elements/machinery/space_distance.h"
 #include "mbd/base/dual.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
@@ -23,7 +24,7 @@ using D12 = Dual<12>;
 // A straight part between points of two bodies. Parts within one body only add to the length.
 struct RopePart {
   int a = k_ground, b = k_ground;
-  DistanceMeasure measure;
+  SpaceDistance measure;
   double given = 0.0;         ///< length in the reference pose, m
   std::string name_a, name_b; ///< names of its markers
 };
@@ -42,6 +43,7 @@ public:
     std::vector<RopePart> parts;
     KelvinVoigtContact law;
     double fixed_length = 0.0; ///< length of parts within one body, m
+    double count = 1.0;        ///< equal ropes; `law` is that of all
     std::string name;
     int unit = 0, first_event = 0;
   };
@@ -82,9 +84,10 @@ public:
     }
     return least;
   }
+  /// Returns the tension of one rope.
   [[nodiscard]] double tension(int i, const Evaluation& e) const {
     const RopeLength way = rope_length(entries[i], e.motion);
-    return entries[i].law.force(-way.length, -way.rate, e.mode[entries[i].unit]);
+    return entries[i].law.force(-way.length, -way.rate, e.mode[entries[i].unit]) / entries[i].count;
   }
 
   void add_forces(Evaluation& e) const override {
@@ -217,7 +220,10 @@ bool check(const Rope& e, SystemBuilder& builder) {
   };
   bool is_bad =
       fails(e.length.has_value() + e.pretension.has_value() + e.slack.has_value() > 1, "give one of 'length', 'pretension' and 'slack'");
+  is_bad |= fails(e.across > 0.0 && !e.over.empty(), "'across' is the offset of its two ends: give it to ropes that run over no points");
   if (!e.inextensible) return !fails(!e.stiffness, "give its 'stiffness', or inextensible = true") && !is_bad;
+  is_bad |=
+      fails(e.across > 0.0 || e.count > 1, "with inextensible = true it lies in the plane, and is one: give no 'across' and no 'count'");
   is_bad |= fails(e.stiffness.has_value(), "give either 'stiffness' or inextensible = true");
   is_bad |= fails(e.damping > 0.0, "with inextensible = true it has no 'damping': it does not stretch");
   is_bad |= fails(e.pretension.has_value(), "with inextensible = true its tension follows from the motion: give no 'pretension'");
@@ -251,8 +257,8 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
     row.kind = MeasureKind::distance;
     row.a = part.a;
     row.b = part.b;
-    row.point_a = part.measure.point_a;
-    row.point_b = part.measure.point_b;
+    row.point_a = part.measure.plane.point_a;
+    row.point_b = part.measure.plane.point_b;
     row.quantity = "length";
     row.element = builder.element_index();
   }
@@ -301,16 +307,17 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   double now = 0.0;
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
     const CompiledMarker from = builder.marker(names[i]), to = builder.marker(names[i + 1]);
-    const double length = (builder.marker_position(to) - builder.marker_position(from)).norm();
+    const double in_plane = (builder.marker_position(to) - builder.marker_position(from)).norm(),
+                 length = length_in_space(in_plane, e.across);
     now += length;
     if (from.body == to.body) {
       entry.fixed_length += length;
       continue;
     }
-    if (length < 1e-12)
+    if (in_plane < 1e-12)
       return builder.error("its points '" + names[i] + "' and '" + names[i + 1] +
                            "' coincide, so its direction there is undefined: move a marker");
-    entry.parts.push_back({from.body, to.body, {from.point, to.point}, length, names[i], names[i + 1]});
+    entry.parts.push_back({from.body, to.body, {{from.point, to.point}, e.across}, length, names[i], names[i + 1]});
   }
   if (entry.parts.empty()) return builder.error("joins a body with itself: name markers on two different bodies");
   double length = e.length.value_or(now);
@@ -318,7 +325,8 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   if (e.inextensible) return add_inextensible(entry, now, length, builder);
   if (e.pretension) length = now - *e.pretension / *e.stiffness;
   if (!(length > 0.0)) return builder.error("its 'pretension' stretches it by more than its length: give more 'stiffness'");
-  entry.law = {*e.stiffness, e.damping, -length};
+  entry.count = static_cast<double>(e.count);
+  entry.law = {entry.count * *e.stiffness, entry.count * e.damping, -length};
   RopeGroup& group = builder.group<RopeGroup>();
   group.entries.push_back(std::move(entry));
   builder.add_unit(group, RopeGroup::k_event_count);
@@ -327,7 +335,7 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
                       [&group, i](const Snapshot& s) { return RopeGroup::rope_length(group.entries[i], s.motion).length; });
   builder.add_channel("rate", "m/s", {"of that length", "positive: it grows"},
                       [&group, i](const Snapshot& s) { return RopeGroup::rope_length(group.entries[i], s.motion).rate; });
-  builder.add_channel("tension", "N", {"force all along it, zero while it is slack", "positive: it pulls"},
+  builder.add_channel("tension", "N", {"force all along one, zero while it is slack", "positive: it pulls"},
                       [&group, i](const Snapshot& s) { return group.tension(i, *s.evaluation); });
 }
 
@@ -339,11 +347,14 @@ const ElementKind& rope_kind() {
     ElementKind k;
     k.name = "rope";
     k.doc = "A rope from marker a over any number of points to marker b: it pulls, it never pushes. The tension is the same "
-            "all along; a point that it runs over is a pulley without size or friction. A lashing is a rope with a pretension.";
+            "all along; a point that it runs over is a pulley without size or friction. A lashing is a rope with a pretension. With "
+            "`across` it leads out of the plane, and the part of its force in the plane acts.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker at its beginning");
     f.add("b", &T::b).as(FieldType::marker).doc("marker at its end");
     f.add("over", &T::over).doc("names of the markers that it runs over, in order from a to b");
+    f.add("across", &T::across).in("m").not_negative().doc("distance of its ends across the plane; its length is that in space");
+    f.add("count", &T::count).at_least(1).doc("equal ropes, all values are those of one; 2 for a pair to both sides of the plane");
     f.add("stiffness", &T::stiffness).in("N/m").positive().doc("of the whole rope; required unless it is inextensible");
     f.add("inextensible", &T::inextensible).doc("true: it does not stretch, and becomes taut by a blow without rebound");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("while it is taut; never pushes");

@@ -5,6 +5,9 @@
 //
 //   T = max(0, k (L − L₀) + c L̇) while L > L₀, otherwise 0.
 //
+// With `across` a rope of one part has L = √(l² + c²), l being the distance in the plane (space_distance.h). `count` equal ropes act together;
+// T is that of one.
+//
 // Each part pulls its two points towards each other with T. Potential energy ½ k (L − L₀)²; the damper dissipates T L̇ minus the change of
 // this energy. The order of the points is fixed, even if a real rope would leave a pulley. If a load reaches its pulley the run ends with
 // an error (mbd/system/rope_end.h).
@@ -21,6 +24,8 @@ namespace steplap {
 struct Rope : Element {
   std::string a, b = "ground";
   std::vector<std::string> over; ///< markers between its ends, in order
+  double across = 0.0;           ///< distance of its ends across the plane, m
+  long count = 1;                ///< equal ropes
   std::optional<double> stiffness;
   bool inextensible = false;
   double damping = 0.0;

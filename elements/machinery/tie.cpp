@@ -1,6 +1,7 @@
 #include "elements/machinery/tie.h"
 
 #include "elements/contact_laws.h"
+#include "elements/machinery/space_distance.h"
 #include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
 #include "mbd/trust/element_judgement.h"
@@ -225,6 +226,7 @@ bool check(const Tie& e, SystemBuilder& builder) {
                   "a negative 'preload' presses: 'acts' has to be \"compression\" or \"both\"");
   is_bad |= fails(e.preload.value_or(0.0) > 0.0 && e.acts == "compression",
                   "a positive 'preload' pulls: 'acts' has to be \"tension\" or \"both\"");
+  is_bad |= fails(e.axis && e.across > 0.0, "'across' is the offset of two points, and 'axis' fixes the direction: give one of them");
   is_bad |= fails(e.on_break == "stop" && !e.strength, "'on_break' needs a 'strength'");
   return !is_bad;
 }
@@ -240,7 +242,9 @@ void compile_tie(const Element& element, SystemBuilder& builder) {
   }
   if ((builder.marker_position(a) - builder.marker_position(b)).norm() < 1e-12)
     return builder.error("its ends coincide, so its direction is undefined: move a marker, or give an 'axis'");
-  add(e, builder, a.body, b.body, DistanceMeasure{a.point, b.point});
+  const DistanceMeasure in_plane{a.point, b.point};
+  if (e.across > 0.0) add(e, builder, a.body, b.body, SpaceDistance{in_plane, e.across});
+  else add(e, builder, a.body, b.body, in_plane);
 }
 
 // Judges a tie with a strength: it must not break.
@@ -283,6 +287,7 @@ const ElementKind& tie_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker on the first body");
     f.add("b", &T::b).as(FieldType::marker).doc("marker on the second body");
     f.add("axis", &T::axis).doc("direction in marker b's axes; without it, from point to point");
+    f.add("across", &T::across).in("m").not_negative().doc("distance of its ends across the plane; its length is that in space");
     f.add("acts", &T::acts).one_of({"tension", "compression", "both"}).doc("in which sense it gives a force");
     f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of one");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("of one");

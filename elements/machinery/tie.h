@@ -14,6 +14,7 @@ namespace steplap {
 struct Tie : Element {
   std::string a, b = "ground";
   std::optional<Vec2> axis;     ///< in marker b's axes; not given: point to point
+  double across = 0.0;          ///< distance of its ends across the plane, m
   std::string acts = "tension"; ///< "tension", "compression", "both"
   double stiffness = 0.0, damping = 0.0;
   double slack = 0.0;                 ///< m, on each side on which it acts

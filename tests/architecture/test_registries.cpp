@@ -90,6 +90,8 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"tools/study/needs.cpp", "what is made rigid is welded"}}},
       {"limit",
        {{"run/report_json.cpp", "of a criterion"},
+        {"run/load_cases_json.cpp", "of a criterion"},
+        {"tools/steplap/cases_screen.cpp", "of a criterion"},
         {"tools/steplap/run_screen.cpp", "of a criterion"},
         {"tools/assess/static_json.cpp", "of a criterion"}}},
       {"load", {{"tools/assess/static_json.cpp", "an acceleration of a proof"}}},

@@ -168,6 +168,7 @@ inline std::vector<ConformanceScene> rope_scenes() {
        "a = \"A\"\nb = \"B\"\nradius_a = @+0.1\nradius_b = @+0.1\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
       {"wound_rope", "a = \"A\"\nb = \"B\"\nradius_a = @-0.15\nstiffness = 800.0\n"},
       {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
+      {"tie", "a = \"A\"\nb = \"B\"\nacross = 0.7\nstiffness = 800.0\ndamping = 30.0\npreload = 9.0\nacts = \"both\"\n", false, true},
       {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npreload = 9.0\nacts = \"both\"\nstrength = 1e6\n", false, true},
       {"tie", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\nacts = \"both\"\ncount = 2\n"}};
 }
@@ -195,6 +196,7 @@ inline std::vector<ConformanceScene> joint_scenes() {
           {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
           {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\ngrip = 30.0\ndrags = 20.0\n"},
           {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.02\n", false, true},
+          {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\nacross = 0.7\ncount = 2\n", false, true},
           {"rope",
            "a = \"A\"\nb = \"B\"\nover = [\"high on b\", \"low on a\", \"low on a\"]\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"
            "[[marker]]\nname = \"high on b\"\nbody = \"b\"\npoint = [@+0.2, 0.6]\n"

@@ -106,3 +106,40 @@ TEST_CASE("pretension is there in the reference pose, and faults are told") {
   fails("a = \"lid\"; b = { body = \"lid\", point = [1.0, 0.0] }; stiffness = 1e5");
   fails("a = \"lid\"; stiffness = 1e5; over = [\"nowhere\"]");
 }
+
+// Ropes from a mass to both sides of the plane: 2 T l/L = m g with the height l and the length L = √(l² + c²) of each.
+TEST_CASE("a mass hangs from a pair of ropes that leave the plane as statics in space says") {
+  const double m = 30.0, k = 5000.0, c = 0.6, l_0 = 0.9; // L₀ is the length in the reference pose
+  const auto system = compile(scene("[simulation]\nstep = 1e-3\n" + body("mass", "mass = 30; inertia = 1; position = [0.0, -0.9]") +
+                                    element("rope", "pair", "a = \"mass\"; b = \"ground\"; stiffness = 5000.0; across = 0.6; count = 2")));
+  const Equilibrium rest = find_equilibrium(*system, system->initial_state());
+  const double l = -rest.state.q[4], length = std::hypot(l, c);
+  const double tension = k * (length - std::hypot(l_0, c));
+  CHECK(std::abs(2.0 * tension * l / length - m * k_g) < 1e-7); // the search for rest leaves 1e-9 of the weight
+  CHECK(std::abs(channel(*system, rest, "pair.tension") - tension) < 1e-9 * k);
+  CHECK(std::abs(channel(*system, rest, "pair.length") - length) < 1e-12);
+}
+
+// EN 12195-1, direct lashing: T = m g (c_x − μ)/(2 (cos α cos β + μ sin α)) while the load slides, with the angle α to the deck and β of the
+// chain's projection to the direction of travel.
+TEST_CASE("two chains in space carry what the standard demands") {
+  const double m = 25e3, mu = 0.4 * 0.75, half = std::sqrt(0.5), root = std::sqrt(3.0);
+  const double demanded = m * k_g * (0.8 - mu) / (2.0 * (half * root / 2.0 + mu * half));
+  CHECK(std::abs(demanded - 74.36e3) < 5.0); // as the number is printed
+  // A chain of 2 m with α = 45° and β = 30°: √2 high, √2 cos β along, √2 sin β across.
+  const std::string text =
+      body("load", "mass = 25000; inertia = 5e4; position = [0.0, 0.5]") +
+      element("polygon_contact", "deck", "a = \"load\"; stiffness = 1e10; dissipation = 1.0; static_friction = 0.3") +
+      element("rope", "chains",
+              "a = { body = \"load\", at = [0.0, 1.4142135623730951] }; b = { body = \"ground\", at = [-1.2247448713915890, 0.0] }; "
+              "across = 0.70710678118654752; count = 2; stiffness = 1e9; damping = 1e6") +
+      "[[signal]]\nname = \"braking\"\nkind = \"trapezoid\"\npeak = " + std::to_string(0.8 * m * k_g) +
+      "\nduration = 5.0\nrise = 2.0\nfall = 2.0\n" +
+      element("load", "braking", "at = { body = \"load\", at = [0.0, 0.0] }; force_x = \"braking\"");
+  std::string outlined = text;
+  outlined.replace(outlined.find("position = [0.0, 0.5]"), 21,
+                   "position = [0.0, 0.5]\noutline = [[-2.0, -0.5], [2.0, -0.5], [2.0, 1.0], [-2.0, 1.0]]");
+  const Run r = run(outlined, {"auto", 1e-9, 2.0}); // to the end of the rise: friction is at its bound while the load slides
+  // The chains stretch by 0.1 mm of 2 m, which turns them by 1e-4; vibration from the onset of slip has decayed.
+  CHECK(std::abs(r.last("chains.tension") / demanded - 1.0) < 1e-3);
+}

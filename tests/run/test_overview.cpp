@@ -64,7 +64,7 @@ TEST_CASE("utilisations are sorted, and those beyond their limits are the criter
     for (const CriterionResult& c : report.judgement.criteria) {
       if (!c.value || !c.limit) continue;
       const auto found = std::find_if(all.begin(), all.end(),
-                                      [&](const Utilisation& u) { return u.is_judged && u.channel == c.channel && u.limit == c.limit; });
+                                      [&](const Utilisation& u) { return u.criterion && u.channel == c.channel && u.limit == c.limit; });
       REQUIRE(found != all.end());
       CHECK(found->beyond == (c.outcome != Verdict::hold));
       if (c.reserve && *c.reserve > 0.0) CHECK(found->share < 1.0);

@@ -1,6 +1,5 @@
 #include "tools/pages/modes_page.h"
 
-#include "run/drawing.h"
 #include "run/ordered_json.h"
 #include "run/version.h"
 #include "tools/pages/report_data.h"
@@ -47,14 +46,8 @@ std::string modes_page(const LoadedModel& loaded, const Equilibrium& rest, const
                        const std::vector<std::string>& moves_most, const std::vector<std::string>& remarks) {
   Json modes = Json::array();
   for (std::size_t i = 0; i < found.modes.size(); ++i) modes.push_back(mode_json(*loaded.system, found.modes[i], moves_most[i]));
-  // The drawing expects the data of a run; this one has no time histories.
-  Json run{{"name", loaded.name},
-           {"summary", {{"extremes", Json::object()}}},
-           {"events", Json::array()},
-           {"channels", Json::array()},
-           {"drawing", parse_ordered(drawing_json(loaded.model))}};
   const Json data{{"program", std::string("steplap ") + k_version},
-                  {"runs", Json::array({std::move(run)})},
+                  {"runs", Json::array({still_run(loaded)})},
                   {"modes",
                    {{"title", loaded.model.header.title},
                     {"rest", poses_json(*loaded.system, rest.state)},

@@ -3,8 +3,8 @@
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/digest.h"
 #include "mbd/simulation/trajectory.h"
+#include "run/drawing.h"
 #include "run/measured_text.h"
-#include "run/ordered_json.h"
 #include "run/version.h"
 #include "tools/pages/thinning.h"
 
@@ -232,6 +232,14 @@ std::string report_data(const Results& run, OrderedJson summary, std::size_t bud
   std::vector<Json> summaries;
   summaries.push_back(std::move(summary));
   return data_of({run}, std::move(summaries), budget);
+}
+
+OrderedJson still_run(const LoadedModel& loaded) {
+  return {{"name", loaded.name},
+          {"summary", {{"extremes", Json::object()}}},
+          {"events", Json::array()},
+          {"channels", Json::array()},
+          {"drawing", parse_ordered(drawing_json(loaded.model))}};
 }
 
 std::string in_script(const std::string& json) {

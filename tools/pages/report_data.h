@@ -1,6 +1,7 @@
 // Creates the data of a report page as JSON: summaries, events, drawings and time histories of runs, thinned to limit the size of the page.
 #pragma once
 
+#include "run/loaded_model.h"
 #include "run/ordered_json.h"
 #include "run/results.h"
 
@@ -18,6 +19,9 @@ namespace steplap {
 
 /// As above for one run, whose summary is given as a document (run/summary.h); the summary text in `run` is ignored.
 [[nodiscard]] std::string report_data(const Results& run, OrderedJson summary, std::size_t budget);
+
+/// Returns the data of a run without time histories, for pages that draw the model only.
+[[nodiscard]] OrderedJson still_run(const LoadedModel& loaded);
 
 /// Returns equivalent JSON without '<'. The character occurs in strings only, where it can be escaped.
 [[nodiscard]] std::string in_script(const std::string& json);

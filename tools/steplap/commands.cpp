@@ -2,6 +2,7 @@
 
 #include "tools/steplap/accuracy.h"
 #include "tools/steplap/assess.h"
+#include "tools/steplap/cases.h"
 #include "tools/steplap/channels.h"
 #include "tools/steplap/check.h"
 #include "tools/steplap/core.h"
@@ -33,6 +34,7 @@ std::vector<Command> all_commands() {
   commands.push_back(plot_command());
   commands.push_back(record_command());
   commands.push_back(assess_command());
+  commands.push_back(cases_command());
   commands.push_back(diff_command());
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());

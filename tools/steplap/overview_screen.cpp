@@ -3,9 +3,9 @@
 #include "mbd/base/shown_text.h"
 #include "run/finding.h"
 #include "tools/steplap/colour.h"
+#include "tools/steplap/text_layout.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <ostream>
 #include <vector>
@@ -18,44 +18,6 @@ constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    
 constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // chosen so that the screen has at most 30 lines
 constexpr double k_least_share = 0.005;                                         // smaller utilisations round to 0 % and are omitted
 constexpr int k_bar = 20;                                                       // characters
-
-// Counts the characters, not the bytes, of a UTF-8 text.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-std::string cut(const std::string& text, std::size_t most) {
-  if (width(text) <= most) return text;
-  std::string kept;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;
-    if (begins && width(kept) + 2 > most) break;
-    kept += text[i];
-  }
-  return kept + "…";
-}
-
-// Breaks a text at blanks, but not between a number and its unit, into at most the given number of lines; all but the first are indented.
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t most_lines) {
-  std::string result, line;
-  std::size_t lines = 1;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t begin = std::min(text.find_first_not_of(' ', at), text.size() - 1); // blanks before a word stay with it
-    std::size_t end = std::min(text.find(' ', begin), text.size());
-    if (std::isdigit(static_cast<unsigned char>(text[end - 1])) && end < text.size()) end = std::min(text.find(' ', end + 1), text.size());
-    const std::string word = text.substr(at, end - at);
-    if (!line.empty() && width(line) + 1 + width(word) > k_columns && lines < most_lines) {
-      result += line + "\n";
-      line = std::string(indent, ' ') + word;
-      ++lines;
-    } else {
-      line += (at == 0 ? "" : " ") + word;
-    }
-    at = end + 1;
-  }
-  return result + cut(line, k_columns);
-}
 
 std::string coloured(const std::string& text, const char* colour, bool is_coloured) {
   return is_coloured ? std::string("\x1b[") + colour + "m" + text + "\x1b[0m" : text;
@@ -76,7 +38,7 @@ void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured)
   std::string verdict = is_judged != overview.end() && !is_judged->get<bool>() ? "no criteria" : name;
   std::transform(verdict.begin(), verdict.end(), verdict.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  const std::string text = wrapped(verdict + "  " + shown(text_at(overview, "reason")), verdict.size() + 2, 3);
+  const std::string text = wrapped(verdict + "  " + shown(text_at(overview, "reason")), k_columns, verdict.size() + 2, 3);
   out << coloured(verdict, colour_of(name), is_coloured) << text.substr(verdict.size()) << "\n";
   const std::string title = text_at(summary.at("model"), "title");
   out << cut(shown(text_at(summary.at("model"), "name") + (title.empty() ? "" : ": " + title)), k_columns) << "\n";
@@ -93,7 +55,7 @@ void print_story(std::ostream& out, const OrderedJson& summary) {
   const OrderedJson& story = summary.at("overview").at("story");
   std::size_t lines = 0;
   for (std::size_t i = 0; i < story.size(); ++i) {
-    const std::string text = wrapped("  " + shown(text_at(story[i], "text")), 4, 2);
+    const std::string text = wrapped("  " + shown(text_at(story[i], "text")), k_columns, 4, 2);
     const std::size_t needed = text.find('\n') == std::string::npos ? 1 : 2;
     const bool is_last = i + 1 == story.size();
     if (lines + needed > k_story_lines - (is_last ? 0 : 1)) {
@@ -114,15 +76,15 @@ void print_bars(std::ostream& out, const OrderedJson& utilisations, bool has_all
   const auto share_of = [](const OrderedJson& u) { return u.at("share").get<double>(); };
   std::size_t count = 0, widest = 0;
   while (count < std::min(k_most_bars, utilisations.size()) && share_of(utilisations[count]) >= k_least_share)
-    widest = std::max(widest, width(shown(text_at(utilisations[count++], "name"))));
+    widest = std::max(widest, width_of(shown(text_at(utilisations[count++], "name"))));
   if (count == 0) return;
   out << "\nNearest to their limits\n";
   widest = std::min<std::size_t>(widest, 36);
   for (std::size_t i = 0; i < count; ++i) {
     const OrderedJson& u = utilisations[i];
     const std::string name = cut(shown(text_at(u, "name")), widest), percent = text_at(u, "percent"), detail = text_at(u, "detail");
-    const std::string line = "  " + name + std::string(widest - width(name), ' ') + "  " + bar_of(share_of(u)) +
-                             std::string(width(percent) < 6 ? 6 - width(percent) : 0, ' ') + " " + percent +
+    const std::string line = "  " + name + std::string(widest - width_of(name), ' ') + "  " + bar_of(share_of(u)) +
+                             std::string(width_of(percent) < 6 ? 6 - width_of(percent) : 0, ' ') + " " + percent +
                              (detail.empty() ? "" : "   " + detail);
     out << cut(line, has_all_digits ? k_all_columns : k_columns) << "\n";
   }
@@ -140,7 +102,7 @@ void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_colo
     out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
   for (const OrderedJson& f : findings) // findings with an explained reason are part of the result
-    if (f.at("code") == "friction_by_source") out << wrapped("Note: " + shown(text_of(f)), 6, 3) << "\n";
+    if (f.at("code") == "friction_by_source") out << wrapped("Note: " + shown(text_of(f)), k_columns, 6, 3) << "\n";
 }
 
 // Returns the text for a level of trust. It refers to numerical errors only, not to effects that the model leaves out.
@@ -163,7 +125,8 @@ void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bo
   print_bars(out, overview.at("utilisations"), has_all_digits);
   const char* const remedy = run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "";
   out << "\n"
-      << wrapped("Numerical error: " + words_of_level(text_at(trust, "level")) + ". " + shown(text_at(trust, "text")) + remedy, 7, 3)
+      << wrapped("Numerical error: " + words_of_level(text_at(trust, "level")) + ". " + shown(text_at(trust, "text")) + remedy, k_columns,
+                 7, 3)
       << "\n";
   if (trust.contains("guards")) out << cut("Checked by: " + shown(list_of(trust.at("guards"))), k_columns) << "\n";
   print_warnings(out, run.summary.at("findings"), is_coloured);

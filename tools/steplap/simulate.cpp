@@ -14,10 +14,10 @@
 #include "tools/steplap/overview_screen.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
+#include "tools/steplap/required_hold.h"
 #include "tools/steplap/run_screen.h"
 #include "tools/steplap/shown_run.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -209,12 +209,11 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     }
   }
   if (runs.empty()) return code;
-  const bool is_held =
-      std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) { return run.report.judgement.verdict == Verdict::hold; });
-  const bool is_trusted =
-      std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) { return run.report.judgement.distrust.empty(); });
-  if (options.is_hold_required && !is_held && code == ExitCode::done)
-    code = is_trusted ? ExitCode::criterion_failed : ExitCode::numerical_failure;
+  if (options.is_hold_required && code == ExitCode::done) {
+    std::vector<const Judgement*> judgements;
+    for (const FinishedRun& run : runs) judgements.push_back(&run.report.judgement);
+    code = required_hold(judgements);
+  }
   if (options.is_reported) {
     std::vector<std::string> folders;
     for (const FinishedRun& run : runs) folders.push_back(run.folder);

@@ -2,21 +2,12 @@
 
 #include "run/measured_text.h"
 #include "run/quantity_text.h"
+#include "tools/steplap/text_layout.h"
 
 #include <algorithm>
 #include <ostream>
 
 namespace steplap {
-
-namespace {
-
-// UTF-8 continuation bytes have no width.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-} // namespace
 
 Cell quantity_cell(double value, const std::string& unit) { return {quantity_text(value, unit), value, unit}; }
 

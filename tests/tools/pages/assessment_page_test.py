@@ -5,7 +5,6 @@
 
 The assessments are written by hand (assessment_sample.py), so that every value that is looked for is known.
 """
-import base64
 import json
 import os
 import random
@@ -56,19 +55,6 @@ class AssessmentPageTest(base.Page):
         self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
         self.open(f"{name}/report.html", (width, height))
-
-    def print_page(self, name):
-        """Texts of the sheets."""
-        pdf = base64.b64decode(self.browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True})["data"])
-        path = os.path.join(base.KEPT or WORK.name, name + ".pdf")
-        with open(path, "wb") as file:
-            file.write(pdf)
-        facts = subprocess.run(["pdfinfo", path], check=True, capture_output=True, text=True).stdout
-        self.assertIn("A4", facts)
-        text = subprocess.run(["pdftotext", "-layout", path, "-"], check=True, capture_output=True, text=True).stdout
-        sheets = text.split("\f")[:-1]
-        self.assertEqual(len(sheets), int(re.search(r"Pages:\s+(\d+)", facts).group(1)))
-        return [" ".join(sheet.split()) for sheet in sheets]
 
     # --- on the screen -------------------------------------------------------------------------------
 

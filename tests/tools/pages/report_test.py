@@ -9,6 +9,7 @@ screenshots are left in FOLDER.
 import base64
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -120,6 +121,19 @@ class Page(unittest.TestCase):
 
     def run_js(self, script, *arguments):
         return self.browser.execute_script(script, *arguments)
+
+    def print_page(self, name):
+        """Texts of the sheets."""
+        pdf = base64.b64decode(self.browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True})["data"])
+        path = os.path.join(KEPT or WORK.name, name + ".pdf")
+        with open(path, "wb") as file:
+            file.write(pdf)
+        facts = subprocess.run(["pdfinfo", path], check=True, capture_output=True, text=True).stdout
+        self.assertIn("A4", facts)
+        text = subprocess.run(["pdftotext", "-layout", path, "-"], check=True, capture_output=True, text=True).stdout
+        sheets = text.split("\f")[:-1]
+        self.assertEqual(len(sheets), int(re.search(r"Pages:\s+(\d+)", facts).group(1)))
+        return [" ".join(sheet.split()) for sheet in sheets]
 
 
 class ReportTest(Page):

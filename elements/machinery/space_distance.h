@@ -1,0 +1,43 @@
+// Distance of two points in space, for chains and springs that lead out of the plane of motion.
+//
+// The points move in parallel planes that are c apart. With the distance l in the plane:
+//
+//   L = √(l² + c²)    ∂L/∂q = (l/L) ∂l/∂q    L̇ = (l/L) l̇
+//
+// So the part of the force that acts in the plane is l/L of it. The part across the plane is carried by a second chain on the other side.
+#pragma once
+
+#include "mbd/system/measure.h"
+#include "mbd/system/turn_table.h"
+
+#include <cmath>
+
+namespace steplap {
+
+/// Returns L.
+template <class S> [[nodiscard]] S length_in_space(const S& in_plane, double across) {
+  using std::sqrt;
+  return across == 0.0 ? in_plane : sqrt(in_plane * in_plane + S(across * across));
+}
+
+/// Value L.
+struct SpaceDistance {
+  DistanceMeasure plane;
+  double across = 0.0; ///< c, m
+
+  /// Without bias: for forces, not for constraints.
+  template <bool WithBias, class S, class B> MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    static_assert(!WithBias);
+    MeasureValue<S> m = plane.at<false, S>(a, b);
+    if (across == 0.0) return m;
+    const S length = length_in_space(m.value, across), share = m.value / length;
+    m.value = length;
+    m.rate = share * m.rate;
+    m.direction = share * m.direction;
+    return m;
+  }
+};
+
+[[nodiscard]] inline Turning turning_of(const SpaceDistance& m) { return turning_of(m.plane); }
+
+} // namespace steplap
