@@ -4,6 +4,8 @@
 #include "run/loaded_model.h"
 
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace steplap {
 
@@ -14,9 +16,12 @@ struct ContactAtStart {
   int a = k_ground, b = k_ground;      ///< bodies of the system
   double gap = 0.0;                    ///< gap, m; negative: penetration
   double force = 0.0;                  ///< N
-  Vec2 place = Vec2::Zero();           ///< position of marker a, ground axes, m
+  Vec2 place = Vec2::Zero();           ///< where outlines overlap or come nearest; otherwise marker a; ground axes, m
   std::optional<double> along;         ///< for faces with ends: coordinate along the face from marker b, m
 };
+
+/// Returns the names of the markers a and b of a contact; nothing if the element is none.
+[[nodiscard]] std::optional<std::pair<std::string, std::string>> contact_ends(const Element& element);
 
 /// Returns the initial state of a run: projected onto the joints, and in equilibrium if the model requests this. `as_given` skips the
 /// equilibrium.
