@@ -329,6 +329,7 @@ Json overview_json(const Overview& overview, ShownDigits digits) {
                             {"detail", u.detail},
                             {"text", u.text},
                             {"beyond", u.beyond},
+                            {"is_judged", u.is_judged},
                             {"error", optional(u.error)}});
   return {{"verdict", name_of(overview.verdict)},
           {"is_judged", overview.is_judged},
