@@ -23,8 +23,17 @@ std::optional<std::size_t> Parameters::find(const std::string& name) const {
 }
 
 bool Parameters::needs(const ParameterFormula& formula, std::size_t parameter) const {
-  return std::any_of(formula.of.begin(), formula.of.end(),
-                     [&](std::size_t k) { return k == parameter || (entries[k].formula && needs(*entries[k].formula, parameter)); });
+  std::vector<bool> is_seen(entries.size(), false); // each parameter is visited once, however many formulas use it
+  std::vector<std::size_t> waiting = formula.of;
+  while (!waiting.empty()) {
+    const std::size_t k = waiting.back();
+    waiting.pop_back();
+    if (k == parameter) return true;
+    if (is_seen[k]) continue;
+    is_seen[k] = true;
+    if (entries[k].formula) waiting.insert(waiting.end(), entries[k].formula->of.begin(), entries[k].formula->of.end());
+  }
+  return false;
 }
 
 std::string problem_with(const Parameter& parameter, double value) {

@@ -1,5 +1,6 @@
 #include "mbd/system/requested_channels.h"
 
+#include "mbd/base/limits.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/system/actions.h"
@@ -384,18 +385,25 @@ std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& 
   return {d.unit == "1" ? std::string() : d.unit, 1.0 / given->factor};
 }
 
-// Adds a formula, after the formulas that it uses.
-void RequestedChannels::add_formula(Defined& formula) {
+void RequestedChannels::refuse_as_too_large(const DefinedChannel& d, const std::string& what) {
+  is_beyond_limits_ = true;
+  throw ModelError(d.place("expression"), "channel '" + d.name + "': " + what + ": name fewer, or define them by elements' channels");
+}
+
+// Adds a formula, after the formulas that it uses. `depth`: number of formulas in the chain that leads to it.
+void RequestedChannels::add_formula(Defined& formula, int depth) {
   const DefinedChannel& d = *formula.definition;
   if (formula.mark == Defined::Mark::done) return;
   if (formula.mark == Defined::Mark::open)
     throw ModelError(d.place("expression"), "channel '" + d.name + "': its expression leads back to itself");
+  if (depth > k_longest_channel_chain)
+    refuse_as_too_large(d, "more than " + std::to_string(k_longest_channel_chain) + " formulas of channels name each other in a row");
   formula.mark = Defined::Mark::open;
   if (!formula.expression) return;
   for (const std::string& name : formula.expression->names())
     for (const std::string& each : {name, without_unit(name)})
       for (Defined& other : formulas_)
-        if (other.definition->name == each) add_formula(other);
+        if (other.definition->name == each) add_formula(other, depth + 1);
   std::vector<std::string> units;
   std::vector<const Channel*> operands; // pointers are valid as long as no channel is added
   for (const std::string& name : formula.expression->names()) {
@@ -405,6 +413,10 @@ void RequestedChannels::add_formula(Defined& formula) {
   const auto [unit, factor] = unit_of(d, formula.expression->dimension(units));
   formula.mark = Defined::Mark::done;
   const auto value = std::make_shared<const FormulaChannel>(formula.expression->tree(), operands, factor);
+  operations_ += value->tree().size();
+  if (operations_ > k_most_channel_operations)
+    refuse_as_too_large(d, "the formulas of channels, each with those that it names, have more than " +
+                               std::to_string(k_most_channel_operations) + " operations");
   const auto* const wanted = builder_.wanted_;
   const bool is_listed = !wanted || std::find(wanted->begin(), wanted->end(), d.name) != wanted->end();
   if (!is_listed && !std::binary_search(builder_.operand_names_.begin(), builder_.operand_names_.end(), d.name)) return;
@@ -415,12 +427,15 @@ void RequestedChannels::add_formula(Defined& formula) {
 }
 
 void RequestedChannels::add_formulas() {
-  for (Defined& formula : formulas_) try {
+  for (Defined& formula : formulas_) {
+    try {
       add_formula(formula);
     } catch (const ModelError& error) {
       formula.mark = Defined::Mark::done;
       builder_.errors_.insert(builder_.errors_.end(), error.diagnostics().begin(), error.diagnostics().end());
     }
+    if (is_beyond_limits_) return; // one error is enough
+  }
 }
 
 // --- names that match nothing ---------------------------------------------------------------------

@@ -63,10 +63,11 @@ private:
   void add_integral(const Share& share, const char* name, const char* unit, const ChannelText& text, Integrand integrand);
   void add_slide(const Share& share);
   void add_formulas();
-  void add_formula(Defined& formula);
+  void add_formula(Defined& formula, int depth = 0);
   [[nodiscard]] const Channel& operand(const DefinedChannel& definition, const std::string& name) const;
   [[nodiscard]] static std::pair<std::string, double> unit_of(const DefinedChannel& definition, const UnitDimension& derived);
   [[nodiscard]] bool is_anything_missing() const;
+  [[noreturn]] void refuse_as_too_large(const DefinedChannel& definition, const std::string& what);
   [[nodiscard]] const Channel* find(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> all_names() const;
   void check_names();
@@ -78,8 +79,10 @@ private:
   std::vector<Share> shares_;
   std::vector<std::size_t> counts_; ///< number of entries in each group before the current element
   std::size_t rows_ = 0, frictions_ = 0;
-  bool has_requests_; ///< the model requests channels
-  bool wants_shares_; ///< channels of single elements may be among them
+  bool has_requests_;          ///< the model requests channels
+  bool wants_shares_;          ///< channels of single elements may be among them
+  std::size_t operations_ = 0; ///< of all formulas, each with those that it names
+  bool is_beyond_limits_ = false;
 };
 
 } // namespace steplap

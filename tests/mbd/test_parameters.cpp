@@ -233,6 +233,18 @@ TEST_CASE("values that follow from others cannot be set, nor values out of range
   CHECK(number_of(m, "parameters.width") == doctest::Approx(0.324).epsilon(1e-15)); // one rounding
 }
 
+TEST_CASE("a parameter that many formulas lead to is followed once") {
+  // In 60 layers of two parameters, each of which uses both of the layer before, 2^60 paths lead from the last to the first.
+  std::string layers = "bore = \"0.3 m\"\nleft0 = 1\nright0 = 1\n";
+  for (int i = 1; i <= 60; ++i)
+    for (const char* side : {"left", "right"})
+      layers += side + std::to_string(i) + " = \"= left" + std::to_string(i - 1) + "/2 + right" + std::to_string(i - 1) + "/2\"\n";
+  const std::string text = with("bore = \"0.3 m\"\n", layers);
+  Model m = parse_given_model(text + "at_least = \"= -left60*'1 m'\"\n", "box.toml", transformer_catalog(), {});
+  set_value(m, "parameters.right0", 3.0);
+  CHECK(number_of(m, "parameters.left60") == 2.0); // the mean of both
+}
+
 TEST_CASE("a file that extends another changes values and keeps range and meaning") {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "steplap_parameters";
   std::filesystem::create_directories(folder);

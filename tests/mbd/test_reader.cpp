@@ -349,6 +349,13 @@ TEST_CASE("a model built in code is checked alike") {
   REQUIRE(problems.size() == 2);
   CHECK(problems[0].message == "'mass' of body 'a' must be greater than 0 kg, got -1");
   CHECK(problems[1].message == "'body' of marker 'm': there is no body 'nowhere'");
+  body.mass = 1.0;
+  model.markers.clear();
+  for (const std::string first : {"=", "+", "-", "@"}) { // names are cells of CSV files, which spreadsheets read
+    body.name = first + "1+1";
+    CHECK(validate(model).at(0).message ==
+          "body '" + body.name + "': the name must not begin with '" + first + "', which a spreadsheet takes for a formula");
+  }
 }
 
 TEST_CASE("reading is linear in the number of bodies") {

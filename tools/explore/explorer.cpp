@@ -89,6 +89,7 @@ PageReply map_reply(ExploredModel& model, const MapRequest& asked, const WorkQue
 
 PageReply report_reply(const ExploredModel& model, const RunRequest& asked, const WorkQueue::IsStale& is_stale) {
   try {
+    if (is_stale()) throw RunStopped("the page was closed");
     const Report report = model.run_from_file(asked.values, options_for(is_stale, Estimating::cheap));
     PageReply reply;
     reply.type = "text/html; charset=utf-8";
@@ -188,36 +189,37 @@ void Explorer::tick() {
     version = version_;
   }
   const auto now = Clock::now();
-  const auto is_due = [&](const Waiting& w) { return w.since != version || now > w.until; };
+  const auto is_due = [&](const Waiting& w) { return *w.is_gone || w.since != version || now > w.until; };
   for (Waiting& w : waiting_)
     if (is_due(w)) w.send(json_reply(state_text()));
   std::erase_if(waiting_, is_due);
 }
 
-void Explorer::answer_state(const std::string& query, const SendReply& send) {
+void Explorer::answer_state(const PageRequest& request, const SendReply& send) {
   long since = 0;
-  if (query.starts_with("since=")) since = std::atol(query.c_str() + 6);
+  if (request.query.starts_with("since=")) since = std::atol(request.query.c_str() + 6);
   bool is_new = false;
   {
     const std::lock_guard lock(mutex_);
     is_new = since != version_;
   }
   if (is_new || waiting_.size() >= 32) return send(json_reply(state_text()));
-  waiting_.push_back({since, Clock::now() + std::chrono::seconds(k_longest_wait), send});
+  waiting_.push_back({since, Clock::now() + std::chrono::seconds(k_longest_wait), request.is_gone, send});
 }
 
-void Explorer::do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send,
+void Explorer::do_later(WorkQueue::Urgency urgency, const std::string& owner, const PageRequest& request, const SendReply& send,
                         std::function<PageReply(const WorkQueue::IsStale&)> work) {
-  const bool is_taken = queue_->add(urgency, owner, [send, work = std::move(work)](const WorkQueue::IsStale& is_stale) {
-    send(guarded([&] { return work(is_stale); }));
-  });
+  const bool is_taken =
+      queue_->add(urgency, owner, [send, is_gone = request.is_gone, work = std::move(work)](const WorkQueue::IsStale& is_stale) {
+        send(guarded([&] { return work([&] { return *is_gone || is_stale(); }); }));
+      });
   if (!is_taken) send(plain_reply(503, "Too much is waiting."));
 }
 
 void Explorer::answer_post(const PageRequest& request, const SendReply& send) {
   if (request.path == "run") {
     const RunRequest asked = run_request(request.body, models_.size());
-    return do_later(WorkQueue::Urgency::drag, asked.page, send, [this, asked](const WorkQueue::IsStale& is_stale) {
+    return do_later(WorkQueue::Urgency::drag, asked.page, request, send, [this, asked](const WorkQueue::IsStale& is_stale) {
       long version = 0;
       {
         const std::lock_guard lock(mutex_);
@@ -228,21 +230,21 @@ void Explorer::answer_post(const PageRequest& request, const SendReply& send) {
   }
   if (request.path == "cells") {
     const MapRequest asked = map_request(request.body, models_.size(), k_most_cells);
-    return do_later(WorkQueue::Urgency::background, "", send,
+    return do_later(WorkQueue::Urgency::background, "", request, send,
                     [this, asked](const WorkQueue::IsStale& is_stale) { return map_reply(models_[asked.model]->model, asked, is_stale); });
   }
   if (request.path == "save") {
     const RunRequest asked = run_request(request.body, models_.size());
-    return do_later(WorkQueue::Urgency::page, "", send, [this, asked](const WorkQueue::IsStale&) {
+    return do_later(WorkQueue::Urgency::page, "", request, send, [this, asked](const WorkQueue::IsStale&) {
       return json_reply(saved_json(save_changes(models_[asked.model]->model, asked.values, asked.name)));
     });
   }
   send(plain_reply(404, "There is nothing of that name."));
 }
 
-void Explorer::answer_report(const std::string& query, const SendReply& send) {
-  const RunRequest asked = report_request(query, models_.size());
-  do_later(WorkQueue::Urgency::page, "", send,
+void Explorer::answer_report(const PageRequest& request, const SendReply& send) {
+  const RunRequest asked = report_request(request.query, models_.size());
+  do_later(WorkQueue::Urgency::page, "", request, send,
            [this, asked](const WorkQueue::IsStale& is_stale) { return report_reply(models_[asked.model]->model, asked, is_stale); });
 }
 
@@ -253,8 +255,8 @@ void Explorer::answer(const PageRequest& request, const SendReply& send) {
     if (request.path.empty()) return send(asset_reply("text/html; charset=utf-8", explore_assets::k_explore_html));
     if (request.path == "page.js") return send(asset_reply("text/javascript; charset=utf-8", explore_assets::k_explore_js));
     if (request.path == "page.css") return send(asset_reply("text/css; charset=utf-8", explore_assets::k_explore_css));
-    if (request.path == "state") return answer_state(request.query, send);
-    if (request.path == "report") return answer_report(request.query, send);
+    if (request.path == "state") return answer_state(request, send);
+    if (request.path == "report") return answer_report(request, send);
     send(plain_reply(404, "There is nothing of that name."));
   } catch (const std::invalid_argument& error) {
     send(plain_reply(400, error.what()));

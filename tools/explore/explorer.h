@@ -54,6 +54,7 @@ private:
   struct Waiting {
     long since;
     std::chrono::steady_clock::time_point until;
+    std::shared_ptr<const std::atomic<bool>> is_gone; ///< PageRequest::is_gone
     SendReply send;
   };
   struct Watched {
@@ -67,10 +68,10 @@ private:
   };
 
   void read_again(std::size_t k);
-  void answer_state(const std::string& query, const SendReply& send);
+  void answer_state(const PageRequest& request, const SendReply& send);
   void answer_post(const PageRequest& request, const SendReply& send);
-  void answer_report(const std::string& query, const SendReply& send);
-  void do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send,
+  void answer_report(const PageRequest& request, const SendReply& send);
+  void do_later(WorkQueue::Urgency urgency, const std::string& owner, const PageRequest& request, const SendReply& send,
                 std::function<PageReply(const WorkQueue::IsStale&)> work);
   [[nodiscard]] std::string state_text();
 

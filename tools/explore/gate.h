@@ -2,7 +2,8 @@
 //
 // The server listens on 127.0.0.1, where every program and every web page of this computer can reach it. Each request must therefore name
 // the server as its host (this prevents DNS rebinding by another site), contain the secret token in its path, and must not come from a page
-// of another origin.
+// of another origin. The connection must belong to the user who started the server (peer_user.h): the address that opens the browser stands
+// on its command line, which other users of the computer can read.
 #pragma once
 
 #include <string>
@@ -38,7 +39,7 @@ public:
   [[nodiscard]] const std::string& origin() const { return origin_; }
   /// Returns "/TOKEN/".
   [[nodiscard]] const std::string& folder() const { return folder_; }
-  /// Returns a path that can be used once. It may appear on the command line of a browser, which other users of the computer can read. The
+  /// Returns a path that can be used once. It is passed on the command line of a browser. The
   /// server redirects its first use to folder() and refuses later ones.
   [[nodiscard]] const std::string& first_path() const { return first_path_; }
 

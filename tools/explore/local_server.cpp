@@ -1,6 +1,7 @@
 #include "tools/explore/local_server.h"
 
 #include "mbd/base/diagnostics.h"
+#include "tools/explore/peer_user.h"
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -8,6 +9,9 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
 #include <optional>
 
@@ -59,10 +63,21 @@ struct Shared {
   int connections = 0;
 };
 
+// Returns the reason for refusing a connection; "" if it comes from the user who runs the server.
+std::string refusal_of(const tcp::socket& socket) {
+  beast::error_code no_peer, no_socket;
+  const tcp::endpoint from = socket.remote_endpoint(no_peer), to = socket.local_endpoint(no_socket);
+  if (no_peer || no_socket) return "the connection is closed";
+  const std::optional<unsigned> user = user_of_connection(tcp_table(), from.port(), to.port());
+  if (user == ::geteuid()) return "";
+  return "the page is served only to the user who started steplap (a proxy has to run as that user, on the same computer or container)";
+}
+
 // One connection: reads a request, sends the reply, then reads the next request.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
-  Connection(tcp::socket socket, std::shared_ptr<Shared> shared) : stream_(std::move(socket)), shared_(std::move(shared)) {
+  Connection(tcp::socket socket, std::shared_ptr<Shared> shared)
+      : refusal_(refusal_of(socket)), stream_(std::move(socket)), shared_(std::move(shared)) {
     ++shared_->connections;
   }
   ~Connection() { --shared_->connections; }
@@ -89,6 +104,7 @@ private:
     const http::request<http::string_body>& request = parser_->get();
     const RequestHead knock = knock_of(request);
     keeps_open_ = request.keep_alive();
+    if (!refusal_.empty()) return send({403, "text/plain; charset=utf-8", "Refused: " + refusal_ + ".\n"}, false);
     if (const std::string why = shared_->gate.refusal(knock); !why.empty())
       return send({403, "text/plain; charset=utf-8", "Refused: " + why + ".\n"}, false);
     if (shared_->gate.takes_first(knock)) {
@@ -105,13 +121,28 @@ private:
     const std::string rest = knock.target.substr(shared_->gate.folder().size());
     const std::size_t mark = rest.find('?');
     PageRequest asked{knock.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};
+    asked.is_gone = is_gone_;
+    watch_for_close();
     // The reply may come from another thread after this object has been destroyed.
     shared_->answer(std::move(asked), [self = shared_from_this(), executor = stream_.get_executor()](PageReply reply) {
       asio::post(executor, [self, reply = std::move(reply)]() mutable { self->send(std::move(reply), self->keeps_open_); });
     });
   }
 
+  // While a reply is computed, the socket becomes readable if the client closes it (or sends its next request early).
+  void watch_for_close() {
+    stream_.socket().async_wait(tcp::socket::wait_read, [self = shared_from_this()](beast::error_code error) {
+      if (error) return; // cancelled by the reply
+      char next = 0;
+      beast::error_code closed;
+      self->stream_.socket().receive(asio::buffer(&next, 1), tcp::socket::message_peek, closed);
+      if (closed) *self->is_gone_ = true;
+    });
+  }
+
   void send(PageReply reply, bool keeps_open) {
+    beast::error_code ignored;
+    stream_.socket().cancel(ignored);
     response_.emplace(response_of(std::move(reply), keeps_open));
     stream_.expires_after(std::chrono::seconds(LocalServer::k_patience));
     http::async_write(stream_, *response_, [self = shared_from_this(), keeps_open](beast::error_code error, std::size_t) {
@@ -122,6 +153,8 @@ private:
     });
   }
 
+  std::string refusal_; ///< reason why this connection is refused; "": it is permitted
+  std::shared_ptr<std::atomic<bool>> is_gone_ = std::make_shared<std::atomic<bool>>(false);
   beast::tcp_stream stream_;
   std::shared_ptr<Shared> shared_;
   beast::flat_buffer buffer_{LocalServer::k_longest_header + LocalServer::k_longest_body};

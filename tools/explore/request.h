@@ -1,7 +1,9 @@
 // Requests of a page to the server, and replies.
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace steplap {
@@ -12,6 +14,8 @@ struct PageRequest {
   std::string path;     ///< path after the token: "run"; "" for the page itself
   std::string query;    ///< text after the question mark, not decoded
   std::string body;     ///< at most LocalServer::k_longest_body bytes
+  /// Becomes true when the client closes the connection: nobody reads the reply any more.
+  std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<std::atomic<bool>>(false);
 };
 
 /// Reply to a request.
