@@ -1,5 +1,6 @@
 // A block on a deck that is accelerated for a while: everything is known in closed form.
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
+#include <cctype>
 #include "mbd/model/completion.h"
 #include "mbd/rest/start.h"
 #include "tests/tools/study/block_scene.h"
@@ -19,6 +20,20 @@ std::string with_friction(const std::string& kind, const std::string& settings, 
 
 } // namespace
 
+namespace {
+
+// Returns true if a text has 64 hexadecimal digits in a row.
+bool has_digest(const std::string& text) {
+  std::size_t count = 0;
+  for (const char c : text) {
+    count = std::isxdigit(static_cast<unsigned char>(c)) ? count + 1 : 0;
+    if (count == 64) return true;
+  }
+  return false;
+}
+
+} // namespace
+
 TEST_CASE("a sweep over friction gives the distances of the closed form") {
   StudyBench bench;
   bench.write("block.toml", k_block);
@@ -31,6 +46,10 @@ TEST_CASE("a sweep over friction gives the distances of the closed form") {
   study::Store store(bench.at("study.sqlite"));
   std::vector<study::StoredSample> rows;
   store.read(1, 5, rows);
+  // The screen has every value with what it gave, and no digests of the files.
+  for (const char* row : {"sample", "     1  0.1", "     5  0.7"}) CHECK_MESSAGE(has(outcome.out, row), outcome.out);
+  CHECK(has(outcome.out, "Read from "));
+  CHECK_MESSAGE(!has_digest(outcome.out), outcome.out);
   for (const study::StoredSample& row : rows) {
     CAPTURE(row.values[0]);
     // The run's own tolerance is 1e-10.
