@@ -1,11 +1,12 @@
 // A block on a deck that is accelerated for a while: everything is known in closed form.
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
-#include <cctype>
 #include "mbd/model/completion.h"
 #include "mbd/rest/start.h"
 #include "tests/tools/study/block_scene.h"
 #include "tests/tools/study/study_bench.h"
 #include "tools/study/law.h"
+
+#include <cctype>
 
 using namespace steplap;
 using namespace steplap::testing;
