@@ -86,14 +86,14 @@ std::optional<Model> model_of(const std::string& folder, std::ostream& out) {
 
 std::size_t diff_results(const DiffOptions& options, std::ostream& out) {
   const ShownRun before = shown_run(options.before), after = shown_run(options.after);
-  std::size_t count = print_limit_changes(out, before, after);
+  std::size_t followed = print_limit_changes(out, before, after);
   const std::optional<Model> a = model_of(options.before, out), b = model_of(options.after, out);
   out << "\n";
-  if (a && b) count += diff_models(*a, *b, out);
-  count += print_other_changes(out, before, after);
-  if (count == 0) out << "The runs agree: nothing differs by more than its error.\n";
+  const std::size_t changed = a && b ? diff_models(*a, *b, out) : 0;
+  followed += print_other_changes(out, before, after);
+  if (followed == 0) out << "The runs agree: nothing differs by more than its error.\n";
   print_unknown_errors(out, before, after);
-  return count;
+  return changed + followed;
 }
 
 ExitCode diff(const DiffOptions& options, Console& console) {
