@@ -48,7 +48,8 @@ Vec2 touching_place(const Placed& a, const Placed& b) {
   ring.size = a.corner_count;
   for (int i = 0; i < a.corner_count; ++i) ring.corner[i] = a.corner[i], ring.edge[i] = i;
   for (int j = 0; j < b.edge_count; ++j) {
-    cut(ring, [&](const Pair<double>& x) { return b.offset[j] - dot(b.normal[j], x); }, a.edge_count + j, rest);
+    cut(
+        ring, [&](const Pair<double>& x) { return b.offset[j] - dot(b.normal[j], x); }, a.edge_count + j, rest);
     ring = rest;
   }
   if (ring.size < 3) return {corner.x, corner.y};

@@ -84,7 +84,7 @@ struct Happening {
   std::optional<StoryAmount> amount;
   std::optional<double> from_error, to_error;
   bool is_over = true;
-  std::string detail = {};       // for an action: its effect
+  std::string detail = {};        // for an action: its effect
   std::string body = {}, on = {}; // for friction under contacts: the body that slides, and the one that it slides on
 };
 
@@ -331,7 +331,8 @@ private:
     const auto bodies = entry ? bodies_of_friction(*entry) : std::nullopt;
     if (!bodies) return;
     const auto& elements = report_.run.loaded->model.elements;
-    const auto same = std::count_if(elements.begin(), elements.end(), [&](const ElementEntry& e) { return bodies_of_friction(e) == bodies; });
+    const auto same =
+        std::count_if(elements.begin(), elements.end(), [&](const ElementEntry& e) { return bodies_of_friction(e) == bodies; });
     if (same == 1) std::tie(h.body, h.on) = *bodies;
   }
 
@@ -458,8 +459,8 @@ public:
   std::string slide_sentence(const Happening& h) const {
     const bool is_repeated = h.count > 1, has_way = !reach(h.what, h.amount).empty();
     const std::string way = has_way ? (is_repeated ? " up to " : " ") + amount(*h.amount) : "";
-    return sentence_name(h.body) + (is_plural(h.body) ? " slide" : " slides") + way + " on " + (h.on == "ground" ? "the ground" : shown(h.on)) +
-           (is_repeated ? "," : "") + when(h) + ".";
+    return sentence_name(h.body) + (is_plural(h.body) ? " slide" : " slides") + way + " on " +
+           (h.on == "ground" ? "the ground" : shown(h.on)) + (is_repeated ? "," : "") + when(h) + ".";
   }
 
   StoryEntry entry(const Happening& h) const {

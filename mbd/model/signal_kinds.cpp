@@ -272,9 +272,10 @@ const SignalKind& harmonics_kind() {
 } // namespace
 
 const std::vector<const SignalKind*>& signal_kinds() {
-  static const std::vector<const SignalKind*> kinds{
-      &constant_kind(), &haversine_kind(), &half_sine_kind(), &triangle_kind(), &trapezoid_kind(), &rectangle_kind(), &sine_kind(), &harmonics_kind(),
-      &chirp_kind(),    &sum_kind(),       &product_kind(),   &scaled_kind(),   &road_kind(),      &random_kind(),    &sea_kind()};
+  static const std::vector<const SignalKind*> kinds{&constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
+                                                    &trapezoid_kind(), &rectangle_kind(), &sine_kind(),      &harmonics_kind(),
+                                                    &chirp_kind(),     &sum_kind(),       &product_kind(),   &scaled_kind(),
+                                                    &road_kind(),      &random_kind(),    &sea_kind()};
   return kinds;
 }
 

@@ -286,7 +286,7 @@ void RequestedChannels::add_share(const Share& share) {
       return power;
     };
     add_integral(share, "work", "J", {"work that it has done since the start", "positive: it has given energy to the bodies"},
-               std::move(integrand));
+                 std::move(integrand));
   }
 }
 

@@ -218,8 +218,7 @@ void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::ve
                    number_cell(e.constraint_residual), "", e.is_pareto ? "Pareto" : ""});
   }
   out << table;
-  const auto finished =
-      std::count_if(study.entries.begin(), study.entries.end(), [](const AccuracyEntry& e) { return e.failure.empty(); });
+  const auto finished = std::count_if(study.entries.begin(), study.entries.end(), [](const AccuracyEntry& e) { return e.failure.empty(); });
   if (const std::size_t more = static_cast<std::size_t>(finished) - entries.size(); more > 0)
     out << "  … and " << more << " more in accuracy.csv\n";
   print_reference(out, study);

@@ -161,15 +161,17 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
     std::vector<std::string> names;
     for (const Command& command : program.commands) names.push_back(command.name);
     const bool is_model = first.ends_with(".toml") && is_command(program, "simulate");
-    log_error("there is no command '" + first + "'" + (is_model ? "; to run this model: " + program.name + " simulate " + first : did_you_mean(first, names)) + "; see " + program.name +
-              " --help");
+    log_error("there is no command '" + first + "'" +
+              (is_model ? "; to run this model: " + program.name + " simulate " + first : did_you_mean(first, names)) + "; see " +
+              program.name + " --help");
     return ExitCode::usage;
   }
   if (const std::string advice = advice_on_retired(arguments, program.commands); !advice.empty()) {
     log_error(advice);
     return ExitCode::usage;
   }
-  log_error(std::string(error.what()) + meant_option(arguments, is_option ? app : *app.get_subcommand(first)) + "; see " + program.name + " " + (is_option ? "" : first + " ") + "--help");
+  log_error(std::string(error.what()) + meant_option(arguments, is_option ? app : *app.get_subcommand(first)) + "; see " + program.name +
+            " " + (is_option ? "" : first + " ") + "--help");
   if (arguments.size() == 1 && !is_option) err << "\n" << app.get_subcommand(first)->help(program.name);
   return ExitCode::usage;
 }

@@ -84,13 +84,8 @@ void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured)
 }
 
 void print_story(std::ostream& out, const OrderedJson& summary) {
-  const auto count = summary.at("events").at("count").get<std::size_t>(), main = summary.at("events").at("main").get<std::size_t>();
-  out << "\nWhat happened: "
-      << (count == 0  ? "no events"
-          : main == 0 ? counted(count, "minor event", "minor events")
-                      : counted(main, "event", "events"));
-  if (main > 0 && main < count) out << " (" << count << " with minor ones)";
-  out << "\n";
+  const auto main = summary.at("events").at("main").get<std::size_t>(); // the others concern the integrator only
+  out << "\nWhat happened: " << (main == 0 ? "no events" : counted(main, "event", "events")) << "\n";
   const OrderedJson& story = summary.at("overview").at("story");
   std::size_t lines = 0;
   for (std::size_t i = 0; i < story.size(); ++i) {

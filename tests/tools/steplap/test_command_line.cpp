@@ -96,7 +96,8 @@ TEST_CASE("a signal that only a file above it offers is no mistake of a model") 
   const std::string base = bench.write("base.toml", k_oscillator);
   CHECK(has(steplap_does({"check", base}).out, "used by nothing"));
   CHECK_FALSE(has(steplap_does({"check", bench.write("own.toml", "extends = \"base.toml\"\n")}).out, "used by nothing"));
-  const std::string own = bench.write("more.toml", "extends = \"base.toml\"\n[[signal]]\nname = \"mine\"\nkind = \"constant\"\nvalue = 1\n");
+  const std::string own =
+      bench.write("more.toml", "extends = \"base.toml\"\n[[signal]]\nname = \"mine\"\nkind = \"constant\"\nvalue = 1\n");
   CHECK(has(steplap_does({"check", own}).out, "signal 'mine' is used by nothing"));
   for (const char* model : {"three_limb", "five_limb_humping", "single_phase_two_limb_bump", "rail_wagon_humping"})
     CHECK_FALSE(has(steplap_does({"check", STEPLAP_MODELS "/layouts/" + std::string(model) + ".toml"}).out, "warning"));
