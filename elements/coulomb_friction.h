@@ -69,6 +69,13 @@ public:
     return turn_to_other_foot(e, state);
   }
   void switch_contact_point(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
+  // The slip rates of two feet differ by the relative rotation times the height of one above the other along the normal of the line. Feet on
+  // one line are level when the foot changes, so the change has no effect on the motion and is not reported.
+  [[nodiscard]] EventKind contact_switch_event(const FrictionState&, const FrictionState&) const override {
+    constexpr double k_rounding = 1e-12; // share of the distance from the centre; of coordinates in the file
+    const double height = feet[1].direction.dot(feet[1].point_b - feet[0].point_b);
+    return has_two_feet && std::abs(height) <= k_rounding * lever ? EventKind::none : EventKind::changes_foot;
+  }
   // Contact dampers convert velocity errors to normal force errors, and friction with μ > 1 amplifies them. Velocities must then be
   // accurate enough for the resulting acceleration to be small compared with k_floor_acceleration. Otherwise the contact chatters: errors
   // alone would remove and restore a normal force below the tolerance, whose friction still moves the body.

@@ -287,16 +287,19 @@ void warn_of_renamed_keys(const Model& model, Findings& findings) {
          key.where);
 }
 
+// Unused signals and markers are mistakes only in the file that is run. A file that it extends or uses as a part offers more than each model
+// needs.
 void warn_of_unused(const Model& model, Findings& findings) {
   const References used = references_of(model);
+  const auto is_inherited = [&](const Location& where) { return where.file != model.header.where.file; };
   for (const SignalEntry& entry : model.signals)
-    if (used.signals.count(entry.definition->name) == 0)
+    if (used.signals.count(entry.definition->name) == 0 && !is_inherited(entry.definition->where))
       warn(findings, "unused_signal", "signal '" + entry.definition->name + "' is used by nothing", entry.definition->where);
   Names body_names;
   for (const Body& body : model.bodies) body_names.insert(body.name);
   for (const Marker& marker : model.markers) // a marker with its body's name is created by the reader
     if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground" &&
-        !is_made_by_table(model, marker.name))
+        !is_made_by_table(model, marker.name) && !is_inherited(marker.where))
       warn(findings, "unused_marker", "marker '" + marker.name + "' is used by nothing", marker.where);
   for (const Body& body : model.bodies)
     if (used.bodies.count(body.name) == 0) warn(findings, "loose_body", "no element is attached to body '" + body.name + "'", body.where);

@@ -3,6 +3,7 @@
 #include "mbd/base/shown_text.h"
 #include "run/at_rest.h"
 #include "run/blows.h"
+#include "run/prominence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -188,11 +189,16 @@ Trust trust_by_errors(const Report& report) {
   const GlobalErrorEstimate& estimate = *report.estimate.errors;
   if (!estimate.reason_unknown.empty())
     return {TrustLevel::limited, "The errors are not known: " + first_sentence(estimate.reason_unknown) + "."};
-  double time_error = report.run.result.events.empty() ? std::nan("") : 0.0;
+  double time_error = std::nan("");
   std::size_t unknown = 0;
-  for (const double error : estimate.event_times)
+  const std::vector<Event>& events = report.run.result.events;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!is_main_event(events[i])) continue;
+    const double error = estimate.event_times[i];
+    if (std::isnan(time_error)) time_error = 0.0;
     if (std::isfinite(error)) time_error = std::max(time_error, error);
     else ++unknown;
+  }
   std::string parts;
   add_part(parts, "times", time_error, "s");
   add_part(parts, "forces", largest_error(report, "N"), "N");

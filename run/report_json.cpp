@@ -300,6 +300,7 @@ Json overview_json(const Overview& overview, ShownDigits digits) {
                             {"detail", u.detail},
                             {"text", u.text},
                             {"beyond", u.beyond},
+                            {"is_judged", u.criterion.has_value()},
                             {"error", optional(u.error)}});
   return {{"verdict", name_of(overview.verdict)},
           {"is_judged", overview.is_judged},

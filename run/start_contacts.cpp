@@ -10,6 +10,16 @@
 
 namespace steplap {
 
+namespace {
+
+Vec2 middle_of(const std::vector<ContactPoint>& points) {
+  Vec2 sum = Vec2::Zero();
+  for (const ContactPoint& each : points) sum += each.point;
+  return points.empty() ? sum : Vec2(sum / static_cast<double>(points.size()));
+}
+
+} // namespace
+
 State beginning_of(const LoadedModel& loaded, bool as_given) {
   return as_given ? assembled_start(*loaded.system, loaded.assembled) : initial_state_of(loaded);
 }
@@ -41,6 +51,7 @@ std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& 
     const auto found = channel_of.find(name);
     return found == channel_of.end() ? std::nullopt : std::optional(found->second->value(snapshot));
   };
+  const ScenePose pose(loaded.model, system, still);
   std::vector<ContactAtStart> contacts;
   int contact = -1; // elements are compiled in the order of the file, and each of these has one contact
   for (const ElementEntry& entry : loaded.model.elements) {
@@ -50,9 +61,8 @@ std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& 
     if (description) ++contact;
     if (!gap || !force) continue;
     const Place a = place_of(loaded.model, description->a), b = place_of(loaded.model, description->b);
-    const Vec3 pose = pose_of(system, still, a.body);
     contacts.push_back({&entry, contact, index_of(system, a.body), index_of(system, b.body), *gap, *force,
-                        Vec2(pose.x(), pose.y()) + rotated(a.point, pose.z()), value(name + ".along")});
+                        middle_of(description->points(*entry.element, pose)), value(name + ".along")});
   }
   return contacts;
 }

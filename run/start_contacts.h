@@ -14,7 +14,7 @@ struct ContactAtStart {
   int a = k_ground, b = k_ground;      ///< bodies of the system
   double gap = 0.0;                    ///< gap, m; negative: penetration
   double force = 0.0;                  ///< N
-  Vec2 place = Vec2::Zero();           ///< position of marker a, ground axes, m
+  Vec2 place = Vec2::Zero();           ///< where it touches, or would touch; of a face the middle; ground axes, m
   std::optional<double> along;         ///< for faces with ends: coordinate along the face from marker b, m
 };
 

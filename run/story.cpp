@@ -1,5 +1,7 @@
 #include "run/story.h"
 
+#include "elements/coulomb_stick.h"
+#include "elements/polygon_contact.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/action.h"
@@ -10,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -77,7 +80,8 @@ struct Happening {
   std::optional<StoryAmount> amount;
   std::optional<double> from_error, to_error;
   bool is_over = true;
-  std::string detail = {}; // for an action: its effect
+  std::string detail = {};        // for an action: its effect
+  std::string body = {}, on = {}; // for friction under contacts: the body that slides, and the one that it slides on
 };
 
 bool is_instant(StorySubject what) {
@@ -105,7 +109,10 @@ public:
   std::vector<Happening> gather() {
     const std::vector<Event>& events = report_.run.result.events;
     for (std::size_t i = 0; i < events.size(); ++i) take(events[i], report_.event_error(i));
-    for (Happening& h : found_) add_amount(h);
+    for (Happening& h : found_) {
+      add_amount(h);
+      add_bodies(h);
+    }
     add_monitored();
     add_tipped();
     const double end = report_.run.result.final_state.t;
@@ -292,6 +299,32 @@ private:
         if (!h.amount) h.amount = excursion(h.who + part, false);
   }
 
+  // Returns the names of the bodies that friction under contacts joins; nothing for other elements.
+  std::optional<std::pair<std::string, std::string>> bodies_of_friction(const ElementEntry& entry) const {
+    const ElementEntry* touching = &entry;
+    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get()))
+      touching = stick->contacts.empty() ? nullptr : entry_of(stick->contacts.front());
+    else if (!dynamic_cast<const PolygonContact*>(entry.element.get())) return std::nullopt;
+    const auto contact = touching ? contact_of(*touching, report_.run.loaded->model) : std::nullopt;
+    if (!contact) return std::nullopt;
+    const auto name = [this](const std::string& marker) {
+      const Place place = place_of(report_.run.loaded->model, marker);
+      return place.body ? place.body->name : std::string("ground");
+    };
+    return std::pair{name(contact->a), name(contact->b)};
+  }
+
+  // The subject of a slide is the body that moves. Where two friction elements join the same bodies, only their own names tell them apart.
+  void add_bodies(Happening& h) const {
+    const ElementEntry* const entry = h.what == StorySubject::slips ? entry_of(h.who) : nullptr;
+    const auto bodies = entry ? bodies_of_friction(*entry) : std::nullopt;
+    if (!bodies) return;
+    const auto& elements = report_.run.loaded->model.elements;
+    const auto same =
+        std::count_if(elements.begin(), elements.end(), [&](const ElementEntry& e) { return bodies_of_friction(e) == bodies; });
+    if (same == 1) std::tie(h.body, h.on) = *bodies;
+  }
+
   // A monitored joint does not slip; the entry says that it would have slipped.
   void add_monitored() {
     for (const JointAssessment& joint : report_.joints)
@@ -404,9 +437,18 @@ public:
                         : " tips" + reach(h.what, h.amount) + " (at " + time(h.from, {}) + ").");
     if (h.what == StorySubject::would_slip) return who + ", which is only monitored, would slip at " + time(h.from, {}) + ".";
     if (h.what == StorySubject::happens) return "Action '" + h.who + "' happens" + when(h) + ": " + h.detail + ".";
+    if (!h.body.empty()) return slide_sentence(h);
     std::string how = reach(h.what, h.amount);
     if (is_plural(h.who) && how.starts_with(" and slides")) how.replace(0, 11, " and slide");
     return who + " " + (is_plural(h.who) ? words_of(h.what).several : words_of(h.what).verb) + when(h) + how + ".";
+  }
+
+  // "Active part slides 0.79 mm on lower tank from 0.1 s to 0.2 s."
+  std::string slide_sentence(const Happening& h) const {
+    const bool is_repeated = h.count > 1, has_way = !reach(h.what, h.amount).empty();
+    const std::string way = has_way ? (is_repeated ? " up to " : " ") + amount(*h.amount) : "";
+    return sentence_name(h.body) + (is_plural(h.body) ? " slide" : " slides") + way + " on " +
+           (h.on == "ground" ? "the ground" : shown(h.on)) + (is_repeated ? "," : "") + when(h) + ".";
   }
 
   StoryEntry entry(const Happening& h) const {

@@ -33,7 +33,7 @@ struct StoryEntry {
   std::vector<std::string> who;      ///< names of elements; for "tips", of bodies
   std::size_t count = 1;             ///< number of occurrences
   std::optional<StoryAmount> amount; ///< largest amount
-  std::string text;                  ///< sentence: "Front joint slips from 0.122 s to 0.15 s and slides 46 mm."
+  std::string text;                  ///< sentence: "Block slides 46 mm on deck from 0.122 s to 0.15 s."
 };
 
 /// Returns the entries in order of their begin.

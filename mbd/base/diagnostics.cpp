@@ -3,6 +3,7 @@
 #include "mbd/base/shown_text.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 namespace steplap {
@@ -41,14 +42,35 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+// Returns the first letters of the words of a name: "fx" of "force_x".
+std::string initials(const std::string& name) {
+  std::string letters;
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if (name[i] != '_' && (i == 0 || name[i - 1] == '_')) letters += name[i];
+  return letters;
+}
+
+// Returns true if at least half of the letters of the longer word are in the shorter one, too. Otherwise short words that have no letter in
+// common would be taken for each other.
+bool share_letters(std::string a, std::string b) {
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  std::string common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return 2 * common.size() >= std::max(a.size(), b.size());
+}
+
 } // namespace
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& known) {
+  const auto abbreviated = std::find_if(known.begin(), known.end(),
+                                        [&](const std::string& name) { return name.find('_') < name.size() && initials(name) == word; });
+  if (abbreviated != known.end()) return *abbreviated;
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
+    if (distance < best_distance && share_letters(word, candidate)) {
       best_distance = distance;
       best = candidate;
     }

@@ -376,7 +376,8 @@ bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old,
   const FrictionUnit& unit = system_.frictions[f];
   const std::string& name = system_.element_names[unit.element];
   if (old.foot != now.foot && now.phase != FrictionPhase::apart)
-    events.push_back({state.t, name, unit.friction->contact_switch_event(old, now)});
+    if (const EventKind kind = unit.friction->contact_switch_event(old, now); kind != EventKind::none)
+      events.push_back({state.t, name, kind});
   if (old.phase == now.phase && is_same_slip) return true;
   EventKind kind = EventKind::none;
   switch (now.phase) {

@@ -235,7 +235,7 @@ std::string expected_text(const Field& field) {
   case FieldType::rings: return "a list of rings, each a list of points [x, y]";
   case FieldType::body: return "the name of a body";
   case FieldType::marker: return "the name of a marker or body, or { body = ..., point = [x, y] }";
-  case FieldType::signal: return "the name of a signal";
+  case FieldType::signal: return "the name of a signal (a constant value is a signal of kind 'constant')";
   case FieldType::signals: return "a list of names of signals";
   case FieldType::element: return "the name of an element";
   case FieldType::elements: return "a list of names of elements";

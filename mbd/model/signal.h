@@ -138,8 +138,8 @@ struct SignalKind {
   }
 };
 
-/// Returns the kinds constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, chirp, sum, product, scaled, road, random,
-/// sea (mbd/io adds `record`, elements/catalog.cpp `shunting`).
+/// Returns the kinds constant, haversine, half_sine, triangle, trapezoid, rectangle, sine, harmonics, chirp, sum, product, scaled, road,
+/// random, sea (mbd/io adds `record`, elements/catalog.cpp `shunting`).
 [[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
 
 } // namespace steplap

@@ -5,6 +5,7 @@
 #include "mbd/model/load_signals.h"
 #include "mbd/model/signal_composites.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -22,15 +23,11 @@ struct Pulse : SignalDefinition {
   double duration = 0.0; // s
 };
 
-void add_pulse_fields(FieldTable& f) {
+FieldTable pulse_fields() {
+  FieldTable f;
   f.add("peak", &Pulse::peak).in("*").required().doc("largest value; negative for a deceleration");
   f.add("start", &Pulse::start).in("s").doc("time at which the pulse begins");
   f.add("duration", &Pulse::duration).in("s").positive().required().doc("length of the pulse");
-}
-
-FieldTable pulse_fields() {
-  FieldTable f;
-  add_pulse_fields(f);
   return f;
 }
 
@@ -144,40 +141,86 @@ const SignalKind& triangle_kind() {
   return kind;
 }
 
-struct Trapezoid : Pulse {
-  double rise = 0.0; // s
-  double fall = 0.0; // s
+struct Trapezoid : SignalDefinition {
+  double peak = 0.0;
+  double start = 0.0;             // s
+  double rise = 0.0, fall = 0.0;  // s
+  std::optional<double> duration; // s
+  std::optional<double> hold;     // s
 };
 
-Signal build_trapezoid(const SignalDefinition& definition) {
-  const Trapezoid& p = as<Trapezoid>(definition);
+// Returns the times at which the value begins to rise, reaches its peak, leaves it, and is zero again.
+std::array<double, 4> corners_of(const Trapezoid& p) {
+  const double rise_end = p.start + p.rise;
+  if (p.hold) return {p.start, rise_end, rise_end + *p.hold, rise_end + *p.hold + p.fall};
   constexpr double k_rounding = 1e-12;
-  const double excess = p.rise + p.fall - p.duration;
-  if (excess > k_rounding * p.duration)
+  const double excess = p.rise + p.fall - *p.duration, end = p.start + *p.duration;
+  if (excess > k_rounding * *p.duration)
     throw ModelError(p.where, "trapezoid '" + p.name +
                                   "' rises and falls longer than it lasts: "
                                   "'rise' + 'fall' must not exceed 'duration'");
-  const double end = p.start + p.duration;
-  const double rise_end = p.start + p.rise;
-  const double fall_start = excess > -k_rounding * p.duration ? rise_end : end - p.fall;
-  return polygon({{p.start, 0.0}, {rise_end, p.peak}, {fall_start, p.peak}, {end, 0.0}});
+  return {p.start, rise_end, excess > -k_rounding * *p.duration ? rise_end : end - p.fall, end};
+}
+
+Signal build_trapezoid(const SignalDefinition& definition) {
+  const Trapezoid& p = as<Trapezoid>(definition);
+  const std::string subject = "trapezoid '" + p.name + "' ";
+  if (p.hold.has_value() == p.duration.has_value())
+    throw ModelError(p.where, subject + (p.hold ? "gives both 'hold' and 'duration': give one of them"
+                                                : "needs 'hold', how long it stays at its peak, or 'duration', how long it lasts in all"));
+  const auto [begin, rise_end, fall_start, end] = corners_of(p);
+  if (!(end > begin)) throw ModelError(p.where, subject + "lasts no time: 'rise', 'hold' and 'fall' are all 0");
+  return polygon({{begin, 0.0}, {rise_end, p.peak}, {fall_start, p.peak}, {end, 0.0}});
 }
 
 const SignalKind& trapezoid_kind() {
   static const SignalKind kind = [] {
     SignalKind k{"trapezoid",
                  "Linear rise, constant peak, linear fall; its integral is peak "
-                 "(duration - rise / 2 - fall / 2).",
-                 pulse_fields(),
+                 "(rise / 2 + hold + fall / 2).",
+                 {},
                  make_held<SignalDefinition, Trapezoid>,
                  copy_held<SignalDefinition, Trapezoid>,
                  build_trapezoid};
+    k.fields.add("peak", &Trapezoid::peak).in("*").required().doc("largest value; negative for a deceleration");
+    k.fields.add("start", &Trapezoid::start).in("s").doc("time at which the pulse begins");
     k.fields.add("rise", &Trapezoid::rise).in("s").not_negative().required().doc("time from start to the peak value");
-    k.fields.add("fall", &Trapezoid::fall)
-        .in("s")
-        .not_negative()
-        .required()
-        .doc("time from the peak value to the end; part of the duration");
+    k.fields.add("hold", &Trapezoid::hold).in("s").not_negative().doc("time at the peak value; give it or 'duration'");
+    k.fields.add("fall", &Trapezoid::fall).in("s").not_negative().required().doc("time from the peak value to the end");
+    k.fields.add("duration", &Trapezoid::duration).in("s").positive().doc("rise + hold + fall, instead of 'hold'");
+    return k;
+  }();
+  return kind;
+}
+
+struct Sine : SignalDefinition {
+  double amplitude = 0.0, frequency = 0.0, phase = 0.0; // -, Hz, rad
+  double start = 0.0;                                   // s
+  std::optional<double> duration;                       // s
+};
+
+Signal build_sine(const SignalDefinition& definition) {
+  const Sine& p = as<Sine>(definition);
+  Piece piece = polynomial(p.start, 0.0);
+  piece.harmonics.push_back({p.amplitude, 2.0 * k_pi * p.frequency, p.phase - 0.5 * k_pi});
+  std::vector<Piece> pieces{piece};
+  if (p.duration) pieces.push_back(polynomial(p.start + *p.duration, 0.0));
+  return Signal(std::move(pieces));
+}
+
+const SignalKind& sine_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k{"sine",
+                 "amplitude sin(2 pi frequency (t - start) + phase), zero before start: without a phase it begins at zero.",
+                 {},
+                 make_held<SignalDefinition, Sine>,
+                 copy_held<SignalDefinition, Sine>,
+                 build_sine};
+    k.fields.add("amplitude", &Sine::amplitude).in("*").required().doc("largest value");
+    k.fields.add("frequency", &Sine::frequency).in("Hz").positive().required().doc("cycles per second");
+    k.fields.add("phase", &Sine::phase).in("rad").doc("of the sine at its start; \"90 deg\" makes a cosine");
+    k.fields.add("start", &Sine::start).in("s").doc("time at which the signal begins");
+    k.fields.add("duration", &Sine::duration).in("s").positive().doc("zero again after this time; endless if not given");
     return k;
   }();
   return kind;
@@ -210,7 +253,7 @@ const SignalKind& harmonics_kind() {
   static const SignalKind kind = [] {
     SignalKind k{"harmonics",
                  "offset + sum of amplitude cos(2 pi frequency (t - start) + phase), zero before "
-                 "start; a phase of -90 deg makes a sine.",
+                 "start; for a single sine see the kind sine.",
                  {},
                  make_held<SignalDefinition, Harmonics>,
                  copy_held<SignalDefinition, Harmonics>,
@@ -229,9 +272,10 @@ const SignalKind& harmonics_kind() {
 } // namespace
 
 const std::vector<const SignalKind*>& signal_kinds() {
-  static const std::vector<const SignalKind*> kinds{
-      &constant_kind(), &haversine_kind(), &half_sine_kind(), &triangle_kind(), &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
-      &chirp_kind(),    &sum_kind(),       &product_kind(),   &scaled_kind(),   &road_kind(),      &random_kind(),    &sea_kind()};
+  static const std::vector<const SignalKind*> kinds{&constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
+                                                    &trapezoid_kind(), &rectangle_kind(), &sine_kind(),      &harmonics_kind(),
+                                                    &chirp_kind(),     &sum_kind(),       &product_kind(),   &scaled_kind(),
+                                                    &road_kind(),      &random_kind(),    &sea_kind()};
   return kinds;
 }
 

@@ -57,11 +57,24 @@ double power_of_friction(const System& system, std::size_t f, const Snapshot& s)
   return power;
 }
 
-constexpr const char* k_energies[] = {"dissipated", "stored", "work"};
+// Returns true if the friction element has a contact point that slides along a face.
+bool has_slide(const FrictionUnit& unit) {
+  const FrictionState any{};
+  return unit.friction->dimension() == 1 && unit.friction->rows(any)->kind == MeasureKind::slide;
+}
 
-bool wants_energies(const std::vector<std::string>* wanted) {
+double slip_rate(const System& system, std::size_t f, const Snapshot& s) {
+  const FrictionState& state = s.evaluation->friction[f];
+  if (state.phase != FrictionPhase::slip) return 0.0;
+  return evaluate_row<false>(*system.frictions[f].friction->rows(state), s.motion).rate;
+}
+
+// Channels of single elements that are made here: energies, and the slide of friction whose contact point is not always the same.
+constexpr const char* k_of_elements[] = {"dissipated", "stored", "work", "slide"};
+
+bool wants_shares(const std::vector<std::string>* wanted) {
   return wanted && std::any_of(wanted->begin(), wanted->end(), [](const std::string& name) {
-           return std::any_of(std::begin(k_energies), std::end(k_energies), [&](const char* energy) { return name.ends_with(energy); });
+           return std::any_of(std::begin(k_of_elements), std::end(k_of_elements), [&](const char* each) { return name.ends_with(each); });
          });
 }
 
@@ -81,7 +94,7 @@ std::string without_unit(const std::string& name) {
 
 RequestedChannels::RequestedChannels(SystemBuilder& builder)
     : builder_(builder), model_(builder.model_), has_requests_(!model_.output.also.empty() || !model_.channels.empty()),
-      wants_shares_(has_requests_ || wants_energies(builder.wanted_)) {
+      wants_shares_(has_requests_ || wants_shares(builder.wanted_)) {
   for (const DefinedChannel& definition : model_.channels) {
     Defined& formula = formulas_.emplace_back();
     formula.definition = &definition;
@@ -148,7 +161,7 @@ void RequestedChannels::end_element() {
   const System& system = *builder_.system_;
   const std::string& name = system.element_names[builder_.element_];
   bool is_wanted = false;
-  for (const char* energy : k_energies) is_wanted |= builder_.use_of(name, energy, true) != SystemBuilder::Use::none;
+  for (const char* each : k_of_elements) is_wanted |= builder_.use_of(name, each, true) != SystemBuilder::Use::none;
   if (!is_wanted) return;
   Share share;
   share.element = builder_.element_;
@@ -174,8 +187,8 @@ void RequestedChannels::end_inactive_element(System& acting) {
   share.element = builder_.element_;
   share.acts = false;
   bool is_wanted = false;
-  for (const char* energy : k_energies)
-    is_wanted |= builder_.use_of(acting.element_names[builder_.element_], energy, true) != SystemBuilder::Use::none;
+  for (const char* each : k_of_elements)
+    is_wanted |= builder_.use_of(acting.element_names[builder_.element_], each, true) != SystemBuilder::Use::none;
   if (!is_wanted) return;
   for (std::size_t g = 0; g < aside.groups.size(); ++g) {
     const std::size_t before = g < counts_.size() ? counts_[g] : 0;
@@ -191,18 +204,30 @@ void RequestedChannels::end_inactive_element(System& acting) {
 // An inactive element keeps the energies that it had.
 void RequestedChannels::add_inactive_share(const Share& share) {
   const auto none = [](const Snapshot&) { return 0.0; };
-  if (share.dissipates) add_energy(share, "dissipated", "energy that it has turned into heat since the start", {none, {}});
+  if (share.dissipates) add_integral(share, "dissipated", "J", "energy that it has turned into heat since the start", {none, {}});
   if (share.stores) make(true, builder_.system_->element_names[share.element], "stored", "J", "energy stored in it now", none);
   if (share.works)
-    add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"}, {none, {}});
+    add_integral(share, "work", "J", {"work that it has done since the start", "positive: it has given energy to the bodies"}, {none, {}});
 }
 
-void RequestedChannels::add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand) {
+void RequestedChannels::add_integral(const Share& share, const char* name, const char* unit, const ChannelText& text, Integrand integrand) {
   System& system = *builder_.system_;
   const int slot = static_cast<int>(system.integrands.size());
-  const Channel* const made = make(true, system.element_names[share.element], name, "J", text,
+  const Channel* const made = make(true, system.element_names[share.element], name, unit, text,
                                    [slot](const Snapshot& s) { return s.integrals ? s.integrals->value(slot, s.t) : 0.0; });
   if (made) system.integrands.push_back(std::move(integrand));
+}
+
+// Adds the slide of an element whose contact point changes (polygon_contact): the integral of its slip rate. A coordinate would jump where
+// another point takes over. Elements with fixed contact points have made a channel of that name themselves.
+void RequestedChannels::add_slide(const Share& share) {
+  const System* const self = builder_.system_.get();
+  const std::string name = self->element_names[share.element] + ".slide";
+  for (std::size_t f = share.first_friction; f < share.friction_end; ++f) {
+    if (!has_slide(self->frictions[f]) || find(name)) continue;
+    add_integral(share, "slide", "m", {"way that a has slid along the touching face since the start", "as friction"},
+                 {[self, f](const Snapshot& s) { return slip_rate(*self, f, s); }, {}});
+  }
 }
 
 void RequestedChannels::add_share(const Share& share) {
@@ -249,7 +274,7 @@ void RequestedChannels::add_share(const Share& share) {
         for (const int slot : blows) lost += s.memory[slot];
         return -lost;
       };
-    add_energy(share, "dissipated", "energy that it has turned into heat since the start", std::move(integrand));
+    add_integral(share, "dissipated", "J", "energy that it has turned into heat since the start", std::move(integrand));
   }
   if (!givers.empty()) make(true, system.element_names[share.element], "stored", "J", "energy stored in it now", stored);
   if (!workers.empty() || !driven.empty()) {
@@ -260,8 +285,8 @@ void RequestedChannels::add_share(const Share& share) {
       for (const std::size_t r : driven) power += s.row_force[r] * evaluate_row<false>(self->rows[r], s.motion).rate;
       return power;
     };
-    add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"},
-               std::move(integrand));
+    add_integral(share, "work", "J", {"work that it has done since the start", "positive: it has given energy to the bodies"},
+                 std::move(integrand));
   }
 }
 
@@ -461,7 +486,10 @@ bool RequestedChannels::is_anything_missing() const {
 void RequestedChannels::add() {
   if (!has_requests_ && !is_anything_missing()) return;
   add_markers();
-  for (const Share& share : shares_) share.acts ? add_share(share) : add_inactive_share(share);
+  for (const Share& share : shares_) {
+    share.acts ? add_share(share) : add_inactive_share(share);
+    if (share.acts) add_slide(share);
+  }
   add_whole();
   if (!builder_.errors_.empty()) return; // after errors, channels of elements may be missing
   add_formulas();

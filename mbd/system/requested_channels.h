@@ -1,9 +1,10 @@
 // Channels made only on request of the model, in addition to those of elements: motion of markers, energies of the whole system and of
-// single elements, formulas (formula_channel.h).
+// single elements, slides, formulas (formula_channel.h).
 //
 //   M.x .y .vx .vy .ax .ay        marker M, ground axes; accelerations from the equations of motion
 //   whole.kinetic .potential .dissipated .work .balance
 //   E.dissipated .stored .work    of element E, since the start
+//   E.slide                       of element E, friction whose contact point changes, since the start
 #pragma once
 
 #include "mbd/formula/formula.h"
@@ -16,7 +17,7 @@
 
 namespace steplap {
 
-/// Compiles the channels that a model requests: formulas, and energies of single elements.
+/// Compiles the channels that a model requests: formulas, and energies and slides of single elements.
 class RequestedChannels {
 public:
   /// Parses the formulas. Errors are reported to the builder.
@@ -59,7 +60,8 @@ private:
   void add_whole();
   void add_share(const Share& share);
   void add_inactive_share(const Share& share);
-  void add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand);
+  void add_integral(const Share& share, const char* name, const char* unit, const ChannelText& text, Integrand integrand);
+  void add_slide(const Share& share);
   void add_formulas();
   void add_formula(Defined& formula, int depth = 0);
   [[nodiscard]] const Channel& operand(const DefinedChannel& definition, const std::string& name) const;
@@ -78,7 +80,7 @@ private:
   std::vector<std::size_t> counts_; ///< number of entries in each group before the current element
   std::size_t rows_ = 0, frictions_ = 0;
   bool has_requests_;          ///< the model requests channels
-  bool wants_shares_;          ///< energies of elements may be among them
+  bool wants_shares_;          ///< channels of single elements may be among them
   std::size_t operations_ = 0; ///< of all formulas, each with those that it names
   bool is_beyond_limits_ = false;
 };

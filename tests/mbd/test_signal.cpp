@@ -34,6 +34,15 @@ Signal make(const std::string& name, const Values& values) {
   return kind.build(*definition);
 }
 
+std::string message_of(const std::string& name, const Values& values) {
+  try {
+    (void)make(name, values);
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 // Composite Gauss-Legendre with four points on each of n parts of each interval between
 // breakpoints.
 double quadrature(const std::function<double(double)>& f, double from, double to, const std::vector<double>& breakpoints) {
@@ -153,6 +162,35 @@ TEST_CASE("shapes at known times") {
       "harmonics",
       {{"amplitudes", std::vector<double>{2.0}}, {"frequencies", std::vector<double>{0.25}}, {"phases", std::vector<double>{-0.5 * k_pi}}});
   CHECK(sine.value(1.0) == doctest::Approx(2.0).epsilon(1e-15));
+}
+
+TEST_CASE("a trapezoid by its rise, hold and fall is the one of that duration") {
+  const Values course{{"peak", -4.0}, {"start", 1.0}, {"rise", 0.25}, {"fall", 0.5}};
+  Values held = course, lasting = course, both = course;
+  held.push_back({"hold", 1.5});
+  lasting.push_back({"duration", 2.25});
+  both.insert(both.end(), {{"hold", 1.5}, {"duration", 2.25}});
+  const Signal a = make("trapezoid", held), b = make("trapezoid", lasting);
+  CHECK(a.breakpoints() == b.breakpoints()); // all times are sums of powers of two, so they are exact
+  for (double t = 0.9; t < 3.4; t += 0.01) CHECK(a.value(t) == b.value(t));
+  CHECK(a.drive(5.0, DriveLevel::acceleration).rate == doctest::Approx(-4.0 * (0.125 + 1.5 + 0.25)).epsilon(1e-15));
+  CHECK(message_of("trapezoid", both) == "error: trapezoid 's' gives both 'hold' and 'duration': give one of them");
+  CHECK(message_of("trapezoid", course).find("needs 'hold'") != std::string::npos);
+  CHECK(message_of("trapezoid", {{"peak", 1.0}, {"rise", 0.0}, {"fall", 0.0}, {"hold", 0.0}}).find("lasts no time") != std::string::npos);
+}
+
+TEST_CASE("a sine begins at zero, without a jump, and is the cosine of 90 degrees less") {
+  const Values wave{{"amplitude", 2.0}, {"frequency", 0.25}, {"start", 1.0}, {"duration", 8.0}};
+  const Signal sine = make("sine", wave);
+  CHECK_FALSE(sine.jumps_at(0));
+  CHECK_FALSE(sine.jumps_at(1)); // two whole turns
+  CHECK(sine.value(0.5) == 0.0);
+  CHECK(std::abs(sine.value(1.0)) < 1e-15); // the cosine of a right angle, rounded
+  CHECK(sine.value(2.0) == doctest::Approx(2.0).epsilon(1e-15));
+  CHECK(sine.value(4.0) == doctest::Approx(-2.0).epsilon(1e-15));
+  Values ahead = wave;
+  ahead.push_back({"phase", 0.5 * k_pi});
+  CHECK(make("sine", ahead).value(1.0) == 2.0);
 }
 
 TEST_CASE("small integrals keep their digits") {

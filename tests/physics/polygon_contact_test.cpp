@@ -153,6 +153,25 @@ TEST_CASE("equilibrium: friction of outlines that cannot hold is told, what can 
   CHECK_THROWS_AS(settle(on_slope(0.31)), NumericalFailure);
 }
 
+// A box that slides to rest goes v²/(2 μ g).
+TEST_CASE("the slide of outlines is the way along the face, with its sign") {
+  const std::string text = "[output]\nalso = [\"b on ground.slide\"]\n" + text_of({"b", 0.0, 0.049, 1.0, 0.1, 0.0, 1000.0, ""}) +
+                           touch("b", "ground", "stiffness = 1e7; dissipation = 0.5; static_friction = 0.4");
+  for (const double v : {2.0, -1.5}) {
+    CAPTURE(v);
+    Found found = settle(text);
+    found.rest.state.v[3] = v;
+    Run r;
+    r.system = std::move(found.system);
+    r.result = simulate(*r.system, found.rest.state, options({"dop853", 1e-10, 1.5}));
+    const double slid = r.last("b on ground.slide");
+    // The box leans forward by μ h/2 of the 1 m of its face: the normal force swings by less than a thousandth, and so does the way.
+    CHECK(slid == doctest::Approx(std::copysign(v * v / (2.0 * 0.4 * k_g), v)).epsilon(2e-3));
+    // While it slides or is held, its lean is less than depth · 6 μ h/w² = 2.4e-4 rad, at half its height.
+    CHECK(std::abs(slid - r.last("b.x")) < 2e-5);
+  }
+}
+
 TEST_CASE("a box pushed past the edge of a table falls off it, one that is short of it stays") {
   const auto on_table = [](double x) {
     return body("table", "mass = 1; inertia = 1; fixed = true; outline = [[-2.0, -0.2], [0.0, -0.2], [0.0, 0.0], [-2.0, 0.0]]") +

@@ -5,6 +5,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/csv.h"
 #include "run/quantity_text.h"
+#include "tools/steplap/json_screen.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -57,11 +58,30 @@ void print_reference(std::ostream& out, const AccuracyStudy& study) {
         << " no partner: nothing is said of event times\n";
 }
 
-std::string sentence(const AccuracyStudy& study, double wanted) {
-  const AccuracyEntry* best = study.cheapest(wanted);
-  const std::string head = "for " + number_text(wanted) + " ";
-  if (!best) return head + "none of these";
-  return head + best->setting.text() + " (" + milliseconds(best->cpu_seconds) + " ms)";
+// Prints the cheapest setting for each wanted error.
+void print_answer(std::ostream& out, const AccuracyStudy& study, const std::vector<double>& wanted) {
+  for (const double error : wanted) {
+    const AccuracyEntry* const best = study.cheapest(error);
+    out << "  cheapest for an error of " << number_text(error) << ": "
+        << (best ? best->setting.text() + ", " + milliseconds(best->cpu_seconds) + " ms" : "none of these") << "\n";
+  }
+}
+
+constexpr std::size_t k_most_rows = 12; // on the screen
+
+// Returns the entries for the screen, in the order of the study. Those that nothing beats in both time and error come first, then the
+// cheapest of the others.
+std::vector<const AccuracyEntry*> entries_to_show(const AccuracyStudy& study, bool are_all) {
+  std::vector<const AccuracyEntry*> entries;
+  for (const AccuracyEntry& e : study.entries)
+    if (e.failure.empty()) entries.push_back(&e);
+  if (are_all || entries.size() <= k_most_rows) return entries;
+  std::stable_sort(entries.begin(), entries.end(), [](const AccuracyEntry* a, const AccuracyEntry* b) {
+    return a->is_pareto != b->is_pareto ? a->is_pareto : a->cpu_seconds < b->cpu_seconds;
+  });
+  entries.resize(k_most_rows);
+  std::sort(entries.begin(), entries.end()); // they are elements of one vector
+  return entries;
 }
 
 // --- diagram ------------------------------------------------------------------------------------
@@ -179,7 +199,7 @@ void print_budget(std::ostream& out, const AccuracyStudy& study) {
 } // namespace
 
 void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::vector<double>& wanted) {
-  print_reference(out, study);
+  print_answer(out, study, wanted);
   std::vector<Align> columns(14, Align::right);
   columns[0] = columns[13] = Align::left;
   TextTable table(columns);
@@ -188,8 +208,9 @@ void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::ve
                   "energy", "constraints", "", ""},
                  {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions", "velocities", "reactions", "event times",
                   "energy", "constraints", "", "pareto"});
-  for (const AccuracyEntry& e : study.entries) {
-    if (!e.failure.empty()) continue;
+  const std::vector<const AccuracyEntry*> entries = entries_to_show(study, json_screen(out) != nullptr);
+  for (const AccuracyEntry* const shown : entries) {
+    const AccuracyEntry& e = *shown;
     table.add_row({e.setting.text(), Cell(milliseconds(e.cpu_seconds), 1e3 * e.cpu_seconds), whole_cell(e.cost.steps),
                    whole_cell(e.cost.rejections), whole_cell(e.cost.evaluations), events_text(study, e),
                    error_cell(study, e, ErrorKind::position), error_cell(study, e, ErrorKind::velocity),
@@ -197,15 +218,16 @@ void print_accuracy(std::ostream& out, const AccuracyStudy& study, const std::ve
                    number_cell(e.constraint_residual), "", e.is_pareto ? "Pareto" : ""});
   }
   out << table;
+  const auto finished = std::count_if(study.entries.begin(), study.entries.end(), [](const AccuracyEntry& e) { return e.failure.empty(); });
+  if (const std::size_t more = static_cast<std::size_t>(finished) - entries.size(); more > 0)
+    out << "  … and " << more << " more in accuracy.csv\n";
+  print_reference(out, study);
   for (const AccuracyEntry& e : study.entries)
     if (!e.failure.empty() && !e.is_left_out) out << "  " << e.setting.text() << " gave nothing: " << e.failure << "\n";
   print_budget(out, study);
   for (const ErrorSlope& s : study.slopes())
     out << "  " << s.integrator << ": error of positions ~ " << (s.is_step ? "step" : "tolerance") << "^" << small_text(s.slope) << " over "
         << small_text(s.decades) << " decades\n";
-  out << "  cheapest: ";
-  for (std::size_t i = 0; i < wanted.size(); ++i) out << (i > 0 ? "; " : "") << sentence(study, wanted[i]);
-  out << "\n";
 }
 
 std::string accuracy_csv(const AccuracyStudy& study) {

@@ -136,6 +136,18 @@ bool is_given(const std::vector<std::string>& arguments, const std::string& word
   return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
 }
 
+// Returns " (did you mean '--report'?)" for the first argument that resembles an option but is none; "" if there is no such argument.
+std::string meant_option(const std::vector<std::string>& arguments, const CLI::App& app) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end()) return did_you_mean(name, known);
+  }
+  return "";
+}
+
 // Reports an error of the parser with the most similar sub-command. Without any arguments the list of commands is shown.
 ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program, CLI::App& app,
                       std::ostream& err) {
@@ -148,14 +160,18 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
   if (!is_option && !is_command(program, first)) {
     std::vector<std::string> names;
     for (const Command& command : program.commands) names.push_back(command.name);
-    log_error("there is no command '" + first + "'" + did_you_mean(first, names) + "; see " + program.name + " --help");
+    const bool is_model = first.ends_with(".toml") && is_command(program, "simulate");
+    log_error("there is no command '" + first + "'" +
+              (is_model ? "; to run this model: " + program.name + " simulate " + first : did_you_mean(first, names)) + "; see " +
+              program.name + " --help");
     return ExitCode::usage;
   }
   if (const std::string advice = advice_on_retired(arguments, program.commands); !advice.empty()) {
     log_error(advice);
     return ExitCode::usage;
   }
-  log_error(std::string(error.what()) + "; see " + program.name + " " + (is_option ? "" : first + " ") + "--help");
+  log_error(std::string(error.what()) + meant_option(arguments, is_option ? app : *app.get_subcommand(first)) + "; see " + program.name +
+            " " + (is_option ? "" : first + " ") + "--help");
   if (arguments.size() == 1 && !is_option) err << "\n" << app.get_subcommand(first)->help(program.name);
   return ExitCode::usage;
 }

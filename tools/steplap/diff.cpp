@@ -86,11 +86,14 @@ std::optional<Model> model_of(const std::string& folder, std::ostream& out) {
 
 std::size_t diff_results(const DiffOptions& options, std::ostream& out) {
   const ShownRun before = shown_run(options.before), after = shown_run(options.after);
+  std::size_t followed = print_limit_changes(out, before, after);
   const std::optional<Model> a = model_of(options.before, out), b = model_of(options.after, out);
-  std::size_t count = a && b ? diff_models(*a, *b, out) : 0;
   out << "\n";
-  count += print_result_changes(out, before, after);
-  return count;
+  const std::size_t changed = a && b ? diff_models(*a, *b, out) : 0;
+  followed += print_other_changes(out, before, after);
+  if (followed == 0) out << "The runs agree: nothing differs by more than its error.\n";
+  print_unknown_errors(out, before, after);
+  return changed + followed;
 }
 
 ExitCode diff(const DiffOptions& options, Console& console) {
@@ -113,12 +116,13 @@ Command diff_command() {
   const auto o = std::make_shared<DiffOptions>();
   Command command;
   command.name = "diff";
-  command.summary = "what differs between two models, or between two runs: values first, then what followed";
+  command.summary = "what differs between two models, or between two runs: verdict and limits first";
   command.examples = R"(  steplap diff models/paper/no_interference.toml models/paper/interference.toml
   steplap diff out/first/no_interference out/weak/no_interference
   steplap diff --require-same mine.toml theirs.toml
 Models are compared value by value, in SI, with what they extend and with defaults; a default that is written out is no change. Of two runs
-the models are compared, then verdict, criteria, joints, events and extremes: what differs by more than both error estimates together.
+verdict, criteria and shares of limits come first, then the models, joints, events and extremes: what differs by more than both error
+estimates together.
 Exit code 0, whether anything differs or not; with --require-same 5 if anything does.
 )";
   command.options = {{"BEFORE", &o->before, "FILE|DIR", "a model file, - for the standard input, or the folder of a run", true},

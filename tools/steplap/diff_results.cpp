@@ -23,6 +23,7 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_rounding = 1e-9;     // of the larger value; used if there are no error estimates, because runs with other steps agree to
                                         // this accuracy
 constexpr std::size_t k_most_rows = 20; // of events, and of extremes, on the screen
+constexpr double k_least_share = 0.005; // smaller changes of a share round to 0 % of the limit
 
 double number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -123,6 +124,33 @@ std::size_t print_criteria(std::ostream& out, const Json& a, const Json& b) {
   return table.rows().size() - 1;
 }
 
+// Prints how much of its limit each element uses, those first that come nearest to it in either run.
+std::size_t print_shares(std::ostream& out, const Json& a, const Json& b) {
+  struct Row {
+    double worst;
+    TextTable::Row cells;
+  };
+  std::vector<Row> rows;
+  const Json &before = a.at("overview").at("utilisations"), &after = b.at("overview").at("utilisations");
+  for (const Json& was : before) {
+    const auto is = std::find_if(after.begin(), after.end(), [&](const Json& u) { return text_in(u, "name") == text_in(was, "name"); });
+    if (is == after.end()) continue;
+    const Measured first = measured_in(was, "share", "error"), second = measured_in(*is, "share", "error");
+    if (!differ(first, second) || std::abs(first.value - second.value) < k_least_share) continue;
+    const auto cell = [](const Json& u, const Measured& m) { return Cell(text_in(u, "percent"), m.value, "", m.error); };
+    rows.push_back({std::fmax(first.value, second.value),
+                    {text_in(was, "name"), cell(was, first), cell(*is, second), text_in(was, "detail"), text_in(*is, "detail")}});
+  }
+  if (rows.empty()) return 0;
+  std::stable_sort(rows.begin(), rows.end(), [](const Row& x, const Row& y) { return x.worst > y.worst; });
+  TextTable table({Align::left, Align::right, Align::right, Align::left, Align::left});
+  table.set_head("shares", {"share of the limit", "before", "after", "was", "is"},
+                 {"name", "before", "after", "detail before", "detail after"});
+  for (const Row& row : rows) table.add_row(row.cells);
+  out << "\n" << table;
+  return rows.size();
+}
+
 std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
   if (!a.contains("joints") || !b.contains("joints")) return 0;
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right});
@@ -153,24 +181,28 @@ std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
 template <class Value> using ByEvent = std::map<std::pair<std::string, std::string>, Value>;
 using EventTimes = ByEvent<std::vector<Measured>>;
 
-EventTimes times_of(const ShownRun& run, ByEvent<EventKind>& kinds) {
+// Returns the times of main events. The others concern the integrator only and depend on its steps.
+EventTimes times_of(const ShownRun& run) {
   EventTimes times;
-  for (const ResultEvent& event : run.events) {
-    times[{event.element, event.words}].push_back({event.t, event.error});
-    kinds[{event.element, event.words}] = event.kind;
-  }
+  for (const ResultEvent& event : run.events)
+    if (is_main(event.kind)) times[{event.element, event.words}].push_back({event.t, event.error});
   return times;
+}
+
+std::size_t count_of(const EventTimes& events) {
+  std::size_t count = 0;
+  for (const auto& [what, times] : events) count += times.size();
+  return count;
 }
 
 std::size_t print_events(std::ostream& out, const ShownRun& a, const ShownRun& b) {
   struct Row {
     double t;
-    bool is_main;
     TextTable::Row cells;
   };
   std::vector<Row> rows;
-  ByEvent<EventKind> kinds;
-  EventTimes before = times_of(a, kinds), after = times_of(b, kinds);
+  EventTimes before = times_of(a), after = times_of(b);
+  const std::size_t count_before = count_of(before), count_after = count_of(after);
   for (const auto& [what, times] : before) after.try_emplace(what);
   for (const auto& [what, times] : after) {
     const std::vector<Measured>& was = before[what];
@@ -182,25 +214,18 @@ std::size_t print_events(std::ostream& out, const ShownRun& a, const ShownRun& b
                                  : std::isnan(second.value)   ? "gone"
                                  : second.value > first.value ? "later"
                                                               : "earlier";
-      rows.push_back({std::isnan(first.value) ? second.value : first.value,
-                      is_main(kinds[what]),
-                      {what.first, what.second, time_before, time_after, change}});
+      rows.push_back({std::isnan(first.value) ? second.value : first.value, {what.first, what.second, time_before, time_after, change}});
     }
   }
   if (rows.empty()) return 0;
   std::stable_sort(rows.begin(), rows.end(), [](const Row& x, const Row& y) { return x.t < y.t; });
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::left});
   table.set_head("events", {"element", "event", "before", "after", ""}, {"element", "event", "before", "after", "change"});
-  std::size_t shown = 0;
-  for (const Row& row : rows) {
-    if (!json_screen(out) && (!row.is_main || shown >= k_most_rows)) continue;
-    table.add_row(row.cells);
-    ++shown;
-  }
-  out << "\nEvents: " << a.events.size() << " before, " << b.events.size() << " after; " << counted(rows.size(), "differs", "differ")
-      << "\n"
+  const std::size_t shown = json_screen(out) ? rows.size() : std::min(rows.size(), k_most_rows);
+  for (std::size_t i = 0; i < shown; ++i) table.add_row(rows[i].cells);
+  out << "\nEvents: " << count_before << " before, " << count_after << " after; " << counted(rows.size(), "differs", "differ") << "\n"
       << table;
-  if (shown < rows.size()) out << "  … and " << rows.size() - shown << " more, or minor ones: --json has all\n";
+  if (shown < rows.size()) out << "  … and " << rows.size() - shown << " more: --json has all\n";
   return rows.size();
 }
 
@@ -269,19 +294,20 @@ Cell change_cell(double before, double after) {
   return {text, percent, "%"};
 }
 
-std::size_t print_result_changes(std::ostream& out, const ShownRun& before, const ShownRun& after) {
+std::size_t print_limit_changes(std::ostream& out, const ShownRun& before, const ShownRun& after) {
   const Json &a = before.summary, &b = after.summary;
-  std::size_t count = print_outcome(out, a, b);
-  count += print_criteria(out, a, b);
-  count += print_joints(out, a, b);
-  count += print_events(out, before, after);
-  count += print_extremes(out, a, b);
-  count += print_missing(out, a, b);
-  if (count == 0) out << "The runs agree: nothing differs by more than its error.\n";
+  return print_outcome(out, a, b) + print_criteria(out, a, b) + print_shares(out, a, b);
+}
+
+std::size_t print_other_changes(std::ostream& out, const ShownRun& before, const ShownRun& after) {
+  const Json &a = before.summary, &b = after.summary;
+  return print_joints(out, a, b) + print_events(out, before, after) + print_extremes(out, a, b) + print_missing(out, a, b);
+}
+
+void print_unknown_errors(std::ostream& out, const ShownRun& before, const ShownRun& after) {
   for (const ShownRun* run : {&before, &after})
     if (!run->summary.contains("global_error"))
       out << "  The errors of '" << run->folder << "' are not known: what differs may be an error (steplap simulate --estimate-error).\n";
-  return count;
 }
 
 } // namespace steplap

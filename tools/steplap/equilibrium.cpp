@@ -68,7 +68,7 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
     table.add_row({system.element_names[system.frictions[margin.friction].element],
                    Cell(quantity_text(100.0 * margin.used, "%", 1.0), 100.0 * margin.used, "%"),
                    margin.used > 0.0 ? Cell(quantity_text(1.0 / margin.used, "times its load", 1.0), 1.0 / margin.used, "times its load")
-                                     : Cell("holds nothing now")});
+                                     : Cell("carries no load at rest")});
   if (!margins.empty()) out << "\nDistance from slipping" << (hangs_on_way ? k_of_one_rest : "") << "\n" << table;
 }
 

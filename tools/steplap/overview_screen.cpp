@@ -15,6 +15,7 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    // the second with all digits
+constexpr std::size_t k_all_lines = 100;                                        // for texts that are never cut
 constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // chosen so that the screen has at most 30 lines
 constexpr double k_least_share = 0.005;                                         // smaller utilisations round to 0 % and are omitted
 constexpr int k_bar = 20;                                                       // characters
@@ -45,13 +46,8 @@ void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured)
 }
 
 void print_story(std::ostream& out, const OrderedJson& summary) {
-  const auto count = summary.at("events").at("count").get<std::size_t>(), main = summary.at("events").at("main").get<std::size_t>();
-  out << "\nWhat happened: "
-      << (count == 0  ? "no events"
-          : main == 0 ? counted(count, "minor event", "minor events")
-                      : counted(main, "event", "events"));
-  if (main > 0 && main < count) out << " (" << count << " with minor ones)";
-  out << "\n";
+  const auto main = summary.at("events").at("main").get<std::size_t>(); // the others concern the integrator only
+  out << "\nWhat happened: " << (main == 0 ? "no events" : counted(main, "event", "events")) << "\n";
   const OrderedJson& story = summary.at("overview").at("story");
   std::size_t lines = 0;
   for (std::size_t i = 0; i < story.size(); ++i) {
@@ -90,19 +86,25 @@ void print_bars(std::ostream& out, const OrderedJson& utilisations, bool has_all
   }
 }
 
+std::string finding_text(const OrderedJson& f) {
+  return shown(
+      text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}}));
+}
+
 void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_coloured) {
   std::vector<std::string> warnings;
-  const auto text_of = [](const OrderedJson& f) {
-    return text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}});
-  };
   for (const OrderedJson& f : findings)
-    if (f.at("level") == "warning") warnings.push_back(text_of(f));
+    if (f.at("level") == "warning") warnings.push_back(finding_text(f));
   const std::size_t count = warnings.size() > k_most_warnings ? k_most_warnings - 1 : warnings.size();
   for (std::size_t i = 0; i < count; ++i)
-    out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
+    out << coloured("Warning", "1;33", is_coloured) << wrapped("Warning: " + warnings[i], k_columns, 9, k_all_lines).substr(7) << "\n";
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
-  for (const OrderedJson& f : findings) // findings with an explained reason are part of the result
-    if (f.at("code") == "friction_by_source") out << wrapped("Note: " + shown(text_of(f)), k_columns, 6, 3) << "\n";
+}
+
+// Prints findings whose reason the model explains; they are part of the result.
+void print_notes(std::ostream& out, const OrderedJson& findings) {
+  for (const OrderedJson& f : findings)
+    if (f.at("code") == "friction_by_source") out << wrapped("Note: " + finding_text(f), k_columns, 6, 3) << "\n";
 }
 
 // Returns the text for a level of trust. It refers to numerical errors only, not to effects that the model leaves out.
@@ -118,26 +120,29 @@ std::string list_of(const OrderedJson& texts) {
 
 } // namespace
 
-void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bool has_all_digits) {
+void print_overview(std::ostream& out, const ShownRun& run, const OverviewStyle& style) {
   const OrderedJson &overview = run.summary.at("overview"), &trust = overview.at("trust");
-  print_head(out, run.summary, is_coloured);
+  print_head(out, run.summary, style.is_coloured);
   print_story(out, run.summary);
-  print_bars(out, overview.at("utilisations"), has_all_digits);
+  print_bars(out, overview.at("utilisations"), style.has_all_digits);
   const char* const remedy = run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "";
   out << "\n"
       << wrapped("Numerical error: " + words_of_level(text_at(trust, "level")) + ". " + shown(text_at(trust, "text")) + remedy, k_columns,
                  7, 3)
       << "\n";
   if (trust.contains("guards")) out << cut("Checked by: " + shown(list_of(trust.at("guards"))), k_columns) << "\n";
-  print_warnings(out, run.summary.at("findings"), is_coloured);
+  const OrderedJson& findings = run.summary.at("findings");
+  if (style.has_warnings) print_warnings(out, findings, style.is_coloured);
+  print_notes(out, findings);
   out << "Results: " << shown(run.folder) << "\n";
-  out << "Page: steplap report RESULTS. Tables of all extremes: steplap show -v RESULTS.\n";
+  out << "Write a page with: steplap report RESULTS. List all extremes with: steplap show -v RESULTS.\n";
 }
 
-void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, bool has_all_digits) {
+void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, OverviewStyle style) {
+  style.is_coloured = takes_colour(out);
   for (const ShownRun& run : runs) {
     if (&run != &runs.front()) out << "\n";
-    print_overview(out, run, takes_colour(out), has_all_digits);
+    print_overview(out, run, style);
   }
 }
 

@@ -8,9 +8,16 @@
 
 namespace steplap {
 
-/// `is_coloured` colours verdict and warnings. With all digits lines may be longer.
-void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bool has_all_digits = false);
+/// How the summary is printed.
+struct OverviewStyle {
+  bool is_coloured = false;    ///< verdict and warnings
+  bool has_all_digits = false; ///< lines may then be longer than 100 columns
+  bool has_warnings = true;    ///< false if the screen has shown the warnings before
+};
+
+/// Prints the summary of one run.
+void print_overview(std::ostream& out, const ShownRun& run, const OverviewStyle& style);
 /// Prints several summaries one below the other, coloured if `out` supports it.
-void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, bool has_all_digits = false);
+void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, OverviewStyle style = {});
 
 } // namespace steplap

@@ -131,8 +131,7 @@ void print_heading(std::ostream& out, const TabledRun& run) {
 void print_events(std::ostream& out, const std::vector<ResultEvent>& events) {
   const auto main =
       static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [](const ResultEvent& event) { return is_main(event.kind); }));
-  out << "\nEvents: " << (events.empty() ? "none" : main == 0 ? counted(events.size(), "minor one", "minor ones") : std::to_string(main));
-  if (main > 0 && main < events.size()) out << " (" << events.size() << " with minor ones)";
+  out << "\nEvents: " << (main == 0 ? "none" : std::to_string(main));
   out << "\n";
   TextTable table({Align::right, Align::left, Align::left});
   std::size_t shown = 0;

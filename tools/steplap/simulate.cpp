@@ -180,7 +180,7 @@ void show_runs(const SimulateOptions& options, const std::vector<FinishedRun>& r
     shown.push_back(is_whole ? shown_run(run.report, run.folder) : overview_of_run(run.report, run.folder, options.shown_digits()));
   if (put_runs(console.out, shown)) return;
   if (is_whole) print_tables(console.out, shown);
-  else print_overviews(console.out, shown, options.shown_digits().is_full);
+  else print_overviews(console.out, shown, {.has_all_digits = options.shown_digits().is_full, .has_warnings = false}); // the log has them
 }
 
 ExitCode simulate(const SimulateOptions& options, Console& console) {

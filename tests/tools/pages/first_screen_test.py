@@ -24,7 +24,7 @@ from selenium.webdriver.common.keys import Keys
 WORK, MODELS = base.WORK, base.MODELS
 SIZES = [(1300, 900), (820, 1180), (390, 844)]
 SCHEMES = ["light", "dark"]
-PAGES = ["told.html", "two.html", "old.html"]
+PAGES = ["told.html", "two.html", "old.html", "lists.html"]
 
 
 def share(name, channel, of_limit, value, limit, unit, at, error=None):
@@ -43,8 +43,14 @@ SHARES = [
     share("top arresting devices", "top arresting.force", 0.4737, -71057.3, 1.5e5, "N", 0.1968, 1e-6),
     share("a force of a channel that is not written", "nobody.force", 0.05, 5.0, 100.0, "N", 0.3),
 ]
+# Of a run that holds: one criterion, a friction that slipped and one that did not, which no criterion limits.
+LISTED = [
+    dict(share("tank bottom: friction", "tank bottom.share", 1.0, None, None, "", 0.0851), beyond=True, detail="it slips", is_judged=False),
+    dict(share("front joint: displacement", "front joint.slid_share", 0.882, 0.0882, 0.1, "", 0.15), is_judged=True),
+    dict(share("top friction: friction", "top friction.share", 0.8, None, None, "", 0.2), is_judged=False),
+]
 STORY = [
-    happened(0.0851, 0.1219, "slips", "tank bottom", "Tank bottom slips from 0.0851 s to 0.1219 s and slides 0.79 mm."),
+    happened(0.0851, 0.1219, "slips", "tank bottom", "Active part slides 0.79 mm on lower tank from 0.0851 s to 0.1219 s."),
     happened(0.1066, None, "lifts", "rear foot", "Rear foot lifts off at 0.1066 s."),
 ]
 TOLD = {"verdict": "inspect", "reason": "Joint 'front joint' slips at 0.122 s and slides 46 mm.",
@@ -80,12 +86,20 @@ class FirstScreenTest(base.Page):
             nearer = [dict(u, share=u["share"] * 0.5, value=u["value"] * 0.5) for u in SHARES]
             summary["overview"] = dict(TOLD, verdict="hold", reason="All limits are kept.", utilisations=nearer, story=[])
 
+        def ask_nothing(summary):
+            summary["overview"] = dict(TOLD, verdict="open", is_judged=False, reason="The model asks for nothing.", utilisations=LISTED[2:])
+            summary["judgement"] = dict(summary["judgement"], verdict="open", criteria=[])
+
         rewrite("no_interference", "told", tell)
+        rewrite("no_interference", "lists", lambda summary: summary.update(overview=dict(TOLD, verdict="hold", utilisations=LISTED)))
+        rewrite("no_interference", "unasked", ask_nothing)
         rewrite("interference", "other", tell_more)
         rewrite("no_interference", "old", lambda summary: summary.pop("overview", None))
         base.steplap("report", "out/told", "-o", "told.html", "-q")
         base.steplap("report", "out/told", "out/other", "-o", "two.html", "-q")
         base.steplap("report", "out/old", "-o", "old.html", "-q")
+        base.steplap("report", "out/lists", "-o", "lists.html", "-q")
+        base.steplap("report", "out/unasked", "-o", "unasked.html", "-q")
         cls.browser = base.start_browser()
 
     def show(self, page, size, scheme="light"):
@@ -135,6 +149,35 @@ class FirstScreenTest(base.Page):
         self.assertEqual(texts[0], "125 %")
         self.assertRegex(texts[1], r"^\(99\.6 ± 1\) %$")  # the error reaches the limit
         self.assertEqual(texts[2:], ["64 %", "47 %", "5 %"])
+
+    def test_criteria_are_one_list_and_what_none_limits_is_another_without_alarm(self):
+        self.show("lists.html", SIZES[0])
+        found = self.run_js("""return [...document.querySelectorAll('#limits h2')].map((h) => [h.textContent,
+            [...h.nextElementSibling.nextElementSibling.querySelectorAll('.utilisation')].map((u) => ['.who', '.of-limit'].map((s) => u.querySelector(s).textContent).concat(u.querySelector('.percent').className))])""")
+        self.assertEqual([heading for heading, _ in found], ["How near to the limits", "Friction and strength without a criterion"])
+        (_, criteria), (_, others) = found
+        self.assertEqual([[text.replace("\u00a0", " ") for text in row] for row in criteria], [["front joint: displacement", "8.8 % of 10 %", "percent warn"]])
+        self.assertEqual(others, [["tank bottom: friction", "it slips", "percent plain"], ["top friction: friction", "", "percent plain"]])
+
+    def test_without_criteria_there_is_no_verdict(self):
+        self.show("unasked.html", SIZES[0])
+        self.assertEqual(self.all(".badge"), [])
+        self.assertEqual(self.find(".reason").text, "The model asks for nothing.")
+        self.assertEqual(self.find("#limits h2").text, "Friction and strength without a criterion")
+
+    def test_the_dot_of_a_margin_is_at_its_lowest(self):
+        self.show("told.html", SIZES[0])
+        value, lowest = self.run_js("""const run = steplap.data.runs[0], name = 'back joint.margin';
+            return [steplap.marks.extremeOf({ run, name }).value, run.summary.extremes[name].min]""")
+        self.assertEqual(value, lowest)
+
+    def test_couples_of_rounding_are_zero_and_words_agree_with_their_subject(self):
+        self.show("told.html", SIZES[0])
+        rounding = self.run_js("""const extremes = { a: { unit: 'N', min: 0, max: 1e5 }, b: { unit: 'm', min: 0, max: 2 }, c: { unit: 'N m', min: -4.7e-13, max: 0 } };
+            return steplap.numbers.roundingOf({ summary: { extremes } }, 'N m')""")
+        self.assertGreater(rounding, 4.7e-13)
+        self.assertEqual(self.run_js("return ['rear foot', 'rear wheels', 'feet'].map((name) => steplap.words.sentence(name, 'lifts'))"),
+                         ["rear foot lifts", "rear wheels lift", "feet lift"])
 
     def test_the_first_screen_needs_no_scrolling(self):
         for page in ("told.html", "old.html"):
@@ -215,12 +258,16 @@ class FirstScreenTest(base.Page):
         self.assertEqual(len(self.all("#results table")), 1)
         heads = [e.text for e in self.all("#results thead th")]
         self.assertEqual(heads, ["", "told", "other", "difference"])
-        rows = self.run_js("""return [...document.querySelectorAll('#results tbody tr:not(.group)')].map((r) => [r.cells[0].textContent,
-            ...[...r.cells].slice(1).map((c) => [c.textContent, c.dataset.value === undefined ? null : Number(c.dataset.value)])])""")
-        numbers = [r for r in rows if all(c[1] is not None for c in r[1:])]
+        rows = self.run_js("""let group = ''; return [...document.querySelectorAll('#results tbody tr')].map((r) => {
+            if (r.className === 'group') group = r.textContent;
+            return r.className === 'group' ? null : [r.cells[0].textContent,
+                ...[...r.cells].slice(1).map((c) => [c.textContent, c.dataset.value === undefined ? null : Number(c.dataset.value)]), group]; }).filter(Boolean)""")
+        numbers = [r for r in rows if all(c[1] is not None for c in r[1:4])]
         self.assertGreater(len(numbers), 25)
-        for name, first, second, difference in numbers:
-            self.assertEqual(difference[1], second[1] - first[1], name)
+        for name, first, second, difference, group in numbers:
+            # Forces, and criteria of |x|, are judged by their size.
+            measure = abs if group == "Forces and couples" or "|" in name or name.endswith("largest slide") else float
+            self.assertEqual(difference[1], measure(second[1]) - measure(first[1]), name)
         found = {r[0]: r for r in rows}
         self.assertEqual([c[0] for c in found["verdict"][1:3]], ["INSPECT", "HOLD"])
         summaries = []
@@ -230,9 +277,13 @@ class FirstScreenTest(base.Page):
         wanted = [s["joints"]["front joint"]["smallest_margin"] for s in summaries]
         self.assertEqual([c[1] for c in found["front joint: margin"][1:3]], wanted)
         shown = found["bottom arresting"][3][0].replace("\u00a0", " ").replace("−", "-")
-        value, unit = shown.split()
-        self.assertEqual(unit, "kN")
-        self.assertAlmostEqual(float(value), found["bottom arresting"][3][1] / 1000, delta=0.05)  # half of its last digit
+        value, unit, change = shown.split()
+        self.assertEqual((unit, change), ("kN", "more" if found["bottom arresting"][3][1] > 0 else "less"))
+        self.assertAlmostEqual(float(value), abs(found["bottom arresting"][3][1]) / 1000, delta=0.05)  # half of its last digit
+        # One run pushes, the other pulls: what the limit of 150 kN compares is 71.1 and 62 kN.
+        signs = [found["top arresting"][k][1] < 0 for k in (1, 2)]
+        self.assertEqual(signs, [True, False])
+        self.assertIn(" kN less", found["top arresting"][3][0].replace("\u00a0", " "))
         # Bars in pairs, machines in one scale.
         self.assertEqual(len(self.all(".utilisation")), 2 * len(SHARES))
         scales = self.run_js("return steplap.page.scenes.map((s) => s.scale)")
@@ -358,7 +409,7 @@ class FirstScreenTest(base.Page):
             with open(path, "wb") as file:
                 file.write(pdf)
             first = subprocess.run(["pdftotext", "-l", "1", "-layout", path, "-"], check=True, capture_output=True, text=True).stdout
-            for wanted in [*words, "active part", "How near to the limits", *[u["name"] for u in SHARES], "125 %", "tank bottom"]:
+            for wanted in [*words, "active part", "How near to the limits", *[u["name"] for u in SHARES], "125 %", "active part slid"]:
                 self.assertIn(wanted, first.replace("\u00a0", " "))
             image = os.path.join(WORK.name, "sheet")
             subprocess.run(["pdftoppm", "-l", "1", "-r", "20", "-gray", "-singlefile", path, image], check=True)

@@ -201,8 +201,8 @@ class GalleryTest(base.Page):
         self.open("gallery_no_interference.html")
         found = {name: (text, style) for name, text, style in self.run_js("""return [...document.querySelectorAll('.utilisation')].map((u) =>
             ['.who', '.of-limit', '.percent'].map((s, i) => i < 2 ? u.querySelector(s).textContent : u.querySelector(s).className))""")}
-        self.assertEqual(found["tank bottom: friction"], ("it slips", "percent slid"))
-        self.assertEqual({style for _, style in found.values()}, {"percent slid", "percent good"})  # the verdict is "hold"
+        self.assertEqual(found["tank bottom: friction"], ("it slips", "percent plain"))
+        self.assertEqual({style for _, style in found.values()}, {"percent plain", "percent good"})  # the verdict is "hold"
 
     def test_values_leave_each_other_room(self):
         self.open("gallery_pile.html")

@@ -247,7 +247,7 @@ class ReportTest(Page):
         button = next(b for b in self.all("#events .event-time") if b.get_attribute("title").startswith("0.08514"))
         button.click()
         self.assertAlmostEqual(self.run_js("return steplap.page.time()"), 0.085142652, delta=1e-9)
-        self.assertIn("slips", " ".join(e.get_attribute("textContent") for e in self.all("[data-run=no_interference] .state-text")))
+        self.assertIn("active part slides", " ".join(e.get_attribute("textContent") for e in self.all("[data-run=no_interference] .state-text")))
 
     # --- plots -----------------------------------------------------------------------------------
 

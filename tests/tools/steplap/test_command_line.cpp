@@ -91,6 +91,24 @@ TEST_CASE("check counts the paper's degrees of freedom") {
   CHECK_FALSE(has(outcome.out, "warning"));
 }
 
+TEST_CASE("a signal that only a file above it offers is no mistake of a model") {
+  const Workbench bench;
+  const std::string base = bench.write("base.toml", k_oscillator);
+  CHECK(has(steplap_does({"check", base}).out, "used by nothing"));
+  CHECK_FALSE(has(steplap_does({"check", bench.write("own.toml", "extends = \"base.toml\"\n")}).out, "used by nothing"));
+  const std::string own =
+      bench.write("more.toml", "extends = \"base.toml\"\n[[signal]]\nname = \"mine\"\nkind = \"constant\"\nvalue = 1\n");
+  CHECK(has(steplap_does({"check", own}).out, "signal 'mine' is used by nothing"));
+  for (const char* model : {"three_limb", "five_limb_humping", "single_phase_two_limb_bump", "rail_wagon_humping"})
+    CHECK_FALSE(has(steplap_does({"check", STEPLAP_MODELS "/layouts/" + std::string(model) + ".toml"}).out, "warning"));
+}
+
+TEST_CASE("a model without a command, and an option that is misspelt, are told by what was meant") {
+  CHECK(has(steplap_does({"my.toml"}).err, "to run this model: steplap simulate my.toml"));
+  CHECK(has(steplap_does({"simulate", "my.toml", "--reprot"}).err, "(did you mean '--report'?)"));
+  CHECK(has(steplap_does({"simulat", "my.toml"}).err, "there is no command 'simulat' (did you mean 'simulate'?)"));
+}
+
 TEST_CASE("the model in the README is one") {
   const Workbench bench;
   const std::string readme = text_of(STEPLAP_SOURCE "/README.md"), fence = "```toml\n";

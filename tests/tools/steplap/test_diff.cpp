@@ -111,6 +111,10 @@ TEST_CASE("what followed from another value is told with its size: verdict, even
     REQUIRE(steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "-q"}).code == 0);
   const Outcome said = steplap_does({"diff", bench.at("out/soft"), bench.at("out/stiff")});
   CHECK_MESSAGE(has(said.out, "reject"), said.out);
+  // Verdict, criterion and share of the limit stand before the value from which they follow.
+  const std::size_t value = said.out.find("element.spring.stiffness");
+  REQUIRE(value != std::string::npos);
+  for (const char* first : {"verdict", "Criteria", "share of the limit", "125 %"}) CHECK_MESSAGE(said.out.find(first) < value, first);
   const Json result = result_of(steplap_does({"diff", bench.at("out/soft"), bench.at("out/stiff"), "--json"})), tables = result["tables"];
   CHECK(tables["values"].size() == 1);
   CHECK(*row_of(tables["outcome"], "what", "verdict") == Json{{"what", "verdict"}, {"before", "reject"}, {"after", "hold"}});

@@ -116,3 +116,27 @@ TEST_CASE("runs side by side tell of the channels that the model asks for, too")
   CHECK(has(row, "0.1000000 m")); // 1 m/s for 0.1 s
   CHECK(has(row, "0.3000000 m"));
 }
+
+TEST_CASE("what is written in other words for a load is told by the words to write") {
+  const std::string bar = "title = \"a\"\n[simulation]\nend = 0.1\n[[body]]\nname = \"bar\"\nmass = 1\ninertia = 1\n"
+                          "[[element]]\nkind = \"load\"\nname = \"push\"\n";
+  const std::string text = told("check", bar + "a = \"bar\"\nfx = 5\nfy = 1\n");
+  CAPTURE(text);
+  CHECK(has(text, "unknown key 'a' in load 'push' (did you mean 'at'?)"));
+  CHECK(has(text, "unknown key 'fx' in load 'push' (did you mean 'force_x'?)")); // 'at' has no letter of it
+  CHECK(has(text, "unknown key 'fy' in load 'push' (did you mean 'force_y'?)"));
+  CHECK(has(told("check", bar + "at = \"bar\"\nforce_x = 5\n"), "(a constant value is a signal of kind 'constant'), got an integer"));
+  CHECK(has(told("check", bar + "at = \"bar\"\nmu = 5\n"), "unknown key 'mu' in load 'push'; known are ")); // nothing is like it
+}
+
+// A box of 2 m by 2 m, turned by 45 degrees: its corner is sqrt 2 below its centre of gravity, and that is where it touches.
+TEST_CASE("the place of a contact of outlines is where they touch") {
+  const auto box = [](const std::string& pose) {
+    return told("check", "title = \"a\"\n[simulation]\nend = 0.1\n[[body]]\nname = \"box\"\nmass = 2000\ninertia = 500\n" + pose +
+                             "outline = [[-1, -1], [1, -1], [1, 1], [-1, 1]]\n[[element]]\nkind = \"polygon_contact\"\nname = \"floor\"\n"
+                             "a = \"box\"\nstiffness = 1e9\n");
+  };
+  const std::string standing = box("position = [3, 0.99]\n"), on_edge = box("position = [3, 1.42]\nangle = \"45 deg\"\n");
+  CHECK_MESSAGE(has(standing, "  3 m  -5 mm\n"), standing); // the middle of what is 10 mm deep in the floor
+  CHECK_MESSAGE(has(on_edge, "  3 m  5.78644 mm\n"), on_edge);
+}

@@ -133,6 +133,16 @@ TEST_CASE("a block of any size slides as far as Coulomb's law says") {
   CHECK(slid < 16);
 }
 
+// While it stands, its feet press by turns a little more and a little less: nothing that anyone would call an event.
+TEST_CASE("a block that stands still has no events, and its errors are known") {
+  const Workbench bench;
+  const std::string file = bench.at("block.toml");
+  REQUIRE(steplap_does({"new", "block", "-o", file}).code == 0);
+  const Json summary = json_of(steplap_does({"simulate", file, "-o", bench.at("out"), "--json"}))["summary"];
+  CHECK(summary["events"]["count"] == 0);
+  CHECK(summary["overview"]["trust"]["level"] == "good");
+}
+
 TEST_CASE("a block that is slender tips over instead") {
   const Workbench bench;
   Dimensions d = {{"height", 6.0}, {"length", 1.0}, {"friction", 0.8}, {"deceleration", 0.5 * 9.80665}}; // beyond g length / height

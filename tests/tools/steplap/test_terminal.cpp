@@ -113,18 +113,21 @@ TEST_CASE("on a terminal the verdict has the colour of its meaning; piped or wit
   }
 }
 
-TEST_CASE("warnings are coloured on a terminal, on both streams, and with NO_COLOR on none") {
+TEST_CASE("warnings stand once on a terminal, coloured, and whole") {
   const Workbench bench;
   std::string text = k_bouncer;
   text.replace(text.find("[0, 0.1]"), 8, "[0, -0.1]"); // it begins pressed into the floor
   const std::string model = bench.write("a.toml", text);
   Call call{.arguments = {"simulate", model, "-f", "-o", bench.at("out")}, .environment = k_colours};
   const std::string screen = on_terminal(call).screen;
-  CHECK_MESSAGE(has(screen, "\x1b[1;33mWarning\x1b[0m: "), screen);
-  CHECK(has(screen, "warning\x1b[m: "));
+  CHECK_MESSAGE(has(screen, "warning\x1b[m: "), screen);
+  CHECK_FALSE(has(screen, "Warning"));
+  const Call show{.arguments = {"show", bench.at("out/a")}, .environment = k_colours};
+  const std::string shown = on_terminal(show).screen;
+  CHECK_MESSAGE(has(shown, "\x1b[1;33mWarning\x1b[0m: "), shown);
+  CHECK_FALSE(has(shown, "…"));
   call.environment.front().second = "1";
   const std::string plain = on_terminal(call).screen;
-  CHECK(has(plain, "Warning: "));
   CHECK(has(plain, "warning: "));
   CHECK_FALSE(has(plain, "\x1b[1"));
   CHECK_FALSE(has(plain, "\x1b[33"));

@@ -6,6 +6,8 @@
 #include "tests/tools/study/study_bench.h"
 #include "tools/study/law.h"
 
+#include <cctype>
+
 using namespace steplap;
 using namespace steplap::testing;
 
@@ -15,6 +17,20 @@ std::string with_friction(const std::string& kind, const std::string& settings, 
   return "kind = \"" + kind + "\"\nmodel = \"block.toml\"\n" + settings +
          "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n" +
          "distribution = \"lognormal\"\nmean = " + std::to_string(mean) + "\ncov = " + std::to_string(cov) + "\n" + k_slid;
+}
+
+} // namespace
+
+namespace {
+
+// Returns true if a text has 64 hexadecimal digits in a row.
+bool has_digest(const std::string& text) {
+  std::size_t count = 0;
+  for (const char c : text) {
+    count = std::isxdigit(static_cast<unsigned char>(c)) ? count + 1 : 0;
+    if (count == 64) return true;
+  }
+  return false;
 }
 
 } // namespace
@@ -31,6 +47,10 @@ TEST_CASE("a sweep over friction gives the distances of the closed form") {
   study::Store store(bench.at("study.sqlite"));
   std::vector<study::StoredSample> rows;
   store.read(1, 5, rows);
+  // The screen has every value with what it gave, and no digests of the files.
+  for (const char* row : {"sample", "     1  0.1", "     5  0.7"}) CHECK_MESSAGE(has(outcome.out, row), outcome.out);
+  CHECK(has(outcome.out, "Read from "));
+  CHECK_MESSAGE(!has_digest(outcome.out), outcome.out);
   for (const study::StoredSample& row : rows) {
     CAPTURE(row.values[0]);
     // The run's own tolerance is 1e-10.

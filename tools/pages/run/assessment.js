@@ -13,7 +13,7 @@
 
   function keyFigures() {
     const figure = (value, words) => make('li', {}, make('b', {}, value), ` ${words}`), count = (test) => A.events.filter((e) => e.models.some(test)).length;
-    return make('ul', { class: 'key-figures' }, figure(String(A.events.length), 'events'), figure(String(count((m) => m.slipping.length)), 'in which a joint slips'), figure(String(count((m) => m.verdict === 'reject')), 'in which a model does not hold'),
+    return make('ul', { class: 'key-figures' }, figure(String(A.events.length), A.events.length === 1 ? 'event' : 'events'), figure(String(count((m) => m.slipping.length)), 'in which a joint slips'), figure(String(count((m) => m.verdict === 'reject')), 'in which a model does not hold'),
       figure(String(count((m) => m.verdict === 'open')), 'in which a verdict is open'), ...(A.voyage.damage_probability ? [figure(A.chanceText(A.voyage.damage_probability), 'probability of damage in the voyage')] : []));
   }
   function decision() {

@@ -2,12 +2,14 @@
 // runs a bar each under the same name; what has another name in another run, but is of the same kind at the same place, too.
 steplap.bars = (() => {
   const make = steplap.make, { percent, one, full, isKnown } = steplap.numbers;
-  const first = 8, firstOfSeveral = 6; // rows that are seen without asking for more
+  const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // rows that are seen without asking for more
   const longest = 1.6; // of the limit: what is beyond it is cut off, with an arrow that says so
 
-  // Friction that slips passes no limit of the verdict: it has the colour of what slips, and its words in place of two equal numbers.
-  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1;
-  const stateOf = (u) => (isSlip(u) ? 'slid' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
+  // Results of earlier versions do not say which shares are those of criteria: these have a limit.
+  const isJudged = (u) => u.is_judged ?? isKnown(u.limit);
+  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // its words stand in place of two equal numbers
+  // What no criterion limits is no alarm, however far it goes.
+  const stateOf = (u) => (!isJudged(u) ? 'plain' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
   const size = (u) => (isKnown(u.share) ? u.share : Infinity); // no number, but a limit: an infinite load or no capacity
   // What a bar tells of, apart from its name: the kind of element, what is told of it, and where it is at rest; null if it is of none.
   function subjectOf(u, run) {
@@ -70,6 +72,8 @@ steplap.bars = (() => {
   function ofLimit(u) {
     if (isSlip(u) || u.limit === 0) return u.detail || ''; // of nothing there is no part
     if (!isKnown(u.value) || !isKnown(u.limit) || (!u.unit && u.limit === 1)) return '';
+    if (!u.unit && (u.channel || '').endsWith('share')) return `${percent(u.value)} of ${percent(u.limit)}`;
+    if (!u.unit && u.detail) return u.detail; // it says what the number is
     const { texts, unit } = steplap.numbers.column([{ value: u.value }, { value: u.limit }], u.unit || '');
     const isLeast = Math.abs(u.value) > 0 && Math.abs(u.share - u.limit / u.value) < 1e-6 * Math.abs(u.share) && u.value !== u.limit;
     if (isLeast) return `${steplap.numbers.withUnit(texts[0], unit)}, asked ${steplap.numbers.withUnit(texts[1], unit)}`;
@@ -90,12 +94,18 @@ steplap.bars = (() => {
     const rows = rowsOf(runs), isOne = runs.length === 1, seen = isOne ? first : firstOfSeveral;
     box.hidden = !rows.length;
     if (!rows.length) return;
+    const isOfCriterion = (row) => row.entries.some((u) => u && isJudged(u)), criteria = rows.filter(isOfCriterion), others = rows.filter((row) => !isOfCriterion(row));
     const worst = Math.max(...rows.map((row) => Math.max(...row.entries.filter(Boolean).map(size))));
     const scale = Math.min(longest, Math.max(1.04, 1.02 * worst));
     const list = (some) => make('ul', { class: 'bars' }, ...some.map((row) => make('li', {}, ...(isOne ? [] : [headOf(row, runs)]),
       ...row.entries.map((u, k) => (u ? barOf(u, scale, runs[k], isOne, onChoose) : '')).filter(Boolean))));
-    box.append(make('h2', {}, 'How near to the limits'), make('p', { class: 'note scale-note', style: `--limit:${(100 / scale).toFixed(3)}%` }, make('span', {}, 'limit')), list(rows.slice(0, seen)));
-    if (rows.length > seen) box.append(make('details', {}, make('summary', {}, `${rows.length - seen} more`), list(rows.slice(seen))));
+    const put = (heading, some, most) => {
+      if (!some.length) return;
+      box.append(make('h2', {}, heading), make('p', { class: 'note scale-note', style: `--limit:${(100 / scale).toFixed(3)}%` }, make('span', {}, 'limit')), list(some.slice(0, most)));
+      if (some.length > most) box.append(make('details', {}, make('summary', {}, `${some.length - most} more`), list(some.slice(most))));
+    };
+    put('How near to the limits', criteria, seen);
+    put('Friction and strength without a criterion', others, criteria.length ? firstOfOthers : seen);
   }
   return { build };
 })();

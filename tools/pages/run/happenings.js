@@ -48,7 +48,7 @@
       for (const h of this.happenings || []) {
         const now = this.happenedTo(h, t), { group, text } = h;
         group.style.display = now ? '' : 'none';
-        text.textContent = now && h.isInWords ? `${h.name} ${now.word}` : '';
+        text.textContent = now && h.isInWords ? steplap.words.sentence(h.name, now.word) : '';
         if (!now) continue;
         if (h.role !== now.role) {
           if (h.sign) h.sign.remove();

@@ -18,10 +18,17 @@ steplap.marks = (() => {
   // Limits that the axis is stretched for: those that are not far beyond what is reached.
   const isNear = (value, low, high) => Math.abs(value) <= 1.6 * Math.max(Math.abs(low), Math.abs(high)) && (value >= 0 ? high > 0 || value <= high : low < 0);
 
+  // The end of a channel that is worst: that which a criterion looks at, the lowest of a margin, otherwise the largest.
+  function worstEnd(s, e) {
+    const u = steplap.overview.of(s.run).utilisations.find((each) => each.channel === s.name && isKnown(each.value));
+    if (u && (u.value === e.min || u.value === e.max)) return u.value === e.min ? 'min' : 'max';
+    if (s.name.endsWith('margin')) return 'min';
+    return Math.abs(e.min) > Math.abs(e.max) ? 'min' : 'max';
+  }
   function extremeOf(s) {
     const e = s.run.summary.extremes[s.name];
     if (s.isBound || !e || !isKnown(e.min) || !isKnown(e.max) || s.isZero) return null;
-    const key = Math.abs(e.min) > Math.abs(e.max) ? 'min' : 'max';
+    const key = worstEnd(s, e);
     return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], error: e[`error_${key}`] } : null;
   }
   // A text of 11 pixels, with some room.

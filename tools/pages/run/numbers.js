@@ -48,13 +48,18 @@ steplap.numbers = (() => {
   // that half a micrometre of a machine that is larger than a hand is nothing; 1e-10 rad are a hundredth of a micrometre
   // over a hundred metres.
   const roundings = new WeakMap();
+  function largestOf(run, unit) {
+    let largest = 0;
+    for (const e of Object.values(run.summary.extremes))
+      if (e.unit === unit) for (const v of [e.min, e.max]) if (isKnown(v) && isFinite(v)) largest = Math.max(largest, Math.abs(v));
+    return largest;
+  }
   function roundingOf(run, unit) {
     if (!roundings.has(run)) roundings.set(run, new Map());
     const known = roundings.get(run);
     if (!known.has(unit)) {
-      let largest = 0;
-      for (const e of Object.values(run.summary.extremes))
-        if (e.unit === unit) for (const v of [e.min, e.max]) if (isKnown(v) && isFinite(v)) largest = Math.max(largest, Math.abs(v));
+      let largest = largestOf(run, unit);
+      if (unit === 'N m') largest = Math.max(largest, largestOf(run, 'N') * Math.min(1, largestOf(run, 'm'))); // couples are forces times lengths
       known.set(unit, unit === 'm' ? Math.min(5e-7, 5e-6 * largest) : unit === 'rad' ? Math.max(1e-10, 1e-9 * largest) : 1e-9 * largest);
     }
     return known.get(unit);

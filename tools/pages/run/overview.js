@@ -40,7 +40,7 @@ steplap.overview = (() => {
   }
   // The worst instant of the run that is nearest to its limits, or furthest beyond; null if none has one.
   function worstOf(runs) {
-    const shareOf = (o) => (o.utilisations.length ? (o.utilisations[0].share ?? Infinity) : 0);
+    const shareOf = (o) => { const u = o.utilisations.find((each) => each.is_judged) || o.utilisations[0]; return u ? u.share ?? Infinity : 0; };
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
     return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
   }

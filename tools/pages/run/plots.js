@@ -195,7 +195,7 @@ steplap.Plots = (() => {
       this.full = [0, Math.max(...steplap.data.runs.map((r) => r.end))];
       this.window = this.full;
       this.figures = steplap.figures.of(steplap.data.runs);
-      document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}. A dot marks the largest value of a curve.`;
+      document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}. A dot marks the worst value of a curve: the lowest of a margin, the largest of others.`;
     }
     // Least and largest value that any run shows in a figure within a window of time, the extremes between samples, too.
     rangeOf(figure, [from, to]) {

@@ -88,23 +88,29 @@ steplap.results = (() => {
     };
     runs.forEach((run, k) => {
       for (const u of steplap.overview.of(run).utilisations) add(k, 'Share of the limit', u.name, { value: u.share, error: u.error, unit: '', full: full(u.share), word: u.beyond ? 'beyond' : '' }, { isShare: true });
-      for (const c of q.criteria(run)) add(k, 'Criteria', c.name === c.asked ? c.name : `${c.name}: ${c.asked}`, { ...c, word: c.outcome });
+      for (const c of q.criteria(run)) add(k, 'Criteria', c.name === c.asked ? c.name : `${c.name}: ${c.asked}`, { ...c, word: c.outcome }, { isSize: c.asked.includes('|') });
       for (const j of q.joints(run)) for (const [name, n] of j.figures) add(k, 'Step-lap joints', `${j.name}: ${name}`, n, { isTime: n.unit === 's' });
-      for (const f of q.friction(run)) { add(k, 'Friction', `${f.name}: largest slide`, f.slide); add(k, 'Friction', `${f.name}: slide left at the end`, f.left); }
-      for (const f of q.forces(run)) add(k, 'Forces and couples', f.name + (f.channel.endsWith('.force') ? '' : `: ${f.channel.slice(f.name.length + 1)}`), f);
+      for (const f of q.friction(run)) { add(k, 'Friction', `${f.name}: largest slide`, f.slide, { isSize: true }); add(k, 'Friction', `${f.name}: slide left at the end`, f.left); }
+      for (const f of q.forces(run)) add(k, 'Forces and couples', f.name + (f.channel.endsWith('.force') ? '' : `: ${f.channel.slice(f.name.length + 1)}`), f, { isSize: true });
     });
     return [...rows.values()];
   }
   // Of two runs what the second has more than the first; of more what lies between the least and the largest.
-  function differenceOf(entries) {
-    const values = entries.map((e) => (e && isKnown(e.value) && isFinite(e.value) ? e.value : null));
+  // Where a criterion asks for the size, sizes are compared.
+  function differenceOf({ entries, isSize }) {
+    const values = entries.map((e) => (e && isKnown(e.value) && isFinite(e.value) ? (isSize ? Math.abs(e.value) : e.value) : null));
     if (values.length === 2) return values.includes(null) ? null : values[1] - values[0];
     const known = values.filter((v) => v !== null);
     return known.length > 1 ? Math.max(...known) - Math.min(...known) : null;
   }
-  const withSign = (text, value, isTwo) => (isTwo && value > 0 && text !== '0' ? `+${text}` : text);
+  // "+3 kN", and "3 kN more" where sizes are compared.
+  function changeText(text, value, { isSize }, isTwo) {
+    if (!isTwo || text === '0') return text;
+    if (isSize) return `${text.replace('−', '')} ${value > 0 ? 'more' : 'less'}`;
+    return value > 0 ? `+${text}` : text;
+  }
   function rowCells(row, runs) {
-    const isTwo = runs.length === 2, difference = differenceOf(row.entries), end = Math.max(...runs.map((r) => r.end));
+    const isTwo = runs.length === 2, difference = differenceOf(row), end = Math.max(...runs.map((r) => r.end));
     const errors = row.entries.reduce((sum, e) => sum + (e && e.error > 0 ? e.error : 0), 0);
     const isSame = difference !== null && Math.abs(difference) <= errors;
     const write = row.isShare ? (v) => percent(v) : row.isTime ? (v) => instant(v, end) : null;
@@ -113,7 +119,7 @@ steplap.results = (() => {
     const texts = found.texts.map((text) => withUnit(text, found.unit));
     if (row.isShare && difference !== null) texts[texts.length - 1] = withUnit(steplap.numbers.fixed(100 * difference, 1), difference === 0 ? '' : 'points');
     const cells = row.entries.map((e, i) => (e ? { text: texts[i] + (e.word && e.word !== 'met' ? `, ${e.word}` : ''), value: e.value, full: e.full, class: e.word || 'number' } : '–'));
-    const last = { text: difference === null ? '–' : isSame ? '0' : withSign(texts[texts.length - 1], difference, isTwo), value: difference === null ? undefined : difference, full: full(difference, row.unit) + (isSame && difference !== 0 ? ', less than the errors' : '') };
+    const last = { text: difference === null ? '–' : isSame ? '0' : changeText(texts[texts.length - 1], difference, row, isTwo), value: difference === null ? undefined : difference, full: full(difference, row.unit) + (isSame && difference !== 0 ? ', less than the errors' : '') };
     return [row.name, ...cells, last];
   }
   function compare(runs) {

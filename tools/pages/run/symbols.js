@@ -271,16 +271,17 @@ steplap.Symbols = (() => {
       const places = element.contacts ? names.map((name) => scene.byName.get(name)).filter((e) => e && e.at.length).map((e) => e.at[0]) : element.at;
       const rate = scene.run.channel(`${element.name}.slip_rate`), force = this.channel(element, shape);
       if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // more words than room
+      const subject = element.contacts || element.shapes.some((other) => other.type === 'faces') ? places[0].body : element.name; // what moves
       const text = make('text', { class: 'state-text', 'data-element': element.name });
       scene.textLayer.append(text);
       this.update((t, pose) => {
         const sum = places.map((p) => scene.placed(p, pose)).reduce(add);
         const [x, y] = scene.toScreen(scaled(sum, 1 / places.length)), m = scene.run.modeAt(element.name, t);
-        const state = m === 2 ? 'slips' : 'slipped';
+        const state = m === 2 ? 'slides' : 'slid';
         const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
         const hasMoved = m !== 2 && scene.hasMoved(element.name, t), isSaid = m === 2 || hasMoved; // what holds needs no word
         const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // as with arrows, less is rounding
-        text.textContent = !isSaid ? '' : `${element.name} ${state}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
+        text.textContent = !isSaid ? '' : `${steplap.words.sentence(subject, state)}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
         text.setAttribute('class', 'state-text slips');
         const width = 8.4 * text.textContent.length, ways = [14, 32, -16, 50, -34, 68, 86, 104];
         this.put(text, [x, y], [width, 18], [...ways.map((dy) => [0, dy]), ...ways.map((dy) => [0.6 * width, dy]), ...ways.map((dy) => [-0.6 * width, dy])]);

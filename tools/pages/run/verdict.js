@@ -12,7 +12,8 @@ steplap.verdict = (() => {
     const overview = steplap.overview.of(run), badge = steplap.overview.badgeOf(run);
     const box = make('div', { class: 'card', 'data-run': run.name });
     if (!isOne) box.append(make('h2', { class: 'run-name' }, run.name));
-    box.append(make('p', { class: 'verdict-line' }, make('span', { class: `badge ${badge.name}` }, badge.word), make('span', { class: 'reason' }, overview.reason)));
+    const sign = badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // without criteria there is no verdict
+    box.append(make('p', { class: 'verdict-line' }, sign, make('span', { class: 'reason' }, overview.reason)));
     if (overview.isOld) box.append(make('p', { class: 'note old' }, 'These results are older than this program. Run the model again to see how near it is to its limits and what happened in words.'));
     if (!isOne) box.append(make('p', { class: 'trust-line' }, ...trustLine(run)));
     return box;

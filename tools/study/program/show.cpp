@@ -55,6 +55,35 @@ void show_reasons(Store& store, std::ostream& out) {
   if (groups.size() > k_most) out << "  and " << groups.size() - k_most << " more reasons\n";
 }
 
+constexpr long k_most_samples = 20;
+
+// Prints what a sweep has tried and what each run gave.
+void show_samples(Store& store, std::ostream& out) {
+  const StoreIdentity& identity = store.identity();
+  std::vector<TextTable::Align> columns(1 + identity.variables.size() + identity.numbers.size(), TextTable::Align::right);
+  std::vector<std::string> head{"sample"};
+  for (const auto* names : {&identity.variables, &identity.numbers}) head.insert(head.end(), names->begin(), names->end());
+  TextTable table(columns);
+  table.set_head("samples", head);
+  std::vector<StoredSample> samples;
+  store.read(1, std::min(store.size(), k_most_samples), samples);
+  for (const StoredSample& sample : samples) {
+    TextTable::Row row{count_cell(static_cast<std::size_t>(sample.number))};
+    for (const auto* values : {&sample.values, &sample.outcome.numbers})
+      for (const double value : *values) row.push_back(Cell(digits(value), value));
+    table.add_row(row);
+  }
+  out << table;
+  if (store.size() > k_most_samples) out << "  … and " << store.size() - k_most_samples << " more samples, which export writes\n";
+}
+
+// Prints the files from which the study was made. Their digests are in the store.
+void show_files(Store& store, std::ostream& out) {
+  std::istringstream files(store.setting("files"));
+  for (std::string line; std::getline(files, line);)
+    if (const std::size_t space = line.find(' '); space != std::string::npos) out << "Read from " << line.substr(space + 1) << "\n";
+}
+
 } // namespace
 
 void show(Store& store, const std::string& title, std::ostream& out) {
@@ -63,6 +92,7 @@ void show(Store& store, const std::string& title, std::ostream& out) {
   out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": " << store.size() << " samples"
       << (standing.empty() ? ", not finished" : "") << "\n";
   show_reasons(store, out);
+  if (store.identity().kind == "sweep") show_samples(store, out);
   std::vector<Finding> findings = store.findings();
   if (standing.empty()) {
     findings = store.growth();
@@ -78,10 +108,7 @@ void show(Store& store, const std::string& title, std::ostream& out) {
                    count_cell(static_cast<std::size_t>(f.samples)), f.status});
   out << table;
   for (const std::string& note : store.notes()) out << note << "\n";
-  std::istringstream files(store.setting("files"));
-  for (std::string line; std::getline(files, line);)
-    if (const std::size_t space = line.find(' '); space != std::string::npos)
-      out << "Read from " << line.substr(space + 1) << " (" << line.substr(0, space) << ")\n";
+  show_files(store, out);
   if (!standing.empty() && standing != "done") out << "Standing: " << standing << "\n";
 }
 
