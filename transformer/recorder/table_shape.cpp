@@ -238,7 +238,8 @@ std::size_t most_fields(const std::vector<HeaderLine>& head, const TableShape& s
 }
 
 bool leaves_columns_unnamed(const std::vector<HeaderLine>& head, const TableShape& shape) {
-  return family_of({head.begin(), head.begin() + static_cast<std::ptrdiff_t>(shape.first_data)}) == "Gulf Coast Data Concepts";
+  return !shape.names.empty() &&
+         family_of({head.begin(), head.begin() + static_cast<std::ptrdiff_t>(shape.first_data)}) == "Gulf Coast Data Concepts";
 }
 
 // Files in blocks mark the begin of rows, for example with "*DATA".
