@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap::assess {
 
@@ -160,6 +161,7 @@ Reason without_assumed_return(Reason all, Reason known) {
   if (all.outcome != Decision::send_back) return all;
   if (known.outcome == Decision::send_back) return known;
   all.outcome = Decision::inspect;
+  all.excess = std::numeric_limits<double>::infinity(); // first of all that ask to inspect: by it the machine would be sent back
   all.text += " The limit is assumed, and no other asks for \"return\": find out the true limit before the machine is sent back.";
   return all;
 }
@@ -188,7 +190,7 @@ Reason judge_probability(const DecisionCriterion& c, const Probability& p, const
                            percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
                            (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " +
                            percent(*c.at_most) + " are allowed";
-  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".", p.value / *c.at_most);
+  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".", 1.0); // it sums up the other criteria, so it comes after them
   if (p.high > *c.at_most) return judged(c, Decision::open, text + ", which lies within the interval: more samples are needed.");
   return judged(c, Decision::energise, text + ".");
 }

@@ -81,6 +81,15 @@ TEST_CASE("a known limit that is exceeded, too, still returns the machine, and i
   CHECK(says(both.reason, "'exact'"));
 }
 
+TEST_CASE("that only an assumed limit asks to return the machine is the reason, whatever else asks to inspect it") {
+  const Folder folder;
+  const Assessment a = assessed(folder, limit("slide", "within = \"1 mm\"\nsource = \"assumed\""),
+                                "quantity = \"peak\"\nat_most = \"0.01 gravity\"\n[[criterion]]\nname = \"models\"\n" + k_limits, 0);
+  CHECK(a.decision == Decision::inspect);
+  CHECK(a.reasons.front().criterion == "models");
+  CHECK(says(a.reason, "assumed"));
+}
+
 TEST_CASE("a limit whose uncertain parameter is assumed is assumed") {
   const Folder folder;
   const std::string follows = limit("slide", "within = \"= travel\"");
