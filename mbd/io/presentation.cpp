@@ -87,11 +87,16 @@ public:
       if (!is_written(plot)) left_out_.push_back(plot.name);
       return !is_written(plot);
     });
-    for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
     for (const ElementEntry& entry : model_.elements)
       if (const auto* const action = as_action(*entry.element)) check_action(*action);
-    if (!problems_.empty()) throw ModelError(std::move(problems_));
+    run_criteria();
     return std::move(left_out_);
+  }
+
+  // Throws the problems found so far and those of the criteria.
+  void run_criteria() {
+    for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
+    if (!problems_.empty()) throw ModelError(std::move(problems_));
   }
 
 private:
@@ -248,7 +253,7 @@ const TableKind& plot_kind() {
 
 const TableKind& acceptance_kind() {
   static const TableKind kind = [] {
-    using T = Criterion;
+    using T = AcceptanceTable;
     TableKind k;
     k.name = "acceptance";
     k.doc = "What a run must meet for the machine to be held good: limits on channels, written or not, over the whole "
@@ -262,10 +267,13 @@ const TableKind& acceptance_kind() {
     f.add("element", &T::element).doc("elements whose event is meant, a pattern; all if not given");
     f.add("consequence", &T::consequence).one_of({"inspect", "reject"}).doc("if the criterion is not met");
     f.add("reason", &T::reason).doc("why, or by which document");
+    f.add("source", &T::source)
+        .one_of({"assumed", "specified", "measured"})
+        .doc("how the limit is known; in `steplap assess` an assumed one alone never makes \"return\"");
     k.holds<T>();
     k.reads_masses = k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) {
-      T criterion = static_cast<const T&>(table);
+      Criterion criterion = static_cast<const T&>(table);
       check_criterion(criterion);
       for (const Limit& limit : k_limits) // kept in SI until the channels are known
         if (!(criterion.*limit.text).empty()) criterion.*limit.value = read_limit(criterion.*limit.text, "*").value;
@@ -276,6 +284,15 @@ const TableKind& acceptance_kind() {
   return kind;
 }
 
+std::vector<const AcceptanceTable*> acceptance_tables_of(const Model& model) {
+  std::vector<const AcceptanceTable*> all;
+  for (const TableEntry& entry : model.tables)
+    if (entry.kind == &acceptance_kind()) all.push_back(static_cast<const AcceptanceTable*>(entry.table.get()));
+  return all;
+}
+
 std::vector<std::string> check_presentation(Model& model, const System& system) { return PresentationCheck(model, system).run(); }
+
+void convert_limits(Model& model, const System& system) { PresentationCheck(model, system).run_criteria(); }
 
 } // namespace steplap

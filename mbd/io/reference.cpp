@@ -102,15 +102,17 @@ ReferenceRows kinds_rows(const Catalogue& catalogue) {
   return rows;
 }
 
-KindReference kind_reference(const Catalogue& catalogue, const std::string& name) {
+std::vector<KindReference> kind_references(const Catalogue& catalogue, const std::string& name) {
+  std::vector<KindReference> found;
   std::vector<std::string> known;
   for (const Described& kind : describe(catalogue)) {
     if (kind.name == name) {
       const std::vector<KindChannel> channels = channels_of(catalogue, kind);
-      return {heading(kind), kind.doc, rows_of(kind), channels.empty() ? ReferenceRows{} : rows_of(owner_of(kind), channels)};
+      found.push_back({heading(kind), kind.doc, rows_of(kind), channels.empty() ? ReferenceRows{} : rows_of(owner_of(kind), channels)});
     }
     known.push_back(kind.name);
   }
+  if (!found.empty()) return found;
   throw ModelError(Location{}, "there is no kind '" + name + "'" + did_you_mean(name, known));
 }
 

@@ -18,9 +18,9 @@ struct KindReference {
   ReferenceRows channels; ///< channels of its elements; empty if they have none
 };
 
-/// Returns the reference of a kind, or of "body", "marker", "simulation", "output" or "model" (the top-level keys). Throws ModelError for
+/// Returns the references of all kinds with this name (a table and a signal may share one), or of "body", "marker", "simulation", "output" or "model" (the top-level keys). Throws ModelError for
 /// an unknown name, with the most similar known one.
-[[nodiscard]] KindReference kind_reference(const Catalogue& catalogue, const std::string& name);
+[[nodiscard]] std::vector<KindReference> kind_references(const Catalogue& catalogue, const std::string& name);
 /// Returns the whole reference in Markdown.
 [[nodiscard]] std::string reference_markdown(const Catalogue& catalogue);
 

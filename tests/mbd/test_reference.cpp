@@ -12,19 +12,19 @@ using namespace steplap;
 using steplap::testing::small_catalogue;
 
 TEST_CASE("the reference of a kind shows every field") {
-  const KindReference pair = kind_reference(small_catalogue(), "pair");
+  const KindReference pair = kind_references(small_catalogue(), "pair").front();
   CHECK(pair.heading == "[[pair]]");
   CHECK(pair.doc == "Two equal bodies side by side.");
   CHECK(pair.fields == ReferenceRows{{"field", "type", "unit", "default", "range", "meaning"},
                                      {"spacing", "number", "m", "1", "> 0", "distance of the two"},
                                      {"carrier", "body", "", "\"ground\"", "", "what carries them"}});
   CHECK(pair.channels.empty());
-  const KindReference spring = kind_reference(small_catalogue(), "spring");
+  const KindReference spring = kind_references(small_catalogue(), "spring").front();
   CHECK(spring.heading == "[[element]] of kind \"spring\"");
   const std::vector<std::string> names = testing::spring_kind().fields.names();
   REQUIRE(spring.fields.size() == names.size() + 1);
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(spring.fields[i + 1].front() == names[i]);
-  CHECK_THROWS_WITH_AS(static_cast<void>(kind_reference(small_catalogue(), "sprong")),
+  CHECK_THROWS_WITH_AS(static_cast<void>(kind_references(small_catalogue(), "sprong")),
                        "error: there is no kind 'sprong' (did you mean 'spring'?)", ModelError);
 }
 

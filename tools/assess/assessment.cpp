@@ -41,15 +41,13 @@ VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::
   }
   for (const auto* limits : {&passage.reactions, &passage.clearances, &passage.others})
     for (const LimitPassage& limit : *limits) {
-      if (limit.outcome <= s.acceptance) continue;
-      s.acceptance = limit.outcome;
-      s.first_unmet = "'" + limit.name + "' in event " + std::to_string(number) +
-                      (std::isfinite(limit.share) ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : "");
+      const bool has_share = std::isfinite(limit.share);
+      s.note_limit(limit.outcome, limit.is_assumed, has_share ? limit.share : 0.0,
+                   "'" + limit.name + "' in event " + std::to_string(number) +
+                       (has_share ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : ""));
     }
-  if (passage.is_made && passage.verdict == Verdict::open && s.acceptance < Verdict::open) {
-    s.acceptance = Verdict::open;
-    s.first_unmet = "event " + std::to_string(number) + ": " + passage.reason;
-  }
+  if (passage.is_made && passage.verdict == Verdict::open)
+    s.note_limit(Verdict::open, false, 0.0, "event " + std::to_string(number) + ": " + passage.reason);
   s.lifts = !passage.feet.empty();
   return s;
 }
@@ -58,6 +56,8 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
                  Assessment& a) {
   a.criteria = read_criteria(options.criteria);
   a.accepted = options.accepted;
+  a.shipment = options.shipment;
+  a.voyage = options.voyage;
   std::vector<Diagnostic> problems;
   for (const std::string& model : models) {
     try {
@@ -143,6 +143,7 @@ void sample(const AssessmentOptions& options, Assessment& a) {
   if (a.uncertain->empty() || options.sampling.samples <= 0) return;
   if (a.samples.empty()) a.samples = samples_of(options, a, "");
   a.damage = damage_probability(a.samples);
+  a.known_damage = damage_probability(a.samples, LimitsJudged::known);
   a.shares = shares_of(a.samples);
   for (std::size_t e = 0; e < a.events.size(); ++e)
     for (std::size_t m = 0; m < a.models.size(); ++m) a.events[e].slip.push_back(slip_probability(a.samples, m, e, a.events.size()));
@@ -166,6 +167,9 @@ void assume(Assessment& a) {
   for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
+  for (const DrivenModel& model : a.models)
+    for (const std::string& limit : model.assumed_limits)
+      a.assumptions.push_back("'" + model.name + "': the limit '" + limit + "' is assumed.");
   constexpr double k_unlikely = 0.01; // probability in each tail
   for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
     const UncertainValue& value = a.uncertain->values()[i];

@@ -6,6 +6,7 @@
 #include "tools/assess/passage.h"
 #include "tools/assess/samples.h"
 #include "transformer/decision/criteria.h"
+#include "transformer/decision/shipment.h"
 
 #include <functional>
 #include <memory>
@@ -19,6 +20,7 @@ struct AssessmentOptions {
   EventReading reading;
   std::vector<std::string> overrides;     ///< "path=value", applied to every model
   std::vector<Evidence> accepted;         ///< missing evidence that the user accepts
+  Shipment shipment;                      ///< papers, for the sheet that is signed
   std::optional<Voyage> voyage;           ///< begin and end of the transport
   double budget = 60.0;                   ///< s of computing time per started day of record that the search for a lower event threshold may
                                           ///< use
@@ -42,10 +44,13 @@ struct Reason {
   std::string criterion, text, source;
   Decision outcome = Decision::energise;
   std::vector<std::string> tests;
+  double excess = 0.0; ///< what was asked of the machine over what is allowed; 0: unknown
 };
 
 /// All results of an assessment.
 struct Assessment {
+  Shipment shipment;
+  std::optional<Voyage> voyage;
   std::vector<RecordEvents> records;
   std::vector<DrivenModel> models;
   std::vector<SharedFriction> shared; ///< friction elements that models of two planes have in common
@@ -55,12 +60,13 @@ struct Assessment {
   std::vector<VoyageSample> samples;
   std::vector<double> shares; ///< share of each uncertain number in the scatter of the margin (shares_of()); empty if unknown
   VoyageSummary summary;
-  Probability damage;
+  Probability damage, known_damage; ///< the latter without limits that are assumed
   DecisionCriteria criteria;
   Decision decision = Decision::open;
   std::string reason;
-  std::vector<Reason> reasons; ///< all criteria, most severe outcome first
-  std::vector<std::string> hangs_on, assumptions, tests;
+  std::vector<Reason> reasons; ///< all criteria, most severe outcome first, and of equal outcomes the largest excess
+  std::vector<std::string> hangs_on, assumptions;
+  std::vector<std::string> tests;       ///< those that would show the damage, then the usual ones
   std::vector<MissingEvidence> missing; ///< of single records and of all records together
   std::vector<Evidence> accepted;
   std::optional<VoyageSummary> by_samples; ///< result with nominal values computed by VoyageRunner, if it was run

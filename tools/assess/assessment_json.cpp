@@ -54,6 +54,7 @@ Json records(const Assessment& a) {
                    {"faults", faults},
                    {"rate", number(record.rate)},
                    {"bandwidth", number(record.bandwidth)},
+                   {"sensor_range", number(record.recording.layout.range)},
                    {"threshold", record.rules.threshold},
                    {"subtracted", subtracted},
                    {"events", record.events.size()},
@@ -143,6 +144,7 @@ Json limits(const std::vector<LimitPassage>& all, const char* value_name) {
                     {"unit", limit.unit},
                     {"share", number(limit.share)},
                     {"met", limit.is_met},
+                    {"assumed", limit.is_assumed},
                     {"outcome", name_of(limit.outcome)},
                     {"text", limit.text}});
   return list;
@@ -285,6 +287,21 @@ Json reasons(const Assessment& a) {
   return all;
 }
 
+// Returns the papers as given; "" for what is not stated.
+Json shipment(const Shipment& s) {
+  Json recorders = Json::array(), handovers = Json::array();
+  for (const ShippedRecorder& r : s.recorders)
+    recorders.push_back({{"serial", r.serial},
+                         {"record", r.record},
+                         {"calibrated", r.calibrated},
+                         {"range", r.range},
+                         {"filter", r.filter},
+                         {"place", r.place}});
+  for (const Handover& h : s.handovers) handovers.push_back({{"place", h.place}, {"time", h.time}});
+  return {{"file", s.file},       {"transformer", s.transformer}, {"departure", s.departure},
+          {"arrival", s.arrival}, {"recorders", recorders},       {"handovers", handovers}};
+}
+
 Json missing_evidence(const Assessment& a) {
   Json all = Json::array();
   for (const MissingEvidence& missing : a.missing)
@@ -305,7 +322,10 @@ std::string assessment_json(const Assessment& a) {
                      {"reason", a.reason},
                      {"reasons", reasons(a)},
                      {"missing_evidence", missing_evidence(a)},
+                     {"shipment", shipment(a.shipment)},
+                     {"journey", a.voyage ? Json(a.voyage->text) : Json(nullptr)},
                      {"covered", coverage_text(a.records)},
+                     {"covered_share", number(covered_share(a.records, a.voyage))},
                      {"records", records(a)},
                      {"models", models(a)},
                      {"events", std::move(events)},

@@ -35,12 +35,17 @@ std::optional<Stamp> instant(const std::string& text) {
 
 MissingEvidence missing(const std::string& reason, const std::string& remedy) { return {Evidence::coverage, reason, remedy}; }
 
+// Returns the duration of the voyage, s.
+double length_of(const Voyage& voyage) {
+  return voyage.is_clock ? 1e-9 * static_cast<double>(voyage.to_ns - voyage.from_ns) : voyage.to - voyage.from;
+}
+
 // Intervals of the voyage that no record covers, s from its begin: the first of them, and their sum.
 struct Uncovered {
   double from = 0.0, to = 0.0, sum = 0.0;
 };
 Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& voyage) {
-  const double length = voyage.is_clock ? 1e-9 * static_cast<double>(voyage.to_ns - voyage.from_ns) : voyage.to - voyage.from;
+  const double length = length_of(voyage);
   std::vector<std::array<double, 2>> spans;
   for (const RecordEvents& record : records) {
     const double start = voyage.is_clock ? 1e-9 * static_cast<double>(*record.clock_ns - voyage.from_ns) : -voyage.from;
@@ -101,6 +106,14 @@ std::string coverage_text(const std::vector<RecordEvents>& records) {
     text += ", from " + rounded_text(records.front().recording.facts.first, 7) + " s to " +
             rounded_text(records.front().recording.facts.last, 7) + " s of its own time";
   return text + ".";
+}
+
+std::optional<double> covered_share(const std::vector<RecordEvents>& records, const std::optional<Voyage>& voyage) {
+  if (!voyage || (!voyage->is_clock && records.size() > 1)) return {};
+  for (const RecordEvents& record : records)
+    if (record.recording.layout.is_peaks || (voyage->is_clock && (!record.clock_ns || record.clock_has_zone != voyage->has_zone)))
+      return {};
+  return 1.0 - uncovered_of(records, *voyage).sum / length_of(*voyage);
 }
 
 std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& records, const std::optional<Voyage>& voyage) {

@@ -21,6 +21,8 @@ struct Voyage {
 
 /// Returns a sentence about the time covered by the records.
 [[nodiscard]] std::string coverage_text(const std::vector<RecordEvents>& records);
+/// Returns the share of the voyage that the records cover, 0 to 1; nothing if it cannot be computed (uncovered() then says why).
+[[nodiscard]] std::optional<double> covered_share(const std::vector<RecordEvents>& records, const std::optional<Voyage>& voyage);
 /// Returns the reason why the voyage is not covered, with a remedy; nothing if it is covered.
 [[nodiscard]] std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& records, const std::optional<Voyage>& voyage);
 

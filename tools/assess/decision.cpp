@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap::assess {
 
@@ -91,8 +92,8 @@ Reading largest_reading(const DecisionCriterion& c, const Assessment& a) {
 }
 
 // Creates the reason for a criterion on a number that is known to exceed its limit, or not known well enough.
-Reason judged(const DecisionCriterion& c, Decision outcome, std::string text) {
-  Reason reason{c.name, std::move(text), c.source, outcome, {}};
+Reason judged(const DecisionCriterion& c, Decision outcome, std::string text, double excess = 0.0) {
+  Reason reason{c.name, std::move(text), c.source, outcome, {}, excess};
   if (outcome == Decision::inspect || outcome == Decision::send_back) reason.tests = c.tests;
   return reason;
 }
@@ -110,7 +111,8 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
                                                     : "";
   const std::string what = is_peak ? "The recorder read at most " : "The largest change of velocity is ";
   if (largest.value > *c.at_most)
-    return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".");
+    return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".",
+                  largest.value / *c.at_most);
   if (!largest.is_known)
     return judged(c, Decision::open,
                   "A record does not tell all that '" + c.name + "' asks: an axis, or frequencies that high, are not in it.");
@@ -147,18 +149,35 @@ std::string unknown_of(const DecisionCriterion& c, const Assessment& a, const Vo
   return c.quantity == "acceptance" || c.quantity == "lift" ? "" : joints_unknown(a);
 }
 
-Reason judge_flag(const DecisionCriterion& c, const std::string& unknown, bool happens, const std::string& yes, const std::string& no) {
-  if (happens) return judged(c, outcome_of(c), yes);
+Reason judge_flag(const DecisionCriterion& c, const std::string& unknown, bool happens, double excess, const std::string& yes,
+                  const std::string& no) {
+  if (happens) return judged(c, outcome_of(c), yes, excess);
   if (!unknown.empty()) return judged(c, Decision::open, "It is not known: " + unknown);
   return judged(c, Decision::energise, no);
 }
 
-Reason judge_acceptance(const DecisionCriterion& c, const VoyageSummary& s, const std::string& unknown) {
-  if (s.acceptance == Verdict::reject) return judged(c, Decision::send_back, "A model rejects the machine: " + s.first_unmet + ".");
-  if (s.acceptance == Verdict::inspect) return judged(c, outcome_of(c), "A model asks to inspect the machine: " + s.first_unmet + ".");
+// Returns the reason by all limits, unless only assumed limits make it "return": then it is "inspect". `known` is the reason without them.
+Reason without_assumed_return(Reason all, Reason known) {
+  if (all.outcome != Decision::send_back) return all;
+  if (known.outcome == Decision::send_back) return known;
+  all.outcome = Decision::inspect;
+  all.excess = std::numeric_limits<double>::infinity(); // first of all that ask to inspect: by it the machine would be sent back
+  all.text += " The limit is assumed, and no other asks for \"return\": find out the true limit before the machine is sent back.";
+  return all;
+}
+
+Reason judge_limits(const DecisionCriterion& c, const LimitsSummary& worst, const std::string& unknown) {
+  if (worst.outcome == Verdict::reject)
+    return judged(c, Decision::send_back, "A model rejects the machine: " + worst.unmet + ".", worst.share);
+  if (worst.outcome == Verdict::inspect)
+    return judged(c, outcome_of(c), "A model asks to inspect the machine: " + worst.unmet + ".", worst.share);
   if (!unknown.empty()) return judged(c, Decision::open, "It is not known: " + unknown);
-  if (s.acceptance == Verdict::open) return judged(c, Decision::open, "A model cannot say that the machine holds. " + s.first_unmet);
+  if (worst.outcome == Verdict::open) return judged(c, Decision::open, "A model cannot say that the machine holds. " + worst.unmet);
   return judged(c, Decision::energise, "All that the models ask is met in every event.");
+}
+
+Reason judge_acceptance(const DecisionCriterion& c, const VoyageSummary& s, const std::string& unknown) {
+  return without_assumed_return(judge_limits(c, s.limits, unknown), judge_limits(c, s.known_limits, unknown));
 }
 
 Reason judge_probability(const DecisionCriterion& c, const Probability& p, const std::string& of, const std::string& waves) {
@@ -171,7 +190,7 @@ Reason judge_probability(const DecisionCriterion& c, const Probability& p, const
                            percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
                            (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " +
                            percent(*c.at_most) + " are allowed";
-  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".");
+  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".", 1.0); // it sums up the other criteria, so it comes after them
   if (p.high > *c.at_most) return judged(c, Decision::open, text + ", which lies within the interval: more samples are needed.");
   return judged(c, Decision::energise, text + ".");
 }
@@ -187,26 +206,29 @@ Probability largest_slip(const Assessment& a) {
 Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
   if (c.quantity == "peak" || c.quantity == "velocity_change") return judge_reading(c, a);
   const std::string unknown = unknown_of(c, a, s);
+  const double demand = s.least_margin >= 0.0 ? 1.0 / s.least_margin : 0.0; // over capacity, of the joint nearest to slip; NaN: unknown
   if (c.quantity == "slip")
-    return judge_flag(c, unknown, s.slips, s.first_slip.empty() ? "A joint slips." : s.first_slip + ".", "No joint slips in any event.");
-  if (c.quantity == "comes_apart") return judge_flag(c, unknown, s.comes_apart, "A joint comes apart.", "No joint comes apart.");
-  if (c.quantity == "lift") return judge_flag(c, unknown, s.lifts, "A contact lifts.", "No contact lifts.");
+    return judge_flag(c, unknown, s.slips, demand, s.first_slip.empty() ? "A joint slips." : s.first_slip + ".",
+                      "No joint slips in any event.");
+  if (c.quantity == "comes_apart") return judge_flag(c, unknown, s.comes_apart, demand, "A joint comes apart.", "No joint comes apart.");
+  if (c.quantity == "lift") return judge_flag(c, unknown, s.lifts, 0.0, "A contact lifts.", "No contact lifts.");
   if (c.quantity == "slid")
-    return judge_flag(c, unknown, s.slid > *c.at_most,
+    return judge_flag(c, unknown, s.slid > *c.at_most, s.slid / *c.at_most,
                       "A joint slid " + quantity_text(s.slid, "m") + " in all; " + quantity_text(*c.at_most, "m") + " are allowed.",
                       "No joint slid further than " + quantity_text(s.slid, "m") + ".");
   if (c.quantity == "overlap_left")
-    return judge_flag(c, unknown, s.overlap_left < *c.at_least,
+    return judge_flag(c, unknown, s.overlap_left < *c.at_least, *c.at_least / s.overlap_left,
                       percent(s.overlap_left) + " of an overlap are left; " + percent(*c.at_least) + " are asked.",
                       "Of every overlap at least " + percent(s.overlap_left) + " are left.");
   if (c.quantity == "margin")
-    return judge_flag(c, unknown, s.least_margin < *c.at_least,
+    return judge_flag(c, unknown, s.least_margin < *c.at_least, *c.at_least * demand,
                       "The least margin of a joint is " + rounded_text(s.least_margin, 3) + "; " + rounded_text(*c.at_least, 3) +
                           " is asked.",
                       "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
   if (c.quantity == "acceptance") return judge_acceptance(c, s, unknown);
   if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", waves_unknown(a));
-  return judge_probability(c, a.damage, "damage in the voyage", waves_unknown(a));
+  const std::string of = "damage in the voyage", waves = waves_unknown(a);
+  return without_assumed_return(judge_probability(c, a.damage, of, waves), judge_probability(c, a.known_damage, of, waves));
 }
 
 // Judges both planes together: friction is one vector, but each model judged only the component in its plane.
@@ -214,19 +236,17 @@ Reason judge_planes(const VoyageSummary& s) {
   const char* const name = "friction of several planes";
   const char* const source = "rules of this program";
   if (s.planes_slip.empty())
-    return {name,
-            "The planes together ask for at most " + percent(s.planes_use) + " of a friction that they share.",
-            source,
-            Decision::energise,
-            {}};
+    return {name,   "The planes together ask for at most " + percent(s.planes_use) + " of a friction that they share.",
+            source, Decision::energise,
+            {},     s.planes_use};
   const Decision outcome = s.planes == Verdict::hold ? Decision::energise : s.planes == Verdict::open ? Decision::open : Decision::inspect;
-  return {name, s.planes_slip, source, outcome, {}};
+  return {name, s.planes_slip, source, outcome, {}, s.planes_use};
 }
 
 // Adds reasons that are independent of the criteria: missing evidence prevents "energise".
 void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
   const auto open = [&](const char* name, const std::string& text) {
-    reasons.push_back({name, text, "rules of this program", Decision::open, {}});
+    reasons.push_back({name, text, "rules of this program", Decision::open, {}, 0.0});
   };
   for (const MissingEvidence& missing : a.missing)
     if (!a.is_accepted(missing.item))
@@ -239,7 +259,8 @@ std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
   std::vector<Reason> reasons;
   for (const DecisionCriterion& c : a.criteria.criteria) reasons.push_back(judge_criterion(c, a, s));
   add_own(a, s, reasons);
-  std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& x, const Reason& y) { return x.outcome > y.outcome; });
+  std::stable_sort(reasons.begin(), reasons.end(),
+                   [](const Reason& x, const Reason& y) { return x.outcome != y.outcome ? x.outcome > y.outcome : x.excess > y.excess; });
   return reasons;
 }
 
@@ -269,9 +290,12 @@ void decide(Assessment& a) {
   if (a.decision == Decision::inspect && std::any_of(a.missing.begin(), a.missing.end(), is_open))
     a.reason += " Evidence is missing, and what it would show may be worse.";
   a.tests.clear();
-  for (const Reason& reason : a.reasons)
-    for (const std::string& test : reason.tests)
+  const auto add = [&](const std::vector<std::string>& tests) {
+    for (const std::string& test : tests)
       if (std::find(a.tests.begin(), a.tests.end(), test) == a.tests.end()) a.tests.push_back(test);
+  };
+  for (const Reason& reason : a.reasons) add(reason.tests);
+  add(a.criteria.tests);
 }
 
 } // namespace steplap::assess

@@ -10,6 +10,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
 #include "run/catalogue.h"
+#include "tools/assess/assumed_limits.h"
 #include "transformer/core/core.h"
 #include "transformer/recorder/fields.h"
 
@@ -268,6 +269,7 @@ DrivenModel driven_model(Model given, const std::string& name) {
   add_across(given, driven.recorder, driven.notes);
   for (TableEntry& entry : given.tables) // elements that it names may have been removed, and no usual run uses it
     if (entry.kind == &recorder_kind()) static_cast<Recorder&>(*entry.table).replaces.clear();
+  driven.assumed_limits = assumed_limits(given);
   driven.given = std::move(given);
   return driven;
 }

@@ -42,11 +42,12 @@ struct DrivenModel {
   std::string file, name, sha256;
   std::string text; ///< effective model; "" for a model built in code
   Recorder recorder;
-  std::string body;                ///< body that carries the recorder and is driven
-  double marker_angle = 0.0;       ///< orientation of the marker relative to the ground's axes in the reference pose, rad
-  Model given;                     ///< the model without the replaced elements and with drives at rest
-  std::vector<std::string> notes;  ///< changes made, for the user
-  std::vector<std::string> traced; ///< friction elements shared with models of other planes (shared_friction.h)
+  std::string body;                        ///< body that carries the recorder and is driven
+  double marker_angle = 0.0;               ///< orientation of the marker relative to the ground's axes in the reference pose, rad
+  Model given;                             ///< the model without the replaced elements and with drives at rest
+  std::vector<std::string> notes;          ///< changes made, for the user
+  std::vector<std::string> assumed_limits; ///< names of [[acceptance]] tables (assumed_limits.h)
+  std::vector<std::string> traced;         ///< friction elements shared with models of other planes (shared_friction.h)
 };
 
 /// Reads a model file for an assessment. Throws ModelError if it has no [[recorder]], or if another element drives the recorder's body.

@@ -53,7 +53,7 @@ void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& a) {
       if (!turn) continue;
       const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip
                               : !turn->summary.unknown.empty()        ? turn->summary.unknown
-                                                                      : turn->summary.first_unmet;
+                                                                      : turn->summary.limits.unmet;
       const Decision own = decision_of(a, a.summary);
       const std::string by_itself =
           own == a.decision ? "The decision" : "By the models' own values the decision would be \"" + std::string(name_of(own)) + "\". It";

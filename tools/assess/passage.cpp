@@ -1,6 +1,7 @@
 #include "tools/assess/passage.h"
 
 #include "mbd/base/portable_math.h"
+#include "tools/assess/assumed_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,9 @@ double still_moving(const System& system, const State& state, const std::string&
   return fastest;
 }
 
-LimitPassage limit_of(const CriterionResult& criterion, const Overview& overview) {
+LimitPassage limit_of(const CriterionResult& criterion, bool is_assumed, const Overview& overview) {
   LimitPassage limit;
+  limit.is_assumed = is_assumed;
   limit.name = criterion.name;
   limit.unit = criterion.unit;
   limit.text = criterion.text;
@@ -91,11 +93,14 @@ void Traveller::look(const Report& report, Passage& passage) {
     passage.joints.push_back(std::move(p));
   }
   passage.feet = feet_of(report);
-  for (const CriterionResult& criterion : report.judgement.criteria)
+  for (std::size_t i = 0; i < report.judgement.criteria.size(); ++i) {
+    const CriterionResult& criterion = report.judgement.criteria[i];
+    const bool is_limit_assumed = is_assumed(model_.assumed_limits, report.run.loaded->model, report.judgement, i);
     (criterion.unit == "N"   ? passage.reactions
      : criterion.unit == "m" ? passage.clearances
                              : passage.others)
-        .push_back(limit_of(criterion, overview));
+        .push_back(limit_of(criterion, is_limit_assumed, overview));
+  }
   for (const Finding& finding : report.findings)
     if (finding.level == FindingLevel::warning && !is_of_replaced(finding)) passage.findings.push_back(text_with_place(finding));
   if (!report.judgement.distrust.empty()) passage.findings.push_back(report.judgement.distrust);

@@ -39,8 +39,8 @@ struct FootPassage {
 struct LimitPassage {
   std::string name, unit, text;
   double value = 0.0, allowed = 0.0;
-  double share = 0.0; ///< utilisation; 1 is the limit
-  bool is_met = true;
+  double share = 0.0;                     ///< utilisation; 1 is the limit
+  bool is_met = true, is_assumed = false; ///< `is_assumed`: the limit itself is (assumed_limits.h)
   Verdict outcome = Verdict::hold;
 };
 

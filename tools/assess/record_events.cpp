@@ -123,7 +123,9 @@ Conditioning conditioning_of(const EventReading& reading) {
 // Reads the signal of a file and subtracts its offset: --gravity, or its reading at rest.
 Recording read_signal(const std::string& file, const EventReading& reading, WithoutGravity& first) {
   LineSource source(file);
-  return read_record(source, reading.read, first);
+  ReadOptions options = reading.read;
+  options.rest = reading.rest;
+  return read_record(source, options, first);
 }
 
 void refuse_gravity_as_shock(const RecordEvents& record) {

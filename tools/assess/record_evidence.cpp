@@ -20,7 +20,6 @@ constexpr double k_least_band =
 constexpr double k_no_gravity = 0.02 * k_gravity, k_gravity_seen = 0.9 * k_gravity,
                  k_gravity_most = 1.1 * k_gravity; // m/s²; magnitude at rest
 constexpr double k_harmless_hole = 0.005;          // s; a shock within it has frequencies above 100 Hz, to which joints do not respond
-constexpr double k_beyond_transport = 1000.0 * k_gravity; // m/s²; impossible on a vehicle, caused by a wrong scale
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
 
@@ -45,6 +44,8 @@ public:
     find_gaps();
     find_ends();
     find_remarks();
+    if (const std::string impossible = impossible_reading(record_.recording); !impossible.empty())
+      add(Evidence::unit, impossible, "Check the unit, or the counts that are 1 g.");
     if (layout_.is_peaks) return;
     find_fall();
     find_dead();
@@ -165,12 +166,6 @@ private:
   }
 
   void find_unit() {
-    for (std::size_t i = 0; i < layout_.axes.size(); ++i) {
-      const double most = std::max(std::abs(facts_.axes[i].least), std::abs(facts_.axes[i].greatest));
-      if (most < k_beyond_transport) continue;
-      return add(Evidence::unit, "Axis " + letter(record_, i) + " reads " + in_g(most) + ", which no transport gives.",
-                 "Check the unit, or the counts that are 1 g.");
-    }
     const double size = record_.size_at_rest();
     if (size < k_no_gravity || (size > k_gravity_seen && size < k_gravity_most)) return;
     add(Evidence::unit, "At rest the record reads " + in_g(size) + " in all, which is neither gravity nor nothing.",

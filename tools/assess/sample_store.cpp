@@ -11,8 +11,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr std::array<const char*, 9> k_numbers{"least_margin", "slid",       "overlap_left", "slips", "lifts",
-                                               "comes_apart",  "acceptance", "planes_use",   "planes"};
+constexpr std::array<const char*, 10> k_numbers{"least_margin", "slid",       "overlap_left", "slips",  "lifts",
+                                                "comes_apart",  "acceptance", "planes_use",   "planes", "known_acceptance"};
 
 // Text that identifies everything on which a sample's outcome depends.
 std::string scene_of(const SamplingOptions& options, const std::vector<DrivenModel>& models,
@@ -44,9 +44,10 @@ study::StoredSample stored(const VoyageSample& sample, long number) {
                          s.slips ? 1.0 : 0.0,
                          s.lifts ? 1.0 : 0.0,
                          s.comes_apart ? 1.0 : 0.0,
-                         static_cast<double>(s.acceptance),
+                         static_cast<double>(s.limits.outcome),
                          s.planes_use,
-                         static_cast<double>(s.planes)};
+                         static_cast<double>(s.planes),
+                         static_cast<double>(s.known_limits.outcome)};
   row.outcome.curve.assign(sample.slips.begin(), sample.slips.end());
   return row;
 }
@@ -57,9 +58,10 @@ void restore(const study::StoredSample& row, VoyageSample& sample) {
   s.unknown = row.outcome.reason;
   s.least_margin = n[0], s.slid = n[1], s.overlap_left = n[2];
   s.slips = n[3] != 0.0, s.lifts = n[4] != 0.0, s.comes_apart = n[5] != 0.0;
-  s.acceptance = static_cast<Verdict>(static_cast<int>(n[6]));
+  s.limits.outcome = static_cast<Verdict>(static_cast<int>(n[6]));
   s.planes_use = n[7];
   s.planes = static_cast<Verdict>(static_cast<int>(n[8]));
+  s.known_limits.outcome = static_cast<Verdict>(static_cast<int>(n[9]));
   sample.slips.clear();
   for (const double slip : row.outcome.curve) sample.slips.push_back(slip != 0.0 ? 1 : 0);
 }

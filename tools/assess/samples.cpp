@@ -95,6 +95,10 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
+Verdict acceptance_of(const VoyageSummary& s, LimitsJudged limits) {
+  return limits == LimitsJudged::all ? s.limits.outcome : s.known_limits.outcome;
+}
+
 // Collects samples as they finish. The complete initial sequence is stored every half second.
 class VoyageCourse {
 public:
@@ -197,7 +201,9 @@ std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
   return samples;
 }
 
-bool is_damaged(const VoyageSummary& s) { return s.slips || s.comes_apart || s.acceptance >= Verdict::inspect; }
+bool is_damaged(const VoyageSummary& s, LimitsJudged limits) {
+  return s.slips || s.comes_apart || acceptance_of(s, limits) >= Verdict::inspect;
+}
 
 Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event, std::size_t events) {
   long slips = 0, unknown = 0;
@@ -208,11 +214,12 @@ Probability slip_probability(const std::vector<VoyageSample>& samples, std::size
   return probability(slips, unknown, static_cast<long>(samples.size()));
 }
 
-Probability damage_probability(const std::vector<VoyageSample>& samples) {
+Probability damage_probability(const std::vector<VoyageSample>& samples, LimitsJudged limits) {
   long damaged = 0, unknown = 0;
   for (const VoyageSample& sample : samples) {
-    if (is_damaged(sample.summary)) ++damaged; // damage remains damage, whatever happened afterwards
-    else if (!sample.summary.unknown.empty() || sample.summary.acceptance == Verdict::open || sample.summary.planes != Verdict::hold)
+    if (is_damaged(sample.summary, limits)) ++damaged; // damage remains damage, whatever happened afterwards
+    else if (!sample.summary.unknown.empty() || acceptance_of(sample.summary, limits) == Verdict::open ||
+             sample.summary.planes != Verdict::hold)
       ++unknown;
   }
   return probability(damaged, unknown, static_cast<long>(samples.size()));

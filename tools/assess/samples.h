@@ -51,10 +51,12 @@ struct Probability {
 /// Returns the probability that a joint slips in this event of this model.
 [[nodiscard]] Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event,
                                            std::size_t events);
+/// Which limits of the models count: all, or only those that are not assumed.
+enum class LimitsJudged { all, known };
 /// Returns the probability that in the voyage a joint slips or an acceptance is not met.
-[[nodiscard]] Probability damage_probability(const std::vector<VoyageSample>& samples);
+[[nodiscard]] Probability damage_probability(const std::vector<VoyageSample>& samples, LimitsJudged limits = LimitsJudged::all);
 /// Returns true if the summary contains damage: a slip or an acceptance that is not met.
-[[nodiscard]] bool is_damaged(const VoyageSummary& summary);
+[[nodiscard]] bool is_damaged(const VoyageSummary& summary, LimitsJudged limits = LimitsJudged::all);
 /// Returns for each uncertain number the square of its rank correlation with the smallest margin, 0 to 1. Empty without samples.
 [[nodiscard]] std::vector<double> shares_of(const std::vector<VoyageSample>& samples);
 

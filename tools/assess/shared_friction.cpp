@@ -118,7 +118,8 @@ std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& co
   return holders;
 }
 
-std::vector<PlaneOfFriction::Limit> limits_of(const Compiled& compiled, const std::vector<std::string>& elements) {
+std::vector<PlaneOfFriction::Limit> limits_of(const DrivenModel& model, const Compiled& compiled,
+                                              const std::vector<std::string>& elements) {
   std::vector<PlaneOfFriction::Limit> limits;
   for (const Criterion& criterion : compiled.whole.criteria) {
     const bool is_of_slide = std::any_of(elements.begin(), elements.end(), [&](const std::string& element) {
@@ -129,7 +130,9 @@ std::vector<PlaneOfFriction::Limit> limits_of(const Compiled& compiled, const st
     double most = std::numeric_limits<double>::infinity();
     for (const std::optional<double>& limit : {criterion.within, criterion.at_most, criterion.at_least})
       if (limit) most = std::min(most, std::abs(*limit));
-    limits.push_back({criterion.name, most, criterion.consequence == "reject" ? Verdict::reject : Verdict::inspect});
+    const bool is_assumed =
+        std::find(model.assumed_limits.begin(), model.assumed_limits.end(), criterion.name) != model.assumed_limits.end();
+    limits.push_back({criterion.name, most, criterion.consequence == "reject" ? Verdict::reject : Verdict::inspect, is_assumed});
   }
   return limits;
 }
@@ -161,7 +164,7 @@ std::optional<PlaneOfFriction> plane_of(std::size_t index, const DrivenModel& mo
   plane.downhill = gravity.dot(plane.tangent);
   plane.tilt = plane.gravity > 0.0 ? -gravity.dot(normal) / plane.gravity : 1.0;
   plane.holders = holders_of(model, compiled, elements);
-  plane.limits = limits_of(compiled, elements);
+  plane.limits = limits_of(model, compiled, elements);
   return plane;
 }
 
@@ -386,10 +389,10 @@ void add_to(VoyageSummary& summary, const SharedFriction& friction, const Shared
     for (const PlaneOfFriction& plane : friction.planes)
       for (const PlaneOfFriction::Limit& limit : plane.limits) {
         least = std::min(least, limit.most);
-        if (passage.slid_total <= limit.most || !passage.bound.empty() || limit.consequence <= now.acceptance) continue;
-        now.acceptance = limit.consequence;
-        now.first_unmet = "'" + limit.name + "' in " + where + " by both planes together, '" + friction.name + "' " + slid + " and may " +
-                          quantity_text(limit.most, "m");
+        if (passage.slid_total <= limit.most || !passage.bound.empty()) continue;
+        now.note_limit(limit.consequence, limit.is_assumed, passage.slid_total / limit.most,
+                       "'" + limit.name + "' in " + where + " by both planes together, '" + friction.name + "' " + slid + " and may " +
+                           quantity_text(limit.most, "m"));
       }
     if (!passage.bound.empty()) {
       now.planes = Verdict::inspect;

@@ -42,6 +42,7 @@ struct PlaneOfFriction {
     std::string name;
     double most = 0.0; ///< m
     Verdict consequence = Verdict::inspect;
+    bool is_assumed = false; ///< (assumed_limits.h)
   };
   std::vector<Limit> limits; ///< [[acceptance]] limits of the slide
 };

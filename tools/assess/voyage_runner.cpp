@@ -10,6 +10,7 @@
 #include "mbd/rest/start.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/judge.h"
+#include "tools/assess/assumed_limits.h"
 #include "tools/assess/passage.h"
 
 #include <algorithm>
@@ -53,12 +54,7 @@ VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHist
   drive_by(given_, std::move(placed), std::max(begins_.back(), 1e-9));
   Model whole = completed(given_);
   const std::unique_ptr<System> system = compile(whole);
-  static_cast<void>(check_presentation(whole, *system)); // converts limits to the units of their channels
-  for (TableEntry& entry : given_.tables)
-    if (auto* const criterion = dynamic_cast<Criterion*>(entry.table.get()))
-      for (const Criterion& known : whole.criteria)
-        if (known.name == criterion->name)
-          criterion->at_least = known.at_least, criterion->at_most = known.at_most, criterion->within = known.within;
+  static_cast<void>(check_presentation(whole, *system));
   const std::vector<std::string> wanted = channels_wanted(whole, *system, model_.traced);
   variants_ = std::make_unique<Variants>(given_, std::move(paths), &wanted);
 }
@@ -74,16 +70,15 @@ struct VoyageRunner::Course {
 };
 
 // Evaluates one interval of the run.
-static void look(const Model& whole, const System& system, const RunResult& result, std::size_t event, VoyageOutcome& outcome,
-                 std::vector<double>& x, std::vector<double>& y, std::vector<double>& slid) {
+static void look(const Model& whole, const System& system, const RunResult& result, std::size_t event,
+                 const std::vector<std::string>& assumed, VoyageOutcome& outcome, std::vector<double>& x, std::vector<double>& y,
+                 std::vector<double>& slid) {
   VoyageSummary now;
   const Judgement judgement = judge(whole, system, result, "");
   now.unknown = judgement.distrust;
-  for (const CriterionResult& c : judgement.criteria) {
-    if (c.outcome <= now.acceptance) continue;
-    now.acceptance = c.outcome;
-    now.first_unmet = "'" + c.name + "' is not met in event " + std::to_string(event + 1);
-  }
+  for (std::size_t i = 0; i < judgement.criteria.size(); ++i)
+    now.note_limit(judgement.criteria[i].outcome, is_assumed(assumed, whole, judgement, i), 0.0,
+                   "'" + judgement.criteria[i].name + "' is not met in event " + std::to_string(event + 1));
   const std::vector<JointAssessment> joints = assess_joints(whole, result);
   x.resize(joints.size(), 0.0), y.resize(joints.size(), 0.0), slid.resize(joints.size(), 0.0);
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -120,7 +115,7 @@ void VoyageRunner::pass_events(Course& course) {
     Simulation simulation(course.system, state, std::move(options));
     simulation.run();
     const RunResult result = std::move(simulation).result();
-    look(course.whole, course.system, result, i, course.outcome, course.x, course.y, course.slid);
+    look(course.whole, course.system, result, i, model_.assumed_limits, course.outcome, course.x, course.y, course.slid);
     ++course.outcome.events_made;
     if (!model_.traced.empty())
       course.outcome.traces.push_back(friction_traces(course.whole, course.system, result, model_.traced, begins_[i], steps_[i]));
@@ -138,7 +133,9 @@ VoyageOutcome VoyageRunner::run(const std::vector<double>& numbers, const std::f
   failed.slips.assign(begins_.size() - 1, 0);
   try {
     const std::unique_ptr<System> system = variants_->make(numbers);
-    Course course{variants_->model(), *system, stop, failed, {}, {}, {}};
+    Model whole = variants_->model();
+    convert_limits(whole, *system); // limits may vary, and the unit of a channel may not be SI
+    Course course{whole, *system, stop, failed, {}, {}, {}};
     try {
       pass_events(course);
     } catch (const NumericalFailure& failure) {

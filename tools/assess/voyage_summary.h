@@ -10,20 +10,38 @@
 
 namespace steplap::assess {
 
+/// Worst outcome of the limits in the models: [[acceptance]] and those of elements.
+struct LimitsSummary {
+  Verdict outcome = Verdict::hold;
+  double share = 0.0; ///< utilisation of the limit; 0: unknown
+  std::string unmet;  ///< for people: "'bottom arresting devices' in event 1, 106 % of its limit"
+
+  /// Takes the outcome of a limit if it is worse than all before: of equal outcomes the one with the larger share.
+  void note(Verdict outcome_, double share_, const std::string& unmet_) {
+    const bool is_worse = outcome_ > outcome || (outcome_ == outcome && outcome != Verdict::hold && share_ > share);
+    if (is_worse) outcome = outcome_, share = share_, unmet = unmet_;
+  }
+};
+
 /// Worst values over all models and events so far.
 struct VoyageSummary {
   double least_margin = std::numeric_limits<double>::infinity(); ///< smallest friction capacity over demand of a joint
   double slid = 0.0;                                             ///< largest slide of a joint, summed over events, m
   double overlap_left = 1.0;                                     ///< smallest remaining overlap of a joint, as a fraction
   bool slips = false, lifts = false, comes_apart = false;
-  Verdict acceptance = Verdict::hold; ///< verdict on the limits in the models: [[acceptance]] and those of elements
+  LimitsSummary limits, known_limits; ///< the latter without limits that are assumed (assumed_limits.h)
   double planes_use = 0.0;            ///< largest share of a friction used by two planes together
   Verdict planes = Verdict::hold;     ///< verdict on the slide of shared frictions: inspect beyond a limit or if the slide is an upper
                                       ///< bound, open if there is no limit
   std::string planes_slip;            ///< sentence about the largest such slide; "" if there is none
   std::string unknown;                ///< if not empty: reason why a run failed or cannot be trusted
   std::string first_slip;             ///< for people: "'front joint' slips in event 3"
-  std::string first_unmet;            ///< "'bottom arresting devices' in event 1", of the worst acceptance
+
+  /// Takes the outcome of a limit of a model.
+  void note_limit(Verdict outcome, bool is_assumed, double share, const std::string& unmet) {
+    limits.note(outcome, share, unmet);
+    if (!is_assumed) known_limits.note(outcome, share, unmet);
+  }
 };
 
 /// Merges `other` into `summary`, keeping the worse of each value.
@@ -34,7 +52,8 @@ inline void worsen(VoyageSummary& summary, const VoyageSummary& other) {
   summary.slips |= other.slips;
   summary.lifts |= other.lifts;
   summary.comes_apart |= other.comes_apart;
-  if (other.acceptance > summary.acceptance) summary.acceptance = other.acceptance, summary.first_unmet = other.first_unmet;
+  summary.limits.note(other.limits.outcome, other.limits.share, other.limits.unmet);
+  summary.known_limits.note(other.known_limits.outcome, other.known_limits.share, other.known_limits.unmet);
   if (other.planes_use > summary.planes_use) summary.planes_use = other.planes_use;
   if (!other.planes_slip.empty() && (summary.planes_slip.empty() || other.planes >= summary.planes))
     summary.planes = other.planes, summary.planes_slip = other.planes_slip;

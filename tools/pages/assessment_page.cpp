@@ -59,14 +59,17 @@ void check_probability(const fs::path& file, const Json& object, const char* key
 }
 
 // Keys that must be numbers wherever they occur, unless missing or null.
-const std::set<std::string_view> k_numbers{"acceleration", "allowed",      "angle_deg", "at",    "ax",         "ay",    "bandwidth",
-                                           "error",        "from",         "height",    "high",  "left",       "low",   "margin",
-                                           "nominal",      "overlap_left", "runs",      "share", "slid_total", "value", "velocity_change"};
-const std::set<std::string_view> k_texts{"axis",        "criterion", "file",  "first",   "law",    "marker", "model",
-                                         "name",        "outcome",   "plane", "preset",  "reason", "sha256", "source",
-                                         "source_text", "trust",     "unit",  "verdict", "why"};
-const std::set<std::string_view> k_lists_of_objects{"cases", "clearances", "feet",    "joints",  "limits",        "models",   "peaks",
-                                                    "polar", "reactions",  "reasons", "records", "static_proofs", "uncertain"};
+const std::set<std::string_view> k_numbers{
+    "acceleration", "allowed",      "angle_deg",     "at",    "ax",         "ay",     "bandwidth",      "error",
+    "from",         "height",       "high",          "left",  "low",        "margin", "nominal",        "overlap_left",
+    "runs",         "sensor_range", "covered_share", "share", "slid_total", "value",  "velocity_change"};
+const std::set<std::string_view> k_texts{"arrival",     "axis",   "calibrated",  "covered",   "departure", "filter", "journey", "place",
+                                         "range",       "serial", "transformer", "criterion", "file",      "first",  "law",     "marker",
+                                         "model",       "name",   "outcome",     "plane",     "preset",    "reason", "sha256",  "source",
+                                         "source_text", "trust",  "unit",        "verdict",   "why"};
+const std::set<std::string_view> k_lists_of_objects{"cases",     "handovers", "recorders", "clearances",    "feet",
+                                                    "joints",    "limits",    "models",    "peaks",         "polar",
+                                                    "reactions", "reasons",   "records",   "static_proofs", "uncertain"};
 const std::set<std::string_view> k_lists_of_texts{"assumptions", "findings",  "hangs_on", "knows_not",
                                                   "remarks",     "taken_for", "tests",    "warnings"};
 

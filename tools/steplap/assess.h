@@ -12,7 +12,7 @@ namespace steplap {
 /// Arguments as given on the command line.
 struct AssessOptions : ReadingOptions {
   std::vector<std::string> records, models, overrides, accepted;
-  Text criteria, print_criteria, samples, seed, threads, pulse, pulse_axis, voyage, budget;
+  Text criteria, print_criteria, samples, seed, threads, pulse, pulse_axis, voyage, shipment, budget;
   Text static_preset, plane, directions, largest;
   Text output;
   bool is_json = false, is_overwriting = false, is_estimate_left_out = false;

@@ -40,7 +40,12 @@ ExitCode print_reference(const ElementsOptions& options, Console& console) {
     print_rows(console.out, "kinds", kinds_rows(program_catalogue()));
   } else {
     try {
-      print_kind(console.out, kind_reference(program_catalogue(), options.kind));
+      const char* separator = "";
+      for (const KindReference& kind : kind_references(program_catalogue(), options.kind)) {
+        console.out << separator;
+        print_kind(console.out, kind);
+        separator = "\n";
+      }
     } catch (const ModelError& error) {
       throw UsageError(error.diagnostics().front().message);
     }

@@ -258,7 +258,8 @@ void write_tables(const RecordResult& result, const Outputs& outputs) {
 }
 
 void process(const std::string& file, const RecordOptions& options, const Outputs& outputs, Console& console) {
-  const ReadOptions reading = read_options(options);
+  ReadOptions reading = read_options(options);
+  if (options.quiet) reading.rest = rest_stretch(*options.quiet);
   RecordResult result;
   result.rules = event_rules(options);
   Conditioning conditioning;

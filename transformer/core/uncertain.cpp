@@ -13,6 +13,9 @@ namespace {
 
 void check_path(const Uncertain& uncertain, const std::string& path, const Model& model) {
   try {
+    if (std::holds_alternative<std::string>(value_of(model, path)))
+      throw ModelError(uncertain.place("paths"), "it is a text; a limit such as \"500 kN\" varies as a parameter: give it in "
+                                                 "[parameters], and name that parameter in 'paths'");
     static_cast<void>(number_of(model, path));
   } catch (const ModelError& error) {
     throw ModelError(uncertain.place("paths"),

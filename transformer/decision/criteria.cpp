@@ -1,10 +1,9 @@
 #include "transformer/decision/criteria.h"
 
 #include "mbd/io/document.h"
-#include "mbd/io/field_reader.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/units.h"
-#include "mbd/model/validate.h"
+#include "transformer/decision/checked_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -44,6 +43,7 @@ FieldTable header_fields() {
   t.add("name", &DecisionCriteria::name).required().doc("of the criteria together");
   t.add("text", &DecisionCriteria::text).doc("what they come to");
   t.add("source", &DecisionCriteria::source).doc("where they come from");
+  t.add("tests", &DecisionCriteria::tests).doc("usual tests on arrival, whatever the decision");
   return t;
 }
 
@@ -75,7 +75,7 @@ public:
     TableReading reading;
     reading.subject = "the criteria";
     reading.known_keys = {"criterion"};
-    read_table(document_.root, header_fields(), &criteria_, reading);
+    read_checked_table(document_.root, header_fields(), &criteria_, reading, problems_);
     const Node* const array = document_.root.find("criterion");
     if (!array || !array->is_array_of_tables())
       problems_.push_back({array ? array->where_key() : Location{criteria_.file, 1, 1},
@@ -86,23 +86,13 @@ public:
   }
 
 private:
-  void read_table(const Node& table, const FieldTable& fields, void* object, const TableReading& reading) {
-    for (const GivenField& given : read_fields(table, fields, object, reading, problems_)) {
-      if (!given.is_usable) continue;
-      const std::string problem =
-          given.node ? range_problem(*given.field, given.field->get(object)) : missing_field_message(*given.field, reading.subject);
-      if (problem.empty()) continue;
-      problems_.push_back({given.node ? given.node->where() : table.where(),
-                           given.node ? "'" + given.field->name + "' of " + reading.subject + " " + problem : problem});
-    }
-  }
   void read_criterion(const Node& entry) {
     DecisionCriterion criterion;
     criterion.where = entry.where();
     const std::size_t before = problems_.size();
     TableReading reading;
     reading.subject = "criterion '" + entry_name(entry) + "'";
-    read_table(entry, criterion_fields(), &criterion, reading);
+    read_checked_table(entry, criterion_fields(), &criterion, reading, problems_);
     if (problems_.size() != before) return;
     read_limits(entry, criterion);
     criteria_.criteria.push_back(std::move(criterion));

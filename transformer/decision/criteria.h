@@ -1,6 +1,6 @@
 // Acceptance criteria for a machine after transport: a TOML file by the user, or one of the presets.
 //
-//   name = "…"  text = "…"  source = "…"
+//   name = "…"  text = "…"  source = "…"  tests = ["dew point of the gas"]
 //   [[criterion]]
 //   name = "3 g"  quantity = "peak"  at_most = "3 gravity"  outcome = "inspect"  tests = ["core insulation resistance"]
 //
@@ -38,8 +38,9 @@ struct DecisionCriterion {
 /// A set of criteria.
 struct DecisionCriteria {
   std::string name, text, source;
-  std::string file; ///< file name, or name of the preset
-  std::string toml; ///< source text
+  std::vector<std::string> tests; ///< usual tests on arrival, whatever the decision
+  std::string file;               ///< file name, or name of the preset
+  std::string toml;               ///< source text
   std::vector<DecisionCriterion> criteria;
 };
 

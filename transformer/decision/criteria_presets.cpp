@@ -8,6 +8,7 @@ constexpr const char* k_acceptance_3g = R"toml(# Criteria for a machine that has
 name = "3 g and a core that did not slip"
 text = "Energise after ordinary checks only if no axis read more than 3 g, no joint of the core slipped, and what the models ask is met with the probability asked for."
 source = "3 g: construction and acceptance code for transformers, clauses 3.3.1 to 3.3.3 (jianbiaoku.com/webarbs/book/27448/883684.shtml); slip: rules of this program"
+tests = ["visible damage, and position of the recorder", "dew point and pressure of the gas", "resistance between core and earth"]
 
 [[criterion]]
 name = "3 g on every axis"
@@ -56,6 +57,7 @@ constexpr const char* k_joints = R"toml(# What the models say alone: no limit on
 name = "the core did not slip"
 text = "Energise after ordinary checks only if no joint of the core slipped and what the models ask is met with the probability asked for. The recorder's peaks decide nothing."
 source = "rules of this program; probability: JCSS probabilistic model code, irreversible serviceability"
+tests = ["visible damage, and position of the recorder", "dew point and pressure of the gas", "resistance between core and earth"]
 
 [[criterion]]
 name = "no joint of the core slips"
@@ -92,6 +94,7 @@ constexpr const char* k_peaks_3g = R"toml(# The recorder's peaks alone, as the c
 name = "3 g on every axis"
 text = "Energise after ordinary checks if no axis read more than 3 g. What happened inside is not asked."
 source = "construction and acceptance code for transformers, clauses 3.3.1 to 3.3.3 (jianbiaoku.com/webarbs/book/27448/883684.shtml)"
+tests = ["visible damage, and position of the recorder", "dew point and pressure of the gas", "resistance between core and earth"]
 
 [[criterion]]
 name = "3 g on every axis"

@@ -1,36 +1,73 @@
 #include "transformer/recorder/dominant_frequency.h"
 
-#include <unsupported/Eigen/FFT>
+#include "mbd/base/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
-#include <numeric>
+#include <numbers>
 #include <vector>
 
 namespace steplap {
 
+namespace {
+
+constexpr double k_level = 0.1; // of the largest magnitude; noise below it is no swing
+constexpr double k_large = 0.5; // of the largest magnitude; smaller swings do not count
+
+// Consecutive samples beyond the level on one side of zero. Places are in samples, and lie where the linear signal crosses the level.
+struct Swing {
+  double begin = 0.0, end = 0.0;
+  double peak = 0.0; ///< signed
+};
+
+std::vector<Swing> swings_beyond(double level, std::span<const double> samples) {
+  std::vector<Swing> swings;
+  const auto is_beyond = [&](std::size_t i, double sign) { return sign * samples[i] > level; };
+  for (std::size_t i = 0; i < samples.size();) {
+    const double sign = samples[i] < 0.0 ? -1.0 : 1.0;
+    if (!is_beyond(i, sign)) {
+      ++i;
+      continue;
+    }
+    // Distance from sample `inside` to the place where the signal crosses the level.
+    const auto crossing = [&](std::size_t inside, std::size_t outside) {
+      return (sign * samples[inside] - level) / (sign * (samples[inside] - samples[outside]));
+    };
+    Swing swing;
+    swing.begin = static_cast<double>(i) - (i > 0 ? crossing(i, i - 1) : 0.0);
+    for (; i < samples.size() && is_beyond(i, sign); ++i)
+      if (std::abs(samples[i]) > std::abs(swing.peak)) swing.peak = samples[i];
+    swing.end = static_cast<double>(i - 1) + (i < samples.size() ? crossing(i - 1, i) : 0.0);
+    swings.push_back(swing);
+  }
+  return swings;
+}
+
+} // namespace
+
 double dominant_frequency(std::span<const double> samples, double rate) {
-  if (samples.size() < 8) return 0.0;
-  const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
-  std::size_t length = 16;
-  while (length < 4 * samples.size()) length *= 2; // zero padding makes the spectral lines four times denser
-  std::vector<double> in(length, 0.0);
-  std::transform(samples.begin(), samples.end(), in.begin(), [&](double x) { return x - mean; });
-  std::vector<std::complex<double>> out;
-  Eigen::FFT<double> transform; // Eigen's own FFT (KissFFT)
-  transform.fwd(out, in);
-  const auto size_at = [&](std::size_t k) { return std::sqrt(std::norm(out[k])); };
-  std::size_t best = 1;
-  for (std::size_t k = 2; k < length / 2; ++k)
-    if (size_at(k) > size_at(best)) best = k;
-  const double before = size_at(best - 1), here = size_at(best), after = size_at(best + 1), bend = before - 2.0 * here + after;
-  const double shift = bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
-  const double scale =
-      std::max(std::abs(*std::max_element(samples.begin(), samples.end())), std::abs(*std::min_element(samples.begin(), samples.end())));
-  if (here <= 1e-12 * scale * static_cast<double>(samples.size())) return 0.0;
-  return (static_cast<double>(best) + shift) * rate / static_cast<double>(length);
+  double largest = 0.0;
+  for (const double sample : samples) largest = std::max(largest, std::abs(sample));
+  if (!(largest > 0.0)) return 0.0;
+  const double level = k_level * largest;
+  const std::vector<Swing> swings = swings_beyond(level, samples);
+  const auto by_peak = [](const Swing& a, const Swing& b) { return std::abs(a.peak) < std::abs(b.peak); };
+  auto first = std::max_element(swings.begin(), swings.end(), by_peak), last = first;
+  const auto continues = [&](const Swing& a, const Swing& b) {
+    const double shorter = std::min(a.end - a.begin, b.end - b.begin);
+    return a.peak * b.peak < 0.0 && b.begin - a.end < k_large * shorter &&
+           std::min(std::abs(a.peak), std::abs(b.peak)) >= k_large * largest;
+  };
+  while (first != swings.begin() && continues(*(first - 1), *first)) --first;
+  while (last + 1 != swings.end() && continues(*last, *(last + 1))) ++last;
+  // A sine with this peak is below the level for asin(level/peak)/π of its half period at each end of a swing.
+  const auto below = [&](const Swing& swing) {
+    const double share = level / std::abs(swing.peak);
+    return portable::atan2(share, std::sqrt(1.0 - share * share)) / std::numbers::pi;
+  };
+  const double half_periods = static_cast<double>(last - first + 1) - below(*first) - below(*last);
+  return half_periods * rate / (2.0 * (last->end - first->begin));
 }
 
 } // namespace steplap

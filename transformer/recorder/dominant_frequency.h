@@ -1,12 +1,13 @@
-// Finds the frequency with the largest amplitude in a sequence of samples.
+// Finds the frequency of the largest swings in a sequence of samples.
 #pragma once
 
 #include <span>
 
 namespace steplap {
 
-/// Returns the frequency, Hz, of the maximum of the amplitude spectrum without the mean value, refined by a parabola through three spectral
-/// lines. Returns 0 for fewer than eight samples or if all are equal. The resolution is about rate/(number of samples).
+/// Returns the frequency, Hz, of the swings around the sample with the largest magnitude, whatever silence surrounds them: half a period is
+/// the duration of a swing, so a half sine of duration T has 1/(2T). The swings that count follow each other with alternating signs and reach
+/// half the largest magnitude. Exact for sines, except for the sampling. Returns 0 if all samples are zero.
 [[nodiscard]] double dominant_frequency(std::span<const double> samples, double rate);
 
 } // namespace steplap

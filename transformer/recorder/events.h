@@ -37,7 +37,7 @@ struct AxisEvent {
   double peak = 0.0, peak_time = 0.0;                         ///< m/s², signed; s
   double duration = 0.0;                                      ///< duration around the peak above a tenth of it, s
   double velocity_change = 0.0;                               ///< integral of acceleration over this duration, m/s
-  double frequency = 0.0;                                     ///< dominant frequency, Hz
+  double frequency = 0.0;                                     ///< of the swings around the peak, Hz (dominant_frequency.h)
   double at_cfc60 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too
                                                               ///< low
   double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 10 (up to 17 Hz), m/s²

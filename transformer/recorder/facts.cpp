@@ -41,12 +41,16 @@ std::string gravity_text(const Recording& recording) {
   }
   const double size = std::sqrt(size2) / k_gravity;
   const std::string axis = std::string(axes[most].rest < 0.0 ? "-" : "") + recording.layout.axes[most].axis;
+  const auto& given = recording.facts.rest;
+  const std::string at_rest =
+      given ? "from " + number_text((*given)[0]) + " s to " + number_text((*given)[1]) + " s it reads " : "the first second reads ";
+  const std::string if_given = "; the mean of that stretch is subtracted";
   if (size > 0.9 && size < 1.1)
-    return "gravity: in the record, as it seems (the first second reads " + rounded_text(size, 4) + " g, mostly along " + axis +
-           "); --gravity " + axis + " subtracts it";
-  if (size < 0.1) return "gravity: not in the record, as it seems (the first second reads " + rounded_text(size, 3) + " g)";
-  return "gravity: cannot be told (the first second reads " + rounded_text(size, 3) +
-         " g); --gravity AXIS or --rest FROM,TO subtracts what is there at rest";
+    return "gravity: in the record, as it seems (" + at_rest + rounded_text(size, 4) + " g, mostly along " + axis + ")" +
+           (given ? if_given : "; --gravity " + axis + " subtracts it");
+  if (size < 0.1) return "gravity: not in the record, as it seems (" + at_rest + rounded_text(size, 3) + " g)";
+  return "gravity: cannot be told (" + at_rest + rounded_text(size, 3) + " g)" +
+         (given ? if_given : "; --gravity AXIS or --rest FROM,TO subtracts what is there at rest");
 }
 
 void add_clipping(const Recording& recording, std::vector<std::string>& lines) {
@@ -81,6 +85,11 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
   add(facts.blocks, "line of text among the rows", "lines of text among the rows", ": a new block of the record begins after it.");
   add(facts.comments, "comment among or after the rows", "comments among or after the rows", " left out.");
   add(facts.short_rows, "row is", "rows are", " shorter than the header; the axes are there.");
+  const std::size_t named = layout.shape.width, most = layout.shape.most_fields;
+  add(facts.long_rows, "row is", "rows are",
+      " longer than the header: " + (most == named + 1 ? "column " + std::to_string(most) + ", which has no name, was left out."
+                                                       : "columns " + std::to_string(named + 1) + " to " + std::to_string(most) +
+                                                             ", which have no names, were left out."));
   add(facts.other_rows, "row", "rows", " without acceleration left out (other sensors).");
   add(facts.missing, "row", "rows", " with missing values left out or held, as asked.");
   add(facts.repeated, "row", "rows", " with a repeated time left out, as asked.");
@@ -100,6 +109,19 @@ std::string delimiter_text(char delimiter) {
 
 } // namespace
 
+std::string impossible_reading(const Recording& recording) {
+  constexpr double k_beyond_transport = 1000.0 * k_gravity; // m/s²; shocks that destroy a machine have less than a tenth
+  const auto text = [](const std::string& what, double value) { return what + " reads " + in_g(value) + ", which no transport gives."; };
+  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) {
+    const double most = std::max(std::abs(recording.facts.axes[i].least), std::abs(recording.facts.axes[i].greatest));
+    if (most >= k_beyond_transport) return text(std::string("Axis ") + recording.layout.axes[i].axis, most);
+  }
+  for (const PeakEntry& entry : recording.peaks)
+    for (const double peak : {entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude})
+      if (std::abs(peak) >= k_beyond_transport) return text("The entry in line " + std::to_string(entry.line), peak);
+  return "";
+}
+
 std::vector<std::string> facts_text(const Recording& recording) {
   const RecordLayout& layout = recording.layout;
   const ReadFacts& facts = recording.facts;
@@ -118,6 +140,8 @@ std::vector<std::string> facts_text(const Recording& recording) {
   add_axes(recording, lines);
   if (layout.is_peaks) lines.push_back("peaks: in " + layout.peaks.unit + ", no waveform");
   else lines.push_back(gravity_text(recording));
+  if (const std::string impossible = impossible_reading(recording); !impossible.empty())
+    lines.push_back(impossible + " Check the unit, or the counts that are 1 g.");
   add_clipping(recording, lines);
   add_irregularities(facts, layout, lines);
   lines.insert(lines.end(), layout.notes.begin(), layout.notes.end());

@@ -139,6 +139,28 @@ void scale_counts(AxisColumn& axis, const RecordLayout& layout, std::size_t line
   }
 }
 
+// A unit of all accelerations, said in the lines before the data.
+struct SaidUnit {
+  std::string text;
+  std::size_t line = 0;
+};
+
+// Finds "Units: mG", or ", Units, mG" within a line on a sensor. Lines that contradict each other say nothing.
+std::optional<SaidUnit> unit_of(const Metadata& metadata) {
+  if (const auto* said = metadata.find({"units", "unit", "accelunits", "accelerationunit", "accelerationunits"}))
+    return SaidUnit{said->values.front(), said->line};
+  std::optional<SaidUnit> found;
+  for (const auto& [key, value] : metadata.entries)
+    for (std::size_t i = 0; i + 1 < value.values.size(); ++i) {
+      const std::string word = lower_case(value.values[i]);
+      const auto unit = acceleration_unit(value.values[i + 1]);
+      if ((word != "units" && word != "unit") || !unit) continue;
+      if (found && acceleration_unit(found->text)->name != unit->name) return std::nullopt;
+      found = SaidUnit{value.values[i + 1], value.line};
+    }
+  return found;
+}
+
 void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata,
                 const ReadOptions& options) {
   const std::size_t line = layout.shape.names_line > 0 ? layout.shape.names_line : head[layout.shape.first_data].number;
@@ -146,10 +168,9 @@ void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<
   axis.heading = heading_text(layout.shape, axis.column);
   axis.unit_source = "--unit";
   if (text.empty()) text = unit_of_column(layout.shape, axis.column, axis.unit_source);
-  const auto* units = metadata.find({"units", "unit", "accelunits", "accelerationunit", "accelerationunits"});
-  if (text.empty() && units) {
-    text = units->values.front();
-    axis.unit_source = "line " + std::to_string(units->line);
+  if (const auto said = unit_of(metadata); said && text.empty()) {
+    text = said->text;
+    axis.unit_source = "line " + std::to_string(said->line);
   }
   if (text.empty() && (options.counts_per_g || scale_of(metadata))) return scale_counts(axis, layout, line, metadata, options);
   if (text.empty() && layout.family == "Gulf Coast Data Concepts")

@@ -25,6 +25,7 @@ struct TableShape {
   bool has_decimals = true;                   ///< false if the head contains whole numbers only
   std::size_t first_data = 0;                 ///< index of the first data row in the head
   std::size_t width = 0;                      ///< number of fields of a full row
+  std::size_t most_fields = 0;                ///< of the longest rows; columns beyond `width` have no name and are left out
   std::size_t names_line = 0, units_line = 0; ///< line numbers; 0: none
   std::vector<std::string> names, units;      ///< one per column, or empty
 

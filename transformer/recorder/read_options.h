@@ -1,6 +1,7 @@
 // Options with which a user supplies or corrects information about a recorder's file.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -19,10 +20,11 @@ struct ReadOptions {
   std::optional<double> rate;           ///< Hz
   std::optional<std::string> unit;      ///< unit of all axes
   std::optional<double> counts_per_g;
-  std::optional<double> range;   ///< range of the sensor, m/s²; none: as in the file
-  std::optional<char> delimiter; ///< ',', ';', '\t' or ' '
-  std::optional<char> decimal;   ///< '.' or ','
-  std::optional<unsigned> dates; ///< one of DateOrder
+  std::optional<double> range;               ///< range of the sensor, m/s²; none: as in the file
+  std::optional<std::array<double, 2>> rest; ///< stretch of the record at rest, s; none: its first second
+  std::optional<char> delimiter;             ///< ',', ';', '\t' or ' '
+  std::optional<char> decimal;               ///< '.' or ','
+  std::optional<unsigned> dates;             ///< one of DateOrder
   IfMissing missing = IfMissing::refuse;
   IfRepeated repeated = IfRepeated::refuse;
   IfBackward backward = IfBackward::refuse;

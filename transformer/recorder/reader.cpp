@@ -146,10 +146,14 @@ private:
       return;
     }
     note_decimals();
-    if (fields_.size() > layout_->shape.width)
+    if (fields_.size() > layout_->shape.most_fields)
       fail(fields_[layout_->shape.width], "This row has " + counted(fields_.size(), "field", "fields") + ", " +
                                               std::to_string(layout_->shape.width) +
                                               " were expected. If two rows ran together, part them.");
+    if (fields_.size() > layout_->shape.width) {
+      facts.long_rows.note(line_);
+      fields_.resize(layout_->shape.width);
+    }
     facts.last_comment.clear();
     if (layout_->is_peaks) return take_peaks();
     if (take_axes()) take_sample();
@@ -434,13 +438,14 @@ private:
 
   void hand_on(double t, const std::array<double, 3>& a, std::size_t line) {
     ReadFacts& facts = recording_.facts;
-    const bool is_at_begin = t - facts.first <= 1.0 && t >= facts.first;
+    const std::array<double, 2> rest = options_.rest.value_or(std::array{facts.first, facts.first + 1.0});
+    const bool is_at_rest = t >= rest[0] && t <= rest[1];
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
       watches_[i].take(a[i], line);
       if (layout_->range && std::abs(a[i]) >= k_bends * *layout_->range) facts.axes[i].beyond_range.note(line);
-      if (is_at_begin) sums_[i] += a[i];
+      if (is_at_rest) sums_[i] += a[i];
     }
-    summed_ += is_at_begin;
+    summed_ += is_at_rest;
     ++facts.rows;
     facts.last = t;
     sink_.put(t, a.data());
@@ -522,6 +527,7 @@ private:
     end_segment();
     ReadFacts& facts = recording_.facts;
     facts.lines = source_.number();
+    facts.rest = options_.rest;
     if (facts.rows == 0)
       throw RecordError(layout_->file, facts.lines, 1,
                         facts.cut_line > 0 || facts.is_unended_left_out

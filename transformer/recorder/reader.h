@@ -41,7 +41,7 @@ struct Counted {
 /// Statistics of one axis as read, m/s².
 struct AxisFacts {
   double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
-  double rest = 0.0;            ///< mean of the first second
+  double rest = 0.0;            ///< mean at rest: over ReadOptions::rest, otherwise over the first second
   std::size_t flat_longest = 0; ///< longest sequence of equal samples at the minimum or maximum, entered or left by a jump, which indicates
                                 ///< clipping
   std::size_t flat_line = 0;
@@ -77,7 +77,8 @@ struct ReadFacts {
   std::size_t lines = 0, rows = 0, segments = 0; ///< `rows`: samples passed on, except those that ReadOptions::holds filled in
   double first = 0.0, last = 0.0;                ///< s
   double longest_gap = 0.0;                      ///< s
-  Counted gaps, holes, block_gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
+  std::optional<std::array<double, 2>> rest;     ///< stretch at rest that was given, s
+  Counted gaps, holes, block_gaps, blocks, comments, short_rows, long_rows, other_rows, missing, repeated, backward, held, midnights;
   std::size_t cut_line = 0;         ///< number of the last line if it was omitted because it is incomplete; 0 otherwise
   std::size_t unended_line = 0;     ///< number of the last line if it has no line break; 0 otherwise
   bool is_unended_left_out = false; ///< true if that line was omitted because its last number may be incomplete
@@ -98,6 +99,9 @@ struct Recording {
 
 /// Reads a record. Throws RecordError with line and column if it cannot be read or is ambiguous.
 [[nodiscard]] Recording read_record(LineSource& source, const ReadOptions& options, SampleSink& sink);
+
+/// Returns a sentence about a value that no transport gives, caused by a wrong unit or scale; "" if there is none.
+[[nodiscard]] std::string impossible_reading(const Recording& recording);
 
 /// Describes the layout and the treatment of the file in sentences or "key: value" lines.
 [[nodiscard]] std::vector<std::string> facts_text(const Recording& recording);

@@ -52,6 +52,7 @@ ReadOptions read_options(const Recorder& r) {
   if (r.delimiter) o.delimiter = *meaning_of(k_delimiters, *r.delimiter);
   if (r.decimal) o.decimal = *meaning_of(k_decimals, *r.decimal);
   if (r.dates) o.dates = *meaning_of(k_dates, *r.dates);
+  if (r.rest.size() == 2) o.rest = {r.rest[0], r.rest[1]};
   o.missing = *meaning_of(k_missing, r.missing);
   o.repeated = *meaning_of(k_repeated, r.repeated);
   o.backward = *meaning_of(k_backward, r.backward);

@@ -7,6 +7,7 @@
 #include "mbd/base/shown_text.h"
 
 #include <algorithm>
+#include <map>
 
 namespace steplap {
 
@@ -221,6 +222,26 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
     }
 }
 
+// Returns the number of fields of the longest rows. Some recorders add columns without a name, for slow sensors, to some of their rows. A
+// single long row may be two rows that ran together.
+std::size_t most_fields(const std::vector<HeaderLine>& head, const TableShape& shape) {
+  constexpr std::size_t k_regular = 3; // rows
+  std::map<std::size_t, std::size_t> rows_with;
+  Fields fields;
+  for (std::size_t i = shape.first_data; i < head.size(); ++i)
+    if (!is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) && looks_like_row(fields))
+      ++rows_with[fields.size()];
+  std::size_t most = shape.width;
+  for (const auto& [count, rows] : rows_with)
+    if (rows >= k_regular) most = std::max(most, count);
+  return most;
+}
+
+bool leaves_columns_unnamed(const std::vector<HeaderLine>& head, const TableShape& shape) {
+  return !shape.names.empty() &&
+         family_of({head.begin(), head.begin() + static_cast<std::ptrdiff_t>(shape.first_data)}) == "Gulf Coast Data Concepts";
+}
+
 // Files in blocks mark the begin of rows, for example with "*DATA".
 std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
   for (std::size_t i = 0; i < head.size(); ++i)
@@ -308,13 +329,14 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
   settle_decimal(head, file, options, shape);
   if (!shape.names.empty()) {
     while (shape.names.size() > shape.width && shape.names.back().empty()) shape.names.pop_back();
-    if (shape.names.size() < shape.width)
+    if (shape.names.size() < shape.width && !leaves_columns_unnamed(head, shape))
       throw RecordError(file, head[first].number, 1,
                         "This row has " + counted(shape.width, "field", "fields") + ", but line " + std::to_string(shape.names_line) +
                             " names " + counted(shape.names.size(), "column", "columns") +
                             ". If the comma is the decimal sign, give --decimal comma; else correct the header.");
     shape.width = shape.names.size();
   }
+  shape.most_fields = leaves_columns_unnamed(head, shape) ? most_fields(head, shape) : shape.width;
   return shape;
 }
 

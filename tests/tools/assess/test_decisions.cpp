@@ -198,3 +198,38 @@ TEST_CASE("the program's exit code is the decision, and a file that is there is 
   CHECK(run(block_file(folder, 0.5, "1 m"), "-f --voyage tomorrow") == 2);
   CHECK(run(block_file(folder, 0.5, "1 m"), "-f --criteria nonsense") == 2);
 }
+
+TEST_CASE("the reason is the worst of several, not the first in a file") {
+  const Folder folder;
+  const std::string record = folder.file("shock.csv"), model = folder.file("block.toml");
+  write(record, record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.1, 1.2 * k_gravity); }));
+  const auto within = [](const std::string& name, const std::string& limit) {
+    return "[[acceptance]]\nname = \"" + name + "\"\nchannel = \"floor.slide\"\nwithin = \"" + limit + "\"\n";
+  };
+  AssessmentOptions options = options_of();
+  options.criteria = folder.file("criteria.toml");
+  write(model, block_text(0.5, within("wide", "3 mm") + within("narrow", "1 mm")));
+  write(options.criteria, k_only_models);
+  const Assessment limits = assess::assess({record}, {model}, options);
+  CHECK(limits.decision == Decision::inspect);
+  CHECK(limits.reason.find("'narrow'") != std::string::npos);
+  // 1.2 g are 1.2 times the first criterion's limit; the block slides several times as far as the second allows.
+  write(options.criteria, "name = \"both\"\n[[criterion]]\nname = \"peak\"\nquantity = \"peak\"\nat_most = \"1 gravity\"\n"
+                          "[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\n");
+  const Assessment criteria = assess::assess({record}, {model}, options);
+  CHECK(criteria.decision == Decision::inspect);
+  CHECK(criteria.reasons.front().criterion == "what the models ask");
+  CHECK(criteria.reasons.front().excess > criteria.reasons[1].excess);
+}
+
+TEST_CASE("the usual tests are named whatever the decision is") {
+  const Folder folder;
+  const std::string record = folder.file("shock.csv");
+  write(record, record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.1, 1.2 * k_gravity); }));
+  AssessmentOptions options = options_of();
+  options.criteria = "peaks-3g";
+  const Assessment a = assess::assess({record}, {block_file(folder, 0.5, "1 m")}, options);
+  CHECK(a.decision == Decision::energise);
+  CHECK(a.tests == a.criteria.tests);
+  CHECK(a.tests.size() >= 3);
+}

@@ -1,6 +1,8 @@
 // A tank driven as recorded: closed forms, and that the place of the recorder counts as it should.
 #include "driven_scene.h"
 
+#include "mbd/io/reference.h"
+#include "run/catalogue.h"
 #include "run/run.h"
 #include "tools/assess/voyage_runner.h"
 
@@ -78,9 +80,7 @@ TEST_CASE("axes of a record are mapped with their signs onto those of the marker
 TEST_CASE("a block on the driven tank slides as Newmark's sliding block does") {
   // Triangle of 0.6 g and 0.1 s; slides by quadrature of the rigid block. The feet's springs let it swing a little about its
   // length, which changes the share of each foot and not their sum: 1e-3 is left for the digits of the table.
-  const struct {
-    double mu, slide;
-  } cases[] = {{0.2, 9.787e-3}, {0.3, 3.602e-3}, {0.4, 1.059e-3}};
+  const struct { double mu, slide; } cases[] = {{0.2, 9.787e-3}, {0.3, 3.602e-3}, {0.4, 1.059e-3}};
   const DriveHistory pulse = triangles({0.6 * 9.81}, 0.1, 0.4);
   for (const auto& c : cases)
     CHECK(std::abs(final_value(driven(block_text(c.mu)), pulse, "floor.slide")) == doctest::Approx(c.slide).epsilon(1e-3));
@@ -183,4 +183,11 @@ TEST_CASE("the record's third axis presses the sheets of a core as a signal of t
                     return text.replace(text.find("settle = 0.3"), 12, "settle = 0.3\nacross = \"y\"");
                   }())),
                   ModelError);
+}
+
+TEST_CASE("the reference of 'recorder' has the table of a model and the signal of the same name") {
+  const std::vector<KindReference> both = kind_references(program_catalogue(), "recorder");
+  REQUIRE(both.size() == 2);
+  CHECK(both[0].heading != both[1].heading);
+  CHECK((both[0].heading == "[[recorder]]" || both[1].heading == "[[recorder]]"));
 }

@@ -287,7 +287,7 @@ TEST_CASE("one plane that slips alone is judged by its own model as before") {
   const Assessment a = machine.assessed([](double t) { return pulled(t, 0.35, 0.01); }, options_of());
   CHECK_FALSE(only_passage(a).slips);
   CHECK(a.decision == Decision::send_back); // the model's own slide
-  CHECK(a.summary.first_unmet.find("together") == std::string::npos);
+  CHECK(a.summary.limits.unmet.find("together") == std::string::npos);
   // With 0.2 g across it slides further than along alone: the direction of friction is that of the motion.
   const Assessment both = machine.assessed([](double t) { return pulled(t, 0.35, 0.2); }, options_of());
   REQUIRE(only_passage(both).slips);

@@ -70,7 +70,7 @@ TEST_CASE("the voyage by one system, as samples take it, is the voyage event by 
     Verdict worst = Verdict::hold;
     for (const DriveHistory& history : histories)
       for (const LimitPassage& limit : traveller.pass(history, Estimating::never).clearances) worst = std::max(worst, limit.outcome);
-    CHECK(outcome.summary.acceptance == worst);
+    CHECK(outcome.summary.limits.outcome == worst);
     CHECK(worst == (second > 0.4 * k_g ? Verdict::inspect : Verdict::hold));
   }
 }
@@ -111,7 +111,7 @@ TEST_CASE("a probability by samples is that of the closed form, and the same for
   const std::vector<VoyageSample> three = sample_voyages(voyage.models, voyage.histories, uncertain, options);
   for (std::size_t i = 0; i < one.size(); ++i) {
     CHECK(one[i].values == three[i].values);
-    CHECK(one[i].summary.acceptance == three[i].summary.acceptance);
+    CHECK(one[i].summary.limits.outcome == three[i].summary.limits.outcome);
   }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("samples that were made are kept, and an assessment that was interrupt
   CHECK(first > 0);
   CHECK(first < 12);
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    CHECK(resumed[i].summary.acceptance == whole[i].summary.acceptance);
+    CHECK(resumed[i].summary.limits.outcome == whole[i].summary.limits.outcome);
     CHECK(resumed[i].slips == whole[i].slips);
   }
   options.seed = 2; // other samples: what is there is of no use

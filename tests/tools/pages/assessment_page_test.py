@@ -189,6 +189,18 @@ class AssessmentPageTest(base.Page):
                 self.assertNotIn("Signature", " ".join(sheets[1:]))
                 self.assertEqual(sheets[0].count("Signature"), 2)
 
+    def test_the_sheet_says_who_travelled_how_and_what_was_seen_of_it(self):
+        self.show("plain")
+        sheet = self.print_page("plain")[0]
+        for part in ("T-4711", "SL-0815", "calibrated 2025-11-02", "range 16 g", "mounted lid, above limb 2", "2026-01-04 10:00", "Rotterdam, 2026-01-05 08:00", "The record covers 55.9 h.", "99.8 %",
+                     "Dew point of the gas", "Pressure of the gas", "Resistance core to earth", "Visible damage"):
+            self.assertIn(part, sheet)
+        self.assertEqual(len(self.all('#sheet figure.curve[data-event="2"] path')), 2)  # the worst event, as it was recorded
+        blank = len(self.all("#sheet .blank"))
+        self.assertEqual(blank, 4 + 1)  # what the receiver finds, and the filter, of which nothing is said
+        self.show("bare")
+        self.assertEqual(len(self.all("#sheet .blank")), 4 + 1 + 5 + 2)  # the transformer, the recorder, departure and arrival are filled in by hand, too
+
     def test_printed_text_keeps_its_size(self):
         """A table that is too wide would make the browser shrink all sheets, and the sheet to sign with them."""
         for name in ("plain", "long"):

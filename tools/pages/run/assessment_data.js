@@ -55,9 +55,16 @@ steplap.assessment = (() => {
     }
     return found.slice(0, 8);
   }
+  // What the reader of the record knows of the recorder stands where the papers say nothing of it.
+  const recorderOf = (record) => ({ record: record.file, range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '', filter: isKnown(record.bandwidth) ? `read up to ${one(record.bandwidth, 'Hz')}` : '' });
+  function papers() {
+    const p = (given && given.shipment) || {}, stated = list(p.recorders), read = list(given && given.records).map(recorderOf);
+    const filled = (r) => { const found = read.find((q) => q.record === r.record) || (read.length === 1 && stated.length === 1 ? read[0] : {}); return { ...r, record: r.record || found.record || '', range: r.range || found.range || '', filter: r.filter || found.filter || '' }; };
+    return { transformer: p.transformer || '', departure: p.departure || '', arrival: p.arrival || '', handovers: list(p.handovers), recorders: stated.length ? stated.map(filled) : read.length ? read : [{}] };
+  }
   const statics = raw.static ? list(raw.static.static_proofs || [raw.static]) : [];
   const models = list(given && given.models);
-  return { program: raw.program, folder: raw.folder, given, events, worst, models, statics, records: list(given && given.records), reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)), hangs: list(given && given.hangs_on), tests: list(given && given.tests),
+  return { papers: papers(), covered: (given && given.covered) || '', coveredShare: given ? given.covered_share : null, journey: (given && given.journey) || '', program: raw.program, folder: raw.folder, given, events, worst, models, statics, records: list(given && given.records), reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)), hangs: list(given && given.hangs_on), tests: list(given && given.tests),
     assumptions: [...list(given && given.assumptions), ...statics.flatMap((s) => list(s.assumptions))], criteria: (given && given.criteria) || null, voyage: (given && given.voyage) || {}, totals: list(given && given.voyage && given.voyage.joints),
     uncertain: models.flatMap((m) => list(m.uncertain).map((u) => ({ ...u, model: m.name }))), unknown: models.map((m) => ({ name: m.name, list: list(m.knows_not) })).filter((m) => m.list.length),
     list, words, outcomes, acceleration, peakText, chanceText, slipText, slidText, margin, marginText, timeText, contradictions };

@@ -76,5 +76,5 @@ steplap.events = (() => {
     box.addEventListener('toggle', () => { if (box.open && box.children.length === 1) box.append(details(e)); });
     return box;
   }
-  return { tableOf, curves, fold, details };
+  return { tableOf, curve, curves, fold, details };
 })();

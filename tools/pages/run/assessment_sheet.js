@@ -1,4 +1,4 @@
-// The sheet that is signed: decision, worst events, what it hangs on, assumptions, criteria, room for two signatures, on one page
+// The sheet that is signed: papers, decision, worst events, what it hangs on, assumptions, criteria, room for two signatures, on one page
 // of A4 whatever the lengths of lists and texts. What does not fit is counted, and stands on the sheets behind.
 steplap.sheet = (() => {
   const make = steplap.make, { table } = steplap.tables, { percent } = steplap.numbers, A = steplap.assessment;
@@ -16,6 +16,21 @@ steplap.sheet = (() => {
   const rest = (all, kept, what) => (all > kept ? [make('p', { class: 'more' }, `${all - kept} more ${what} on the sheets behind.`)] : []);
   const part = (title, ...content) => make('div', {}, make('h2', {}, title), ...content);
   const bullets = (texts, kept, limit, what) => [make('ul', {}, ...texts.slice(0, kept).map((t) => make('li', {}, short(t, limit)))), ...rest(texts.length, kept, what)];
+
+  // A line to be filled in by hand where nothing is known.
+  const orBlank = (text, limit) => (text ? short(text, limit) : make('span', { class: 'blank' }));
+  const joined = (parts) => parts.flatMap((p, i) => (i ? [' · ', ...p] : p));
+  function papers(keep) {
+    const p = A.papers, limit = Math.min(keep.texts, 140), shown = p.recorders.slice(0, keep.records);
+    const recorder = (r) => make('span', {}, ...joined([['serial number', r.serial], ['calibrated', r.calibrated], ['range', r.range], ['filter', r.filter], ['mounted', r.place]].map(([label, value]) => [`${label} `, orBlank(value, limit)])));
+    const rows = [['Transformer', make('span', {}, 'serial number ', orBlank(p.transformer, limit))], ...shown.map((r) => [`Recorder${r.record ? ` of ${short(r.record, 30)}` : ''}`, recorder(r)]),
+      ['Journey', make('span', {}, 'departure ', orBlank(p.departure, limit), ...p.handovers.slice(0, keep.records).flatMap((h) => [` · handover ${short(h.place, limit)}, ${short(h.time, limit)}`]), ' · arrival ', orBlank(p.arrival, limit))],
+      ['Recorded', `${short(A.covered || 'Not stated.', limit)}${A.journey ? ` Asked: ${short(A.journey, limit)}.` : ''}${A.coveredShare === null || A.coveredShare === undefined ? '' : ` Of the journey ${percent(A.coveredShare)} are covered.`}`]];
+    const drawing = A.worst.length ? steplap.events.curve(A.worst[0]) : null;
+    return make('div', { class: 'papers' }, make('div', {}, table(null, rows), ...rest(p.recorders.length, shown.length, 'recorders'), ...rest(p.handovers.length, Math.min(p.handovers.length, keep.records), 'handovers')), ...(drawing ? [drawing] : []));
+  }
+  // What the receiver finds, written by hand.
+  const found = () => part('Found on arrival', make('div', { class: 'found' }, ...['Dew point of the gas', 'Pressure of the gas', 'Resistance core to earth', 'Visible damage'].map((what) => make('p', {}, `${what} `, make('span', { class: 'blank' })))));
 
   const peaks = (e, limit) => short(e.peaks.map((p) => A.peakText(p, true)).join('; ') || '–', Math.max(60, limit));
   function events(keep) {
@@ -42,7 +57,7 @@ steplap.sheet = (() => {
     const listed = (title, texts, kept, what, none) => part(title, ...(texts.length ? bullets(texts, kept, keep.texts, what) : [make('p', {}, none)]));
     const assumed = listed('Assumptions', A.assumptions, keep.assumptions, 'assumptions', A.given ? 'None are stated.' : 'Loads act so slowly that nothing vibrates.');
     if (!A.given) return [assumed];
-    return [totals(keep), listed('What the decision hangs on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed, listed('What would show the damage', A.tests, keep.tests, 'tests', 'No tests are named.'),
+    return [totals(keep), listed('What the decision hangs on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed, listed('Tests', A.tests, keep.tests, 'tests', 'No tests are named.'),
       listed('What the planar models do not know', A.unknown.flatMap((u) => u.list), keep.unknown, 'things', 'Not stated.')];
   }
   const signature = (who) => make('div', {}, make('p', { class: 'who' }, who), make('p', {}, 'Name'), make('p', {}, 'Date'), make('p', {}, 'Place'), make('p', { class: 'long' }, 'Signature'));
@@ -62,8 +77,8 @@ steplap.sheet = (() => {
       make('p', {}, [records.length ? `Records: ${records.slice(0, keep.records).join('; ')}${records.length > keep.records ? ` and ${records.length - keep.records} more` : ''}.` : '', models.length ? ` Models: ${models.slice(0, 4).join('; ')}.` : '', ` Made by ${A.program}.`].join('')),
       make('div', { class: 'verdict-line' }, make('span', { class: `badge ${A.words[decision] ? decision : 'open'}` }, A.words[decision] || 'OPEN'), make('span', { class: 'reason' }, short((given ? given.reason : A.statics[0].reason) || '', Math.max(80, limit)))),
       ...A.contradictions().slice(0, 1).map((t) => make('p', {}, `Look at this: ${short(t, limit)}`)),
-      ...(given ? [events(keep)] : []), ...proofs(keep), make('div', { class: 'flow' }, ...notes(keep)),
-      ...(given ? [criteria(keep)] : []), make('div', { class: 'signatures' }, signature('For the receiver'), signature('For the carrier')));
+      ...(given ? [papers(keep), events(keep)] : []), ...proofs(keep), make('div', { class: 'flow' }, ...notes(keep)),
+      ...(given ? [criteria(keep), found()] : []), make('div', { class: 'signatures' }, signature('For the receiver'), signature('For the carrier')));
     for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // paper is no telephone, also when printed from one
   }
   // Between the margins of page.css 297 - 2 * 12 mm are free; three of them stay so, because paper rounds otherwise than the screen.

@@ -72,6 +72,20 @@ std::vector<Evidence> accepted_evidence(const AssessOptions& options) {
   return accepted;
 }
 
+// Departure and arrival of the papers are the voyage.
+void take_shipment(const std::string& file, AssessmentOptions& options) {
+  options.shipment = read_shipment(file);
+  const Shipment& s = options.shipment;
+  if (s.departure.empty() || s.arrival.empty()) return;
+  const std::optional<Voyage> voyage = parse_voyage(s.departure + ", " + s.arrival);
+  if (!voyage)
+    throw UsageError("--shipment: '" + s.departure + "' and '" + s.arrival +
+                     "' are no departure and arrival: give two dates with times of day, as in \"2016-01-04 10:00\", in order, both with a "
+                     "zone or both without");
+  if (options.voyage) throw UsageError("--voyage: '" + file + "' says when the journey began and ended: leave one of them out");
+  options.voyage = voyage;
+}
+
 AssessmentOptions assessment_options(const AssessOptions& o) {
   AssessmentOptions options;
   options.reading.read = read_options(o);
@@ -103,6 +117,7 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
           "': give its begin and end, as two dates with times of day (\"2016-01-04 10:00, 2016-01-06 18:00\", both with a zone or "
           "both without) or in the record's own seconds (0,7200)");
   }
+  if (o.shipment) take_shipment(*o.shipment, options);
   if (o.budget) options.budget = number_of(o.budget, "--budget", 0.0, ", in s");
   options.criteria = o.criteria.value_or("acceptance-3g");
   if (o.is_estimate_left_out) options.estimating = Estimating::never;
@@ -202,8 +217,7 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
   if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // otherwise the first line contains it
   for (const MissingEvidence& missing : a.missing)
     if (a.is_accepted(missing.item)) out << "Accepted (" << name_of(missing.item) << "): " << missing.reason << "\n";
-  for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i)
-    out << (i == 0 ? "What would show it: " : "  ") << a.tests[i] << "\n";
+  for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i) out << (i == 0 ? "Tests: " : "  ") << a.tests[i] << "\n";
   out << "Written to " << file << "\n";
 }
 

@@ -1,0 +1,41 @@
+// Papers of a transport: a TOML file by the user with what is printed on the sheet that is signed. All of it is optional.
+//
+//   transformer = "serial number"  departure = "2016-01-04 10:00"  arrival = "2016-01-06 18:00"
+//   [[recorder]]
+//   serial = "…"  record = "shock.csv"  calibrated = "…"  range = "16 g"  filter = "…"  place = "lid, above limb 2"
+//   [[handover]]
+//   place = "…"  time = "…"
+#pragma once
+
+#include "mbd/base/diagnostics.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap::assess {
+
+/// A recorder that travelled with the machine, as texts for people.
+struct ShippedRecorder {
+  std::string serial, record, calibrated, range, filter, place;
+};
+
+/// A change of the carrier.
+struct Handover {
+  std::string place, time;
+};
+
+/// The papers of a transport. "" or empty: not stated.
+struct Shipment {
+  std::string file;
+  std::string transformer; ///< its serial number
+  std::string departure, arrival;
+  std::vector<ShippedRecorder> recorders;
+  std::vector<Handover> handovers;
+};
+
+/// Reads a file. Throws ModelError with all errors, FileError if there is no such file.
+[[nodiscard]] Shipment read_shipment(const std::string& file);
+/// As read_shipment(), for a text in memory.
+[[nodiscard]] Shipment parse_shipment(const std::string& text, const std::string& file_name);
+
+} // namespace steplap::assess
