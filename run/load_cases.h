@@ -17,10 +17,10 @@ namespace steplap {
 
 /// A criterion in one case.
 struct CaseLimit {
-  std::string name;       ///< criterion of the model; for one of an element with its requirement
-  CriterionResult result; ///< value, limit, reserve (margin), error and outcome
-  std::optional<double> share,
-      share_error; ///< utilisation, 1 is the limit, and its error (NaN: unknown); empty for events and without value
+  std::string name;                  ///< criterion of the model; for one of an element with its requirement
+  CriterionResult result;            ///< value, limit, reserve (margin), error and outcome
+  std::optional<double> share;       ///< utilisation, 1 is the limit; empty for events and without a value
+  std::optional<double> share_error; ///< its error; NaN: unknown
 };
 
 /// Result of one case.
