@@ -2,7 +2,9 @@
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/io/read_input.h"
 #include "run/findings.h"
+#include "run/loaded_text.h"
 
 #include <algorithm>
 #include <atomic>
@@ -39,10 +41,10 @@ void check_criteria(const LoadCase& one, const Model& model, std::vector<Diagnos
   if (!is_judged(model)) problems.push_back({one.where, "case '" + one.name + "' has no criteria: add an [[acceptance]] to the model"});
 }
 
-SharedModel load_case(const LoadCase& one, const std::string& path, const std::vector<std::string>& overrides,
+SharedModel load_case(const LoadCase& one, const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
                       std::vector<Diagnostic>& problems) {
   try {
-    SharedModel loaded = load_model(path, overrides);
+    SharedModel loaded = load_model_text(text, path, overrides);
     check_criteria(one, loaded->model, problems);
     if (one.criteria.empty()) return loaded;
     auto judged = std::make_shared<LoadedModel>(*loaded);
@@ -130,7 +132,8 @@ std::string LoadCaseResults::reason() const {
 }
 
 LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunOptions& options) {
-  LoadCaseResults results{load_model(path, overrides), {}};
+  const std::string text = read_input(path, {}); // once, so that all cases are of the same file
+  LoadCaseResults results{load_model_text(text, shown_input(path), overrides), {}};
   const Model& model = results.model->model;
   const std::vector<LoadCase> cases = load_cases_of(model);
   if (cases.empty()) throw ModelError(model.header.where, "the model has no load cases: give each as [[case]]");
@@ -139,7 +142,7 @@ LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::s
   for (const LoadCase& one : cases) {
     std::vector<std::string> all = overrides;
     for (const std::string& own : one.overrides(model.header.gravity)) all.push_back(own);
-    loaded.push_back(load_case(one, path, all, problems));
+    loaded.push_back(load_case(one, text, results.model->path, all, problems));
     results.cases.push_back({one, std::move(all), {}, "", "", {}});
   }
   if (!problems.empty()) throw ModelError(std::move(problems));

@@ -1,6 +1,5 @@
 #include "tools/steplap/cases.h"
 
-#include "mbd/io/read_input.h"
 #include "run/findings.h"
 #include "run/load_cases.h"
 #include "run/summary.h"
@@ -53,16 +52,16 @@ ExitCode code_of(const LoadCaseResults& results, bool is_hold_required) {
 }
 
 ExitCode cases(const CasesOptions& options, Console& console) {
-  if (is_standard_input(options.model))
-    throw UsageError("every case reads the model anew, which the standard input cannot be: name a file");
   const OutputFiles files(console, {{"-o", options.sheet}}, options.is_overwriting);
   const InterruptionGuard guard;
   const LoadCaseResults results = run_load_cases(options.model, options.overrides, run_options(options));
   log_findings(results);
   const OrderedJson document = load_cases_document(results);
   if (options.sheet) files.write(options.sheet, cases_page(*results.model, document));
-  if (JsonScreen* const screen = json_screen(console.out)) screen->put("load_cases", document);
-  else if (files.has_words()) print_load_cases(console.out, results);
+  if (JsonScreen* const screen = json_screen(console.out)) {
+    screen->begin(About{results.model->path});
+    screen->put("load_cases", document);
+  } else if (files.has_words()) print_load_cases(console.out, results);
   if (options.sheet && files.has_words()) console.out << "\nWritten to " << *options.sheet << "\n";
   return code_of(results, options.is_hold_required);
 }
@@ -80,7 +79,7 @@ Each [[case]] is run as steplap simulate runs the model with the same --set, on 
 worst of all cases. The sheet is one page of A4 with drawing, cases with their sources, limits and room for two
 signatures; --json has all numbers.
 )";
-  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML) with [[case]] tables", true},
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML) with [[case]] tables; - is the standard input", true},
                      {"-o,--output", &o->sheet, "FILE", "also write the sheet, a page (HTML) to be printed; or -"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model in all cases; may be repeated"},
                      {"--estimate-error", &o->is_error_estimated, "", "estimate the error of all numbers, however long it takes"},

@@ -76,6 +76,7 @@ TEST_CASE("every command that prints a table has --json, with the same numbers t
       {"diff", {{model, bouncer}, "values"}},
       {"simulate", {{model, "-o", bench.at("out"), "--end", "0.05"}, ""}},
       {"show", {{bench.at("ran") + "/b"}, ""}},
+      {"cases", {{STEPLAP_MODELS "/cases/lorry.toml"}, ""}},
       {"help", {{}, ""}}};
   // Of others: no table, or a document of their own.
   const std::map<std::string, std::string> others = {{"new", "a model"},        {"explore", "a page"},

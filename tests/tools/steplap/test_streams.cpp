@@ -55,7 +55,8 @@ TEST_CASE("every command that reads a model reads it from the standard input and
   // "stdin" is what its results are called; the file has that name so that both say the same.
   const std::string folder = STEPLAP_MODELS "/layouts/";
   const std::string model =
-      bench.write("stdin.toml", replaced(text_of(folder + "three_limb.toml"), "\"trailer.toml\"", "\"" + folder + "trailer.toml\""));
+      bench.write("stdin.toml", replaced(text_of(folder + "three_limb.toml"), "\"trailer.toml\"", "\"" + folder + "trailer.toml\"") +
+                                    "\n[[case]]\nname = \"short\"\nsource = \"a test\"\nset = [\"simulation.end=0.02\"]\n");
   const std::map<std::string, std::vector<std::string>> more = {
       {"simulate", {"--end", "0.02", "-f", "--no-estimate", "-o", bench.at("out")}},
       {"accuracy", {"--end", "0.02", "--setting", "rk4@1e-2", "-f", "-q", "-o", bench.at("acc")}},

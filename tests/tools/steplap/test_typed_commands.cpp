@@ -35,6 +35,7 @@ TEST_CASE("what cannot be said is an error, of every command") {
                                                                 {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
                                                                 {"plot", bench.at("ran") + "/a --channels ball.y -o " + bench.at("p.svg")},
                                                                 {"assess", "--static iec-1g --directions 0 " + core},
+                                                                {"cases", STEPLAP_MODELS "/cases/lorry.toml"},
                                                                 {"check", model},
                                                                 {"channels", model},
                                                                 {"equilibrium", model},
