@@ -254,7 +254,7 @@ class GalleryTest(base.Page):
         self.run_js("steplap.page.scenes[0].setMoved(['top friction']); steplap.page.show(0)")
         self.assertEqual(texts(), [])
         self.run_js("steplap.page.show(1.5)")
-        self.assertEqual(texts(), ["top friction slipped"])
+        self.assertEqual(texts(), ["top block slid"])
 
     def test_windows_of_a_core_are_open(self):
         self.open("gallery_five_limb.html")
