@@ -17,15 +17,15 @@ namespace steplap::study {
 
 namespace {
 
-enum class LimitState { holds, fails, bad };
+enum class RayState { holds, fails, bad };
 
 struct RayPoint {
   double at = 0.0, g = 0.0; // radius and value
-  LimitState state = LimitState::holds;
+  RayState state = RayState::holds;
 };
 
 RayPoint ray_point_at(double at, const LimitValue& value) {
-  return {at, value.g, value.is_bad ? LimitState::bad : value.g < 0.0 ? LimitState::fails : LimitState::holds};
+  return {at, value.g, value.is_bad ? RayState::bad : value.g < 0.0 ? RayState::fails : RayState::holds};
 }
 
 struct Stratum {
@@ -47,7 +47,7 @@ struct Stratum {
 
 private:
   [[nodiscard]] bool comes_to_zero(const RayPoint& far, const RayPoint& near) const {
-    if (far.state != near.state || near.state == LimitState::bad || far.at == near.at) return false;
+    if (far.state != near.state || near.state == RayState::bad || far.at == near.at) return false;
     const double zero = near.at - near.g * (near.at - far.at) / (near.g - far.g); // NaN if both values are equal
     return zero > low && zero < high;
   }
@@ -197,8 +197,8 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
     while (safe.count() < count && !course.is_over()) {
       const Rays rays(limit, random, ray, k_rays, origin);
       ray += k_rays;
-      for (const double p : rays.probabilities([](LimitState l) { return l == LimitState::fails; })) safe.add(p);
-      for (const double p : rays.probabilities([](LimitState l) { return l != LimitState::holds; })) unsafe.add(p);
+      for (const double p : rays.probabilities([](RayState l) { return l == RayState::fails; })) safe.add(p);
+      for (const double p : rays.probabilities([](RayState l) { return l != RayState::holds; })) unsafe.add(p);
       e.bad += rays.bad();
       course.set(e, share_of(safe, false, target), share_of(unsafe, false, target));
       course.note(e);
