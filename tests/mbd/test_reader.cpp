@@ -354,7 +354,7 @@ TEST_CASE("a model built in code is checked alike") {
   for (const std::string first : {"=", "+", "-", "@"}) { // names are cells of CSV files, which spreadsheets read
     body.name = first + "1+1";
     CHECK(validate(model).at(0).message ==
-          "body '" + body.name + "': the name must not begin with '" + first + "', which a spreadsheet takes for a formula");
+          "a body '" + body.name + "': the name must not begin with '" + first + "', which a spreadsheet takes for a formula");
   }
 }
 
