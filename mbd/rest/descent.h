@@ -14,8 +14,6 @@
 #include "mbd/rest/clearance.h"
 #include "mbd/rest/landscape.h"
 
-#include <numbers>
-
 namespace steplap {
 
 enum class DescentEnd {
@@ -31,12 +29,6 @@ public:
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
-  /// For a small increment of a load: a body that moves further than `reach`, in sizes of the model and in radians, counts as moving without
-  /// end. Sliding friction slides on although a step reverses it; the caller compares its start and end.
-  void follow_increment(double reach) {
-    far_ = many_turns_ = reach;
-    slides_on_ = true;
-  }
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< size of the model, m
@@ -98,11 +90,8 @@ private:
   std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
   double residual_ = 0.0;
-  bool slides_on_ = false;                      ///< sliding friction does not stick where a step reverses it
-  double far_ = 1e4;                            ///< sizes of the model; beyond it a body counts as moving without end
-  double many_turns_ = 40.0 * std::numbers::pi; ///< the same for rotations, rad
-  std::vector<Hold> hold_;                      ///< per friction element
-  std::vector<char> left_out_;                  ///< per friction row: dependent on other sticking rows and left out
+  std::vector<Hold> hold_;     ///< per friction element
+  std::vector<char> left_out_; ///< per friction row: dependent on other sticking rows and left out
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;
   double driving_force_ = 0.0;

@@ -5,7 +5,6 @@
 #include "mbd/rest/admissible_rest.h"
 #include "mbd/rest/indifference.h"
 #include "mbd/rest/ramped_rest.h"
-#include "mbd/rest/rest_increment.h"
 #include "mbd/rest/settling.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
@@ -29,14 +28,11 @@ constexpr double k_pushes = 1e3;
 constexpr double k_on_rows = 1e-12;            // m, rad
 constexpr std::size_t k_most_rope_changes = 8; // per rope
 constexpr double k_short = 0.999;
-constexpr int k_most_reversals = 24;
 constexpr int k_most_slips = 12;   // of one friction element before the search fails
 constexpr double k_tipped = 0.75;  // rad of rotation from which a body counts as tipped over
 constexpr int k_most_shared = 150; // coordinates of the largest model for which all distributions of friction are examined
 // Share of the size of the model: contacts that slid further, resisted by friction alone, did not stand.
 constexpr double k_stands = 1e-2;
-constexpr double k_slid = 1e-9;      // share of the size of the model; rows of sticking friction are met to 1e-12 m
-constexpr double k_most_moved = 0.1; // sizes of the model, rad: a body that moves further in one increment has left its place
 
 std::string rounded(double value) {
   char text[40];
@@ -72,26 +68,17 @@ std::string unstable_text(const System& system, const MotionPart& nudge) {
   return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
 }
 
-enum class LoadHistory { any, increment };
+enum class LoadHistory { any, ramped };
 
 class RestSearch {
 public:
   RestSearch(const System& system, const State& start, RestAlgebra algebra, LoadHistory history = LoadHistory::any)
-      : system_(system), algebra_(algebra), history_(history), start_(start) {
-    begin();
-  }
-
-  // Computes one increment by an active set: friction sticks where it stuck at the start or slides at its bound. What would exceed its
-  // bound slides (let_go), and what slid against its direction sticks, until neither occurs.
-  Equilibrium run_increment(const std::vector<int>& sliding) {
-    for (const int f : sliding) state_.friction[f].phase = FrictionPhase::slip;
-    for (int round = 0; !has_rest_without_reversal(); ++round)
-      if (round == k_most_reversals)
-        throw RestNotFound("no static equilibrium found: whether friction slides or sticks cannot be decided", {});
-    check_increment();
-    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
-      if (slides(f)) result_.sliding.push_back(f);
-    return at_rest();
+      : system_(system), algebra_(algebra), history_(history), start_(start), state_(start) {
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    start_drives(system_, state_);
+    for (FrictionState& friction : state_.friction)
+      if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
+    (void)set_ropes(system_, state_);
   }
 
   Equilibrium run() {
@@ -99,21 +86,12 @@ public:
     try {
       return search();
     } catch (const ElementFailure& none) {
-      if (system_.units.empty() && system_.frictions.empty()) throw;
+      if (history_ == LoadHistory::ramped || (system_.units.empty() && system_.frictions.empty())) throw;
       return settled(none);
     }
   }
 
 private:
-  // Puts the machine at its start. Loaded friction will stick there.
-  void begin() {
-    state_ = start_;
-    std::fill(state_.v.begin(), state_.v.end(), 0.0);
-    start_drives(system_, state_);
-    for (FrictionState& friction : state_.friction)
-      if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
-    (void)set_ropes(system_, state_);
-  }
   // Repeats the search from the final pose of the damped machine. `none`: failure of the first search.
   Equilibrium settled(const ElementFailure& none) {
     state_ = start_;
@@ -144,78 +122,6 @@ private:
       throw ElementFailure(tried, none.elements());
     }
   }
-  // Returns the largest displacement of a friction's rows since the start; 0 for friction without load there.
-  [[nodiscard]] double slid_since_start(int f) const {
-    const FrictionUnit& unit = system_.frictions[f];
-    if (start_.friction[f].phase != FrictionPhase::stick || unit.friction->never_slips()) return 0.0;
-    std::vector<Motion<double>> before, now;
-    place_bodies(start_.q, state_.v, before);
-    place_bodies(state_.q, state_.v, now);
-    double most = 0.0;
-    for (int r = 0; r < unit.friction->dimension(); ++r) {
-      const RowSpec& row = unit.friction->rows(start_.friction[f])[r];
-      most = std::max(most, std::abs(evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value));
-    }
-    return most;
-  }
-  [[nodiscard]] bool slides(int f) const { // not a slack rope
-    return state_.friction[f].phase == FrictionPhase::slip && !system_.frictions[f].friction->never_slips();
-  }
-  // Searches the rest with what slides now. Returns false if friction has slid against its direction; it will stick in the next search.
-  bool has_rest_without_reversal() {
-    try {
-      find_rest();
-    } catch (const ElementFailure&) { // friction that acts in the direction of motion drives the machine away
-      if (!hold_reversed()) throw;
-      return false;
-    }
-    return !hold_reversed();
-  }
-  // Returns to the start of the increment with friction sticking that has slid against its direction. Returns false if there is none.
-  bool hold_reversed() {
-    std::vector<FrictionState> friction = state_.friction;
-    bool is_any = false;
-    std::vector<Motion<double>> before, now;
-    place_bodies(start_.q, state_.v, before);
-    place_bodies(state_.q, state_.v, now);
-    for (int f = 0; f < static_cast<int>(friction.size()); ++f) {
-      if (!slides(f)) continue;
-      const RowSpec& row = *system_.frictions[f].friction->rows(friction[f]);
-      const double slid = evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value;
-      if (slid * friction[f].sign >= -k_slid * length_) continue;
-      friction[f].phase = FrictionPhase::stick;
-      is_any = true;
-    }
-    if (!is_any) return false;
-    begin();
-    for (int f = 0; f < static_cast<int>(friction.size()); ++f)
-      if (friction[f].phase == FrictionPhase::slip && !system_.frictions[f].friction->never_slips()) state_.friction[f] = friction[f];
-    return true;
-  }
-  // Throws if a joint that friction holds in the plane slipped, because its sliding is not followed, or if friction of contacts slid far in
-  // this increment, because then nothing else held the body.
-  void check_increment() const {
-    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-      const double slid = slid_since_start(f);
-      if (system_.frictions[f].friction->dimension() > 1 && slid > k_slid * length_)
-        throw ElementFailure("no static equilibrium: '" + name_of(f) + "' slips", {name_of(f)});
-      if (slid > k_stands * length_ && is_of_contacts(f)) {
-        const RowSpec& row = *system_.frictions[f].friction->rows(start_.friction[f]);
-        const int body = row.a == k_ground ? row.b : row.a;
-        throw ElementFailure("no static equilibrium: '" + name_of(f) + "' cannot hold, and '" + system_.bodies[body].name + "' slides",
-                             {name_of(f), system_.bodies[body].name});
-      }
-    }
-  }
-  // Throws if this equilibrium is far from the start or was reached past an unstable one: the machine has then left its place.
-  void check_place() const {
-    if (!result_.left.empty())
-      throw ElementFailure("the pose balances, but a nudge of " + part_text(system_, result_.left.front()) + " leaves it", {});
-    if (result_.turned != 0.0) throw ElementFailure("'" + system_.bodies[result_.turned_body].name + "' tips over", {});
-    for (std::size_t i = 3; i < start_.q.size(); ++i)
-      if (std::abs(state_.q[i] - start_.q[i]) > k_most_moved * (i % 3 < 2 ? length_ : 1.0))
-        throw ElementFailure("'" + system_.bodies[i / 3].name + "' leaves its place", {system_.bodies[i / 3].name});
-  }
   // Returns the memory with the drives' original values and the friction anchors of `rest`.
   [[nodiscard]] std::vector<double> held_memory(const State& rest) const {
     std::vector<double> memory = rest.memory;
@@ -226,15 +132,8 @@ private:
   }
 
   Equilibrium search() {
-    find_rest();
-    check_slides();
-    return at_rest();
-  }
-
-  void find_rest() {
     while (true) {
       Descent descent(system_, state_, algebra_);
-      if (history_ == LoadHistory::increment) descent.follow_increment(k_most_moved);
       const DescentEnd end = descent.run();
       result_.iterations += descent.iterations();
       result_.residual = descent.residual();
@@ -247,15 +146,15 @@ private:
       for (Slip& slip : slips_) slip.is_new = false;
       yielding_ = descent.yielding();
       if (end != DescentEnd::rest && tighten_long()) continue;
-      if (end == DescentEnd::runs_away && history_ == LoadHistory::increment)
-        throw ElementFailure("no static equilibrium: " + part_text(system_, descent.runaway()) + " leaves its place", {});
       if (end != DescentEnd::rest) fail(descent, end);
       if (let_flow()) continue;
       find_margins(descent);
       if (change_ropes()) continue;
-      if (overloads_.empty()) return;
+      if (overloads_.empty()) break;
       if (result_.is_settled || !share_anew(descent)) let_go(); // a settled machine has distributed its load on the way
     }
+    check_slides();
+    return at_rest();
   }
 
   Equilibrium at_rest() {
@@ -264,18 +163,12 @@ private:
       state_.friction[f].phase = FrictionPhase::stick;
       anchor_friction(system_, state_, f);
     }
-    if (history_ == LoadHistory::increment) {
-      for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
-        if (slid_since_start(f) > k_slid * length_) result_.slid.push_back(f);
-    } else {
-      for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
-    }
-    result_.hangs_on_way = history_ == LoadHistory::any && (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
+    for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
+    result_.hangs_on_way = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
     note_drives();
     result_.state = state_;
     result_.state.v = start_.v;
     note_tipping();
-    if (history_ == LoadHistory::increment) check_place();
     for (std::size_t i = 3; i < start_.q.size(); ++i)
       if (i % 3 < 2) result_.moved = std::max(result_.moved, std::abs(state_.q[i] - start_.q[i]));
     return std::move(result_);
@@ -459,7 +352,7 @@ private:
   // Sticking forces depend on the history of loading. Looks for another admissible distribution of forces that holds the machine, and
   // returns true if there is one.
   bool share_anew(const Descent& descent) {
-    if (was_shared_anew_ || history_ == LoadHistory::increment) return false;
+    if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
     // The search over all distributions uses dense algebra, which takes hours in large models. There friction slides until it sticks.
     if (3 * (system_.body_count() - 1) > k_most_shared) {
       is_too_large_ = true;
@@ -644,8 +537,8 @@ Equilibrium find_equilibrium(const System& system, const State& start, RestAlgeb
   return RestSearch(system, start, algebra).run();
 }
 
-Equilibrium rest_after_increment(const System& system, const Equilibrium& before) {
-  return RestSearch(system, before.state, RestAlgebra::by_size, LoadHistory::increment).run_increment(before.sliding);
+Equilibrium find_ramped_rest(const System& system, const State& start) {
+  return RestSearch(system, start, RestAlgebra::by_size, LoadHistory::ramped).run();
 }
 
 } // namespace steplap

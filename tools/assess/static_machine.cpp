@@ -5,13 +5,11 @@
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/start.h"
 #include "run/failure.h"
-#include "run/prominence.h"
 #include "run/rest_values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 
 namespace steplap::assess {
@@ -34,15 +32,6 @@ Model with_monitors(Model model) {
 
 } // namespace
 
-void Probe::append_equilibrium(std::vector<double> next) {
-  if (low.empty()) low = high = next;
-  for (std::size_t i = 0; i < next.size(); ++i) {
-    if (!(next[i] >= low[i])) low[i] = next[i]; // NaN is the worst
-    if (!(next[i] <= high[i])) high[i] = next[i];
-  }
-  values = std::move(next);
-}
-
 const char* name_of(LimitKind kind) {
   switch (kind) {
   case LimitKind::slips: return "slips";
@@ -63,19 +52,9 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
     throw NumericalFailure("without any acceleration: " + failure_of(failure, model_, *system_, 0.0).text);
   }
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
-  at_rest_.append_equilibrium(values_at_rest(*system_, at_rest_.rest->state));
+  at_rest_.values = values_at_rest(*system_, at_rest_.rest->state);
   find_watches();
   at_rest_.left = left_of(at_rest_);
-}
-
-std::vector<std::vector<double>> StaticMachine::forces_at(const Equilibrium& rest) {
-  const std::vector<double> values = values_at_rest(*system_, rest.state);
-  std::map<std::string, std::vector<double>> forces; // by unit
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (is_reaction(system_->channels[i])) forces[system_->channels[i].unit].push_back(values[i]);
-  std::vector<std::vector<double>> lists;
-  for (auto& [unit, list] : forces) lists.push_back(std::move(list));
-  return lists;
 }
 
 void StaticMachine::find_watches() {
@@ -113,7 +92,7 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
   std::vector<double> left(watches_.size(), 1.0);
   for (std::size_t w = 0; w < watches_.size(); ++w) {
     if (channel_[w] >= 0) {
-      const double value = probe.high[static_cast<std::size_t>(channel_[w])];
+      const double value = probe.values[static_cast<std::size_t>(channel_[w])];
       left[w] = watches_[w].kind == LimitKind::lifts ? -value / rest_gap_[w] : 1.0 - value;
       continue;
     }
@@ -125,54 +104,51 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
   return left;
 }
 
-Probe StaticMachine::probe(const Equilibrium& start, const Vec2& before, const Vec2& pull) {
-  RampQuestions questions;
+Probe StaticMachine::probe(const State& start, const Vec2& pull) {
+  struct Restored { // restores the machine in every case
+    System& system;
+    Vec2 gravity;
+    ~Restored() { system.gravity = gravity; }
+  } const restored{*system_, gravity_};
+  system_->gravity = gravity_ + pull;
   Probe probe;
-  questions.forces = [this](const Equilibrium& rest) { return forces_at(rest); };
-  questions.on_rest = [&](const Equilibrium& rest, double share) {
-    probe.append_equilibrium(values_at_rest(*system_, rest.state));
-    probe.rest = rest;
-    probe.pull = before + share * (pull - before);
-  };
   try {
-    probe.rest = find_ramped_rest(*system_, start, {gravity_ + before, gravity_ + pull}, questions);
-    probe.pull = pull;
+    Equilibrium found = find_ramped_rest(*system_, start);
+    if (!found.left.empty()) {
+      probe.failure = "the pose balances, but a nudge of " + part_text(*system_, found.left.front()) + " leaves it";
+      return probe;
+    }
+    if (found.turned != 0.0) {
+      probe.failure = "'" + system_->bodies[static_cast<std::size_t>(found.turned_body)].name + "' tips over";
+      return probe;
+    }
+    probe.values = values_at_rest(*system_, found.state);
+    probe.rest = std::move(found);
     probe.left = left_of(probe);
   } catch (const RunStopped&) {
     throw;
   } catch (const NumericalFailure& failure) {
-    Probe none;
-    if (probe.rest) {
-      probe.left = left_of(probe);
-      none.reached = std::make_shared<Probe>(std::move(probe));
-    }
-    none.pull = pull;
-    none.failure = failure.what();
-    none.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
-    return none;
+    probe.failure = failure.what();
+    probe.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
+    probe.rest.reset();
   }
   return probe;
 }
 
-Probe StaticMachine::ramped(const Vec2& pull) { return probe(*at_rest_.rest, Vec2::Zero(), pull); }
+Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->state, pull); }
 
-Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(*before.rest, before.pull, pull); }
-
-Probe StaticMachine::loaded_again(const Probe& before, const Vec2& pull) {
-  const Probe unloaded = ramped_from(before, Vec2::Zero());
-  return unloaded.rest ? ramped_from(unloaded, pull) : unloaded;
-}
+Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(before.rest->state, pull); }
 
 Probe StaticMachine::worked_loose(const Vec2& pull) {
-  Equilibrium loose = *at_rest_.rest;
+  State loose = at_rest_.rest->state;
   for (std::size_t w = 0; w < watches_.size(); ++w)
-    if (watches_[w].kind == LimitKind::slides) loose.state.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
-  return probe(loose, Vec2::Zero(), pull);
+    if (watches_[w].kind == LimitKind::slides) loose.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
+  return probe(loose, pull);
 }
 
-double StaticMachine::value_in(const std::vector<double>& values, const std::string& channel) const {
+double StaticMachine::value(const Probe& probe, const std::string& channel) const {
   const int index = channel_index(*system_, channel);
-  return index < 0 || values.empty() ? std::numeric_limits<double>::quiet_NaN() : values[static_cast<std::size_t>(index)];
+  return index < 0 || probe.values.empty() ? std::numeric_limits<double>::quiet_NaN() : probe.values[static_cast<std::size_t>(index)];
 }
 
 } // namespace steplap::assess

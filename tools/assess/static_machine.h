@@ -12,7 +12,6 @@
 #include "mbd/rest/equilibrium.h"
 #include "run/loaded_model.h"
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,16 +38,10 @@ struct Watch {
 struct Probe {
   std::optional<Equilibrium> rest;
   std::string failure;        ///< sentence, if there is no equilibrium
-  std::shared_ptr<Probe> reached; ///< the last equilibrium on the path, if there is none under the whole pull
   bool is_unknown = false;    ///< true if the search failed without showing that no equilibrium exists
-  std::vector<double> left;   ///< least reserve of each watch on the path: positive below its limit, zero at it; for linear statics convex
-                              ///< or linear in the pull
-  Vec2 pull = Vec2::Zero();   ///< pull at this equilibrium, m/s²
+  std::vector<double> left;   ///< reserve of each watch: positive below its limit, zero at it; for linear statics convex or linear in the
+                              ///< pull
   std::vector<double> values; ///< of System::channels
-  std::vector<double> low, high; ///< extremes of `values` on the path; NaN once a value was NaN
-
-  /// Adds the values of the next equilibrium on the path.
-  void append_equilibrium(std::vector<double> next);
 };
 
 /// A model prepared for statics under different pulls.
@@ -65,26 +58,19 @@ public:
   /// Returns the step-lap joints with finite friction capacity.
   [[nodiscard]] const std::vector<std::string>& joints() const { return joints_; }
 
-  // Each pull is followed from the equilibrium before it (mbd/rest/ramped_rest.h).
   /// Increases the pull from zero, starting from the equilibrium under gravity alone.
   [[nodiscard]] Probe ramped(const Vec2& pull);
   /// Increases the pull from the equilibrium `before`, which belongs to another pull.
   [[nodiscard]] Probe ramped_from(const Probe& before, const Vec2& pull);
-  /// Takes the pull of `before` back to zero, then increases `pull` from there; extremes are those of the second part.
-  [[nodiscard]] Probe loaded_again(const Probe& before, const Vec2& pull);
   /// Finds the equilibrium if friction along lines and about pins carries nothing, as after long vibration. Friction of joints in the plane
   /// holds.
   [[nodiscard]] Probe worked_loose(const Vec2& pull);
-  /// Returns the value of a channel, or its extreme on the path; NaN if there is none of that name.
-  [[nodiscard]] double value(const Probe& probe, const std::string& channel) const { return value_in(probe.values, channel); }
-  [[nodiscard]] double least(const Probe& probe, const std::string& channel) const { return value_in(probe.low, channel); }
-  [[nodiscard]] double largest(const Probe& probe, const std::string& channel) const { return value_in(probe.high, channel); }
+  /// Returns the value of a channel; NaN if there is none of that name.
+  [[nodiscard]] double value(const Probe& probe, const std::string& channel) const;
 
 private:
   void find_watches();
-  Probe probe(const Equilibrium& start, const Vec2& before, const Vec2& pull);
-  [[nodiscard]] std::vector<std::vector<double>> forces_at(const Equilibrium& rest);
-  [[nodiscard]] double value_in(const std::vector<double>& values, const std::string& channel) const;
+  Probe probe(const State& start, const Vec2& pull);
   [[nodiscard]] std::vector<double> left_of(const Probe& probe) const;
 
   Model model_;

@@ -24,7 +24,7 @@ constexpr double k_just_below = 1e-3; // distance below the first limit of a dir
 // Returns true for units of positions and forces. Velocities and accelerations have no meaning in an equilibrium.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
-// Returns the results of a path to an equilibrium in the form of a run from the equilibrium without acceleration.
+// Returns the results of an equilibrium in the form of a run from the equilibrium without acceleration.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -35,9 +35,10 @@ RunResult as_run(const StaticMachine& machine, const Probe& probe) {
     range.channel = &machine.system().channels[i];
     range.first = first;
     range.final = last;
-    range.low = {std::min(probe.low[i], first), 0.0}; // NaN on the path remains
-    range.high = {std::max(probe.high[i], first), 0.0};
-    range.had_no_value = std::isnan(first) || std::isnan(probe.low[i]);
+    range.low = {first < last ? first : last, 0.0};
+    range.high = {first > last ? first : last, 0.0};
+    if (std::isnan(last)) range.low.value = range.high.value = last;
+    range.had_no_value = std::isnan(first) || std::isnan(last);
     result.ranges.push_back(range);
   }
   return result;
@@ -124,7 +125,7 @@ private:
     const Vec2& pull = case_.load.pull;
     if (pull == Vec2::Zero()) return;
     if (const Probe turned = machine_.ramped(-pull); turned.rest) {
-      returned_ = machine_.loaded_again(turned, pull);
+      returned_ = machine_.ramped_from(turned, pull);
       if (returned_.rest) ways_.push_back(&returned_);
       else
         note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " +
@@ -141,7 +142,7 @@ private:
     for (const std::string& joint : machine_.joints()) {
       StaticJoint one{joint, std::numeric_limits<double>::infinity()};
       for (const Probe* way : ways_) {
-        const double margin = machine_.least(*way, joint + ".margin");
+        const double margin = machine_.value(*way, joint + ".margin");
         if (!(margin >= one.margin)) one.margin = margin; // NaN is the worst
       }
       case_.joints.push_back(one);
@@ -153,7 +154,7 @@ private:
       StaticFoot foot{watch.element, false, machine_.value(grown_, watch.element + ".force"), 0.0};
       for (const Probe* way : ways_) {
         foot.lifts = foot.lifts || way->left[w] <= 0.0;
-        foot.height = std::max(foot.height, machine_.largest(*way, watch.element + ".gap"));
+        foot.height = std::max(foot.height, machine_.value(*way, watch.element + ".gap"));
       }
       case_.feet.push_back(foot);
     }
@@ -170,8 +171,7 @@ private:
       if (!is_reaction(channels[i])) continue;
       StaticReaction reaction{channels[i].name, 0.0, channels[i].unit, {}};
       for (const Probe* way : ways_)
-        for (const double value : {way->values[i], way->low[i], way->high[i]})
-          if (!(std::abs(value) <= std::abs(reaction.value))) reaction.value = value;
+        if (!(std::abs(way->values[i]) <= std::abs(reaction.value))) reaction.value = way->values[i];
       for (const Criterion& c : machine_.model().criteria) {
         if (!matches_pattern(reaction.name, c.channel)) continue;
         const std::optional<double> bound = c.within ? c.within : c.at_most;
@@ -238,7 +238,7 @@ bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
   };
   const Probe turned = machine.ramped(-pull);
   if (!is_intact(turned)) return true; // the opposite load would change the machine
-  return is_intact(machine.loaded_again(turned, pull));
+  return is_intact(machine.ramped_from(turned, pull));
 }
 
 StaticDirection look_along(StaticMachine& machine, double angle, double largest) {
