@@ -19,6 +19,7 @@ namespace steplap::assess {
 namespace {
 
 constexpr double k_close = 1e-6;      // of a margin; accuracy of an equilibrium
+constexpr double k_at_bound = 0.98;   // utilisation from which friction counts as sliding; forces are asked for to 2 %
 constexpr double k_just_below = 1e-3; // distance below the first limit of a direction, relative, at which the other ways are computed
 
 // Returns true for units of positions and forces. Velocities and accelerations have no meaning in an equilibrium.
@@ -124,8 +125,9 @@ private:
   void ask_other_ways() {
     const Vec2& pull = case_.load.pull;
     if (pull == Vec2::Zero()) return;
-    if (const Probe turned = machine_.ramped(-pull); turned.rest) {
-      returned_ = machine_.ramped_from(turned, pull);
+    turned_ = machine_.ramped(-pull);
+    if (turned_.rest) {
+      returned_ = machine_.ramped_from(turned_, pull);
       if (returned_.rest) ways_.push_back(&returned_);
       else
         note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " +
@@ -163,6 +165,40 @@ private:
     for (std::size_t i = 3; i < rest.q.size(); ++i)
       if (i % 3 < 2) case_.moved = std::max(case_.moved, std::abs(grown_.rest->state.q[i] - rest.q[i]));
     find_tipping();
+  }
+
+  // The search for rest puts the whole load on at once, and can pass the rest of a load that grows. Friction that slides under a growing load
+  // ends at its bound, against its slide from `start`. Where it ends otherwise, the forces found are not those of a growing load.
+  void check_slides(const Probe& way, const State& start) {
+    for (const FrictionMargin& margin : way.rest->margins) {
+      const std::vector<int>& slid = way.rest->slid;
+      if (std::find(slid.begin(), slid.end(), margin.friction) == slid.end()) continue;
+      const std::string& name = machine_.system().element_names[static_cast<std::size_t>(unit_of(margin).element)];
+      const bool is_at_bound = margin.used >= k_at_bound;
+      if (is_at_bound && !pushes_on(way, start, margin, name)) continue;
+      note(Verdict::open, "'" + name + "' has slid and then " +
+                              (is_at_bound ? "pushes in the direction of its slide"
+                                           : "carries " + rounded_text(100.0 * margin.used, 3) + " % of what it can") +
+                              ", so the search went past the rest of a load that grows: forces are not known. Let the load grow slowly in "
+                              "a run");
+    }
+  }
+
+  [[nodiscard]] const FrictionUnit& unit_of(const FrictionMargin& margin) const {
+    return machine_.system().frictions[static_cast<std::size_t>(margin.friction)];
+  }
+
+  // Returns true if friction along a line acts in the direction in which it has slid since `start`.
+  [[nodiscard]] bool pushes_on(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
+    const FrictionElement& friction = *unit_of(margin).friction;
+    if (friction.dimension() != 1) return false;
+    const State& rest = way.rest->state;
+    const RowSpec& row = *friction.rows(rest.friction[static_cast<std::size_t>(margin.friction)]);
+    std::vector<Motion<double>> before, now;
+    place_bodies(start.q, start.v, before);
+    place_bodies(rest.q, rest.v, now);
+    const double slid = evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value;
+    return machine_.value(way, name + ".friction") * slid > 0.0; // false for NaN: no such channel
   }
 
   void collect_reactions() {
@@ -214,6 +250,8 @@ private:
         if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end())
           case_.remarks.push_back(std::move(remark));
     }
+    check_slides(grown_, machine_.at_rest().rest->state);
+    if (returned_.rest) check_slides(returned_, turned_.rest->state);
     for (const StaticJoint& joint : case_.joints)
       if (!(std::abs(joint.margin - 1.0) > k_close)) note(Verdict::open, "the margin of '" + joint.name + "' is 1 within rounding");
     for (const FrictionMargin& margin : grown_.rest->margins)
@@ -226,7 +264,7 @@ private:
 
   StaticMachine& machine_;
   const LoadedModel& loaded_;
-  Probe grown_, returned_, loose_;
+  Probe grown_, turned_, returned_, loose_;
   std::vector<const Probe*> ways_;
   StaticCase case_;
 };
