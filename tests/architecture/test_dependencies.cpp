@@ -51,8 +51,8 @@ const std::vector<std::string> k_modules = {"mbd/base",
                                             "tools"};
 
 // Headers of libraries, of which one file of the product knows.
-const std::vector<std::string> k_heavy = {
-    "toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "boost/beast"};
+const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/",    "openssl/", "muParser",
+                                          "sqlite3", "mpi.h",    "asmjit/", "fmt/",     "boost/beast"};
 
 // Folders of which others include only some headers: their public ones, each with what it is for.
 using PublicHeaders = std::map<std::string, std::string>;

@@ -80,7 +80,9 @@ TEST_CASE("axes of a record are mapped with their signs onto those of the marker
 TEST_CASE("a block on the driven tank slides as Newmark's sliding block does") {
   // Triangle of 0.6 g and 0.1 s; slides by quadrature of the rigid block. The feet's springs let it swing a little about its
   // length, which changes the share of each foot and not their sum: 1e-3 is left for the digits of the table.
-  const struct { double mu, slide; } cases[] = {{0.2, 9.787e-3}, {0.3, 3.602e-3}, {0.4, 1.059e-3}};
+  const struct {
+    double mu, slide;
+  } cases[] = {{0.2, 9.787e-3}, {0.3, 3.602e-3}, {0.4, 1.059e-3}};
   const DriveHistory pulse = triangles({0.6 * 9.81}, 0.1, 0.4);
   for (const auto& c : cases)
     CHECK(std::abs(final_value(driven(block_text(c.mu)), pulse, "floor.slide")) == doctest::Approx(c.slide).epsilon(1e-3));
