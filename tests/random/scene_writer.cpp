@@ -31,7 +31,7 @@ const char* const k_from_zero = "-1.5707963267948966";
 
 // Seeds up to here mean the scenes that they have always meant: what is known of them stays true.
 constexpr std::uint64_t k_last_without_transport = 1500;
-// Behind this one there are chirps as well.
+// Beyond this one there are chirps and sines as well.
 constexpr std::uint64_t k_last_without_chirps = 15000;
 
 std::string lines(const SceneWriter::Fields& fields) {
@@ -108,6 +108,10 @@ std::string SceneWriter::signal(double peak, bool is_smooth) {
     }
     block.fields =
         lines({{"amplitudes", "[" + amplitudes + "]"}, {"frequencies", "[" + frequencies + "]"}, {"phases", "[" + phases + "]"}});
+    if (is_smooth && scene.seed > k_last_without_chirps) { // the same signal
+      block.kind = "sine";
+      block.fields = lines({{"amplitude", amplitudes}, {"frequency", frequencies}});
+    }
     if (!is_smooth && r.chance(0.3)) block.fields += lines({{"start", number(start)}, {"duration", number(length)}});
     if (!is_smooth && scene.seed > k_last_without_chirps && (scene.seed + static_cast<std::uint64_t>(count_)) % 2 == 0) {
       block.kind = "chirp";

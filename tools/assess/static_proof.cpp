@@ -168,20 +168,38 @@ private:
   }
 
   // The search for rest puts the whole load on at once, and can pass the rest of a load that grows. Friction that slides under a growing load
-  // ends at its bound, against its slide from `start`. Where it ends otherwise, the forces found are not those of a growing load.
+  // ends at its bound, against its slide from `start`. Where it ends otherwise, friction carries less than under a growing load, and what holds
+  // the machine next to it carries more. So limits on friction forces are then open, and all others are on the safe side.
   void check_slides(const Probe& way, const State& start) {
     for (const FrictionMargin& margin : way.rest->margins) {
       const std::vector<int>& slid = way.rest->slid;
       if (std::find(slid.begin(), slid.end(), margin.friction) == slid.end()) continue;
-      const std::string& name = machine_.system().element_names[static_cast<std::size_t>(unit_of(margin).element)];
+      const std::string& name = name_of(margin.friction);
       const bool is_at_bound = margin.used >= k_at_bound;
       if (is_at_bound && !pushes_on(way, start, margin, name)) continue;
-      note(Verdict::open, "'" + name + "' has slid and then " +
-                              (is_at_bound ? "pushes in the direction of its slide"
-                                           : "carries " + rounded_text(100.0 * margin.used, 3) + " % of what it can") +
-                              ", so the search went past the rest of a load that grows: forces are not known. Let the load grow slowly in "
-                              "a run");
+      const std::string passed =
+          "'" + name + "' has slid and then " +
+          (is_at_bound ? "pushes in the direction of its slide" : "carries " + rounded_text(100.0 * margin.used, 3) + " % of what it can") +
+          ", so the search went past the rest of a load that grows";
+      case_.remarks.push_back(passed + ": what holds the machine next to it may carry less than is stated");
+      for (const Criterion& criterion : machine_.model().criteria) check_friction_limit(criterion, way, passed);
+      return;
     }
+  }
+
+  // Leaves a limit on a friction force open, unless that friction cannot reach it.
+  void check_friction_limit(const Criterion& criterion, const Probe& way, const std::string& passed) {
+    for (std::size_t f = 0; f < machine_.system().frictions.size(); ++f) {
+      const std::string& name = name_of(static_cast<int>(f));
+      const double capacity = machine_.value(way, name + ".capacity"), largest = criterion.within.value_or(criterion.at_most.value_or(0.0));
+      if (!matches_pattern(name + ".friction", criterion.channel) || capacity < largest) continue;
+      note(Verdict::open, "'" + criterion.channel + "' is not known: " + passed + ". Let the load grow slowly in a run");
+    }
+  }
+
+  [[nodiscard]] const std::string& name_of(int friction) const {
+    const System& system = machine_.system();
+    return system.element_names[static_cast<std::size_t>(system.frictions[static_cast<std::size_t>(friction)].element)];
   }
 
   [[nodiscard]] const FrictionUnit& unit_of(const FrictionMargin& margin) const {

@@ -58,14 +58,14 @@ std::vector<std::string> arguments_for(const ModelTemplate& one, const Dimension
   return arguments;
 }
 
-Json json_of(const Outcome& outcome) {
+Json json_of(const Outcome& outcome, bool may_warn = false) {
   CHECK_MESSAGE(outcome.code == 0, outcome.err);
-  CHECK_MESSAGE(outcome.err.empty(), outcome.err);
+  CHECK_MESSAGE((may_warn || outcome.err.empty()), outcome.err);
   return Json::parse(outcome.out)["results"][0];
 }
 
 // The model written for these dimensions, which says nothing and is checked without a warning, and its run.
-Json run_of(const Workbench& bench, const ModelTemplate& one, const Dimensions& dimensions) {
+Json run_of(const Workbench& bench, const ModelTemplate& one, const Dimensions& dimensions, bool may_warn = false) {
   const std::string file = bench.at(one.name + ".toml");
   const Outcome written = steplap_does(arguments_for(one, dimensions, file));
   REQUIRE_MESSAGE(written.code == 0, written.err);
@@ -73,7 +73,7 @@ Json run_of(const Workbench& bench, const ModelTemplate& one, const Dimensions& 
   const Outcome check = steplap_does({"check", file});
   CHECK_MESSAGE(check.code == 0, check.err);
   CHECK_MESSAGE(!has(check.out, "warning:"), check.out);
-  return json_of(steplap_does({"simulate", file, "-o", bench.at("out"), "--force", "--no-estimate", "--json"}))["summary"];
+  return json_of(steplap_does({"simulate", file, "-o", bench.at("out"), "--force", "--no-estimate", "--json"}), may_warn)["summary"];
 }
 
 std::string verdict_of(const Json& summary) { return summary["overview"]["verdict"]; }
@@ -146,7 +146,7 @@ TEST_CASE("a block that stands still has no events, and its errors are known") {
 TEST_CASE("a block that is slender tips over instead") {
   const Workbench bench;
   Dimensions d = {{"height", 6.0}, {"length", 1.0}, {"friction", 0.8}, {"deceleration", 0.5 * 9.80665}}; // beyond g length / height
-  CHECK(verdict_of(run_of(bench, called("block"), d)) != "hold");
+  CHECK(verdict_of(run_of(bench, called("block"), d, true)) != "hold");                                  // its feet end beyond the vehicle
   d["height"] = 1.0;
   CHECK(verdict_of(run_of(bench, called("block"), d)) == "hold");
 }
