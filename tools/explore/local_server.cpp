@@ -141,8 +141,8 @@ private:
   }
 
   void send(PageReply reply, bool keeps_open) {
-    beast::error_code ignored;
-    stream_.socket().cancel(ignored);
+    beast::error_code not_cancelled;
+    stream_.socket().cancel(not_cancelled);
     response_.emplace(response_of(std::move(reply), keeps_open));
     stream_.expires_after(std::chrono::seconds(LocalServer::k_patience));
     http::async_write(stream_, *response_, [self = shared_from_this(), keeps_open](beast::error_code error, std::size_t) {
