@@ -126,7 +126,8 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
   const auto sources = product_sources();
   // What else is called so, and who reads a kind's settings besides the kind itself.
   const std::map<std::string, Reasons> besides = {
-      {"sample", {{"tools/study/store.cpp", "a table of the store"}}},
+      {"sample", {{"tools/study/store.cpp", "a table of the store"}, {"tools/study/program/show.cpp", "the head of a column"}}},
+      {"sweep", {{"tools/study/program/show.cpp", "its samples are its answer"}}},
       {"reliability",
        {{"tools/study/limit_function.h", "hands its settings to the methods of reliability"},
         {"tools/study/limit_function.cpp", "the same"}}},
@@ -243,6 +244,7 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/system/turn_table.cpp", "on which angles a measure depends"},
       {"mbd/trust/frozen_growth.cpp", "rows of rates, which leave places free"},
       {"mbd/system/motion_formula.cpp", "an angle is linear in itself"},
+      {"mbd/system/requested_channels.cpp", "friction that slides along a face has a way"},
   };
   for (const auto& [path, text] : product_sources())
     if (path.starts_with("mbd/") && text.find("MeasureKind::") != std::string::npos)

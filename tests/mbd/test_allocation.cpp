@@ -57,7 +57,8 @@ Count count_allocations(const System& system, SimulationOptions o, double warm) 
   o.output_step = 0.0; // samples go into a growing trajectory
   Simulation simulation(system, system.initial_state(), o);
   Count count;
-  bool is_first = true; // after a change: matrices take the size of the new layout
+  bool is_first = true;  // after a change: matrices take the size of the new layout
+  std::vector<int> feet; // of each friction element, after the last step
   for (;;) {
     const std::size_t events = simulation.events().size();
     const long restarts = simulation.statistics().events, before = allocations;
@@ -69,7 +70,11 @@ Count count_allocations(const System& system, SimulationOptions o, double warm) 
     // At a kink all modes are decided anew.
     const bool is_kink =
         std::any_of(system.breakpoints.begin(), system.breakpoints.end(), [t](double b) { return std::abs(t - b) < 1e-12; });
-    const bool is_change = is_kink || simulation.events().size() != events || simulation.statistics().events != restarts;
+    // A change between feet at one height is no event, but other rows of friction.
+    std::vector<int> feet_now;
+    for (const FrictionState& friction : simulation.current_state().friction) feet_now.push_back(friction.foot);
+    const bool is_other_foot = std::exchange(feet, feet_now) != feet_now;
+    const bool is_change = is_kink || is_other_foot || simulation.events().size() != events || simulation.statistics().events != restarts;
     const bool is_after = std::exchange(is_first, is_change);
     if (t < warm || is_change || is_after) continue;
     ++count.steps;
