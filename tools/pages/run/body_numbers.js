@@ -38,18 +38,18 @@
       const edge = steplap.forms.nearest(body, p);
       return Boolean(edge) && length(minus(p, edge)) < 4 / this.scale;
     },
-    // Names, in the order in which they are drawn.
-    bodiesAt(point, pose) {
+    // Names, in the order in which they are drawn. Of 'exact' only what is painted counts, of others a margin about it as well.
+    bodiesAt(point, pose, exact) {
       const found = [];
       for (const body of this.bodies.values()) {
         const p = pose(body.name), own = seenIn(p, point);
-        if (length(own) <= 1.5 * body.reach + 9 / this.scale && (steplap.forms.isSolidAt(body, own) || this.isOnLine(body, own) || this.isAtEdge(body, own))) found.push(body.name);
+        if (length(own) <= 1.5 * body.reach + 9 / this.scale && (steplap.forms.isSolidAt(body, own) || this.isOnLine(body, own) || (body.name !== exact && this.isAtEdge(body, own)))) found.push(body.name);
       }
       return found;
     },
     // 0: on its body alone; 1: on none; 2: on its own, which is seen before the others; 3: on another.
     rankOf(name, screen, pose) {
-      const at = this.bodiesAt(this.toPlane(...screen), pose), own = at.indexOf(name);
+      const at = this.bodiesAt(this.toPlane(...screen), pose, name), own = at.indexOf(name);
       if (!at.length) return 1;
       // What stands around another body is translucent: it hides nothing of what is within, whichever is drawn first.
       const isWithin = (inner, outer) => this.isBehind(outer) && this.body(inner).reach < this.body(outer).reach;
