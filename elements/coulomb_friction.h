@@ -69,8 +69,9 @@ public:
     return turn_to_other_foot(e, state);
   }
   void switch_contact_point(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
-  // The slip rates of two feet differ by the relative rotation times the height of one above the other along the normal of the line. Feet on
-  // one line are level when the foot changes, so the change has no effect on the motion and is not reported.
+  // The slip rates of two feet differ by the relative angular velocity times the height of one above the other along the normal of the line.
+  // Feet on one line are level when the foot changes, so slip rate and force are continuous; only the acceleration of the slip jumps, by the
+  // distance of the feet times the square of the angular velocity. The integration is restarted there, but no event is listed.
   [[nodiscard]] EventKind contact_switch_event(const FrictionState&, const FrictionState&) const override {
     constexpr double k_rounding = 1e-12; // share of the distance from the centre; of coordinates in the file
     const double height = feet[1].direction.dot(feet[1].point_b - feet[0].point_b);

@@ -1,7 +1,5 @@
 #include "run/story.h"
 
-#include "elements/coulomb_stick.h"
-#include "elements/polygon_contact.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/action.h"
@@ -301,10 +299,12 @@ private:
 
   // Returns the names of the bodies that friction under contacts joins; nothing for other elements.
   std::optional<std::pair<std::string, std::string>> bodies_of_friction(const ElementEntry& entry) const {
+    if (!entry.kind->friction) return std::nullopt;
     const ElementEntry* touching = &entry;
-    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get()))
-      touching = stick->contacts.empty() ? nullptr : entry_of(stick->contacts.front());
-    else if (!dynamic_cast<const PolygonContact*>(entry.element.get())) return std::nullopt;
+    if (const Field* const contacts = entry.kind->fields.find("contacts")) { // friction is an element of its own
+      const auto names = std::get<std::vector<std::string>>(contacts->get(entry.element.get()));
+      touching = names.empty() ? nullptr : entry_of(names.front());
+    }
     const auto contact = touching ? contact_of(*touching, report_.run.loaded->model) : std::nullopt;
     if (!contact) return std::nullopt;
     const auto name = [this](const std::string& marker) {

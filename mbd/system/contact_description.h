@@ -1,5 +1,5 @@
-// What a kind of contact says about itself, so that nothing else has to know the kinds of contacts: where it touches, how deep it may be
-// pressed, what stands on it.
+// Describes a contact element: where it touches, how deep it may be pressed, which bodies stand on it. Each kind of contact fills in the
+// description (ElementKind::contact), so that findings, tipping and stories need no list of kinds.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -1,5 +1,5 @@
-// What is said for certain of a function between the places where it is known (PartPolynomial, EventNodes), on thousands of
-// sums of harmonics whose least value is known: none that is below zero may pass.
+// Tests the bounds of a function between its nodes (PartPolynomial, EventNodes) on thousands of sums of harmonics whose minimum is known: no
+// sum with a negative minimum may be reported as positive.
 #include "mbd/base/part_polynomial.h"
 #include "mbd/integrators/event_nodes.h"
 #include "mbd/integrators/tableau_dop853.h"

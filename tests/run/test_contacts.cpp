@@ -1,5 +1,4 @@
-// What each kind of contact says about itself (contact_description.h), held against its own gap and force; and runs in which contacts leave
-// their parts.
+// Compares the description of each kind of contact (contact_description.h) with its gap, and tests runs in which contacts leave their parts.
 #include "mbd/base/counter_random.h"
 #include "mbd/base/number_text.h"
 #include "mbd/rest/statics.h"

@@ -220,8 +220,9 @@ private:
     if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
   }
 
-  // What another mean or scatter of each variable would change, to first order at the design point. With the limit state linear there, β = m/s
-  // with s² = Σ s_i², of which variable i has the share α_i². Its scatter times c gives β/√(1 − (1 − c²) α_i²).
+  // Reports how another mean or scatter of each variable would change the probability, to first order at the design point. If the limit state
+  // is linear there, β = m/s with s² = Σ s_i², of which variable i contributes the share α_i². Multiplying its scatter by c changes β to
+  // β/√(1 − (1 − c²) α_i²).
   void report_influence(const DesignPoint& point) {
     const auto& random = run_.law.random();
     const auto slopes = run_.law.index_slopes(point.u, point.beta);

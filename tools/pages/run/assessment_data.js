@@ -55,7 +55,7 @@ steplap.assessment = (() => {
     }
     return found.slice(0, 8);
   }
-  // What the reader of the record knows of the recorder stands where the papers say nothing of it.
+  // The record itself states range and bandwidth of its recorder. They fill fields that the papers leave empty.
   const recorderOf = (record) => ({ record: record.file, range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '', filter: isKnown(record.bandwidth) ? `read up to ${one(record.bandwidth, 'Hz')}` : '' });
   function papers() {
     const p = (given && given.shipment) || {}, stated = list(p.recorders), read = list(given && given.records).map(recorderOf);

@@ -29,7 +29,7 @@ steplap.sheet = (() => {
     const drawing = A.worst.length ? steplap.events.curve(A.worst[0]) : null;
     return make('div', { class: 'papers' }, make('div', {}, table(null, rows), ...rest(p.recorders.length, shown.length, 'recorders'), ...rest(p.handovers.length, Math.min(p.handovers.length, keep.records), 'handovers')), ...(drawing ? [drawing] : []));
   }
-  // What the receiver finds, written by hand.
+  // Adds blank lines for the findings that the receiver writes by hand.
   const found = () => part('Found on arrival', make('div', { class: 'found' }, ...['Dew point of the gas', 'Pressure of the gas', 'Resistance core to earth', 'Visible damage'].map((what) => make('p', {}, `${what} `, make('span', { class: 'blank' })))));
 
   const peaks = (e, limit) => short(e.peaks.map((p) => A.peakText(p, true)).join('; ') || '–', Math.max(60, limit));

@@ -8,7 +8,7 @@ steplap.bars = (() => {
   // Results of earlier versions do not say which shares are those of criteria: these have a limit.
   const isJudged = (u) => u.is_judged ?? isKnown(u.limit);
   const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // its words stand in place of two equal numbers
-  // What no criterion limits is no alarm, however far it goes.
+  // A share that no criterion limits has no alarm colour, however large it is.
   const stateOf = (u) => (!isJudged(u) ? 'plain' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
   const size = (u) => (isKnown(u.share) ? u.share : Infinity); // no number, but a limit: an infinite load or no capacity
   // What a bar tells of, apart from its name: the kind of element, what is told of it, and where it is at rest; null if it is of none.

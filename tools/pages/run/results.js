@@ -96,7 +96,7 @@ steplap.results = (() => {
     return [...rows.values()];
   }
   // Of two runs what the second has more than the first; of more what lies between the least and the largest.
-  // Where a criterion asks for the size, sizes are compared.
+  // Two runs are compared by sizes if the criterion limits the size.
   function differenceOf({ entries, isSize }) {
     const values = entries.map((e) => (e && isKnown(e.value) && isFinite(e.value) ? (isSize ? Math.abs(e.value) : e.value) : null));
     if (values.length === 2) return values.includes(null) ? null : values[1] - values[0];
