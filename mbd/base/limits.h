@@ -18,8 +18,7 @@ inline constexpr std::size_t k_most_keys = 10'000;
 inline constexpr std::size_t k_most_repeated_text = 20'000'000;
 
 /// Largest number of operations of all [[channel]] formulas together. A formula contains the operations of the formulas that it names, so
-/// that n channels, each of which names the one before, need some 1.5 n²: a chain of 570
-/// runs for 0.7 s.
+/// that n channels, each of which names the one before, need some 1.5 n²: a chain of 570, which runs for 0.7 s, reaches the limit.
 inline constexpr std::size_t k_most_channel_operations = 500'000;
 
 /// Largest number of [[channel]] formulas of which each names the next.
