@@ -3,10 +3,10 @@
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
-# One name for all libraries up to run/. A program that links it gets no compile options and no warnings of ours, and needs no other
+# One name for all libraries up to transformer/. A program that links it gets no compile options and no warnings of ours, and needs no other
 # headers than Eigen's, which our types are made of. With BUILD_SHARED_LIBS it is one shared library that exports only steplap's
 # names (steplap.map); otherwise the archives.
-set(parts base tape mbd io patch_exact patch elements machinery step_lap catalog recorder transformer run)
+set(parts base tape mbd io run patch_exact patch elements machinery step_lap catalog recorder transformer)
 list(TRANSFORM parts PREPEND steplap_ OUTPUT_VARIABLE archives)
 add_library(steplap_library INTERFACE)
 add_library(steplap::steplap ALIAS steplap_library)
@@ -25,7 +25,7 @@ if(BUILD_SHARED_LIBS)
   set(libraries steplap_shared steplap_library)
   set(steplap_pc_libraries "-lsteplap")
 else()
-  target_link_libraries(steplap_library INTERFACE steplap_run)
+  target_link_libraries(steplap_library INTERFACE steplap_transformer)
   set(libraries ${archives} steplap_library)
   foreach(part ${parts})
     set_target_properties(steplap_${part} PROPERTIES EXPORT_NAME ${part})

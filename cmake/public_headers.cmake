@@ -55,7 +55,7 @@ steplap_public_header(elements.h "The kinds of elements and tables that a model 
   elements/machinery/wound_rope.h elements/step_lap/step_lap_interface.h elements/step_lap/step_lap_joint.h
   transformer/core/clamp.h transformer/core/core.h transformer/core/uncertain.h transformer/recorder/recorder.h)
 steplap_public_header(catalog.h "Lists of kinds: what a model file may use."
-  elements/catalog.h transformer/catalog.h run/catalogue.h)
+  elements/catalog.h transformer/catalog.h transformer/program.h)
 steplap_public_header(model_file.h "Models from TOML files."
   mbd/io/reader.h)
 steplap_public_header(system.h "Compiled systems: one from a model, or many from the same model with other values."
@@ -69,7 +69,8 @@ steplap_public_header(accuracy.h "Estimated errors of a run, by finer runs."
 steplap_public_header(verdict.h "Criteria and the verdict on a run."
   mbd/trust/criteria.h mbd/trust/element_judgement.h mbd/trust/judge.h mbd/trust/judgement.h)
 steplap_public_header(judged_run.h "A model from its file to a judged result, with its files, as the command line makes them."
-  mbd/base/stop.h run/estimate.h run/failure.h run/finding.h run/loaded_model.h run/overview.h run/report.h run/results.h run/run.h run/run_options.h
-  run/second_opinion.h run/version.h run/with_settings.h)
+  mbd/base/stop.h mbd/run/estimate.h mbd/run/failure.h mbd/run/finding.h mbd/run/loaded_model.h mbd/run/overview.h mbd/run/report.h
+  mbd/run/results.h mbd/run/run.h mbd/run/run_options.h mbd/run/second_opinion.h mbd/run/version.h mbd/run/with_settings.h
+  transformer/program.h)
 steplap_public_header(own_element.h "What a kind of element of your own is made of: laws, measures, roles."
   mbd/system/law_group.h mbd/system/measure.h mbd/system/roles.h mbd/trust/element_judgement.h)

@@ -15,7 +15,7 @@ extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 root_doc = "docs/index"
 include_patterns = ["docs/**.md", "README.md", "CHANGELOG.md", "KNOWN_ISSUES.md", "CONTRIBUTING.md", "THIRD_PARTY.md", "tools/bench/peers/README.md"]
-exclude_patterns = ["build", "out", ".git", "tests", "models", "mbd", "elements", "transformer", "run", "tools/pages"]
+exclude_patterns = ["build", "out", ".git", "tests", "models", "mbd", "elements", "transformer", "tools/pages"]
 
 myst_heading_anchors = 4  # anchors are those that GitHub makes
 # A block of TOML in a page may be a piece of a file, and a page may begin a section with a heading of the third level.

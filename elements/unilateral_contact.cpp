@@ -92,6 +92,7 @@ ContactDescription describe(const Element& element, const Model& model) {
   contact.a = e.a;
   contact.b = e.b;
   contact.standing = ContactDescription::Standing::a;
+  contact.is_preloaded = e.preload || e.interference;
   if (!e.ends) contact.depth_limit = thickness_behind(model, e.b, e.normal); // beyond the end of a face the depth has no meaning
   contact.points = [](const Element& foot, const ScenePose& pose) {
     const auto& of = static_cast<const UnilateralContact&>(foot);

@@ -1,4 +1,4 @@
-// Load cases of a model: table [[case]]. A case is a run of the same model with other values. run/load_cases.h runs all of them.
+// Load cases of a model: table [[case]]. A case is a run of the same model with other values. mbd/run/load_cases.h runs all of them.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -47,6 +47,7 @@ struct ContactDescription {
 
   std::string a, b; ///< markers that touch
   Standing standing = Standing::none;
+  bool is_preloaded = false;      ///< a preload or an interference presses it in the given pose
   bool opening_ends_slip = false; ///< the contact has its own friction, which ends when it opens
   /// Largest penetration, m, for which the law is meaningful; a deeper one means that one part is through the other. Nothing: no limit.
   std::optional<double> depth_limit;

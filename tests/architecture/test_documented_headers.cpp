@@ -189,7 +189,7 @@ std::set<fs::path> listed_headers() {
 // The public headers and the folders that users read first.
 std::set<fs::path> read_headers() {
   std::set<fs::path> headers = listed_headers();
-  for (const char* folder : {"run", "mbd/model", "mbd/simulation"})
+  for (const char* folder : {"mbd/run", "mbd/model", "mbd/simulation"})
     for (const auto& entry : fs::directory_iterator(fs::path(STEPLAP_SOURCE) / folder))
       if (entry.path().extension() == ".h") headers.insert(entry.path());
   return headers;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> k_folders = {"mbd", "elements", "transformer", "run", "tools"};
+const std::vector<std::string> k_folders = {"mbd", "elements", "transformer", "tools"};
 
 using Definitions = std::map<std::string, std::set<std::string>>; // files by the type's full name
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> k_library = {"mbd",           "elements",     "transformer", "run",         "tools/pages",
+const std::vector<std::string> k_library = {"mbd",           "elements",     "transformer", "tools/pages",
                                             "tools/explore", "tools/python", "tools/study", "tools/assess"};
 const std::vector<std::string> k_programs = {"tools/study/program/", "transformer/recorder/"}; ///< speak to users of the command line
 

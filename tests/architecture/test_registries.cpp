@@ -28,8 +28,7 @@ namespace {
 std::map<std::string, std::string> product_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::map<std::string, std::string> sources;
-  for (const char* top :
-       {"mbd", "elements", "transformer", "run", "tools/pages", "tools/explore", "tools/study", "tools/assess", "tools/steplap"})
+  for (const char* top : {"mbd", "elements", "transformer", "tools/pages", "tools/explore", "tools/study", "tools/assess", "tools/steplap"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       if (entry.path().parent_path().filename() == "recorder") continue; // reads files of other makers, with words of theirs
@@ -67,7 +66,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
       {"mbd/trust/reference_runs.cpp", "the method of references for fixed steps"},
       {"mbd/trust/cross_check.cpp", "the plan of a cross check, method by method"},
       {"mbd/trust/trust.cpp", "what to try instead"},
-      {"run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
+      {"mbd/run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
   };
   REQUIRE(methods().size() >= 6);
   for (const Method& m : methods()) {
@@ -75,7 +74,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
     // "auto" is a word of others, too: of drawings.
     Reasons reasons = by_right;
     if (name == "auto")
-      reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"run/symbols.cpp", "how an element is drawn"}});
+      reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"mbd/run/sketch.cpp", "how an element is drawn"}});
     check_places(name, {"mbd/integrators/methods.cpp", "mbd/integrators/" + (name == "auto" ? "automatic" : name) + ".cpp"}, reasons,
                  sources);
   }
@@ -83,20 +82,20 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
 
 TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   const auto sources = product_sources();
-  const Reasons by_right = {{"run/symbols.cpp", "symbols: a kind without one is drawn by diamonds at its markers"},
-                            {"run/joint_view.cpp", "what bears beside a joint, for a remark"}};
+  const Reasons by_right = {{"elements/views/symbols.cpp", "symbols: a kind without one is drawn by diamonds at its markers"},
+                            {"elements/step_lap/joint_view.cpp", "what bears beside a joint, for a remark"}};
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"tools/study/needs.cpp", "what is made rigid is welded"}}},
       {"limit",
-       {{"run/report_json.cpp", "of a criterion"},
-        {"run/load_cases_json.cpp", "of a criterion"},
+       {{"mbd/run/report_json.cpp", "of a criterion"},
+        {"mbd/run/load_cases_json.cpp", "of a criterion"},
         {"tools/steplap/cases_screen.cpp", "of a criterion"},
         {"tools/steplap/run_screen.cpp", "of a criterion"},
         {"tools/assess/static_json.cpp", "of a criterion"}}},
       {"load", {{"tools/assess/static_json.cpp", "an acceleration of a proof"}}},
       {"buffer", {{"mbd/model/shunting_signal.cpp", "a field"}}},
-      {"rope", {{"run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
+      {"rope", {{"mbd/run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
       {"distance",
        {{"elements/motor.cpp", "a coordinate"},
         {"elements/prescribed_motion.cpp", "a coordinate"},

@@ -12,12 +12,13 @@
 #include "mbd/io/reader.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/equilibrium.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/report.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/judge.h"
-#include "run/findings.h"
-#include "run/report.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/sanitized.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,8 @@
 // The models of models/machines, as a user runs them.
 #pragma once
 
-#include "run/run.h"
+#include "mbd/run/run.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <memory>

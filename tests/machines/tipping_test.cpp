@@ -1,7 +1,8 @@
 // What stands, and how far it is from tipping over, against closed forms.
 #include "mbd/io/reader.h"
-#include "run/tipping.h"
+#include "mbd/run/tipping.h"
 #include "tests/machines/machine.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

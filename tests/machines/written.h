@@ -3,6 +3,7 @@
 
 #include "tests/machines/machine.h"
 #include "tools/steplap/command_line.h"
+#include "transformer/program.h"
 
 #include <filesystem>
 #include <fstream>

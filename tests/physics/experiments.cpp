@@ -2,7 +2,8 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/io/csv.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/base/stop.h"
-#include "run/failure.h"
+#include "mbd/run/failure.h"
 #include "tools/assess/hangs_on.h"
 #include "tools/assess/record_evidence.h"
 #include "tools/assess/vibration.h"

@@ -1,8 +1,8 @@
 // Writes assessment.json, which the printed page and scripts read. SI unless a unit is given; null for unknown values.
-#include "run/left_out.h"
-#include "run/ordered_json.h"
-#include "run/version.h"
+#include "mbd/run/ordered_json.h"
+#include "mbd/run/version.h"
 #include "tools/assess/assessment.h"
+#include "transformer/core/left_out_of_cores.h"
 #include "transformer/recorder/time_text.h"
 
 #include "mbd/io/digest.h"
@@ -93,7 +93,7 @@ Json models(const Assessment& a) {
     const DrivenModel& model = a.models[m];
     const Recorder& r = model.recorder;
     std::vector<std::string> unknown = r.knows_not;
-    for (std::string& text : left_out_of(model.given)) unknown.push_back(std::move(text));
+    for (std::string& text : left_out_of_cores(model.given)) unknown.push_back(std::move(text));
     all.push_back({{"name", model.name},
                    {"file", model.file},
                    {"sha256", model.sha256},

@@ -3,7 +3,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "transformer/recorder/fields.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "tools/assess/assessment.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "transformer/recorder/fields.h"
 
 #include <algorithm>

@@ -9,9 +9,9 @@
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
-#include "run/catalogue.h"
 #include "tools/assess/assumed_limits.h"
 #include "transformer/core/core.h"
+#include "transformer/program.h"
 #include "transformer/recorder/fields.h"
 
 #include <algorithm>

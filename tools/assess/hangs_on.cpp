@@ -3,7 +3,7 @@
 #include "tools/assess/hangs_on.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 
 #include <cmath>
 #include <optional>

@@ -2,6 +2,7 @@
 
 #include "mbd/base/portable_math.h"
 #include "tools/assess/assumed_limits.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "elements/step_lap/step_lap_assessment.h"
-#include "run/overview.h"
+#include "mbd/run/overview.h"
 #include "tools/assess/driven_model.h"
 #include "tools/assess/friction_trace.h"
 

@@ -2,7 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/io/digest.h"
-#include "run/version.h"
+#include "mbd/run/version.h"
 
 #include <array>
 #include <filesystem>

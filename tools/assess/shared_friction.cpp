@@ -9,7 +9,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/presentation.h"
 #include "mbd/model/completion.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/assess/sliding_point.h"
 
 #include <algorithm>

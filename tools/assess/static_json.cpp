@@ -1,6 +1,6 @@
 #include "tools/assess/static_json.h"
 
-#include "run/ordered_json.h"
+#include "mbd/run/ordered_json.h"
 
 #include <cmath>
 #include <numbers>

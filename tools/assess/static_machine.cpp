@@ -4,8 +4,8 @@
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/start.h"
-#include "run/failure.h"
-#include "run/rest_values.h"
+#include "mbd/run/failure.h"
+#include "mbd/run/rest_values.h"
 
 #include <algorithm>
 #include <cmath>

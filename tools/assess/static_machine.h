@@ -10,7 +10,7 @@
 #pragma once
 
 #include "mbd/rest/equilibrium.h"
-#include "run/loaded_model.h"
+#include "mbd/run/loaded_model.h"
 
 #include <optional>
 #include <string>

@@ -4,10 +4,10 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/base/stop.h"
+#include "mbd/run/prominence.h"
+#include "mbd/run/quantity_text.h"
 #include "mbd/trust/criteria.h"
 #include "mbd/trust/element_judgement.h"
-#include "run/prominence.h"
-#include "run/quantity_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,8 +12,8 @@
 //           a margin is within rounding of its limit
 #pragma once
 
+#include "mbd/run/tipping.h"
 #include "mbd/trust/judgement.h"
-#include "run/tipping.h"
 #include "tools/assess/static_preset.h"
 #include "tools/assess/static_ray.h"
 

@@ -1,7 +1,7 @@
 #include "tools/explore/explore_json.h"
 
-#include "run/summary.h"
-#include "run/version.h"
+#include "mbd/run/summary.h"
+#include "mbd/run/version.h"
 #include "tools/explore/run_results.h"
 #include "tools/pages/report_data.h"
 

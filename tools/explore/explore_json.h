@@ -1,7 +1,7 @@
 // JSON messages between pages and the server (explorer.h).
 #pragma once
 
-#include "run/report.h"
+#include "mbd/run/report.h"
 #include "tools/explore/explored_model.h"
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct MapRequest {
 /// Result of one run of a map.
 struct MapCell {
   std::string verdict, error;                         ///< error: there is no result
-  std::vector<std::pair<std::string, double>> shares; ///< utilisation of each limit by name (run/utilisation.h)
+  std::vector<std::pair<std::string, double>> shares; ///< utilisation of each limit by name (mbd/run/utilisation.h)
 };
 
 /// Parses a request. Throws std::invalid_argument if the text is invalid. `models` is the number of models.

@@ -3,7 +3,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/reader.h"
-#include "run/loaded_model.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "mbd/io/input_files.h"
+#include "mbd/run/report.h"
 #include "mbd/system/instance.h"
-#include "run/report.h"
 #include "tools/explore/slider.h"
 
 #include <map>

@@ -1,6 +1,6 @@
 #include "tools/explore/explorer.h"
 
-#include "run/overview.h"
+#include "mbd/run/overview.h"
 #include "tools/explore/explore_json.h"
 #include "tools/explore/run_results.h"
 #include "tools/explore/saved_changes.h"

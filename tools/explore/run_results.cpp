@@ -1,7 +1,7 @@
 #include "tools/explore/run_results.h"
 
-#include "run/drawing.h"
-#include "run/result_files.h"
+#include "mbd/run/drawing.h"
+#include "mbd/run/result_files.h"
 
 namespace steplap {
 
@@ -28,7 +28,7 @@ Results results_of(const Report& report, SummaryText summary) {
     results.events.push_back({event.t, event.element, event.words(), event.kind, report.event_error(i)});
   }
   results.model = model_file_text(*report.run.loaded);
-  results.drawing = drawing_json(report.run.loaded->model);
+  results.drawing = drawing_json(report.run.loaded->model, *report.run.loaded->views);
   if (summary == SummaryText::made) results.summary = report.json();
   return results;
 }

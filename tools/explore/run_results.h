@@ -1,8 +1,8 @@
 // Converts a run to the results that reading its folder would give, without writing files. Pages are made from these.
 #pragma once
 
-#include "run/report.h"
-#include "run/results.h"
+#include "mbd/run/report.h"
+#include "mbd/run/results.h"
 
 namespace steplap {
 

@@ -5,9 +5,9 @@
 #include "mbd/io/document.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/toml_writer.h"
-#include "run/catalogue.h"
-#include "run/loaded_model.h"
-#include "run/model_changes.h"
+#include "mbd/run/loaded_model.h"
+#include "mbd/run/model_changes.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <filesystem>

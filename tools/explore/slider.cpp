@@ -2,7 +2,7 @@
 
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/model/field_units.h"
-#include "run/model_entries.h"
+#include "mbd/run/model_entries.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "tools/pages/assessment_page.h"
 
-#include "run/results.h"
-#include "run/version.h"
+#include "mbd/run/results.h"
+#include "mbd/run/version.h"
 #include "tools/pages/report_data.h"
 #include "tools/pages/report_page.h"
 #include "tools/pages/run/assets.h"

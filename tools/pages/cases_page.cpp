@@ -1,7 +1,7 @@
 #include "tools/pages/cases_page.h"
 
-#include "run/drawing.h"
-#include "run/version.h"
+#include "mbd/run/drawing.h"
+#include "mbd/run/version.h"
 #include "tools/pages/report_data.h"
 #include "tools/pages/report_page.h"
 #include "tools/pages/run/assets.h"

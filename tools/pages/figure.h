@@ -1,7 +1,7 @@
 // Creates gnuplot scripts of time histories, for papers and for computers without a browser.
 #pragma once
 
-#include "run/results.h"
+#include "mbd/run/results.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "tools/pages/modes_page.h"
 
-#include "run/ordered_json.h"
-#include "run/version.h"
+#include "mbd/run/ordered_json.h"
+#include "mbd/run/version.h"
 #include "tools/pages/report_data.h"
 #include "tools/pages/report_page.h"
 #include "tools/pages/run/assets.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mbd/rest/modes.h"
-#include "run/loaded_model.h"
+#include "mbd/run/loaded_model.h"
 
 #include <string>
 #include <vector>

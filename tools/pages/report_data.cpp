@@ -2,10 +2,10 @@
 
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/digest.h"
+#include "mbd/run/drawing.h"
+#include "mbd/run/measured_text.h"
+#include "mbd/run/version.h"
 #include "mbd/simulation/trajectory.h"
-#include "run/drawing.h"
-#include "run/measured_text.h"
-#include "run/version.h"
 #include "tools/pages/thinning.h"
 
 #include <nlohmann/json.hpp>
@@ -239,7 +239,7 @@ OrderedJson still_run(const LoadedModel& loaded) {
           {"summary", {{"extremes", Json::object()}}},
           {"events", Json::array()},
           {"channels", Json::array()},
-          {"drawing", parse_ordered(drawing_json(loaded.model))}};
+          {"drawing", parse_ordered(drawing_json(loaded.model, *loaded.views))}};
 }
 
 std::string in_script(const std::string& json) {

@@ -1,9 +1,9 @@
 // Creates the data of a report page as JSON: summaries, events, drawings and time histories of runs, thinned to limit the size of the page.
 #pragma once
 
-#include "run/loaded_model.h"
-#include "run/ordered_json.h"
-#include "run/results.h"
+#include "mbd/run/loaded_model.h"
+#include "mbd/run/ordered_json.h"
+#include "mbd/run/results.h"
 
 #include <cstddef>
 #include <string>
@@ -17,7 +17,7 @@ namespace steplap {
 /// steplap did not write.
 [[nodiscard]] std::string report_data(const std::vector<Results>& runs, std::size_t budget = 3500000);
 
-/// As above for one run, whose summary is given as a document (run/summary.h); the summary text in `run` is ignored.
+/// As above for one run, whose summary is given as a document (mbd/run/summary.h); the summary text in `run` is ignored.
 [[nodiscard]] std::string report_data(const Results& run, OrderedJson summary, std::size_t budget);
 
 /// Returns the data of a run without time histories, for pages that draw the model only.

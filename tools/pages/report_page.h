@@ -1,7 +1,7 @@
 // Creates a report of runs as one self-contained HTML file.
 #pragma once
 
-#include "run/results.h"
+#include "mbd/run/results.h"
 
 #include <functional>
 #include <map>

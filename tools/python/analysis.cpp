@@ -1,7 +1,7 @@
 // Analyses of a model without a run: vibration modes and step-lap joints.
+#include "elements/step_lap/joint_view.h"
 #include "mbd/rest/modes.h"
-#include "run/joint_view.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
 #include "tools/python/bindings.h"
 
 #include <pybind11/complex.h>
@@ -48,7 +48,7 @@ struct PyJoint {
 
 std::vector<PyJoint> joints(const PyModel& model) {
   std::vector<PyJoint> all;
-  for (JointView& view : joint_views(*model.loaded)) all.push_back({model.loaded, std::move(view)});
+  for (JointView& view : joint_views(model.loaded->model, *model.loaded->system)) all.push_back({model.loaded, std::move(view)});
   return all;
 }
 

@@ -1,7 +1,7 @@
-// Python module `steplap`: thin wrappers of the library in run/, one file per class. All computation is done by the library.
+// Python module `steplap`: thin wrappers of the library in mbd/run/, one file per class. All computation is done by the library.
 #pragma once
 
-#include "run/report.h"
+#include "mbd/run/report.h"
 
 #include <pybind11/pybind11.h>
 

@@ -1,9 +1,9 @@
 #include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"
-#include "run/drawing.h"
-#include "run/findings.h"
-#include "run/loaded_text.h"
+#include "mbd/run/drawing.h"
+#include "mbd/run/findings.h"
 #include "tools/python/bindings.h"
+#include "transformer/program.h"
 
 #include <pybind11/stl.h>
 
@@ -113,7 +113,7 @@ void add_model(py::module_& module) {
           },
           "names of all channels, with their SI units")
       .def_property_readonly(
-          "drawing_text", [](const PyModel& m) { return drawing_json(m.loaded->model); },
+          "drawing_text", [](const PyModel& m) { return drawing_json(m.loaded->model, *m.loaded->views); },
           "the text of drawing.json: docs/reference/results.md")
       .def(
           "value", [](const PyModel& m, const std::string& path) { return number_of(m.loaded->model, path); }, py::arg("path"),

@@ -1,6 +1,6 @@
 #include "tools/python/bindings.h"
 
-#include "run/version.h"
+#include "mbd/run/version.h"
 
 PYBIND11_MODULE(_steplap, module) {
   using namespace steplap::python;

@@ -1,4 +1,4 @@
-#include "run/results.h"
+#include "mbd/run/results.h"
 #include "tools/pages/report_page.h"
 #include "tools/python/bindings.h"
 

@@ -2,6 +2,7 @@
 #include "mbd/model/model_path.h"
 #include "mbd/system/instance.h"
 #include "tools/python/bindings.h"
+#include "transformer/program.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>

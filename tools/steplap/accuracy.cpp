@@ -2,13 +2,14 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/io/atomic_file.h"
+#include "mbd/run/prominence.h"
+#include "mbd/run/run.h"
 #include "mbd/trust/accuracy_study.h"
 #include "mbd/trust/global_error.h"
-#include "run/prominence.h"
-#include "run/run.h"
 #include "tools/steplap/accuracy_report.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <cstdlib>
 #include <filesystem>

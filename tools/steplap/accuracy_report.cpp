@@ -4,7 +4,7 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/csv.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/steplap/json_screen.h"
 #include "tools/steplap/text_table.h"
 

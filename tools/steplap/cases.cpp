@@ -1,8 +1,8 @@
 #include "tools/steplap/cases.h"
 
-#include "run/findings.h"
-#include "run/load_cases.h"
-#include "run/summary.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/load_cases.h"
+#include "mbd/run/summary.h"
 #include "tools/pages/cases_page.h"
 #include "tools/steplap/cases_screen.h"
 #include "tools/steplap/interruption.h"
@@ -10,6 +10,7 @@
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/required_hold.h"
+#include "transformer/program.h"
 
 #include <memory>
 
@@ -54,7 +55,7 @@ ExitCode code_of(const LoadCaseResults& results, bool is_hold_required) {
 ExitCode cases(const CasesOptions& options, Console& console) {
   const OutputFiles files(console, {{"-o", options.sheet}}, options.is_overwriting);
   const InterruptionGuard guard;
-  const LoadCaseResults results = run_load_cases(options.model, options.overrides, run_options(options));
+  const LoadCaseResults results = run_load_cases(options.model, options.overrides, program_catalogue(), run_options(options));
   log_findings(results);
   const OrderedJson document = load_cases_document(results);
   if (options.sheet) files.write(options.sheet, cases_page(*results.model, document));

@@ -1,7 +1,7 @@
 #include "tools/steplap/cases_screen.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/shown_quantity.h"
+#include "mbd/run/shown_quantity.h"
 #include "tools/steplap/text_layout.h"
 #include "tools/steplap/text_table.h"
 

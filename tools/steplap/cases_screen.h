@@ -1,7 +1,7 @@
 // Prints the results of load cases within 80 columns: verdict, cases, limits, and the matrix of utilisations.
 #pragma once
 
-#include "run/load_cases.h"
+#include "mbd/run/load_cases.h"
 
 #include <iosfwd>
 

@@ -2,9 +2,10 @@
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/csv.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <memory>

@@ -9,14 +9,15 @@
 #include "mbd/model/validate.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/freedom.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/run.h"
+#include "mbd/run/start_contacts.h"
 #include "mbd/system/one_sided_row.h"
-#include "run/findings.h"
-#include "run/quantity_text.h"
-#include "run/run.h"
-#include "run/start_contacts.h"
 #include "tools/steplap/cross.h"
 #include "tools/steplap/model_update.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
-#include "run/result_files.h"
-#include "run/version.h"
+#include "mbd/run/result_files.h"
+#include "mbd/run/version.h"
 #include "tools/steplap/commands.h"
 #include "tools/steplap/json_screen.h"
 #include "tools/steplap/licences.h"

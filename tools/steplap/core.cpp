@@ -1,16 +1,17 @@
 #include "tools/steplap/core.h"
 
 #include "mbd/base/number_text.h"
-#include "run/core_drawing.h"
-#include "run/findings.h"
-#include "run/quantity_text.h"
-#include "run/run.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/run.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/core/clamp.h"
 #include "transformer/core/core_builder.h"
+#include "transformer/core/core_drawing.h"
 #include "transformer/core/core_geometry.h"
 #include "transformer/core/plausible.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

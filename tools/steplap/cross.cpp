@@ -1,10 +1,10 @@
 #include "tools/steplap/cross.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/run/prominence.h"
+#include "mbd/run/quantity_text.h"
 #include "mbd/trust/cross_check.h"
 #include "mbd/trust/judge.h"
-#include "run/prominence.h"
-#include "run/quantity_text.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/text_table.h"
 

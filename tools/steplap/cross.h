@@ -1,7 +1,7 @@
 // Option `steplap check --cross`: runs every model by methods that have little in common, and reports differences.
 #pragma once
 
-#include "run/run.h"
+#include "mbd/run/run.h"
 #include "tools/steplap/command.h"
 
 namespace steplap {

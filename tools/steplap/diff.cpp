@@ -3,11 +3,11 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/reader.h"
-#include "run/catalogue.h"
-#include "run/model_changes.h"
-#include "run/quantity_text.h"
+#include "mbd/run/model_changes.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/steplap/diff_results.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

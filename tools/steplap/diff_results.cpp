@@ -1,8 +1,8 @@
 #include "tools/steplap/diff_results.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/measured_text.h"
-#include "run/shown_quantity.h"
+#include "mbd/run/measured_text.h"
+#include "mbd/run/shown_quantity.h"
 #include "tools/steplap/json_screen.h"
 
 #include <algorithm>

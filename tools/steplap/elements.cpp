@@ -2,8 +2,8 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/reference.h"
-#include "run/catalogue.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <memory>
 #include <ostream>

@@ -1,14 +1,15 @@
 #include "tools/steplap/equilibrium.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/edges.h"
-#include "run/prominence.h"
-#include "run/quantity_text.h"
-#include "run/rest_values.h"
-#include "run/run.h"
+#include "mbd/run/edges.h"
+#include "mbd/run/prominence.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/rest_values.h"
+#include "mbd/run/run.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/text_table.h"
 #include "tools/steplap/tipping_text.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,12 @@
 #include "tools/steplap/joint.h"
 
+#include "elements/step_lap/joint_view.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/units.h"
-#include "run/joint_view.h"
-#include "run/quantity_text.h"
-#include "run/run.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/run.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <array>
@@ -28,7 +29,7 @@ struct JointOptions {
 };
 
 std::vector<JointView> chosen_joints(const JointOptions& options, const LoadedModel& loaded) {
-  std::vector<JointView> all = joint_views(loaded), chosen;
+  std::vector<JointView> all = joint_views(loaded.model, *loaded.system), chosen;
   if (all.empty()) throw UsageError("'" + loaded.path + "' has no step-lap joint");
   if (options.joints.empty()) return all;
   std::vector<std::string> known;

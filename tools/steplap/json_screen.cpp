@@ -1,6 +1,6 @@
 #include "tools/steplap/json_screen.h"
 
-#include "run/version.h"
+#include "mbd/run/version.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -9,7 +9,7 @@
 // for a missing number. "text" contains the lines outside tables.
 #pragma once
 
-#include "run/ordered_json.h"
+#include "mbd/run/ordered_json.h"
 #include "tools/steplap/text_table.h"
 
 #include <sstream>

@@ -2,11 +2,12 @@
 
 #include "mbd/io/csv.h"
 #include "mbd/rest/modes.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
 #include "tools/pages/modes_page.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <charconv>

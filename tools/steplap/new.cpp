@@ -1,11 +1,11 @@
 #include "tools/steplap/new.h"
 
 #include "mbd/io/reader.h"
-#include "run/catalogue.h"
-#include "run/findings.h"
-#include "run/run.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/run.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <map>

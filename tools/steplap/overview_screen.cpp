@@ -1,7 +1,7 @@
 #include "tools/steplap/overview_screen.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/finding.h"
+#include "mbd/run/finding.h"
 #include "tools/steplap/colour.h"
 #include "tools/steplap/text_layout.h"
 

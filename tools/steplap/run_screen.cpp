@@ -4,10 +4,10 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
+#include "mbd/run/measured_text.h"
+#include "mbd/run/prominence.h"
+#include "mbd/run/quantity_text.h"
 #include "mbd/trust/global_error.h"
-#include "run/measured_text.h"
-#include "run/prominence.h"
-#include "run/quantity_text.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

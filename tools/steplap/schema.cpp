@@ -1,8 +1,8 @@
 #include "tools/steplap/schema.h"
 
 #include "mbd/io/json_schema.h"
-#include "run/catalogue.h"
 #include "tools/steplap/study.h"
+#include "transformer/program.h"
 
 #include <memory>
 #include <ostream>

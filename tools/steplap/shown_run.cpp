@@ -1,7 +1,7 @@
 #include "tools/steplap/shown_run.h"
 
 #include "mbd/io/atomic_file.h"
-#include "run/summary.h"
+#include "mbd/run/summary.h"
 #include "tools/steplap/json_screen.h"
 
 #include <cmath>

@@ -1,10 +1,10 @@
 // Data of a run for the screen: its summary and events, for a new run as for one read from its folder.
 #pragma once
 
-#include "run/ordered_json.h"
-#include "run/report.h"
-#include "run/results.h"
-#include "run/shown_quantity.h"
+#include "mbd/run/ordered_json.h"
+#include "mbd/run/report.h"
+#include "mbd/run/results.h"
+#include "mbd/run/shown_quantity.h"
 
 #include <iosfwd>
 #include <optional>
@@ -22,7 +22,7 @@ struct RunCost {
 
 /// A run as shown on the screen.
 struct ShownRun {
-  OrderedJson summary;             ///< contents of summary.json (run/summary.h)
+  OrderedJson summary;             ///< contents of summary.json (mbd/run/summary.h)
   std::vector<ResultEvent> events; ///< empty if only the overview is shown
   std::string folder;              ///< folder of its files
   std::optional<RunCost> making;

@@ -3,10 +3,10 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/units.h"
 #include "mbd/model/validate.h"
-#include "run/findings.h"
-#include "run/quantity_text.h"
-#include "run/report.h"
-#include "run/result_files.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/report.h"
+#include "mbd/run/result_files.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/json_screen.h"
 #include "tools/steplap/log.h"
@@ -17,6 +17,7 @@
 #include "tools/steplap/required_hold.h"
 #include "tools/steplap/run_screen.h"
 #include "tools/steplap/shown_run.h"
+#include "transformer/program.h"
 
 #include <charconv>
 #include <cmath>

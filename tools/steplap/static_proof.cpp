@@ -3,11 +3,12 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/input_files.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/assess/static_json.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <charconv>

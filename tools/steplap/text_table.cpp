@@ -1,7 +1,7 @@
 #include "tools/steplap/text_table.h"
 
-#include "run/measured_text.h"
-#include "run/quantity_text.h"
+#include "mbd/run/measured_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/steplap/text_layout.h"
 
 #include <algorithm>

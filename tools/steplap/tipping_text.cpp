@@ -1,7 +1,7 @@
 #include "tools/steplap/tipping_text.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/steplap/text_table.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Prints the margins against tipping as a table.
 #pragma once
 
-#include "run/tipping.h"
+#include "mbd/run/tipping.h"
 
 #include <iosfwd>
 

@@ -1,7 +1,7 @@
 #include "tools/study/report_data.h"
 
-#include "run/quantity_text.h"
-#include "run/version.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/version.h"
 #include "tools/study/kinds.h"
 #include "tools/study/report_findings.h"
 #include "tools/study/report_tally.h"

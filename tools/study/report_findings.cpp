@@ -1,6 +1,6 @@
 #include "tools/study/report_findings.h"
 
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/study/kinds.h"
 
 #include <charconv>

@@ -1,6 +1,6 @@
 // Determines whether two studies are the same with respect to their samples.
 #include "mbd/base/number_text.h"
-#include "run/version.h"
+#include "mbd/run/version.h"
 #include "tools/study/store.h"
 
 #include <filesystem>

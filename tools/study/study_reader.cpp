@@ -12,11 +12,11 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/model/validate.h"
-#include "run/catalogue.h"
 #include "tools/study/expression.h"
 #include "tools/study/history.h"
 #include "tools/study/kinds.h"
 #include "tools/study/law.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "driven_scene.h"
 
 #include "mbd/io/reader.h"
-#include "run/catalogue.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
+#include "transformer/program.h"
 #include "transformer/recorder/fields.h"
 
 #include <unistd.h>

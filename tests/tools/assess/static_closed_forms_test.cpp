@@ -3,6 +3,7 @@
 
 #include "elements/step_lap/patch/required_pressure.h"
 #include "elements/step_lap/step_lap_friction.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,8 @@
 // Static proofs against slow runs: the vehicle's acceleration grows over many seconds, and events tell when something gives way.
 #include "tests/tools/assess/static_scene.h"
 
-#include "run/report.h"
+#include "mbd/run/report.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

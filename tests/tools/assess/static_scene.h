@@ -4,6 +4,7 @@
 #include "mbd/io/reader.h"
 #include "tools/assess/static_proof.h"
 #include "transformer/catalog.h"
+#include "transformer/program.h"
 
 #include <memory>
 #include <string>

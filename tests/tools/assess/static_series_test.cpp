@@ -1,6 +1,7 @@
 // Frictions in series: the search for rest puts the whole pull on at once, and can pass the rest of a pull that grows. Friction forces beyond
 // that are no proof; what holds the machine next to friction is on the safe side.
 #include "tests/tools/assess/static_scene.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

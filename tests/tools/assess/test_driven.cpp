@@ -2,9 +2,9 @@
 #include "driven_scene.h"
 
 #include "mbd/io/reference.h"
-#include "run/catalogue.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
 #include "tools/assess/voyage_runner.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // A model run with other values is the model that its file with these values makes: in memory, from a file of the changes, and as the
 // command line runs it. Held against each other byte by byte.
-#include "run/overview.h"
+#include "mbd/run/overview.h"
 #include "tests/tools/steplap/workbench.h"
 #include "tools/explore/explored_model.h"
 #include "tools/explore/run_results.h"

@@ -3,7 +3,7 @@
 
 #include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"
-#include "run/catalogue.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

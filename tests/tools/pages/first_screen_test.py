@@ -59,7 +59,7 @@ TOLD = {"verdict": "inspect", "reason": "Joint 'front joint' slips at 0.122 s an
 
 
 def rewrite(run, copy, change):
-    """A copy of results whose summary is changed, with the checksum that belongs to it (run/report_json.cpp)."""
+    """A copy of results whose summary is changed, with the checksum that belongs to it (mbd/run/report_json.cpp)."""
     folder = os.path.join(WORK.name, "out", copy)
     shutil.copytree(os.path.join(WORK.name, "out", run), folder)
     path = os.path.join(folder, "summary.json")

@@ -4,9 +4,9 @@
 // the model, each judged and its columns taken; one of a sample of SAMPLES, in which PATH has another value each time.
 #include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"
+#include "mbd/run/report.h"
 #include "mbd/system/instance.h"
-#include "run/catalogue.h"
-#include "run/report.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cstdio>

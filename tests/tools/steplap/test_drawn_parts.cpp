@@ -1,7 +1,7 @@
 // What elements draw of the bodies that they act on: outlines and circles that their fields make.
 #include "mbd/io/reader.h"
-#include "run/catalogue.h"
-#include "run/drawing.h"
+#include "mbd/run/drawing.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ namespace {
 nlohmann::json drawing_of(const std::string& elements) {
   const std::string bodies = "simulation = { step = 1e-3 }\n[[body]]\nname = \"ball\"\nmass = 1\ninertia = 1e6\nposition = [1, 2]\n"
                              "[[body]]\nname = \"slab\"\nmass = 1\ninertia = 1\nangle = \"90 deg\"\n";
-  return nlohmann::json::parse(drawing_json(parse_model(bodies + elements, "a.toml", program_catalogue())));
+  return nlohmann::json::parse(drawing_json(parse_model(bodies + elements, "a.toml", program_catalogue()), *program_catalogue().views));
 }
 
 } // namespace

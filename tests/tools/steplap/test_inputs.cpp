@@ -1,6 +1,6 @@
 // What goes in and what comes out: records, models through pipes, results that know their inputs and whether they are whole.
 #include "mbd/io/csv.h"
-#include "run/results.h"
+#include "mbd/run/results.h"
 #include "tests/tools/steplap/workbench.h"
 #include "tools/steplap/command.h"
 

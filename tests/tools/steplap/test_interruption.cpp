@@ -1,7 +1,8 @@
 // A run that is stopped from outside keeps what it has, and ends as the signal says; sizes that no machine holds are refused.
 #include "mbd/rest/settling.h"
-#include "run/run.h"
+#include "mbd/run/run.h"
 #include "tests/tools/steplap/workbench.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 #include "mbd/base/number_text.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/io/reader.h"
-#include "run/catalogue.h"
 #include "tools/steplap/new.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

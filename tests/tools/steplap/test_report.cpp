@@ -1,16 +1,16 @@
 // Results read back, thinned, made into a page and into images.
 #include "mbd/io/reader.h"
-#include "run/catalogue.h"
-#include "run/drawing.h"
-#include "run/result_files.h"
-#include "run/results.h"
-#include "run/symbols.h"
+#include "mbd/run/drawing.h"
+#include "mbd/run/result_files.h"
+#include "mbd/run/results.h"
+#include "mbd/run/sketch.h"
 #include "tests/tools/steplap/workbench.h"
 #include "tools/pages/figure.h"
 #include "tools/pages/report_data.h"
 #include "tools/pages/report_page.h"
 #include "tools/pages/thinning.h"
 #include "tools/steplap/command.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -162,7 +162,7 @@ TEST_CASE("short runs keep all samples, as single precision differences from the
 
 TEST_CASE("bodies without an outline get one from where elements act, but never from their inertia") {
   const auto drawing = [](const std::string& text) {
-    return nlohmann::json::parse(drawing_json(parse_model(text, "a.toml", program_catalogue())));
+    return nlohmann::json::parse(drawing_json(parse_model(text, "a.toml", program_catalogue()), *program_catalogue().views));
   };
   const auto pendulum = drawing(R"(
 simulation = { step = 1e-3 }
@@ -190,7 +190,7 @@ namespace {
 nlohmann::json drawing_of(const std::string& elements) {
   const std::string bodies = "simulation = { step = 1e-3 }\n[[body]]\nname = \"ball\"\nmass = 1\ninertia = 1e6\nposition = [1, 2]\n"
                              "[[body]]\nname = \"slab\"\nmass = 1\ninertia = 1\nangle = \"90 deg\"\n";
-  return nlohmann::json::parse(drawing_json(parse_model(bodies + elements, "a.toml", program_catalogue())));
+  return nlohmann::json::parse(drawing_json(parse_model(bodies + elements, "a.toml", program_catalogue()), *program_catalogue().views));
 }
 
 bool is_near(const nlohmann::json& numbers, const std::vector<double>& wanted) {
@@ -337,7 +337,7 @@ std::vector<Shape> shapes_of(const Faces& faces, std::map<std::string, BodyGeome
         return MarkerPlace{name, Vec2(1.0, 0.0), 0.5 * M_PI};
       },
       [&](const std::string& body) -> BodyGeometry& { return geometry[body]; });
-  draw_element(sketch);
+  draw_element(sketch, program_catalogue().views->of(*program_catalogue().find_element(kind.name)).draw);
   return sketch.shapes();
 }
 
@@ -384,7 +384,7 @@ TEST_CASE("every kind of element of the catalogue has its own symbol; one that h
           return MarkerPlace{"ground", Vec2::Zero(), 0.0};
         },
         [&](const std::string&) -> BodyGeometry& { return geometry; });
-    draw_element(sketch);
+    draw_element(sketch, program_catalogue().views->of(*kind).draw);
     for (const Shape& shape : sketch.shapes()) CHECK(shape.type != "neutral");
   }
   ElementKind unheard_of = *program_catalogue().find_element("distance");
@@ -397,7 +397,7 @@ TEST_CASE("every kind of element of the catalogue has its own symbol; one that h
         return MarkerPlace{"ground", Vec2::Zero(), 0.0};
       },
       [&](const std::string&) -> BodyGeometry& { return geometry; });
-  draw_element(sketch);
+  draw_element(sketch, program_catalogue().views->of(unheard_of).draw);
   REQUIRE(sketch.shapes().size() == 1);
   CHECK(sketch.shapes()[0].type == "neutral");
 }
@@ -431,7 +431,8 @@ limb = [[2, 3], [4, 3], [4, 5], [2, 5]]
 pressure = 1
 static_friction = 0.5
 )" + more,
-                                                          "a.toml", program_catalogue())))["sheets"][0];
+                                                          "a.toml", program_catalogue()),
+                                              *program_catalogue().views))["sheets"][0];
   };
   const auto ring_is = [](const nlohmann::json& ring, const std::vector<std::vector<double>>& wanted) {
     REQUIRE(ring.size() == wanted.size());
@@ -487,7 +488,8 @@ TEST_CASE("an element's drawing hint is read, checked and kept") {
   const Workbench bench;
   std::string text = k_oscillator;
   text += "draw = \"hidden\"\n";
-  CHECK(has(drawing_json(read_model(bench.write("a.toml", text), program_catalogue())), "\"symbol\":\"hidden\""));
+  CHECK(
+      has(drawing_json(read_model(bench.write("a.toml", text), program_catalogue()), *program_catalogue().views), "\"symbol\":\"hidden\""));
   const Outcome outcome = steplap_does({"check", bench.write("b.toml", std::string(k_oscillator) + "draw = \"sprung\"\n")});
   CHECK(outcome.code == 3);
   CHECK(has(outcome.err, "draw"));

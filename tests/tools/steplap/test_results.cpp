@@ -1,8 +1,9 @@
 // The library behind the command line, as other tools use it.
-#include "run/prominence.h"
-#include "run/result_files.h"
+#include "mbd/run/prominence.h"
+#include "mbd/run/result_files.h"
 #include "tests/tools/steplap/workbench.h"
 #include "tools/steplap/command.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // steplap simulate: options, files, exit codes.
-#include "run/results.h"
+#include "mbd/run/results.h"
 #include "tests/tools/steplap/workbench.h"
 
 #include <doctest/doctest.h>

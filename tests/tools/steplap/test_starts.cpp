@@ -1,8 +1,9 @@
 // Starts that contradict what the file says: each sort is found by its code, and sound ones say nothing.
-#include "run/findings.h"
-#include "run/run.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/run.h"
 #include "tests/random/random_number.h"
 #include "tests/tools/steplap/workbench.h"
+#include "transformer/program.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

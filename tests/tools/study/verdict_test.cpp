@@ -1,6 +1,7 @@
 // A study's verdict on a model is that of the run by itself: findings and estimated errors weigh in both.
-#include "run/report.h"
+#include "mbd/run/report.h"
 #include "tests/tools/study/study_bench.h"
+#include "transformer/program.h"
 
 #include <map>
 #include <set>

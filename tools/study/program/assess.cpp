@@ -4,7 +4,7 @@
 #include "mbd/base/limits.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
-#include "run/quantity_text.h"
+#include "mbd/run/quantity_text.h"
 #include "tools/assess/assessment.h"
 #include "tools/assess/assumed_pulse.h"
 #include "tools/steplap/interruption.h"

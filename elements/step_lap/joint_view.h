@@ -1,0 +1,36 @@
+// Computes the friction capacity of the step-lap joints of a model in the reference pose, before a run.
+//
+// Wrenches and twists are about the limb's centre of gravity, in the active part's axes. Points are relative to the active part's centre of
+// gravity, m.
+#pragma once
+
+#include "elements/step_lap/patch/required_pressure.h"
+#include "elements/step_lap/step_lap_friction.h"
+#include "elements/step_lap/step_lap_joint.h"
+#include "mbd/model/model.h"
+#include "mbd/system/system.h"
+
+namespace steplap {
+
+/// One step-lap joint. It refers to the model, which must outlive it. A joint without interfaces has infinite capacity and no utilisation.
+struct JointView {
+  const StepLapJoint* joint = nullptr;             ///< never nullptr
+  std::vector<const StepLapInterface*> interfaces; ///< in the order of the model; empty: the joint holds any load
+  Patch patch;                                     ///< interfaces with their static coefficients, about the limb's centre of gravity
+  std::vector<std::string> beside;                 ///< elements that connect the same two bodies in parallel: "'tie plate' (tie)"
+  std::vector<double> areas;                       ///< overlap area of each interface, m^2
+
+  /// Returns the friction force or couple if the limb slides purely along x (0), along y (1) or turns (2), N or N m.
+  [[nodiscard]] double sliding(int direction) const;
+  /// Returns the largest force along x (0) or y (1) through the limb's centre of gravity, or the largest couple (2), that the joint can
+  /// hold, N or N m. A force can hold less than sliding(), because it also exerts a couple on the joint if the centre of friction is not at
+  /// the limb's centre of gravity.
+  [[nodiscard]] double alone(int direction) const;
+  /// Returns the pressure required to hold the wrench (N, N, N m) on the limb. Throws NumericalFailure if the solution does not converge.
+  [[nodiscard]] RequiredPressure required(const Vec3& wrench) const;
+};
+
+/// Returns all step-lap joints of a completed model in its order. `system` is compiled from it.
+[[nodiscard]] std::vector<JointView> joint_views(const Model& model, const System& system);
+
+} // namespace steplap

@@ -1,0 +1,88 @@
+#include "elements/views/element_views.h"
+
+#include "elements/catalog.h"
+#include "elements/joints.h"
+#include "elements/machinery/rope.h"
+#include "elements/shape.h"
+#include "elements/spring_damper.h"
+#include "elements/step_lap/step_lap_assessment.h"
+#include "elements/step_lap/step_lap_interface.h"
+#include "elements/step_lap/step_lap_joint.h"
+#include "elements/views/far_joints.h"
+#include "elements/views/seams.h"
+#include "elements/views/start_checks.h"
+#include "elements/views/stepped_feet.h"
+#include "elements/views/symbols.h"
+
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+std::vector<std::string> ends_of_joint(const Element& element) {
+  const auto& joint = static_cast<const Joint&>(element);
+  return {joint.a, joint.b};
+}
+
+std::vector<std::string> ends_of_spring(const Element& element) {
+  const auto& spring = static_cast<const SpringDamper&>(element);
+  return spring.axis ? std::vector<std::string>() : std::vector<std::string>{spring.a, spring.b};
+}
+
+std::vector<std::string> way_of_rope(const Element& element) {
+  const auto& rope = static_cast<const Rope&>(element);
+  std::vector<std::string> way{rope.a};
+  way.insert(way.end(), rope.over.begin(), rope.over.end());
+  way.push_back(rope.b);
+  return way;
+}
+
+JointAssessment assess(const Element& element, const Model& model, const RunResult& result) {
+  return assess_joint(static_cast<const StepLapJoint&>(element), model, result);
+}
+
+std::optional<DrawnSheets> sheets_of(const Element& element, const Model& model) {
+  const auto& face = static_cast<const StepLapInterface&>(element);
+  const StepLapJoint* joint = nullptr;
+  for (const ElementEntry& entry : model.elements)
+    if (entry.kind == &step_lap_joint_kind() && entry.element->name == face.joint)
+      joint = static_cast<const StepLapJoint*>(entry.element.get());
+  if (!joint) return std::nullopt;
+  DrawnSheets sheets{joint->name, joint->limb, joint->active_part, face.frame == "ground", face.count, face.yoke, face.limb, {}, {}, {}, {}, {}};
+  sheets.yoke_holes = face.yoke_holes;
+  sheets.limb_holes = face.limb_holes;
+  if (!face.yoke_holes.empty() || !face.limb_holes.empty())
+    sheets.hole = round_hole(Vec2::Zero(), face.hole_diameter, face.hole_sides);
+  sheets.yoke_cutouts = face.yoke_cutouts;
+  sheets.limb_cutouts = face.limb_cutouts;
+  return sheets;
+}
+
+std::vector<Finding> unlike_shapes(const Model& model) {
+  std::vector<Finding> findings;
+  for (ShapeRemark& remark : contradicted_shapes(model))
+    findings.push_back({"unlike_shape", FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
+  return findings;
+}
+
+} // namespace
+
+KindViews element_views() {
+  KindViews views;
+  for (const ElementKind* const kind : element_catalog().elements) views.elements[kind].draw = symbol_of(kind->name);
+  views.elements[&revolute_kind()].pulls_between = ends_of_joint;
+  views.elements[&distance_kind()].pulls_between = ends_of_joint;
+  views.elements[&spring_damper_kind()].pulls_between = ends_of_spring;
+  views.elements[&rope_kind()].pulls_between = way_of_rope;
+  views.elements[&step_lap_joint_kind()].assess = assess;
+  views.elements[&step_lap_interface_kind()].sheets = sheets_of;
+  views.value_checks = {unlike_shapes};
+  views.scene_checks = {doubled_corners};
+  views.assembly_checks = {far_joints, stepped_feet};
+  views.start_checks = {check_feet};
+  views.given_pose_checks = {check_stops};
+  return views;
+}
+
+} // namespace steplap

@@ -1,0 +1,11 @@
+// Answers of the kinds of elements that are not specific to transformers (mbd/run/kind_views.h).
+#pragma once
+
+#include "mbd/run/kind_views.h"
+
+namespace steplap {
+
+/// Returns the answers of all kinds of element_catalog().
+[[nodiscard]] KindViews element_views();
+
+} // namespace steplap

@@ -1,0 +1,12 @@
+// Finds common end points of two segments over which a circle rolls from one segment to the next: at this point both segments press.
+#pragma once
+
+#include "mbd/run/finding.h"
+#include "mbd/run/loaded_model.h"
+
+namespace steplap {
+
+/// Returns one finding for each circle and body with segments. It names the first such point.
+[[nodiscard]] std::vector<Finding> doubled_corners(const LoadedModel& loaded);
+
+} // namespace steplap

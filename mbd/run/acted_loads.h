@@ -1,0 +1,27 @@
+// Finds loads that have not acted completely within a run. Signals, forces and formulas of time should begin, reach their full size and end
+// before the run ends.
+//
+// Only the time during which an element acts counts: actions release, hold and set elements, and can end the run. The times of actions are
+// taken from the events of the run. A load has acted completely if:
+//
+//   signal with an end     its end comes while its element acts
+//   harmonics, sea, road   SignalCourse::k_periods mean periods have passed at full size; two suffice if the last one raised the
+//                          utilisation of each criterion by less than 0.01
+//   ramp and hold          nothing moves any more; or the second half of the time at full size raised the utilisation of each criterion
+//                          by less than 0.01, and some utilisation is above zero or bodies move uniformly; or an action ends it
+//   formula of time        it changes within the run, or it does not change after the end either
+//
+// An action with a `reason` that cuts off a load is intended; such a load is not reported.
+#pragma once
+
+#include "mbd/run/findings.h"
+#include "mbd/trust/judgement.h"
+
+namespace steplap {
+
+/// Returns, before a run, the signals that its end cuts off. Assumes that no action happens.
+[[nodiscard]] std::vector<Finding> loads_beyond_end(const LoadedModel& loaded);
+/// Returns, after a completed run, one finding for each load that has not acted completely. `judgement` belongs to `result`.
+[[nodiscard]] std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
+
+} // namespace steplap

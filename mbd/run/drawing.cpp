@@ -1,0 +1,269 @@
+#include "mbd/run/drawing.h"
+
+#include "mbd/run/ordered_json.h"
+#include "mbd/run/sketch.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json point_json(const Vec2& p) { return Json::array({p.x(), p.y()}); }
+
+Json outline_json(const std::vector<Vec2>& outline) {
+  Json json = Json::array();
+  for (const Vec2& p : outline) json.push_back(point_json(p));
+  return json;
+}
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// Returns the convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points if all are on a line.
+std::vector<Vec2> hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> chain;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t begin = chain.size();
+    for (const Vec2& p : points) {
+      while (chain.size() >= begin + 2 && cross(chain.back() - chain[chain.size() - 2], p - chain.back()) <= 0.0) chain.pop_back();
+      chain.push_back(p);
+    }
+    chain.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return chain;
+}
+
+// Rounds to multiples of 1e-9, so that planes that differ by rounding are recognised as equal.
+long long coarse(double value) { return std::llround(1e9 * value); }
+
+class Drawing {
+public:
+  Drawing(const Model& model, const KindViews& views) : model_(model), views_(views) {
+    for (const Body& body : model.bodies) bodies_[body.name] = &body;
+    for (const Marker& marker : model.markers) markers_[marker.name] = &marker;
+  }
+
+  Json json() {
+    Json elements = Json::array();
+    for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
+    Json json = object_with_room(8);
+    append(json, "bodies") = bodies_json(); // after the elements, which define geometry of bodies
+    append(json, "elements") = std::move(elements);
+    append(json, "ground") = ground_json();
+    append(json, "planes") = planes_;
+    append(json, "sheets") = sheets_json();
+    append(json, "plots") = plots_json();
+    append(json, "cores") = cores_json();
+    append(json, "seen_from") = model_.output.seen_from;
+    return json;
+  }
+
+private:
+  [[nodiscard]] Json cores_json() const {
+    Json cores = Json::array();
+    for (const TableEntry& entry : model_.tables)
+      if (const auto sheet = views_.sheets.find(entry.kind); sheet != views_.sheets.end())
+        cores.push_back({{"name", entry.table->name}, {"svg", sheet->second(*entry.table, model_)}});
+    return cores;
+  }
+  [[nodiscard]] const Body* body(const std::string& name) const {
+    const auto found = bodies_.find(name);
+    return found == bodies_.end() ? nullptr : found->second;
+  }
+
+  // Transforms from the ground frame in the reference pose, or from the frame of a body.
+  [[nodiscard]] static Vec2 about_centre(const Vec2& p, bool is_in_ground, const Body* body) {
+    if (!body) return p;
+    if (!is_in_ground) return p - body->cg;
+    const Vec3 pose = body->reference_pose();
+    return rotated(p - Vec2(pose.x(), pose.y()), -pose.z());
+  }
+
+  [[nodiscard]] MarkerPlace place_of(const std::string& name) const {
+    const Marker& marker = *markers_.at(name);
+    const bool is_in_ground = !marker.point;
+    const Body* const carrier = body(marker.body);
+    const Vec2 point = about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, carrier);
+    if (!carrier) return {marker.body, point, marker.angle, point, marker.angle};
+    const Vec3 pose = carrier->reference_pose();
+    return {marker.body, point, marker.angle, Vec2(pose.x(), pose.y()) + rotated(point, pose.z()), pose.z() + marker.angle};
+  }
+
+  [[nodiscard]] static Json places_json(const std::vector<MarkerPlace>& places) {
+    Json json = Json::array();
+    for (const MarkerPlace& place : places) json.push_back({{"body", place.body}, {"point", point_json(place.point)}});
+    return json;
+  }
+
+  Json element_json(const ElementEntry& entry) {
+    Sketch sketch(
+        entry, [this](const std::string& marker) { return place_of(marker); },
+        [this](const std::string& body) -> BodyGeometry& { return geometry_[body]; });
+    draw_element(sketch, views_.of(*entry.kind).draw);
+    Json json = object_with_room(12);
+    append(json, "name") = entry.element->name;
+    append(json, "kind") = entry.kind->name;
+    append(json, "symbol") = sketch.shapes().empty() ? "hidden" : sketch.shapes().front().type;
+    Json shapes = Json::array();
+    for (const Shape& shape : sketch.shapes()) shapes.push_back(shape_json(shape));
+    json["shapes"] = std::move(shapes);
+    for (const Field& field : entry.kind->fields.fields()) {
+      if (field.type == FieldType::body) json[field.name] = std::get<std::string>(field.get(entry.element.get()));
+      if (field.type == FieldType::elements) json[field.name] = std::get<std::vector<std::string>>(field.get(entry.element.get()));
+    }
+    json["at"] = places_json(sketch.places());
+    return json;
+  }
+
+  Json shape_json(const Shape& shape) {
+    Json json = object_with_room(7);
+    append(json, "type") = shape.type;
+    append(json, "at") = places_json(shape.at);
+    if (!shape.style.empty()) json["style"] = shape.style;
+    if (!shape.quantity.empty()) json["quantity"] = shape.quantity;
+    if (shape.direction) json["direction"] = point_json(*shape.direction);
+    if (!shape.sizes.empty()) json["sizes"] = shape.sizes;
+    const bool has_plane = shape.type == "contact" || shape.type == "faces";
+    if (has_plane && shape.direction && !shape.at.empty()) json["plane"] = plane_of(shape.at.back(), *shape.direction, shape.sizes);
+    return json;
+  }
+
+  // Returns the index of the half-plane of a contact. All contacts with one line of a body share one.
+  std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
+    std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
+    const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
+    for (const double end : ends) key.push_back(coarse(along + end));
+    const auto [found, is_new] = plane_numbers_.try_emplace({place.body, std::move(key)}, planes_.size());
+    if (is_new) planes_.push_back({{"body", place.body}, {"point", point_json(place.point)}, {"normal", point_json(normal)}});
+    if (is_new && !ends.empty()) planes_.back()["ends"] = ends;
+    return found->second;
+  }
+
+  // Returns the given outline, or the convex hull of the centre of gravity and of the points of elements that no circle of the body covers.
+  [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
+    std::vector<Vec2> outline;
+    for (const Vec2& p : body.outline) outline.push_back(p - body.cg);
+    if (!outline.empty() || !geometry.polygons.empty()) return outline;
+    const auto is_covered = [&](const Vec2& p) {
+      return std::any_of(geometry.circles.begin(), geometry.circles.end(), [&](const std::array<double, 4>& circle) {
+        return (p - Vec2(circle[0], circle[1])).norm() <= circle[2] * (1.0 + 1e-9);
+      });
+    };
+    std::vector<Vec2> places;
+    for (const Vec2& p : geometry.places)
+      if (!is_covered(p)) places.push_back(p);
+    if (places.empty()) return {};
+    places.push_back(Vec2::Zero());
+    outline = hull(std::move(places));
+    return outline.size() < 2 ? std::vector<Vec2>() : outline;
+  }
+
+  static void add_geometry(const BodyGeometry& geometry, Json& json) {
+    json["circles"] = geometry.circles;
+    json["segments"] = geometry.segments;
+    json["polygons"] = geometry.polygons;
+  }
+
+  Json bodies_json() {
+    Json json = Json::array();
+    for (const Body& body : model_.bodies) {
+      const Vec3 pose = body.reference_pose();
+      const BodyGeometry& geometry = geometry_[body.name];
+      Json entry = object_with_room(10);
+      append(entry, "name") = body.name;
+      append(entry, "label") = body.label;
+      append(entry, "pose") = {pose.x(), pose.y(), pose.z()};
+      append(entry, "fixed") = body.fixed;
+      append(entry, "is_outline_given") = !body.outline.empty();
+      append(entry, "outline") = outline_json(outline_of(body, geometry));
+      add_geometry(geometry, entry);
+      Json& holes = append(entry, "holes") = Json::array();
+      for (const auto openings_of : views_.openings)
+        for (const std::vector<Vec2>& opening : openings_of(body, model_)) holes.push_back(outline_json(opening));
+      json.push_back(std::move(entry));
+    }
+    return json;
+  }
+
+  Json ground_json() {
+    Json json = Json::object();
+    add_geometry(geometry_["ground"], json);
+    return json;
+  }
+
+  // Returns points of a sheet in the axes of the body that carries it, about its centre of gravity.
+  [[nodiscard]] std::vector<Vec2> sheet(const std::vector<Vec2>& corners, bool is_in_ground, const std::string& owner) const {
+    std::vector<Vec2> local;
+    for (const Vec2& p : corners) local.push_back(about_centre(p, is_in_ground, body(owner)));
+    return local;
+  }
+
+  // Returns the round holes of one sheet as polygons, and its cutouts.
+  [[nodiscard]] Json holes_json(const DrawnSheets& pair, bool is_yoke, const std::string& owner) const {
+    Json json = Json::array();
+    for (const Vec2& centre : sheet(is_yoke ? pair.yoke_holes : pair.limb_holes, pair.is_in_ground, owner)) {
+      std::vector<Vec2> hole = pair.hole;
+      for (Vec2& corner : hole) corner += centre;
+      json.push_back(outline_json(hole));
+    }
+    for (const std::vector<Vec2>& cutout : is_yoke ? pair.yoke_cutouts : pair.limb_cutouts)
+      json.push_back(outline_json(sheet(cutout, pair.is_in_ground, owner)));
+    return json;
+  }
+
+  Json sheets_json() const {
+    Json json = Json::array();
+    for (const ElementEntry& entry : model_.elements) {
+      const auto sheets_of = views_.of(*entry.kind).sheets;
+      const std::optional<DrawnSheets> sheets = sheets_of ? sheets_of(*entry.element, model_) : std::nullopt;
+      if (!sheets) continue;
+      Json pair = object_with_room(9);
+      append(pair, "name") = entry.element->name;
+      append(pair, "joint") = sheets->joint;
+      append(pair, "limb") = sheets->limb;
+      append(pair, "active_part") = sheets->active_part;
+      append(pair, "count") = sheets->count;
+      append(pair, "yoke") = outline_json(sheet(sheets->yoke, sheets->is_in_ground, sheets->active_part));
+      append(pair, "limb_sheet") = outline_json(sheet(sheets->limb_sheet, sheets->is_in_ground, sheets->limb));
+      append(pair, "yoke_holes") = holes_json(*sheets, true, sheets->active_part);
+      append(pair, "limb_holes") = holes_json(*sheets, false, sheets->limb);
+      json.push_back(std::move(pair));
+    }
+    return json;
+  }
+
+  Json plots_json() const {
+    Json json = Json::array();
+    for (const Plot& plot : model_.plots)
+      json.push_back({{"name", plot.name}, {"title", plot.title}, {"channels", plot.channels}, {"bounds", plot.bounds}});
+    return json;
+  }
+
+  const Model& model_;
+  const KindViews& views_;
+  std::map<std::string, const Body*> bodies_;
+  std::map<std::string, const Marker*> markers_;
+  std::unordered_map<std::string, BodyGeometry> geometry_; ///< per body, including the ground
+  std::map<std::pair<std::string, std::vector<long long>>, std::size_t> plane_numbers_;
+  Json planes_ = Json::array();
+};
+
+} // namespace
+
+std::string drawing_json(const Model& model, const KindViews& views) {
+  return Drawing(model, views).json().dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace steplap

@@ -1,0 +1,78 @@
+#include "mbd/run/edges.h"
+
+#include "mbd/run/quantity_text.h"
+#include "mbd/system/contact_description.h"
+
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_rounding = 1e-9; // relative; the last step may end short of the end of the run
+constexpr double k_beyond = 1e-3;   // relative to the length of the outline along the face; feet may stand on an edge
+
+// Returns the finding, for a contact that pressed `beyond` metres beyond the end of its part; nothing if that is not noticeable.
+std::optional<Finding> beyond_edge(const LoadedModel& loaded, const EndlessFace& face, double beyond, const std::string& when) {
+  if (beyond <= k_beyond * (face.high - face.low)) return std::nullopt;
+  const ElementEntry& entry = loaded.model.elements[static_cast<std::size_t>(face.element)];
+  return Finding{"foot_beyond_edge", FindingLevel::warning,
+                 when + " '" + entry.element->name + "' presses " + quantity_text(beyond, "m", 1e-3) + " beyond the edge of '" + face.part +
+                     "': the face of a " + entry.kind->name + " has no ends, the part has; " + face.remedy,
+                 entry.element->where};
+}
+
+} // namespace
+
+std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vector<ChannelRange>& ranges) {
+  std::unordered_map<std::string, const ChannelRange*> range_of;
+  for (const ChannelRange& range : ranges) range_of.emplace(range.channel->name, &range);
+  std::vector<Finding> found;
+  for (const ElementEntry& entry : loaded.model.elements) {
+    const Element& element = *entry.element;
+    const auto contact = contact_of(entry, loaded.model);
+    const auto range = range_of.find(element.name + ".gap");
+    if (!contact || !contact->depth_limit || range == range_of.end()) continue;
+    const double most = *contact->depth_limit;
+    if (!(-range->second->low.value > most)) continue;
+    found.push_back({"contact_too_deep", FindingLevel::warning,
+                     "'" + element.name + "' was pressed " + quantity_text(-range->second->low.value, "m", 1e-3) +
+                         " deep at t = " + time_text(range->second->low.t) + " s; beyond " + quantity_text(most, "m", 1e-3) +
+                         " one part is through the other, and what came after is not to be trusted. A larger 'stiffness' keeps them apart",
+                     element.where});
+  }
+  return found;
+}
+
+std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const State& state) {
+  const System& system = *loaded.system;
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  std::vector<Finding> found;
+  for (const EndlessFace& face : system.endless_faces) {
+    if (!is_closed(system, state, system.element_names[static_cast<std::size_t>(face.element)])) continue;
+    if (auto finding = beyond_edge(loaded, face, distance_beyond(face, place_on(face, motion.data()).along), "at rest"))
+      found.push_back(std::move(*finding));
+  }
+  return found;
+}
+
+std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const RunResult& result) {
+  std::map<int, const FaceTravel*> farthest; // by element, over all legs
+  for (const FaceTravel& travel : result.face_travels) {
+    const FaceTravel*& known = farthest[travel.face.element];
+    if (!known || travel.beyond > known->beyond) known = &travel;
+  }
+  std::vector<Finding> found;
+  for (const auto& [element, travel] : farthest) {
+    const bool is_at_end = travel->t >= result.final_state.t * (1.0 - k_rounding);
+    if (auto finding =
+            beyond_edge(loaded, travel->face, travel->beyond, is_at_end ? "at the end" : "at t = " + time_text(travel->t) + " s"))
+      found.push_back(std::move(*finding));
+  }
+  return found;
+}
+
+} // namespace steplap

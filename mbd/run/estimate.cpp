@@ -1,0 +1,64 @@
+#include "mbd/run/estimate.h"
+
+#include "mbd/run/prominence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+// One evaluated part takes about 40 to 300 ns; with much sliding more.
+constexpr double k_little = 1e7; // evaluated parts
+constexpr double k_most = 3.0;   // finer runs that need more than k_most times the limit are abandoned
+// A run with many short steps may still have cheap adaptive reference runs. They are tried if at least this number of evaluations is
+// permitted, with at most the work of the run itself.
+constexpr double k_least_references = 5000.0;
+constexpr double k_nudged = 1.5; // times the run: for a run from a perturbed pose, which a verdict requires at any cost
+
+Estimate none(EstimateStatus status, std::string reason) { return {status, std::move(reason), {}, {}}; }
+
+} // namespace
+
+Estimate estimate_errors(const Run& run, const RunOptions& options) {
+  if (run.failure || (options.stop && !options.stop().empty())) return none(EstimateStatus::left_out, "the run broke off");
+  if (options.estimating == Estimating::never) return none(EstimateStatus::left_out, "left out as asked");
+  const LoadedModel& loaded = *run.loaded;
+  const SimulationOptions as_run = simulation_options(loaded, options);
+  const RunStatistics& statistics = run.result.statistics;
+  double most_evaluations = std::numeric_limits<double>::infinity();
+  std::optional<Estimate> too_dear; // result if reference runs do not help either
+  if (options.estimating == Estimating::cheap) {
+    const double times = relative_cost_of_finer_runs(*loaded.system, as_run), parts = evaluation_cost(*loaded.system, statistics);
+    const double evaluations_a_part = static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
+    most_evaluations = std::floor(k_most * k_little * evaluations_a_part);
+    if (!(times * parts < k_little)) {
+      too_dear = none(EstimateStatus::too_dear, "would take long; ask for it explicitly");
+      too_dear->cost = times * statistics.cpu_seconds;
+      most_evaluations = std::floor(std::min(k_little, parts) * evaluations_a_part);
+      if (!is_measured_by_references(*loaded.system, as_run.integrator) || most_evaluations < k_least_references)
+        return *std::move(too_dear);
+    }
+  }
+  try {
+    const State initial = options.start ? *options.start : initial_state_of(loaded);
+    GlobalErrorEstimate errors = estimate_global_error(*loaded.system, initial, as_run, run.result, is_main_event, most_evaluations);
+    Estimate estimate{EstimateStatus::known, "", {}, std::move(errors)};
+    try {
+      const double as_dear_as_the_run = k_nudged * static_cast<double>(statistics.evaluations);
+      estimate.balance = balance_of(*loaded.system, initial, as_run, run.result, std::max(most_evaluations, as_dear_as_the_run));
+    } catch (const NumericalFailure& failure) { // the errors remain known
+      estimate.balance_unknown = failure.what();
+    }
+    return estimate;
+  } catch (const EvaluationBudgetExceeded& stopped) {
+    if (too_dear) return *std::move(too_dear);
+    return none(EstimateStatus::too_dear, std::string(stopped.what()) + "; ask for it explicitly");
+  } catch (const NumericalFailure& failure) {
+    return none(EstimateStatus::failed, std::string("the finer run failed: ") + failure.what());
+  }
+}
+
+} // namespace steplap

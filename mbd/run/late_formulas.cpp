@@ -1,0 +1,165 @@
+#include "mbd/run/late_formulas.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/base/portable_math.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/formula/formula.h"
+#include "mbd/model/action.h"
+#include "mbd/model/formula_fields.h"
+#include "mbd/simulation/run_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_samples = 200;      // samples within the run; as many shortly after its end, and in a geometric sequence further on
+constexpr double k_near = 10.0;     // run lengths over which the first samples after the end are evenly spaced
+constexpr double k_larger = 1.25;   // relative to the run; peaks of sums of harmonics differ by less between intervals
+constexpr double k_far = 100.0;     // run lengths within which a load reaches its full size, if it has one
+constexpr double k_behind = 1e4;    // run lengths up to the last sample
+constexpr double k_rounding = 1e-9; // relative to the largest value; smaller differences are rounding
+
+bool uses_time(const ElementEntry& entry) {
+  if (as_action(*entry.element)) return false;
+  for (const Field& field : entry.kind->fields.fields()) {
+    if (!is_formula_field(field)) continue;
+    try {
+      const Formula formula(std::get<std::string>(field.get(entry.element.get())), field.name, {});
+      if (std::any_of(formula.tree().begin(), formula.tree().end(), [](const FormulaNode& node) { return node.op == FormulaOp::time; }))
+        return true;
+    } catch (const ModelError&) { // not a formula, or the error is reported when the element is compiled
+    }
+  }
+  return false;
+}
+
+// Computes the force of an element at other times, with the bodies in their final state.
+class AtOtherTimes {
+public:
+  AtOtherTimes(const System& system, const State& state, const std::string& element) : system_(system), state_(state), dynamics_(system) {
+    for (const Channel& channel : system.channels)
+      if (channel.name.starts_with(element + ".") && channel.codes.empty() && !channel.is_on_request) channels_.push_back(&channel);
+    for (std::size_t u = 0; u < system.units.size(); ++u)
+      if (system.element_names[static_cast<std::size_t>(system.units[u].element)] == element) units_.push_back(u);
+    y_.resize(static_cast<std::size_t>(system.largest_dimension()));
+    dy_.resize(y_.size());
+    dynamics_.set_left_limit_time(std::numeric_limits<double>::infinity());
+  }
+
+  std::vector<double> values(double t) {
+    state_.t = t;
+    Snapshot snapshot = evaluate();
+    for (const std::size_t u : units_) {
+      const Unit& unit = system_.units[u];
+      state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+    }
+    if (!units_.empty()) snapshot = evaluate();
+    std::vector<double> values;
+    for (const Channel* const channel : channels_) values.push_back(channel->value(snapshot));
+    return values;
+  }
+
+private:
+  Snapshot evaluate() {
+    dynamics_.set_state(state_);
+    dynamics_.pack(state_, y_.data());
+    dynamics_.rates(state_.t, y_.data(), dy_.data());
+    return dynamics_.snapshot(dy_.data());
+  }
+
+  const System& system_;
+  State state_;
+  Dynamics dynamics_;
+  std::vector<const Channel*> channels_;
+  std::vector<std::size_t> units_;
+  std::vector<double> y_, dy_;
+};
+
+bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::abs(a[i] - b[i]) > k_rounding * std::max(std::abs(a[i]), std::abs(b[i]))) return false;
+  return true;
+}
+
+// Position of the sample in each interval. It is irrational relative to any period, because evenly spaced samples would always meet a
+// harmonic at the same phase.
+double golden(int i) { return std::fmod(i * 0.6180339887498949, 1.0); }
+
+// Behaviour of a formula after the end of a run.
+struct Late {
+  double t = 0.0;        ///< s
+  bool is_first = false; ///< true if the dependence on time begins there; false if its magnitude exceeds all earlier ones
+};
+
+// Largest magnitudes of an element's channels.
+class Sizes {
+public:
+  void add(const std::vector<double>& values) {
+    largest_.resize(values.size(), 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) largest_[i] = std::max(largest_[i], std::abs(values[i]));
+  }
+  [[nodiscard]] const std::vector<double>& largest() const { return largest_; }
+  [[nodiscard]] bool are_exceeded_by(const std::vector<double>& values) const {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::abs(values[i]) > k_larger * largest_[i]) return true;
+    return false;
+  }
+
+private:
+  std::vector<double> largest_;
+};
+
+std::optional<Late> late_look(AtOtherTimes& at, double end) {
+  const std::vector<double> first = at.values(0.0);
+  bool depends = false;
+  Sizes within, behind, far_behind;
+  within.add(first);
+  for (int i = 1; i <= k_samples; ++i) {
+    const std::vector<double> values = at.values(i == k_samples ? end : end * golden(i));
+    depends = depends || !are_alike(values, first);
+    within.add(values);
+  }
+  std::optional<Late> begins, grows;
+  const auto look = [&](double t) {
+    const std::vector<double> values = at.values(t);
+    if (!depends && !begins && !are_alike(values, first)) begins = Late{t, true};
+    if (depends && !grows && within.are_exceeded_by(values)) grows = Late{t, false};
+    (t > k_far * end ? far_behind : behind).add(values);
+  };
+  for (int i = 1; i <= k_samples; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_samples));
+  for (int i = 1; i <= k_samples; ++i)
+    look(end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_samples));
+  // A force that grows up to the last sample, such as c t, has no full size that a run could reach. Its end is the end of the run.
+  if (behind.are_exceeded_by(far_behind.largest())) return begins;
+  return begins ? begins : grows;
+}
+
+} // namespace
+
+std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& result) {
+  std::vector<Finding> findings;
+  const double end = result.final_state.t;
+  for (const ElementEntry& entry : loaded.model.elements) {
+    if (!uses_time(entry)) continue;
+    try {
+      AtOtherTimes at(*loaded.system, result.final_state, entry.element->name);
+      const std::optional<Late> late = late_look(at, end);
+      if (!late) continue;
+      const std::string what = late->is_first ? "begins to depend on the time by" : "is larger than in the whole run at";
+      findings.push_back({late->is_first ? "load_behind_end" : "load_still_grows", FindingLevel::warning,
+                          "the formula of '" + entry.element->name + "' " + what + " t = " + rounded_text(late->t, 3) +
+                              " s, but the run ends at " + number_text(end) + " s: what it does then is not judged",
+                          entry.element->where});
+    } catch (const NumericalFailure&) { // the formula cannot be evaluated at another time
+    }
+  }
+  return findings;
+}
+
+} // namespace steplap

@@ -1,0 +1,166 @@
+#include "mbd/run/load_cases.h"
+
+#include "mbd/base/name_pattern.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/io/read_input.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/loaded_text.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <tuple>
+
+namespace steplap {
+
+namespace {
+
+using SharedModel = std::shared_ptr<const LoadedModel>;
+
+// Errors of overrides are located at the case, because the model without them has none.
+void add_problems(const LoadCase& one, const ModelError& error, std::vector<Diagnostic>& problems) {
+  for (const Diagnostic& found : error.diagnostics()) {
+    const std::string where = found.where.file.empty() ? "" : " (" + found.where.file + ")";
+    problems.push_back({one.place("set"), "case '" + one.name + "': " + found.message + where});
+  }
+}
+
+bool applies(const LoadCase& one, const Criterion& criterion) {
+  return one.criteria.empty() || std::any_of(one.criteria.begin(), one.criteria.end(),
+                                             [&](const std::string& pattern) { return matches_pattern(criterion.name, pattern); });
+}
+
+void check_criteria(const LoadCase& one, const Model& model, std::vector<Diagnostic>& problems) {
+  std::vector<std::string> known;
+  for (const Criterion& criterion : model.criteria) known.push_back(criterion.name);
+  for (const std::string& pattern : one.criteria)
+    if (std::none_of(known.begin(), known.end(), [&](const std::string& name) { return matches_pattern(name, pattern); }))
+      problems.push_back(
+          {one.place("criteria"), "case '" + one.name + "': no [[acceptance]] is called '" + pattern + "'" + did_you_mean(pattern, known)});
+  if (!is_judged(model)) problems.push_back({one.where, "case '" + one.name + "' has no criteria: add an [[acceptance]] to the model"});
+}
+
+SharedModel load_case(const LoadCase& one, const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
+                      const RunCatalogue& catalogue, std::vector<Diagnostic>& problems) {
+  try {
+    SharedModel loaded = load_model_text(text, path, overrides, catalogue);
+    check_criteria(one, loaded->model, problems);
+    if (one.criteria.empty()) return loaded;
+    auto judged = std::make_shared<LoadedModel>(*loaded);
+    std::erase_if(judged->model.criteria, [&one](const Criterion& criterion) { return !applies(one, criterion); });
+    return judged;
+  } catch (const ModelError& error) {
+    add_problems(one, error, problems);
+    return nullptr;
+  }
+}
+
+// Calls work(i) for all i < count, each once, on as many threads as there are processors. Throws the first exception of the lowest i.
+template <class Work> void for_each_in_parallel(std::size_t count, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::exception_ptr> thrown(count);
+  const auto take = [&] {
+    for (std::size_t i = next++; i < count; i = next++) try {
+        work(i);
+      } catch (...) {
+        thrown[i] = std::current_exception();
+      }
+  };
+  {
+    const std::size_t threads = std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency()));
+    std::vector<std::jthread> helpers;
+    for (std::size_t k = 1; k < threads; ++k) helpers.emplace_back(take);
+    take();
+  }
+  for (const std::exception_ptr& exception : thrown)
+    if (exception) std::rethrow_exception(exception);
+}
+
+// Criteria of elements come first in a judgement, those of the model last.
+std::vector<CaseLimit> limits_of(const Report& report, const std::vector<Utilisation>& utilisations) {
+  const std::vector<CriterionResult>& criteria = report.judgement.criteria;
+  const std::size_t of_elements = criteria.size() - report.run.loaded->model.criteria.size();
+  std::vector<CaseLimit> limits;
+  for (std::size_t i = 0; i < criteria.size(); ++i)
+    limits.push_back({i < of_elements ? criteria[i].name + ": " + criteria[i].text : criteria[i].name, criteria[i], {}, {}});
+  for (const Utilisation& used : utilisations)
+    if (used.criterion) {
+      limits[*used.criterion].share = used.share;
+      limits[*used.criterion].share_error = used.error;
+    }
+  return limits;
+}
+
+void run_case(const SharedModel& loaded, const RunOptions& options, CaseResult& result) {
+  try {
+    const Report report = judged_run(loaded, options);
+    const Overview overview = overview_of(report);
+    result.judgement = report.judgement;
+    result.reason = overview.reason;
+    result.failure = report.run.failure ? report.run.failure->text : "";
+    result.limits = limits_of(report, overview.utilisations);
+  } catch (const NumericalFailure& failure) { // the run could not even start
+    result.judgement.verdict = Verdict::open;
+    result.reason = result.failure = failure.what();
+  }
+}
+
+bool is_less_severe(const CaseLimit& a, const CaseLimit& b) {
+  return std::tuple(a.result.outcome, a.share.value_or(0.0)) < std::tuple(b.result.outcome, b.share.value_or(0.0));
+}
+
+} // namespace
+
+const CaseLimit* CaseResult::governing() const {
+  return limits.empty() ? nullptr : &*std::max_element(limits.begin(), limits.end(), is_less_severe);
+}
+
+Verdict LoadCaseResults::verdict() const {
+  Verdict worst = Verdict::hold;
+  for (const CaseResult& one : cases) worst = std::max(worst, one.judgement.verdict);
+  return worst;
+}
+
+std::string LoadCaseResults::reason() const {
+  const auto decides = [this](const CaseResult& one) { return one.judgement.verdict == verdict(); };
+  if (verdict() == Verdict::hold) return counted(cases.size(), "case holds", "cases hold") + ".";
+  const auto first = std::find_if(cases.begin(), cases.end(), decides);
+  const auto count = static_cast<std::size_t>(std::count_if(cases.begin(), cases.end(), decides));
+  return "'" + first->load.name + "': " + first->reason +
+         (count > 1 ? " " + counted(count - 1, "more case has", "more cases have") + " the same verdict." : "");
+}
+
+LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunCatalogue& catalogue,
+                               const RunOptions& options) {
+  const std::string text = read_input(path, {}); // once, so that all cases are of the same file
+  LoadCaseResults results{load_model_text(text, shown_input(path), overrides, catalogue), {}};
+  const Model& model = results.model->model;
+  const std::vector<LoadCase> cases = load_cases_of(model);
+  if (cases.empty()) throw ModelError(model.header.where, "the model has no load cases: give each as [[case]]");
+  std::vector<SharedModel> loaded;
+  std::vector<Diagnostic> problems;
+  for (const LoadCase& one : cases) {
+    std::vector<std::string> all = overrides;
+    for (const std::string& own : one.overrides(model.header.gravity)) all.push_back(own);
+    loaded.push_back(load_case(one, text, results.model->path, all, catalogue, problems));
+    results.cases.push_back({one, std::move(all), {}, "", "", {}});
+  }
+  if (!problems.empty()) throw ModelError(std::move(problems));
+  for_each_in_parallel(cases.size(), [&](std::size_t i) { run_case(loaded[i], options, results.cases[i]); });
+  return results;
+}
+
+std::vector<LimitRow> limit_rows(const LoadCaseResults& results) {
+  std::vector<LimitRow> rows;
+  for (std::size_t k = 0; k < results.cases.size(); ++k)
+    for (const CaseLimit& limit : results.cases[k].limits) {
+      auto row = std::find_if(rows.begin(), rows.end(), [&](const LimitRow& r) { return r.name == limit.name; });
+      if (row == rows.end()) row = rows.insert(rows.end(), {limit.name, std::vector<const CaseLimit*>(results.cases.size()), k});
+      row->in_case[k] = &limit;
+      if (is_less_severe(*row->in_case[row->governing], limit)) row->governing = k;
+    }
+  return rows;
+}
+
+} // namespace steplap

@@ -1,0 +1,64 @@
+// Runs all load cases of a model ([[case]], mbd/io/load_case.h) and relates its limits to them: which case governs each limit, and which
+// limit governs each case.
+//
+// A case is loaded with its overrides and run by judged_run(), so its numbers are those of a run of the model with the same overrides.
+// Criteria that do not apply to a case are removed before it is judged; built-in criteria of elements always apply.
+#pragma once
+
+#include "mbd/io/load_case.h"
+#include "mbd/run/overview.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// A criterion in one case.
+struct CaseLimit {
+  std::string name;                  ///< criterion of the model; for one of an element with its requirement
+  CriterionResult result;            ///< value, limit, reserve (margin), error and outcome
+  std::optional<double> share;       ///< utilisation, 1 is the limit; empty for events and without a value
+  std::optional<double> share_error; ///< its error; NaN: unknown
+};
+
+/// Result of one case.
+struct CaseResult {
+  LoadCase load;                      ///< as the model states it
+  std::vector<std::string> overrides; ///< all "path=value" with which the model was loaded
+  Judgement judgement;                ///< verdict, and reasons against "hold"
+  std::string reason;                 ///< reason of the verdict, one sentence
+  std::string failure;                ///< why the run did not reach its end; empty if it did
+  std::vector<CaseLimit> limits;      ///< one for each criterion of `judgement`, in its order
+
+  /// Returns the governing limit: the worst outcome, then the highest utilisation; nullptr without limits.
+  [[nodiscard]] const CaseLimit* governing() const;
+};
+
+/// Results of all cases.
+struct LoadCaseResults {
+  std::shared_ptr<const LoadedModel> model; ///< the model without any case
+  std::vector<CaseResult> cases;            ///< at least one
+
+  /// Returns the worst verdict of all cases.
+  [[nodiscard]] Verdict verdict() const;
+  /// Returns its reason, one sentence.
+  [[nodiscard]] std::string reason() const;
+};
+
+/// One limit in all cases.
+struct LimitRow {
+  std::string name;                      ///< as in CaseLimit
+  std::vector<const CaseLimit*> in_case; ///< one for each case; nullptr: does not apply there
+  std::size_t governing = 0;             ///< index of the governing case
+};
+
+/// Runs all cases in parallel. `overrides` apply to every case, before its own. Throws ModelError with the location of the [[case]] if a
+/// case sets what does not exist, names no criterion of the model or has none at all, and if the model has no case.
+[[nodiscard]] LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides,
+                                             const RunCatalogue& catalogue, const RunOptions& options);
+/// Returns the matrix of limits by cases. Its pointers lead into `results`.
+[[nodiscard]] std::vector<LimitRow> limit_rows(const LoadCaseResults& results);
+
+} // namespace steplap

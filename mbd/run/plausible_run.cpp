@@ -1,0 +1,214 @@
+#include "mbd/run/plausible_run.h"
+
+#include "mbd/base/name_pattern.h"
+#include "mbd/base/portable_math.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/run/body_reach.h"
+#include "mbd/run/quantity_text.h"
+#include "mbd/run/range_index.h"
+#include "mbd/simulation/simulation.h"
+#include "mbd/system/places.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_moved_share = 0.01; // of a body's size; settling on springs is smaller
+constexpr double k_turned = 0.05;      // rad; three degrees are visible in a drawing
+constexpr double k_far_limit = 1e3;    // ratio between metres and millimetres
+constexpr double k_outside = 0.01;     // of the outer part's width; a body on an edge is not beyond it
+
+bool is_number(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && last == end;
+}
+
+double signed_distance(const Vec2& p, const Vec2& from, const Vec2& to) { // positive to the left of the line
+  const Vec2 along = to - from;
+  return (along.x() * (p - from).y() - along.y() * (p - from).x()) / along.norm();
+}
+
+// Computes the convex hull by A. M. Andrew's monotone chains, counter-clockwise.
+std::vector<Vec2> hull_of(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  std::vector<Vec2> hull;
+  const auto add_chain = [&hull](auto begin, auto end) {
+    const std::size_t first = hull.size();
+    for (auto p = begin; p != end; ++p) {
+      while (hull.size() >= first + 2) {
+        const Vec2 a = hull[hull.size() - 1] - hull[hull.size() - 2], b = *p - hull[hull.size() - 2];
+        if (a.x() * b.y() - a.y() * b.x() > 0.0) break;
+        hull.pop_back();
+      }
+      hull.push_back(*p);
+    }
+    hull.pop_back(); // it is the first point of the other chain
+  };
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+// Returns the distance of p inside the nearest edge line of the hull; negative outside.
+double depth_in(const std::vector<Vec2>& hull, const Vec2& p) {
+  double depth = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.size(); ++i) depth = std::min(depth, signed_distance(p, hull[i], hull[(i + 1) % hull.size()]));
+  return depth;
+}
+
+// A body with an outline, in its own axes about its centre of gravity.
+struct Part {
+  const Body* body = nullptr;
+  std::vector<Vec2> corners, hull;
+  double width = 0.0; ///< larger side of the hull's bounding box, m
+  bool is_guided = false;
+};
+
+Vec2 seen_from(const Vec3& on, const Vec3& at, const Vec2& point) {
+  const Vec2 place = Vec2(at.x(), at.y()) + rotated(point, at.z());
+  return rotated(place - Vec2(on.x(), on.y()), -on.z());
+}
+
+// Returns all bodies with an outline. A body with joints or drives is marked as guided, because its motion is intended.
+std::vector<Part> parts_of_run(const LoadedModel& loaded) {
+  const System& system = *loaded.system;
+  std::unordered_set<int> guided;
+  for (const RowSpec& row : system.rows) guided.insert({row.a, row.b});
+  std::vector<Part> parts;
+  for (const Body& body : loaded.model.bodies) {
+    if (body.outline.size() < 3) continue;
+    Part part;
+    part.body = &body;
+    for (const Vec2& corner : body.outline) part.corners.push_back(corner - body.cg);
+    part.hull = hull_of(part.corners);
+    Vec2 low = part.corners.front(), high = low;
+    for (const Vec2& corner : part.corners) {
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+    part.width = (high - low).norm();
+    part.is_guided = body.fixed || guided.count(index_of(system, &body)) > 0;
+    if (part.hull.size() >= 3) parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+// Returns how far a corner of `inner` that began inside `outer` is beyond its edge at the end, m.
+double way_out(const Part& inner, const Part& outer, const LoadedModel& loaded, const State& end) {
+  const System& system = *loaded.system;
+  const Vec3 on = pose_of(system, loaded.assembled, outer.body), at = pose_of(system, loaded.assembled, inner.body);
+  const Vec3 on_then = pose_of(system, end, outer.body), at_then = pose_of(system, end, inner.body);
+  double most = 0.0;
+  for (const Vec2& corner : inner.corners)
+    if (depth_in(outer.hull, seen_from(on, at, corner)) > k_outside * outer.width)
+      most = std::max(most, -depth_in(outer.hull, seen_from(on_then, at_then, corner)));
+  return most;
+}
+
+} // namespace
+
+std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result) {
+  const Model& model = loaded.model;
+  if (model.simulation.initial != "equilibrium" || result.ranges.empty()) return {};
+  const System& system = *loaded.system;
+  const std::vector<double> reaches = body_reaches(model);
+  const RangeIndex ranges(result.ranges);
+  const Body* worst = nullptr;
+  double most = 1.0, way = 0.0, turn = 0.0; // `most`: largest ratio to the permitted motion
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const Body& body = model.bodies[i];
+    if (body.fixed || !(body.mass > 0.0)) continue;
+    const ChannelRange *const x = ranges.find(body.name + ".x"), *const y = ranges.find(body.name + ".y"),
+                              *const theta = ranges.find(body.name + ".theta");
+    if (!x || !y || !theta) continue;
+    const Vec3 given = pose_of(system, loaded.assembled, &body);
+    const double size = 2.0 * std::max(reaches[i], std::sqrt(body.inertia / body.mass));
+    const double moved = portable::hypot(x->first - given.x(), y->first - given.y()), turned = theta->first - given.z();
+    const double share = std::max(moved / (k_moved_share * size), std::abs(turned) / k_turned);
+    if (!(share > 1.0)) continue;
+    ++count;
+    if (!(share > most)) continue;
+    most = share;
+    worst = &body;
+    way = moved;
+    turn = turned;
+  }
+  if (!worst) return {};
+  return {{"rest_far_from_poses", FindingLevel::note,
+           "the run begins at rest, which is far from the poses given for " + counted(count, "body", "bodies") + ", most of all for '" +
+               worst->name + "': it moves by " + quantity_text(way, "m", 1e-3) + " and turns by " + quantity_text(turn, "rad", 1e-3) +
+               " to get there. Check its pose, and stiffnesses and preloads of what carries it",
+           worst->where}};
+}
+
+std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
+  const std::vector<Criterion>& criteria = loaded.model.criteria;
+  const std::size_t of_elements = judgement.criteria.size() - std::min(judgement.criteria.size(), criteria.size());
+  const auto size_of = [](const ChannelRange& range) {
+    double size = 0.0;
+    for (const double value : {range.low.value, range.high.value})
+      if (std::isfinite(value)) size = std::max(size, std::abs(value));
+    return size;
+  };
+  std::vector<Finding> findings;
+  for (std::size_t i = 0; i < criteria.size(); ++i) {
+    const Criterion& criterion = criteria[i];
+    const CriterionResult& judged = judgement.criteria[of_elements + i];
+    if (judged.outcome != Verdict::hold || !judged.value || !judged.limit) continue;
+    double own = 0.0, any = 0.0;
+    for (const ChannelRange& range : result.ranges) {
+      if (matches_pattern(range.channel->name, criterion.channel)) own = std::max(own, size_of(range));
+      if (range.channel->unit == judged.unit) any = std::max(any, size_of(range));
+    }
+    // Considers the largest limit that is given without unit. A limit such as "20 mm" is assumed to be intended.
+    double limit = 0.0;
+    if (criterion.within && is_number(criterion.within_text)) limit = *criterion.within;
+    if (criterion.at_most && is_number(criterion.at_most_text)) limit = std::max(limit, *criterion.at_most);
+    if (criterion.at_least && is_number(criterion.at_least_text)) limit = std::max(limit, -*criterion.at_least);
+    if (!(limit > k_far_limit * own) || !(limit > any) || !(any > 0.0)) continue; // without loads no comparison is possible
+    findings.push_back({"limit_far_beyond", FindingLevel::note,
+                        "the limit of '" + criterion.name + "', " + quantity_text(limit, judged.unit) +
+                            ", is more than a thousand times what '" + judged.channel + "' reached, " + quantity_text(own, judged.unit) +
+                            ", and beyond every value of this unit in the run. The file gives it no unit: is " + judged.unit +
+                            " the one that was meant?",
+                        criterion.where});
+  }
+  return findings;
+}
+
+std::vector<Finding> parts_outside(const LoadedModel& loaded, const RunResult& result) {
+  const std::vector<Part> parts = parts_of_run(loaded);
+  std::vector<Finding> findings;
+  for (const Part& inner : parts) {
+    if (inner.is_guided) continue;
+    const Part* through = nullptr;
+    double most = 0.0;
+    for (const Part& outer : parts) {
+      if (&outer == &inner || !(inner.width < outer.width)) continue;
+      const double way = way_out(inner, outer, loaded, result.final_state);
+      if (!(way > k_outside * outer.width) || way <= most) continue;
+      most = way;
+      through = &outer;
+    }
+    if (!through) continue;
+    findings.push_back(
+        {"part_outside", FindingLevel::warning,
+         "'" + inner.body->name + "' began inside '" + through->body->name + "' and ends " + quantity_text(most, "m", 1e-3) +
+             " beyond its edge. The model has nothing there that stops it: what comes after it has passed the edge is outside "
+             "the range of the model",
+         inner.body->where});
+  }
+  return findings;
+}
+
+} // namespace steplap

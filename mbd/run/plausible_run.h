@@ -1,0 +1,18 @@
+// Finds implausible results of a run: an equilibrium far from the given poses, limits far from all values, parts that have left the part in
+// which they began.
+#pragma once
+
+#include "mbd/run/findings.h"
+#include "mbd/trust/judgement.h"
+
+namespace steplap {
+
+/// Returns a note if the run began in equilibrium and a body moved there by more than 0.01 of its size or 0.05 rad.
+[[nodiscard]] std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result);
+/// Returns a note for each criterion whose limit, given without a unit, is a thousand times larger than the largest value of its channel
+/// and larger than all values of that unit in the run: its unit may be wrong.
+[[nodiscard]] std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
+/// Returns a warning for each part that no joint guides and that began inside the outline of another part but ended across its edge.
+[[nodiscard]] std::vector<Finding> parts_outside(const LoadedModel& loaded, const RunResult& result);
+
+} // namespace steplap

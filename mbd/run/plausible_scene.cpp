@@ -1,0 +1,225 @@
+#include "mbd/run/plausible_scene.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/io/record_signal.h"
+#include "mbd/model/signal_network.h"
+#include "mbd/run/loaded_model.h"
+#include "mbd/run/model_entries.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+namespace steplap {
+
+namespace {
+
+// Larger than any transport. Positions of 1e6 m have a resolution of 0.2 nm, which is still rounding.
+constexpr double k_far = 1e6;  // m
+constexpr double k_fast = 1e4; // m/s
+// Numbers have sixteen digits. If values differ by more than this ratio, fewer than four digits remain for the smaller one.
+constexpr double k_apart = 1e12;
+
+// Coefficients of dry friction. Contacts of machines have 0.1 to 0.8, rubber 0.9 and more, clean metals in air up to 1.1.
+constexpr double k_high_friction = 0.8, k_implausible_friction = 1.2;
+constexpr double k_whole_turn = 2.0 * std::numbers::pi; // rad
+
+Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
+
+// Returns true if values and derivatives are zero at every breakpoint and between.
+bool is_zero(const Signal& signal, double end) {
+  std::vector<double> times = {0.0, end};
+  for (const double t : signal.breakpoints())
+    if (t > 0.0 && t < end) times.push_back(t);
+  std::sort(times.begin(), times.end());
+  constexpr int k_samples = 16; // a piece is a polynomial plus a few harmonics: with so many zeros it is zero everywhere
+  for (std::size_t i = 0; i + 1 < times.size(); ++i)
+    for (int k = 0; k <= k_samples; ++k)
+      if (signal.value(times[i] + (times[i + 1] - times[i]) * (k + 0.37) / (k_samples + 1.0)) != 0.0) return false;
+  return true;
+}
+
+bool is_used(const Model& model, const std::string& name) {
+  const auto names_it = [&name](const FieldTable& fields, const void* object) {
+    return std::any_of(fields.fields().begin(), fields.fields().end(), [&](const Field& field) {
+      return field.type == FieldType::signal && std::get<std::string>(field.get(object)) == name;
+    });
+  };
+  return std::any_of(model.elements.begin(), model.elements.end(),
+                     [&](const ElementEntry& entry) { return names_it(entry.kind->fields, entry.element.get()); });
+}
+
+bool is_part(const Model& model, const std::string& name) {
+  return std::any_of(model.signals.begin(), model.signals.end(), [&name](const SignalEntry& entry) {
+    const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());
+    return std::find(parts.begin(), parts.end(), name) != parts.end();
+  });
+}
+
+// Returns the first interval, s, in which rows of a record are missing, if its rows are evenly spaced with few exceptions. A row is missing
+// if a time step is at least 1.5 times the usual one; usual steps may differ by a tenth, because times are written with few digits. Gaps
+// with equal values on both sides are ignored, because recorders may omit repeated values.
+std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
+  constexpr double k_alike = 0.1, k_missing = 1.5, k_few = 0.1;
+  constexpr std::size_t k_least = 8; // steps; fewer do not define a usual step
+  const std::vector<double>& t = signal.breakpoints();
+  if (t.size() < k_least + 1) return {};
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::optional<std::pair<double, double>> first;
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (std::abs(steps[i] - *middle) <= k_alike * *middle) continue;
+    if (steps[i] < k_missing * *middle) return {};
+    if (i + 2 == t.size() || signal.value(t[i]) == signal.value(t[i + 1]))
+      continue; // after the last row the signal may be defined differently
+    ++missing;
+    if (!first) first = {t[i], t[i + 1]};
+  }
+  return static_cast<double>(missing) <= k_few * static_cast<double>(steps.size()) ? first : std::nullopt;
+}
+
+void find_gaps(const Model& model, SignalNetwork& network, std::vector<Finding>& findings) {
+  for (const SignalEntry& entry : model.signals) {
+    const std::string& name = entry.definition->name;
+    if (entry.kind != &record_signal_kind() || (!is_used(model, name) && !is_part(model, name))) continue;
+    const Signal* const signal = network.build(name);
+    if (const auto gap = signal ? missing_rows(*signal) : std::nullopt)
+      findings.push_back(warning("rows_missing",
+                                 "the rows of record '" + name + "' come evenly but for a gap between t = " + rounded_text(gap->first) +
+                                     " s and " + rounded_text(gap->second) + " s: are rows missing?",
+                                 entry.definition->where));
+  }
+}
+
+// Returns the two moving bodies whose values differ most, the smaller first.
+template <class Value> std::pair<const Body*, const Body*> extremes_of(const Model& model, const Value& value) {
+  const Body *least = nullptr, *most = nullptr;
+  for (const Body& body : model.bodies) {
+    if (body.fixed || !(value(body) > 0.0)) continue;
+    if (!least || value(body) < value(*least)) least = &body;
+    if (!most || value(body) > value(*most)) most = &body;
+  }
+  return {least, most};
+}
+
+// Checks dry friction of kinds that can state its origin.
+void check_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
+  if (!entry.kind->friction) return;
+  const GivenFriction given = entry.kind->friction(*entry.element);
+  if (!(given.coefficient > k_high_friction)) return;
+  const std::string what = entry.kind->name + " '" + entry.element->name + "': '" + given.field + "' = " + number_text(given.coefficient);
+  const Location& where = entry.element->where;
+  if (!given.source.empty())
+    findings.push_back(
+        {"friction_by_source", FindingLevel::note, what + " is beyond what dry contacts usually have. Its source: " + given.source, where});
+  else if (given.coefficient < k_implausible_friction)
+    findings.push_back(
+        warning("high_friction",
+                what + " is high: dry contacts of machines have 0.1 to 0.8. If it is meant, say with 'source' where it comes from", where));
+  else
+    findings.push_back(warning("implausible_friction",
+                               what + " is unlike any dry contact: 0.1 to 0.8 are usual, and rubber has 0.9. If it is meant, say with " +
+                                   "'source' where it comes from",
+                               where));
+}
+
+// Returns true for numbers with at most three decimals. Degrees given without a unit are round numbers; radians from degrees or formulas
+// are not.
+bool is_round(double number) {
+  constexpr double k_places = 1e3;
+  return std::round(number * k_places) == number * k_places;
+}
+
+void note_turns(const ModelEntry& entry, std::vector<Finding>& findings) {
+  for (const Field& field : entry.fields->fields()) {
+    if (field.type != FieldType::number || field.unit != "rad") continue;
+    const FieldValue value = field.get(entry.object);
+    const double* const angle = std::get_if<double>(&value);
+    if (!angle || !(std::abs(*angle) > k_whole_turn) || !std::isfinite(*angle) || !is_round(*angle)) continue;
+    findings.push_back({"more_than_a_turn",
+                        FindingLevel::note,
+                        entry.path + "." + field.name + " = " + number_text(*angle) + " rad is " + rounded_text(*angle / k_whole_turn, 3) +
+                            " turns. If degrees are meant, write \"" + number_text(*angle) + " deg\"",
+                        {}});
+  }
+}
+
+} // namespace
+
+std::vector<Finding> implausible_friction(const LoadedModel& loaded) {
+  std::vector<Finding> findings;
+  for (const ElementEntry& entry : loaded.model.elements) check_friction(entry, findings);
+  return findings;
+}
+
+std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  const double end = model.simulation.end;
+  std::vector<Finding> findings;
+  SignalNetwork network(model);
+  find_gaps(model, network, findings);
+  bool has_load = false;
+  const SignalEntry* silent = nullptr;
+  for (const SignalEntry& entry : model.signals) {
+    const std::string& name = entry.definition->name;
+    const Signal* const signal = is_used(model, name) ? network.build(name) : nullptr;
+    if (!signal || signal->is_constant()) continue; // a constant of zero is intended
+    if (!is_zero(*signal, end)) {
+      has_load = true;
+      continue;
+    }
+    if (!silent) silent = &entry;
+    const std::vector<double>& breaks = signal->breakpoints();
+    const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
+    const bool begins_later = next != breaks.end() && *next >= end; // reported by acted_loads.h
+    if (!begins_later) // harmless if something else loads the machine; joints report this themselves
+      findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
+                                 entry.definition->where));
+  }
+  const bool is_at_rest = std::all_of(model.bodies.begin(), model.bodies.end(),
+                                      [](const Body& body) { return body.velocity.isZero(0.0) && body.angular_velocity == 0.0; });
+  if (silent && !has_load && is_at_rest)
+    findings.push_back(warning("no_load",
+                               "every signal that varies is zero throughout the run: nothing loads the machine but what is constant, and "
+                               "what it bears is not shown",
+                               silent->definition->where));
+  return findings;
+}
+
+std::vector<Finding> magnitude_warnings(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  std::vector<Finding> findings;
+  for (const Body& body : model.bodies) {
+    const double far = body.position.lpNorm<Eigen::Infinity>(), fast = body.velocity.lpNorm<Eigen::Infinity>();
+    if (far > k_far)
+      findings.push_back(
+          warning("far_away", "body '" + body.name + "' lies " + number_text(far) + " m from the origin: is the unit meant?", body.where));
+    if (fast > k_fast)
+      findings.push_back(
+          warning("very_fast", "body '" + body.name + "' moves with " + number_text(fast) + " m/s: is the unit meant?", body.where));
+  }
+  const auto compare = [&](const char* code, const char* what, const char* unit, const auto& value) {
+    const auto [least, most] = extremes_of(model, value);
+    if (!least || value(*most) <= k_apart * value(*least)) return;
+    findings.push_back(warning(code,
+                               std::string(what) + " of body '" + least->name + "', " + number_text(value(*least)) + " " + unit +
+                                   ", is less than 1e-12 of that of '" + most->name + "', " + number_text(value(*most)) + " " + unit +
+                                   ": their motions are not known beside each other",
+                               least->where));
+  };
+  for (const ModelEntry& entry : entries_of(model)) note_turns(entry, findings);
+  compare("masses_apart", "the mass", "kg", [](const Body& body) { return body.mass; });
+  compare("inertias_apart", "the inertia", "kg m²", [](const Body& body) { return body.inertia; });
+  return findings;
+}
+
+} // namespace steplap

@@ -1,0 +1,52 @@
+#include "mbd/run/run.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/base/stop.h"
+#include "mbd/run/with_settings.h"
+
+#include <stdexcept>
+
+namespace steplap {
+
+namespace {
+
+void stop_if_asked(const RunOptions& options, double t) {
+  if (!options.stop) return;
+  if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why + " at t = " + number_text(t) + " s.");
+}
+
+} // namespace
+
+SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options) {
+  SimulationOptions simulation = options_of(loaded.model);
+  simulation.has_extremes = options.has_extremes;
+  simulation.progress = [options](double t) { stop_if_asked(options, t); };
+  return simulation;
+}
+
+Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& options) {
+  const StopScope stopping(options.stop);
+  std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
+  SimulationOptions simulation_asked = simulation_options(*loaded, options);
+  simulation_asked.notes_motion = options.estimating != Estimating::never; // needed to decide whether an equilibrium is stable
+  bool is_over = false;                                                    // samples the last state also after a failure
+  simulation_asked.progress = [&is_over, &options](double t) {
+    if (options.progress) options.progress(t);
+    if (!is_over) stop_if_asked(options, t);
+  };
+  simulation_asked.has_growth = options.has_extremes;
+  Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));
+  Run run;
+  try {
+    simulation.run();
+  } catch (const NumericalFailure& failure) {
+    run.failure = failure_of(failure, loaded->model, *loaded->system, 0.0);
+    is_over = true;
+  }
+  run.result = std::move(simulation).result();
+  if (run.failure) run.failure->t = run.result.final_state.t;
+  run.loaded = std::move(loaded);
+  return run;
+}
+
+} // namespace steplap

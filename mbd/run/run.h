@@ -1,0 +1,26 @@
+// Runs a loaded model to its end, or until it fails.
+#pragma once
+
+#include "mbd/run/failure.h"
+#include "mbd/run/loaded_model.h"
+#include "mbd/run/run_options.h"
+#include "mbd/simulation/simulation.h"
+
+namespace steplap {
+
+/// Outcome of a run. It owns the model and the system to which pointers in the result lead.
+struct Run {
+  std::shared_ptr<const LoadedModel> loaded; ///< never nullptr
+  RunResult result;                          ///< results up to the failure, if there was one
+  std::optional<Failure> failure;            ///< reason for an early end; empty if the run reached its end
+};
+
+/// Returns the options of a simulation with the settings of the model. The settings of `options` must have been applied before
+/// (with_settings.h). Throws std::invalid_argument for invalid options.
+[[nodiscard]] SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options);
+
+/// Runs the model with the settings of `options`. Throws ModelError if these settings are invalid (with_settings.h), NumericalFailure only
+/// if the run could not even start.
+[[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
+
+} // namespace steplap

@@ -1,0 +1,31 @@
+// Checks a run by a second method that has little in common with the first. Requested for verdicts that must be reliable.
+//
+// A run is compared with moreau, which locates no events; a run by moreau is compared with dop853. Both methods run with two or three
+// settings and are compared as in `steplap check --cross` (mbd/trust/cross_check.h): every channel, event and energy must agree within the
+// error estimates of both. The limit on computing time is counted in evaluations, because an exit code depends on it.
+//
+// If time stepping cannot run the scene or is too coarse for it, the second run uses an event-locating method with other steps: at most a
+// third of the mean step of the first run, times a pseudo-random number between 0.5 and 1.5. It shares the event search and the
+// interpolation with the first run, but samples event functions at other times and so can find an event that the first run missed.
+#pragma once
+
+#include "mbd/run/run.h"
+
+#include <string>
+
+namespace steplap {
+
+/// Result of the second method, or the reason why there is none.
+struct SecondOpinion {
+  std::string method;       ///< method with its step or tolerance: "moreau@0.0005"
+  double drawn_step = 0.0;  ///< mean of the random steps, s; 0 if the method has its own steps
+  std::string none_because; ///< not empty: the reason why there is no result
+  std::string disagreement; ///< not empty: a difference that exceeds both errors
+  double worst_ratio = 0.0; ///< largest ratio of a difference to the difference that both errors permit
+  double known_until = 0.0; ///< time from which the second method is too coarse to compare, s
+};
+
+/// Checks `run` by a second method. Precondition: `run` reached its end and was made with `options`.
+[[nodiscard]] SecondOpinion second_opinion(const Run& run, const RunOptions& options);
+
+} // namespace steplap

@@ -1,0 +1,42 @@
+// The initial state of a run as its checks see it: contacts, forces, and the findings so far. Kinds add checks of their own fields
+// (KindViews::start_checks).
+#pragma once
+
+#include "mbd/run/finding.h"
+#include "mbd/run/start_balance.h"
+#include "mbd/run/start_contacts.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// Returns a value with three digits, which suffice to identify it.
+[[nodiscard]] std::string three_digits(double value);
+/// Returns a length with three digits and its unit.
+[[nodiscard]] std::string short_length(double metres);
+/// Returns a force, or with the unit "N m" a couple, with three digits and its unit.
+[[nodiscard]] std::string short_force(double value, const char* unit = "N");
+/// Returns an angle in degrees with three digits.
+[[nodiscard]] std::string short_degrees(double radians);
+
+/// The scene. Keeps a reference to the model.
+struct StartScene {
+  /// Computes the state of the model before a search for equilibrium, its contacts and its forces.
+  explicit StartScene(const LoadedModel& loaded_);
+
+  static constexpr double k_typed = 1e-6; ///< relative to the bodies' size; rounding of typed poses
+  static constexpr double k_off = 1e-3;   ///< relative to the bodies' size; larger deviations are not rounding
+
+  const LoadedModel& loaded;            ///< the model
+  const System& system;                 ///< its system
+  State start;                          ///< state of the checks
+  StartBalance balance;                 ///< forces and accelerations in `start`
+  std::vector<ContactAtStart> contacts; ///< all contacts in `start` with all velocities zero
+  std::vector<Finding> found;           ///< findings so far
+
+  /// Adds a warning.
+  void add(const char* code, const Location& where, std::string text);
+};
+
+} // namespace steplap

@@ -1,0 +1,46 @@
+// Summarises the events of a run in few entries: what slipped, lifted, tipped or broke, when and how far.
+//
+// Repeated events of one element are one entry: a foot that lifts 14 times is reported once. If more than a handful of elements do the
+// same, they share one entry. Events that concern only the integrator (change of contact point, kink of a table) are omitted.
+#pragma once
+
+#include "mbd/run/range_index.h"
+#include "mbd/run/report.h"
+#include "mbd/run/shown_quantity.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// An extreme amount of motion or load, SI.
+struct StoryAmount {
+  double value = 0.0;               ///< in `unit`
+  std::string unit;                 ///< "m", "N", "rad"
+  std::optional<double> error = {}; ///< in `unit`, if estimated
+};
+
+/// Reference length, m. Lengths below 1e-9 of it are rounding, because positions are known to 1e-12 m.
+constexpr double k_least_length_scale = 1e-3;
+
+/// Something that happened once or repeatedly.
+struct StoryEntry {
+  double from = 0.0;                 ///< first begin, s
+  std::optional<double> to;          ///< last end, s; empty for an instant, or if it lasts until the end of the run
+  std::string what;                  ///< "slips", "lifts", "opens", "closes", "tips", "breaks", "strikes", …
+  std::vector<std::string> who;      ///< names of elements; for "tips", of bodies
+  std::size_t count = 1;             ///< number of occurrences
+  std::optional<StoryAmount> amount; ///< largest amount
+  std::string text;                  ///< sentence: "Block slides 46 mm on deck from 0.122 s to 0.15 s."
+};
+
+/// Returns the entries in order of their begin.
+[[nodiscard]] std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits = {});
+/// Returns true if the entry reports that an element slipped, opened or broke.
+[[nodiscard]] bool tells_of_motion(const StoryEntry& entry);
+/// Returns the name with a capital first letter: "Front joint".
+[[nodiscard]] std::string sentence_name(std::string name);
+
+} // namespace steplap

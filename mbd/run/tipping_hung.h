@@ -1,0 +1,34 @@
+// Finds freely hanging loads. The weight of such a load acts at its suspension point in every direction of gravity.
+//
+// A load at rest that touches nothing else and hangs by one pin, rod, spring or rope swings until its centre of gravity is below the
+// suspension point. It then exerts its weight and no couple, like a point mass at that point, for every tilt of the machine that carries
+// it. A rope that continues from the suspension to a winch has the weight as its tension.
+#pragma once
+
+#include "mbd/run/loaded_model.h"
+#include "mbd/system/link.h"
+
+namespace steplap {
+
+/// A hanging load at the body that carries it.
+struct HungLoad {
+  int carrier = k_ground;    ///< body of the system
+  Vec2 point = Vec2::Zero(); ///< suspension point in ground axes, m
+  double mass = 0.0;         ///< kg
+  int bodies = 0;            ///< number of bodies of the load
+};
+
+/// All hanging loads of a pose, and their effect on the bodies that carry them.
+struct Hanging {
+  std::vector<HungLoad> loads;       ///< one for each hanging load
+  std::vector<char> is_hung;         ///< per body
+  std::vector<BodyForce> correction; ///< per body: to be added to the element forces on bodies that carry loads, so that they are those of
+                                     ///< loads at rest
+  std::vector<std::string> by;       ///< names of the suspending elements
+};
+
+/// Finds the hanging loads. `force` are the forces on each body, in `state`, of elements that are neither contacts nor joints.
+[[nodiscard]] Hanging hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
+                                    const std::vector<BodyForce>& force);
+
+} // namespace steplap

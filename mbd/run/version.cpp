@@ -1,0 +1,7 @@
+#include "mbd/run/version.h"
+
+namespace steplap {
+
+const char* const k_version = STEPLAP_VERSION;
+
+} // namespace steplap

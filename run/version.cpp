@@ -1,7 +1,0 @@
-#include "run/version.h"
-
-namespace steplap {
-
-const char* const k_version = STEPLAP_VERSION;
-
-} // namespace steplap

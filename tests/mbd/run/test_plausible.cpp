@@ -1,0 +1,204 @@
+// Values that are hardly meant, each found by its own rule; and ordinary scenes, in which none is found.
+#include "mbd/base/counter_random.h"
+#include "mbd/base/number_text.h"
+#include "mbd/run/findings.h"
+#include "mbd/run/report.h"
+#include "transformer/program.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace steplap;
+
+namespace {
+
+RunOptions without_errors() {
+  RunOptions options;
+  options.estimating = Estimating::never;
+  return options;
+}
+
+Report run_of(const std::string& text) { return judged_run(load_model_text(text, "scene.toml"), without_errors()); }
+Report low_loader(const std::vector<std::string>& overrides) {
+  return judged_run(load_model(std::string(STEPLAP_TEST_DATA) + "/loads/low_loader.toml", overrides), without_errors());
+}
+
+const Finding* found(const std::vector<Finding>& findings, const std::string& code) {
+  const auto at = std::find_if(findings.begin(), findings.end(), [&](const Finding& f) { return f.code == code; });
+  return at == findings.end() ? nullptr : &*at;
+}
+
+// The n-th number of a stream, in (0, 1).
+double drawn(std::uint32_t stream, std::uint64_t n, std::uint32_t index = 0) { return counter_uniform(1, stream, n, index); }
+
+std::string number(double value) { return number_text(value); }
+
+// Two bodies that are joined by an element with friction.
+std::string scene_with_friction(const std::string& kind, double friction, const std::string& source) {
+  const std::string mu = number(friction), from = source.empty() ? "" : "source = \"" + source + "\"\n";
+  const std::string bodies = "[[body]]\nname = \"a\"\nmass = 1.0\ninertia = 1.0\nposition = [0.0, 0.5]\n"
+                             "outline = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]\n"
+                             "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nposition = [3.0, 0.5]\n";
+  if (kind == "coulomb_stick")
+    return bodies + "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot\"\na = \"a\"\nstiffness = 1e6\n" +
+           "[[element]]\nkind = \"coulomb_stick\"\nname = \"x\"\ncontacts = [\"foot\"]\nstatic_friction = " + mu + "\n" + from;
+  if (kind == "polygon_contact")
+    return bodies + "[[element]]\nkind = \"polygon_contact\"\nname = \"x\"\na = \"a\"\nnormal = [0.0, 1.0]\nstiffness = 1e8\n" +
+           "static_friction = " + mu + "\n" + from;
+  if (kind == "band")
+    return bodies + "[[element]]\nkind = \"band\"\nname = \"x\"\na = \"a\"\nb = { body = \"ground\", at = [3.0, -2.0] }\ndrum = \"b\"\n" +
+           "radius = 0.1\nstiffness = 1e4\ndamping = 10.0\nfriction = " + mu + "\n" + from;
+  return bodies + "[[element]]\nkind = \"belt\"\nname = \"x\"\na = \"a\"\nb = \"b\"\nradius_a = 0.2\nradius_b = 0.3\nstiffness = 1e4\n" +
+         "damping = 10.0\nfriction_a = 0.3\nfriction_b = " + mu + "\n" + from;
+}
+
+} // namespace
+
+TEST_CASE("friction that dry contacts do not have needs a source, whatever element has it") {
+  for (const char* const kind : {"coulomb_stick", "polygon_contact", "band", "belt"})
+    for (std::uint64_t n = 0; n < 40; ++n) {
+      const double mu = 0.05 + 3.0 * drawn(0, n, kind[0]);
+      const std::string source = drawn(1, n, kind[0]) < 0.3 ? "measured on the dock" : "";
+      CAPTURE(std::string(kind));
+      CAPTURE(mu);
+      CAPTURE(source);
+      const std::vector<Finding> findings = findings_before(*load_model_text(scene_with_friction(kind, mu, source), "scene.toml"));
+      const Finding *const high = found(findings, "high_friction"), *const implausible = found(findings, "implausible_friction");
+      const Finding* const by_source = found(findings, "friction_by_source");
+      CHECK((by_source != nullptr) == (mu > 0.8 && !source.empty()));
+      CHECK((high != nullptr) == (mu > 0.8 && mu < 1.2 && source.empty()));
+      CHECK((implausible != nullptr) == (mu >= 1.2 && source.empty()));
+      if (by_source) {
+        CHECK(by_source->level == FindingLevel::note);
+        CHECK(by_source->text.ends_with("Its source: measured on the dock"));
+      }
+      if (high) CHECK_FALSE(caps_verdict(*high));
+      if (implausible) CHECK(caps_verdict(*implausible));
+    }
+}
+
+TEST_CASE("every kind with a coefficient of friction can say where it comes from, but tyres and sheets") {
+  // Treads of tyres grip with more than 1; sheets of cores have ranges of their own.
+  const std::set<std::string> exempt = {"tyre", "step_lap_interface"};
+  std::size_t count = 0;
+  for (const ElementKind* const kind : program_catalogue().elements) {
+    const auto is_coefficient = [](const Field& field) {
+      return field.type == FieldType::number && field.unit.empty() && field.name.find("friction") != std::string::npos;
+    };
+    const std::vector<Field>& fields = kind->fields.fields();
+    if (std::none_of(fields.begin(), fields.end(), is_coefficient)) continue;
+    ++count;
+    CAPTURE(kind->name);
+    CHECK((kind->fields.find("source") != nullptr) == (exempt.count(kind->name) == 0));
+  }
+  CHECK(count >= 5);
+}
+
+TEST_CASE("a load that does not slide by an implausible friction is no load that holds") {
+  for (const char* const mu : {"1.2", "3", "30"})
+    CHECK(low_loader({std::string("element.floor friction.static_friction=") + mu}).judgement.verdict == Verdict::open);
+  CHECK(low_loader({"element.floor friction.static_friction=0.9"}).judgement.verdict == Verdict::hold); // a warning
+  CHECK(low_loader({"element.floor friction.static_friction=3", "element.floor friction.source=rubber"}).judgement.verdict ==
+        Verdict::hold);
+  CHECK(low_loader({}).findings.empty());
+}
+
+TEST_CASE("a radius of gyration far beyond all that is known of a body is found, and none of an ordinary body is") {
+  CHECK(low_loader({"body.tank.mass=40"}).judgement.verdict == Verdict::open);
+  // A body on two springs of random distance; its radius of gyration is between a tenth and three times that of the springs' ends.
+  const auto scene = [](double arm, double gyration, const std::string& more) {
+    return "[[body]]\nname = \"b\"\nmass = 10.0\ninertia = " + number(10.0 * gyration * gyration) + "\nposition = [0.0, 1.0]\n" +
+           "[[element]]\nkind = \"spring_damper\"\nname = \"left\"\na = { body = \"b\", at = [" + number(-arm) +
+           ", 1.0] }\nb = { body = \"ground\", at = [" + number(-arm) + ", 0.0] }\nstiffness = 1e5\ndamping = 100.0\n" +
+           "[[element]]\nkind = \"spring_damper\"\nname = \"right\"\na = { body = \"b\", at = [" + number(arm) +
+           ", 1.0] }\nb = { body = \"ground\", at = [" + number(arm) + ", 0.0] }\nstiffness = 1e5\ndamping = 100.0\n" + more;
+  };
+  for (std::uint64_t n = 0; n < 60; ++n) {
+    const double arm = std::pow(10.0, -1.0 + 2.0 * drawn(2, n)), ratio = std::pow(10.0, -1.0 + 1.5 * drawn(3, n));
+    CAPTURE(arm);
+    CAPTURE(ratio);
+    const auto code_of = [&](double gyration, const std::string& more = "") {
+      return found(findings_before(*load_model_text(scene(arm, gyration, more), "scene.toml")), "inertia_beyond_places") != nullptr;
+    };
+    CHECK_FALSE(code_of(arm * ratio));
+    const double far = 40.0 * (arm + 1.0) * (1.0 + drawn(4, n)); // the scene is 2 arm wide and 1 m high
+    CHECK(code_of(far));
+    // A guide that does not let a body turn leaves its inertia nothing to act on.
+    CHECK_FALSE(code_of(far, "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"b\"\nb = { body = \"ground\", at = [0.0, 1.0] }\n"
+                             "axis = [0.0, 1.0]\n"));
+  }
+  // A flywheel that is known by its crank pin alone, 20 times nearer than its radius of gyration, with a rod of ordinary length.
+  CHECK_FALSE(found(findings_before(*load_model_text("[[body]]\nname = \"wheel\"\nmass = 100.0\ninertia = 25.0\n"
+                                                     "[[element]]\nkind = \"revolute\"\nname = \"shaft\"\na = \"wheel\"\n"
+                                                     "[[element]]\nkind = \"spring_damper\"\nname = \"rod\"\na = { body = \"wheel\", at = "
+                                                     "[0.025, 0.0] }\nb = { body = \"ground\", at = [0.6, 0.0] }\nstiffness = 1e4\n",
+                                                     "scene.toml")),
+                    "inertia_beyond_places"));
+}
+
+TEST_CASE("degrees without their unit, limits in another unit and a rest far from the poses are noted, and cap nothing") {
+  const Report turned = low_loader({"body.active part.angle=30"});
+  const Finding* const turn = found(turned.findings, "more_than_a_turn");
+  REQUIRE(turn);
+  CHECK(turn->text.starts_with("body.active part.angle = 30 rad is 4.77 turns"));
+  CHECK_FALSE(caps_verdict(*turn));
+  CHECK_FALSE(found(low_loader({"body.active part.angle=30 deg"}).findings, "more_than_a_turn"));
+  CHECK_FALSE(found(low_loader({"body.active part.angle=390 deg"}).findings, "more_than_a_turn")); // a unit was given
+  const Report far = low_loader({"acceptance.slide of the load.within=20"});
+  CHECK(far.judgement.verdict == Verdict::hold);
+  CHECK(found(far.findings, "limit_far_beyond"));
+  for (const char* const limit : {"0.02", "20 mm", "20 m"}) // near, or with the unit that is meant
+    CHECK_FALSE(found(low_loader({std::string("acceptance.slide of the load.within=") + limit}).findings, "limit_far_beyond"));
+  // A mass on a spring sinks by m g / k = 98.1 mm and 0.981 mm: the body is 2 m large by its radius of gyration of 1 m.
+  for (const auto& [stiffness, is_far] : {std::pair{"1e3", true}, std::pair{"1e5", false}}) {
+    const Report report = run_of(std::string("[simulation]\nend = 0.01\ninitial = \"equilibrium\"\n[[body]]\nname = \"b\"\nmass = 10.0\n"
+                                             "inertia = 10.0\n[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"b\"\n"
+                                             "axis = [0.0, 1.0]\n[[element]]\nkind = \"spring_damper\"\nname = \"s\"\na = \"b\"\n"
+                                             "b = { body = \"ground\", at = [0.0, -1.0] }\naxis = [0.0, 1.0]\nstiffness = ") +
+                                 stiffness + "\n");
+    const Finding* const rest = found(report.findings, "rest_far_from_poses");
+    CHECK((rest != nullptr) == is_far);
+    if (rest) CHECK(rest->text.find("'b': it moves by 98.1 mm and turns by 0 rad") != std::string::npos);
+  }
+}
+
+TEST_CASE("a part that slides out through the wall of the part it began in has left the range of the model") {
+  // On a floor without ends it slides v²/(2 µ g) far, from the middle of a box whose wall is 1 m away; it is 0.4 m wide.
+  const double mu = 0.25, gravity = 9.81;
+  for (const double way : {0.2, 0.6, 0.79, 0.85, 1.4, 3.0}) {
+    CAPTURE(way);
+    const Report report =
+        run_of("[simulation]\nend = 3.0\n[[body]]\nname = \"tank\"\nfixed = true\n"
+               "outline = [[-1.0, -0.1], [1.0, -0.1], [1.0, 1.0], [0.9, 1.0], [0.9, 0.0], [-0.9, 0.0], [-0.9, 1.0], [-1.0, 1.0]]\n"
+               "[[body]]\nname = \"limb\"\nmass = 100.0\ninertia = 5.0\nposition = [0.0, 0.2]\nvelocity = [" +
+               number(std::sqrt(2.0 * mu * gravity * way)) +
+               ", 0.0]\noutline = [[-0.2, -0.15], [0.2, -0.15], [0.2, 0.2], [-0.2, 0.2]]\n"
+               "[[element]]\nkind = \"unilateral_contact\"\nname = \"left\"\na = { body = \"limb\", at = [-0.2, 0.05] }\nb = { body = "
+               "\"ground\", at = [0.0, 0.05] }\nnormal = [0.0, 1.0]\nstiffness = 1e8\ndamping = 1e5\npreload = 490.5\n"
+               "[[element]]\nkind = \"unilateral_contact\"\nname = \"right\"\na = { body = \"limb\", at = [0.2, 0.05] }\nb = { body = "
+               "\"ground\", at = [0.0, 0.05] }\nnormal = [0.0, 1.0]\nstiffness = 1e8\ndamping = 1e5\npreload = 490.5\n"
+               "[[element]]\nkind = \"coulomb_stick\"\nname = \"floor\"\ncontacts = [\"left\", \"right\"]\nstatic_friction = 0.25\n"
+               "[[acceptance]]\nname = \"upright\"\nchannel = \"limb.theta\"\nwithin = 0.1\n");
+    const Finding* const outside = found(report.findings, "part_outside");
+    // Its edge, 0.2 m before its middle, is beyond the wall's outer face by more than a hundredth of the box, whose diagonal is 2.28 m.
+    CHECK((outside != nullptr) == (way > 0.8 + 0.0228));
+    if (outside) CHECK(report.judgement.verdict == Verdict::open);
+    else CHECK(report.judgement.verdict == Verdict::hold);
+  }
+}
+
+TEST_CASE("a model that asks for nothing is not open about anything") {
+  // Its inertia is that of nothing real, which would cap a verdict.
+  const std::string scene = "[simulation]\nend = 0.1\n[[body]]\nname = \"b\"\nmass = 40.0\ninertia = 60000.0\n[[element]]\nkind = "
+                            "\"spring_damper\"\nname = \"s\"\na = { body = \"b\", at = [0.5, 0.0] }\nb = { body = \"ground\", at = [0.5, "
+                            "1.0] }\nstiffness = 1e6\n";
+  const Report nothing = run_of(scene);
+  CHECK(found(nothing.findings, "inertia_beyond_places"));
+  CHECK(nothing.judgement.caps.empty());
+  const Report asked = run_of(scene + "[[acceptance]]\nname = \"turn\"\nchannel = \"b.theta\"\nwithin = 1.0\n");
+  CHECK(asked.judgement.caps.size() == 1);
+  CHECK(asked.judgement.verdict == Verdict::open);
+}
