@@ -1,5 +1,5 @@
 // What acts on the bodies: springs, ropes, contacts with their half-planes, joints, motors, loads, forces with their
-// values. Each type of shape of drawing.json (run/symbols.h) has one method of Symbols.
+// values. Each type of shape of drawing.json (mbd/run/sketch.h) has one method of Symbols.
 steplap.Symbols = (() => {
   const make = steplap.make, { turn, add, minus, scaled, dot, length, unit, seenIn } = steplap.geometry;
   const path = (points, isClosed) => 'M' + points.map((p) => `${p[0].toFixed(2)} ${p[1].toFixed(2)}`).join('L') + (isClosed ? 'Z' : '');
