@@ -58,8 +58,9 @@ void compile_state(const Element& element, SystemBuilder& builder) {
                       [inner_at = place.inner, shown](const Snapshot& s) { return shown * s.evaluation->inner[inner_at]; });
 }
 
-// Kind of the element made from the table; elements in files cannot have this kind.
-const ElementKind& compiled_kind() {
+} // namespace
+
+const ElementKind& own_state_element_kind() {
   static const ElementKind kind = [] {
     ElementKind k;
     k.name = "state";
@@ -72,8 +73,6 @@ const ElementKind& compiled_kind() {
   }();
   return kind;
 }
-
-} // namespace
 
 const TableKind& own_state_kind() {
   static const TableKind kind = [] {
@@ -95,7 +94,7 @@ const TableKind& own_state_kind() {
     k.reads_masses = k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) {
       check_state(static_cast<const T&>(table));
-      model.elements.emplace_back(&compiled_kind(), std::make_shared<T>(static_cast<const T&>(table)));
+      model.elements.emplace_back(&own_state_element_kind(), std::make_shared<T>(static_cast<const T&>(table)));
     };
     return k;
   }();

@@ -3,6 +3,7 @@
 #include "elements/catalog.h"
 #include "elements/joints.h"
 #include "elements/machinery/rope.h"
+#include "elements/own_state.h"
 #include "elements/shape.h"
 #include "elements/spring_damper.h"
 #include "elements/step_lap/step_lap_assessment.h"
@@ -49,11 +50,11 @@ std::optional<DrawnSheets> sheets_of(const Element& element, const Model& model)
     if (entry.kind == &step_lap_joint_kind() && entry.element->name == face.joint)
       joint = static_cast<const StepLapJoint*>(entry.element.get());
   if (!joint) return std::nullopt;
-  DrawnSheets sheets{joint->name, joint->limb, joint->active_part, face.frame == "ground", face.count, face.yoke, face.limb, {}, {}, {}, {}, {}};
+  DrawnSheets sheets{joint->name, joint->limb, joint->active_part, face.frame == "ground", face.count, face.yoke, face.limb, {}, {}, {},
+                     {},          {}};
   sheets.yoke_holes = face.yoke_holes;
   sheets.limb_holes = face.limb_holes;
-  if (!face.yoke_holes.empty() || !face.limb_holes.empty())
-    sheets.hole = round_hole(Vec2::Zero(), face.hole_diameter, face.hole_sides);
+  if (!face.yoke_holes.empty() || !face.limb_holes.empty()) sheets.hole = round_hole(Vec2::Zero(), face.hole_diameter, face.hole_sides);
   sheets.yoke_cutouts = face.yoke_cutouts;
   sheets.limb_cutouts = face.limb_cutouts;
   return sheets;
@@ -71,6 +72,7 @@ std::vector<Finding> unlike_shapes(const Model& model) {
 KindViews element_views() {
   KindViews views;
   for (const ElementKind* const kind : element_catalog().elements) views.elements[kind].draw = symbol_of(kind->name);
+  views.elements[&own_state_element_kind()].draw = symbol_of(own_state_element_kind().name);
   views.elements[&revolute_kind()].pulls_between = ends_of_joint;
   views.elements[&distance_kind()].pulls_between = ends_of_joint;
   views.elements[&spring_damper_kind()].pulls_between = ends_of_spring;

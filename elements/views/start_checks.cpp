@@ -61,9 +61,9 @@ void check_ends(StartScene& scene, const ContactAtStart& contact) {
   });
   if (is_elsewhere) return;
   scene.add("foot_beside_face", foot->where,
-      "'" + foot->name + "' begins " + short_length(beyond) + " beside its face: marker a is at " + three_digits(*contact.along) +
-          " m along it, and 'ends' are " + three_digits(foot->ends->x()) + " m and " + three_digits(foot->ends->y()) +
-          " m, counted along (n_y, -n_x) from marker b. Nothing carries it there");
+            "'" + foot->name + "' begins " + short_length(beyond) + " beside its face: marker a is at " + three_digits(*contact.along) +
+                " m along it, and 'ends' are " + three_digits(foot->ends->x()) + " m and " + three_digits(foot->ends->y()) +
+                " m, counted along (n_y, -n_x) from marker b. Nothing carries it there");
 }
 
 void check_stop(StartScene& scene, const Limit& limit) {
@@ -90,12 +90,13 @@ void check_stop(StartScene& scene, const Limit& limit) {
   if (!(opening.acceleration > k_leans * opening.by_loads)) return;
   const std::string beyond = is_angle ? short_degrees(depth) : short_length(depth);
   scene.add("starts_beyond_stop", limit.where,
-      "'" + limit.name + "' begins " + beyond + " beyond its " + (below > 0.0 ? "lower" : "upper") + " stop, which presses back with " +
-          short_force(force, is_angle ? "N m" : "N") + ". " +
-          (is_angle || is_axis ? "Stops count from the pose given, not from zero" : "Stops of a distance are that distance itself") +
-          ": '" + (below > 0.0 ? "lower" : "upper") + "' was probably meant as " +
-          (is_angle ? short_degrees(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + " or " + (below > 0.0 ? "less" : "more")
-                    : short_length(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
+            "'" + limit.name + "' begins " + beyond + " beyond its " + (below > 0.0 ? "lower" : "upper") +
+                " stop, which presses back with " + short_force(force, is_angle ? "N m" : "N") + ". " +
+                (is_angle || is_axis ? "Stops count from the pose given, not from zero" : "Stops of a distance are that distance itself") +
+                ": '" + (below > 0.0 ? "lower" : "upper") + "' was probably meant as " +
+                (is_angle
+                     ? short_degrees(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + " or " + (below > 0.0 ? "less" : "more")
+                     : short_length(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
 }
 
 } // namespace
