@@ -241,12 +241,9 @@ private:
     Model model = loaded_.model;
     model.header.gravity = case_.apparent;
     std::shared_ptr<const System> system = compile(model);
-    LoadedModel turned;
-    turned.path = loaded_.path;
-    turned.name = loaded_.name;
+    LoadedModel turned = loaded_;
     turned.model = std::move(model);
     turned.system = std::move(system);
-    turned.assembled = loaded_.assembled;
     case_.tipping = tipping_of(turned, grown_.rest->state);
   }
 
