@@ -74,19 +74,11 @@ public:
     implicit_->limit_step(longest);
   }
 
-  void step(Dynamics& dynamics, double t_limit) override { step_by_parts(dynamics, t_limit); }
-
-  void begin_step(Dynamics& dynamics, double t_limit) override {
+  void step(Dynamics& dynamics, double t_limit) override {
     choose(dynamics);
     if (!is_started_) active_->restart(dynamics, t0_, y0_.data());
     is_started_ = true;
-    active_->begin_step(dynamics, t_limit);
-  }
-
-  void make_try(Dynamics& dynamics) override { active_->make_try(dynamics); }
-
-  [[nodiscard]] bool conclude_try(Dynamics& dynamics) override {
-    if (!active_->conclude_try(dynamics)) return false;
+    active_->step(dynamics, t_limit);
     t1_ = active_->t1();
     h_ = active_->h();
     std::copy(active_->y1(), active_->y1() + n_, y1_.begin());
@@ -97,7 +89,6 @@ public:
     residual_.position = std::max(residual_.position, active_->max_position_residual());
     residual_.velocity = std::max(residual_.velocity, active_->max_velocity_residual());
     judge(dynamics);
-    return true;
   }
 
   void cut_at(Dynamics& dynamics, double theta) override { active_->cut_at(dynamics, theta); }

@@ -2,7 +2,6 @@
 
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/integrators/scene_rate.h"
 
 #include <limits>
 
@@ -49,12 +48,6 @@ double ExplicitPair::error_inside(Dynamics& dynamics) {
   return is_beside_singular_ ? 0.0 : dense_error(dynamics);
 }
 
-void ExplicitPair::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
-    throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
-                           " s: the motion becomes singular there, or the tolerance is too small");
-}
-
 bool ExplicitPair::dense_output_is_accurate(Dynamics& dynamics) {
   if (is_crossing_ || is_inside_known_) return true;
   const double inside = error_inside(dynamics);
@@ -94,73 +87,66 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
   if (has_choice && error == std::numeric_limits<double>::infinity() && settings_.tolerance < k_near_rounding)
     throw JointsNearSingular("a singular position of the joints behind t = " + rounded_text(t0_, 12) + " s is not passed");
-  return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
+  if (!is_crossing_) return std::min(h_tried, k_closer * ahead);
+  if (!try_finish_step(dynamics)) return k_shorter * h_;
+  note_end(dynamics.smallest_pivot());
+  return 0.0;
 }
 
-void ExplicitPair::begin_step(Dynamics& dynamics, double t_limit) {
-  Integrator::begin_step(dynamics, t_limit);
-  attempt_.left = t_limit - t0_;
-  const double h_max = limited_by_turns(dynamics, limited(attempt_.left), settings_.division);
-  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, order_ - 1, h_max);
-  update_weights(dynamics);
-  attempt_.h = std::min(next_h_, h_max);
-  attempt_.passage.emplace(dynamics);
-  if (is_restarted_) attempt_.h = restrained_step(dynamics, attempt_.h);
-  attempt_.is_retry = attempt_.has_tried_crossing = false;
-  prepare_try();
-}
-
-void ExplicitPair::prepare_try() {
-  const double h = attempt_.h, left = attempt_.left;
-  attempt_.is_last = h >= left * (1.0 - 1e-10);
+// Begins a try of about the length h, adjusted to the limit. Returns true if it ends at the limit.
+bool ExplicitPair::begin_try(double h, double t_limit) {
+  const double left = t_limit - t0_;
+  const bool is_last = h >= left * (1.0 - 1e-10);
   // Two equal steps instead of a long one followed by a tiny one.
-  h_ = attempt_.is_last ? left : (2.0 * h > left ? 0.5 * left : h);
-  t1_ = attempt_.is_last ? t_limit_ : t0_ + h_;
+  h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
+  t1_ = is_last ? t_limit : t0_ + h_;
   begin_event_nodes();
-  attempt_.passage->begin_try();
   is_crossing_ = is_inside_known_ = false;
+  return is_last;
 }
 
-bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
+// Completes a step whose end is accurate, and chooses the length of the next one, if its dense output is accurate enough. `inside` receives
+// the error norm of the dense output if it is asked for.
+bool ExplicitPair::accept_inside(Dynamics& dynamics, double h, double error, bool is_retry, double& inside) {
   const double pivot = dynamics.smallest_pivot();
   is_beside_singular_ = approach_.is_beside(dynamics.least_pivot());
   if (are_dense_evaluations_expected()) inside = error_inside(dynamics);
   if (inside > 1.0) return false;
   saved_control_.error = control_.previous_error;
-  const double factor = control_.factor(std::max(try_error_, inside), attempt_.is_retry);
+  const double factor = control_.factor(std::max(error, inside), is_retry);
   // If the limit has cut the step, the next one may still have the planned length.
-  next_h_ = h_ < attempt_.h ? std::max(attempt_.h, h_ * factor) : h_ * factor;
+  next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
   note_end(pivot);
   return true;
 }
 
-bool ExplicitPair::conclude_try(Dynamics& dynamics) {
-  if (!attempt_.has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
-    attempt_.has_tried_crossing = true;
-    const double h_next = cross_singularity(dynamics, attempt_.left);
-    if (h_next == 0.0 && try_finish_step(dynamics)) {
-      note_end(dynamics.smallest_pivot());
-      return true;
+void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
+  const double left = t_limit - t0_;
+  const double h_max = limited_by_turns(dynamics, limited(left), settings_.division);
+  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, order_ - 1, h_max);
+  update_weights(dynamics);
+  double h = std::min(next_h_, h_max);
+  SingularPassage passage(dynamics);
+  if (is_restarted_) h = restrained_step(dynamics, h);
+  bool has_tried_crossing = false;
+  for (bool is_retry = false;; is_retry = true) {
+    const bool is_last = begin_try(h, t_limit);
+    passage.begin_try();
+    const double error = try_step(dynamics);
+    if (!has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
+      has_tried_crossing = true;
+      h = cross_singularity(dynamics, left);
+      if (h == 0.0) return;
+      continue;
     }
-    return try_again(h_next == 0.0 ? k_shorter * h_ : h_next);
+    const bool is_end_accurate = error <= 1.0;
+    double inside = 0.0;
+    if (is_end_accurate && !is_last && passage.wants_other_end()) h = rejected(SingularPassage::k_shorter_end);
+    else if (is_end_accurate && !try_finish_step(dynamics)) h = rejected(k_shorter);
+    else if (is_end_accurate && accept_inside(dynamics, h, error, is_retry, inside)) return;
+    else if (inside <= 1.0 && passage.wants_other_stages()) h = rejected(SingularPassage::k_shorter_across);
+    else refuse_shorter_than_rounding(h = rejected(shorter(std::max(error, inside))));
   }
-  if (try_error_ <= 1.0 && !attempt_.is_last && attempt_.passage->wants_other_end()) {
-    ++rejections_;
-    return try_again(SingularPassage::k_shorter_end * h_);
-  }
-  double inside = 0.0;
-  if (try_error_ <= 1.0) {
-    if (!try_finish_step(dynamics)) {
-      ++rejections_;
-      return try_again(k_shorter * h_);
-    }
-    if (accept_inside(dynamics, inside)) return true;
-  }
-  ++rejections_;
-  if (inside <= 1.0 && attempt_.passage->wants_other_stages()) return try_again(SingularPassage::k_shorter_across * h_);
-  const double h = h_ * shorter(std::max(try_error_, inside));
-  refuse_shorter_than_rounding(h);
-  return try_again(h);
 }
 
 } // namespace steplap

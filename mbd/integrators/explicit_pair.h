@@ -4,8 +4,6 @@
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/singular_passage.h"
 
-#include <optional>
-
 namespace steplap {
 
 /// A singular position of joints is ahead that cannot be passed in joint coordinates, but perhaps in absolute ones. Thrown only if both are
@@ -19,10 +17,7 @@ class ExplicitPair : public Integrator {
 public:
   ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension, int stages, int order);
   [[nodiscard]] bool is_adaptive() const override { return true; }
-  void step(Dynamics& dynamics, double t_limit) override { step_by_parts(dynamics, t_limit); }
-  void begin_step(Dynamics& dynamics, double t_limit) override;
-  void make_try(Dynamics& dynamics) override { try_error_ = try_step(dynamics); }
-  [[nodiscard]] bool conclude_try(Dynamics& dynamics) override;
+  void step(Dynamics& dynamics, double t_limit) final;
   [[nodiscard]] bool dense_output_is_accurate(Dynamics& dynamics) final;
   void dense(Dynamics& dynamics, double theta, double* out) final;
   [[nodiscard]] double stability_share(Dynamics& dynamics) final { return is_crossing_ ? 0.0 : share_of_stability(dynamics); }
@@ -68,37 +63,22 @@ protected:
   std::vector<double> k_;
   int stride_;
 
-  double try_error_ = 0.0; ///< error norm of the last try
-
 private:
-  /// Data of the step being tried.
-  struct Attempt {
-    double left = 0.0; ///< time left to the limit, s
-    double h = 0.0;    ///< desired length, s, before the adjustment to the limit
-    bool is_last = false, is_retry = false, has_tried_crossing = false;
-    std::optional<SingularPassage> passage;
-  };
-  void prepare_try();
-  /// Checks the dense output of a step whose end is accepted; completes the step if it is accurate enough. `inside` receives its error
-  /// norm.
-  [[nodiscard]] bool accept_inside(Dynamics& dynamics, double& inside);
-  double cross_singularity(Dynamics& dynamics, double left);
+  [[nodiscard]] bool begin_try(double h, double t_limit);
+  [[nodiscard]] bool accept_inside(Dynamics& dynamics, double h, double error, bool is_retry, double& inside);
+  [[nodiscard]] double cross_singularity(Dynamics& dynamics, double left);
   void note_end(double pivot);
   [[nodiscard]] double error_inside(Dynamics& dynamics);
-  void refuse_shorter_than_rounding(double h) const;
   [[nodiscard]] double shorter(double error) const;
-  /// Prepares the next try with length h. Returns false: the step is not yet made.
-  bool try_again(double h) {
-    attempt_.h = h;
-    attempt_.is_retry = true;
-    prepare_try();
-    return false;
+  /// Counts a rejection. Returns the length of the next try, as a share of that of the last.
+  [[nodiscard]] double rejected(double share) {
+    ++rejections_;
+    return share * h_;
   }
 
   StepControl control_;
   int order_;
   double next_h_ = 0.0;
-  Attempt attempt_;
   std::unique_ptr<SingularCrossing> crossing_; ///< created when the first crossing occurs
   SingularApproach approach_;
   bool is_crossing_ = false;        ///< the step made is a crossing

@@ -1,6 +1,7 @@
 #include "mbd/integrators/integrator.h"
 
 #include "mbd/base/portable_math.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/integrators/scene_rate.h"
 #include "mbd/system/element_failure.h"
 
@@ -127,19 +128,10 @@ double Integrator::place_accuracy(const Dynamics& dynamics) const {
 
 bool Integrator::end_at(Dynamics&, double) { return false; }
 
-void Integrator::begin_step(Dynamics&, double t_limit) { t_limit_ = t_limit; }
-
-void Integrator::make_try(Dynamics&) {}
-
-bool Integrator::conclude_try(Dynamics& dynamics) {
-  step(dynamics, t_limit_);
-  return true;
-}
-
-void Integrator::step_by_parts(Dynamics& dynamics, double t_limit) {
-  begin_step(dynamics, t_limit);
-  do make_try(dynamics);
-  while (!conclude_try(dynamics));
+void Integrator::refuse_shorter_than_rounding(double h) const {
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
+    throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
+                           " s: the motion becomes singular there, or the tolerance is too small");
 }
 
 SingularCrossing::Step Integrator::crossing_step(Dynamics& dynamics) {

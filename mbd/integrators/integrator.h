@@ -68,11 +68,6 @@ public:
   static constexpr double k_largest_turn = 1.6;
   /// Makes one step, at most to t_limit. Throws NumericalFailure if it is impossible.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
-  /// The same in parts, so that events can interrupt the tries of a step: begin_step(), then make_try() and conclude_try() alternately
-  /// until the latter returns true. Methods without tries make the step in make_try().
-  virtual void begin_step(Dynamics& dynamics, double t_limit);
-  virtual void make_try(Dynamics& dynamics);
-  [[nodiscard]] virtual bool conclude_try(Dynamics& dynamics);
   /// Repeats the step made so that it ends at theta of it. Used for fixed steps if forces have a kink after an event, since no error
   /// estimate has shortened them. Returns false if the step was left unchanged.
   virtual bool end_at(Dynamics& dynamics, double theta);
@@ -169,10 +164,10 @@ protected:
   /// because the directions change within a step. Changes `error`. Precondition: the last evaluation was near the end of the step.
   [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
+  /// Throws NumericalFailure if a step of length h, s, would be no longer than the rounding errors of time.
+  void refuse_shorter_than_rounding(double h) const;
   /// Returns the data of a singular crossing by a step of h_ from t0_.
   [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
-  /// Implements step() by begin_step(), make_try() and conclude_try().
-  void step_by_parts(Dynamics& dynamics, double t_limit);
   /// Returns h, or a smaller step if the forces of the present modes would stop or reverse a motion within h. Needed after an event,
   /// because earlier step lengths do not account for new forces. Precondition: update_weights().
   [[nodiscard]] double restrained_step(Dynamics& dynamics, double h);
@@ -183,7 +178,6 @@ protected:
   bool is_restarted_ = false; ///< no step since the last restart
   bool are_dense_evaluations_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
-  double t_limit_ = 0.0; ///< argument of begin_step()
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;
   double* k1_ = nullptr;

@@ -12,10 +12,8 @@
 // A singular position of joints ahead is crossed as in explicit methods (singular_crossing.h), because the linearisation is useless there.
 // If forces are too stiff for that, ordinary steps continue.
 #include "mbd/base/portable_math.h"
-#include "mbd/base/shown_text.h"
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
-#include "mbd/integrators/scene_rate.h"
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
@@ -90,7 +88,6 @@ private:
   void note_end(const Dynamics& dynamics);
   static double power_integral(double theta, const double* power);
   [[nodiscard]] double error_of_powers() const;
-  void refuse_shorter_than_rounding(double h) const;
 
   std::vector<double> k_, u_, rate_, slope_, right_, raw_;
   int stride_;
@@ -301,12 +298,6 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     h = std::isfinite(error) ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / control_.order), 0.1, 0.9) : 0.2 * h_;
     refuse_shorter_than_rounding(h);
   }
-}
-
-void Rodas5p::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
-    throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
-                           " s: the motion becomes singular there, or the tolerance is too small");
 }
 
 } // namespace

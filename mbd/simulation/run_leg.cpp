@@ -381,18 +381,10 @@ void RunLeg::keep_growth(double t, bool is_last) {
   kept.resize(count);
 }
 
-// Returns false at the end.
-bool RunLeg::begin_advance() {
-  if (is_over()) return false;
-  integrator_->begin_step(dynamics_, next_limit());
-  return true;
-}
-
-// Returns true once the step is made. Throws NumericalFailure.
-bool RunLeg::conclude_try() {
-  bool is_made = false;
+// Makes a step. Returns false if it is withdrawn. Throws NumericalFailure.
+bool RunLeg::try_advance() {
   try {
-    is_made = integrator_->conclude_try(dynamics_);
+    integrator_->step(dynamics_, next_limit());
   } catch (const JointsNearSingular&) { // in absolute coordinates rounding errors differ, so the step may succeed
     state_ = current_state();
     options_.coordinates = Coordinates::absolute;
@@ -400,13 +392,12 @@ bool RunLeg::conclude_try() {
     restart();
     return true;
   }
-  return is_made && pass_step();
+  return pass_step();
 }
 
 bool RunLeg::advance() {
-  if (!begin_advance()) return false;
-  do integrator_->make_try(dynamics_);
-  while (!conclude_try());
+  if (is_over()) return false;
+  while (!try_advance()) continue;
   return !is_over() && !is_interrupted_;
 }
 
@@ -434,17 +425,10 @@ bool RunLeg::pass_step() {
   }
   check_finite();
   const double share = integrator_->is_adaptive() ? integrator_->turns_kept(dynamics_) : 1.0;
-  if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (formula_search_ && ends_at_peak())) {
-    integrator_->begin_step(dynamics_, limit);
-    return false;
-  }
+  if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (formula_search_ && ends_at_peak())) return false;
   const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
-  const bool is_withdrawn =
-      finder_.is_step_withdrawn() || !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data());
-  if (is_withdrawn) {
-    integrator_->begin_step(dynamics_, limit);
+  if (finder_.is_step_withdrawn() || !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data()))
     return false;
-  }
   if (is_event) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
     const bool is_ended = are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta());

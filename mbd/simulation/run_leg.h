@@ -72,8 +72,7 @@ private:
   void finish_extremes();
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
-  [[nodiscard]] bool begin_advance();
-  [[nodiscard]] bool conclude_try();
+  [[nodiscard]] bool try_advance();
   void restart(bool is_evaluated = false);
   void end_run();
   void update_extremes(long evaluations, bool is_last);
