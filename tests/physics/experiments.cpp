@@ -157,6 +157,39 @@ std::vector<Compared> cylinders_on_rail() {
   return all;
 }
 
+std::vector<Compared> friction_damper() {
+  const Data data("friction_damper");
+  std::vector<Compared> all;
+  for (const int number : {1, 2, 3}) {
+    const auto cycles = [&](const std::string& column, double frequency, double nominal) {
+      return data.values(column, [&](std::size_t row) {
+        return data.value(row, "set") == number && data.value(row, "frequency") == frequency && data.value(row, "nominal") == nominal;
+      });
+    };
+    // Of a cycle with friction F and slack d, E = 4 F (A - d/2) becomes heat: a straight line over the amplitude.
+    const double small = mean(cycles("amplitude", 0.25, 0.0127)), large = mean(cycles("amplitude", 0.25, 0.0254));
+    const double energy = mean(cycles("energy", 0.25, 0.0127));
+    const double friction = (mean(cycles("energy", 0.25, 0.0254)) - energy) / (4.0 * (large - small));
+    const double slack = 2.0 * (small - energy / (4.0 * friction));
+    for (const double frequency : {0.25, 0.5, 1.0, 2.0})
+      for (const double nominal : {0.0127, 0.0254, 0.0381}) {
+        const std::vector<double> energies = cycles("energy", frequency, nominal);
+        if (energies.empty()) continue;
+        const Run run = run_of("friction_damper", {set("element.band friction.holds", friction), set("element.connection.gap", slack),
+                                                   set("signal.way.amplitude", mean(cycles("amplitude", frequency, nominal))),
+                                                   set("signal.way.frequency", frequency), set("simulation.end", 2.0 / frequency),
+                                                   set("output.step", 1.0 / frequency), "output.also=[\"actuator drive.work\"]"});
+        const std::vector<double> work = run.result.trajectory->series("actuator drive.work"); // after each cycle
+        Compared c = compared("friction_damper", "energy of a cycle at " + number_text(frequency) + " Hz", nominal, energies,
+                              work.back() - work.end()[-2]);
+        c.number = number;
+        c.is_fitted = frequency == 0.25 && nominal < 0.03;
+        all.push_back(c);
+      }
+  }
+  return all;
+}
+
 std::vector<Compared> air_track(bool is_ideal) {
   const Data data("air_track");
   std::vector<double> masses = data.table.columns[data.table.column("hanging mass", {})];

@@ -11,8 +11,8 @@ namespace steplap::testing {
 struct Compared {
   std::string experiment; ///< name of the data file
   std::string what;       ///< which quantity, in words
-  double setting = 0.0;   ///< height, mass or aspect ratio: what was changed from case to case
-  int number = 0;         ///< of the bounce; 0 where there is none
+  double setting = 0.0;   ///< height, mass, amplitude or aspect ratio: what was changed from case to case
+  int number = 0;         ///< of the bounce or set; 0 where there is none
   int count = 0;          ///< measurements behind `measured`
   double measured = 0.0;  ///< their mean
   double scatter = 0.0;   ///< their standard deviation; without repetition half of the last digit written
@@ -30,6 +30,8 @@ struct Compared {
 [[nodiscard]] std::vector<Compared> balls_on_rail();
 /// Times of three cylinders that slide on it, s: friction from the first twenty runs of each, the last twenty predicted.
 [[nodiscard]] std::vector<Compared> cylinders_on_rail();
+/// Energies of cycles of a friction damper with slack, J; friction and slack of each set (`number`) from two amplitudes at 0.25 Hz.
+[[nodiscard]] std::vector<Compared> friction_damper();
 /// Times of a trolley on an air track, s. `is_ideal`: from masses and way alone; else with the fitted offset and drag.
 [[nodiscard]] std::vector<Compared> air_track(bool is_ideal);
 /// Changes of speed of two cars, m/s, with a coefficient of restitution.

@@ -193,3 +193,28 @@ TEST_CASE("a corner that rebounds: slender blocks still lose what Housner says, 
   CHECK(spread(5.0) < 0.002);
   CHECK(spread(2.0) > 0.3);
 }
+
+// Coulomb friction that does not know the speed, and slack. Two amplitudes at 0.25 Hz give both values of a set; the third amplitude, and
+// up to four times the speed, follow within 14 %, where cycles of a test differ by 1 to 2 %. At eight times the speed the prediction is 8 to
+// 23 % too large: friction falls with speed, which the law leaves out.
+TEST_CASE("a friction damper's energy per cycle is met within 14 % up to four times the speed, and missed at eight times") {
+  int slow = 0, fast = 0;
+  for (const Compared& c : friction_damper()) {
+    CAPTURE(c.number);
+    CAPTURE(c.what);
+    CAPTURE(c.setting);
+    const double miss = c.miss() / c.measured;
+    if (c.is_fitted) {
+      CHECK(std::abs(miss) < 0.003); // the connection gives by up to 0.02 mm, which the fit leaves out
+    } else if (c.what.find(" 2 Hz") == std::string::npos) {
+      CHECK(std::abs(miss) < 0.14);
+      ++slow;
+    } else {
+      CHECK(miss > 0.05);
+      CHECK(miss < 0.25);
+      ++fast;
+    }
+  }
+  CHECK(slow == 21);
+  CHECK(fast == 3);
+}

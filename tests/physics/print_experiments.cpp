@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     print(balls_on_rail());
     print(cylinders_on_rail());
   }
+  if (wants("friction_damper")) print(friction_damper());
   if (wants("air_track")) {
     print(air_track(true));
     print(air_track(false));
