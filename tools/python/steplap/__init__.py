@@ -11,6 +11,7 @@ from collections import abc
 from typing import TYPE_CHECKING, Any
 
 from . import _frames, _pickling, _steplap
+from ._commands import Assessment, LoadCases, Result, Study, assess, cases, command, study
 from ._errors import Error, FileError, MissingFileError, ModelError, NumericalFailure
 from ._frames import Picture
 from ._steplap import Criterion, Diagnostic, Event, Finding, Joint, Mode, Model, Run, __version__
@@ -19,9 +20,9 @@ from ._toml import toml_file as _toml_file
 if TYPE_CHECKING:
     from ._steplap import _Path, _Values
 
-__all__ = ["Criterion", "Diagnostic", "Error", "Event", "FileError", "Finding", "Joint", "MissingFileError",
-           "Mode", "Model", "ModelError", "NumericalFailure", "Picture", "Run", "__version__", "build",
-           "load", "loads"]
+__all__ = ["Assessment", "Criterion", "Diagnostic", "Error", "Event", "FileError", "Finding", "Joint", "LoadCases", "MissingFileError",
+           "Mode", "Model", "ModelError", "NumericalFailure", "Picture", "Result", "Run", "Study", "__version__", "assess", "build", "cases",
+           "command", "load", "loads", "study"]
 
 
 def load(path: "_Path", values: "_Values" = None) -> Model:
