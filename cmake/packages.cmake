@@ -63,6 +63,7 @@ programs that make, run and judge models as steplap does, to the same bits.")
 if(TARGET steplap_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/debian/python/postinst;${PROJECT_SOURCE_DIR}/cmake/debian/python/prerm")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "steplap, python3-pandas, python3-matplotlib") # studies, frames, plots
   steplap_package(python python3-steplap python "${STEPLAP_PYTHON_VERSIONS}, python3-numpy, libudunits2-data"
   "planar multibody dynamics with honest friction: module of Python"
 "Models, runs and verdicts of steplap from Python: trajectories as arrays of

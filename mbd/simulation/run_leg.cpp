@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/base/stop.h"
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/model/method.h"
 #include "mbd/simulation/arguments.h"
@@ -416,7 +417,10 @@ bool RunLeg::ends_at_peak() {
 bool RunLeg::pass_step() {
   const double limit = next_limit();
   constexpr long k_now_and_then = 64; // number of steps after which progress is reported even if no sample is due
-  if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
+  if (integrator_->steps() % k_now_and_then == 0) {
+    if (options_.progress) options_.progress(state_.t);
+    stop_if_asked("in a simulation"); // of an estimate or a second method, which report no progress
+  }
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
   if (integrator_->stepped_state()) {

@@ -8,6 +8,7 @@ import base64
 import hashlib
 import os
 import pathlib
+import platform
 import re
 import subprocess
 import sys
@@ -27,9 +28,14 @@ def version():
     return found[1]
 
 
+def system():
+    """The system whose shared libraries the module loads: "Debian GNU/Linux 12 (bookworm), x86_64"."""
+    return f"{platform.freedesktop_os_release()['PRETTY_NAME']}, {platform.machine()}"
+
+
 def metadata():
     head = {"Metadata-Version": "2.1", "Name": "steplap", "Version": version(), "Summary": "Planar multibody dynamics with honest friction",
-            "License": "MIT", "Requires-Python": ">=3.9", "Requires-Dist": "numpy", "Description-Content-Type": "text/markdown"}
+            "License": "MIT", "Platform": system(), "Requires-Python": ">=3.11", "Requires-Dist": "numpy", "Description-Content-Type": "text/markdown"}
     return "".join(f"{key}: {value}\n" for key, value in head.items()) + "\n" + (ROOT / "README.md").read_text(encoding="utf-8")
 
 

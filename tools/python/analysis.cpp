@@ -23,13 +23,14 @@ struct PyMode {
 std::vector<PyMode> modes(const PyModel& model, int count, std::optional<double> near) {
   if (count < 0) throw py::value_error("count: 0 for all, or how many");
   if (near && !(*near > 0.0)) throw py::value_error("near: a frequency above zero, Hz");
-  const py::gil_scoped_release unlocked;
-  State state = equilibrium_of(*model.loaded).state;
-  std::fill(state.v.begin(), state.v.end(), 0.0);
-  std::vector<PyMode> all;
-  for (VibrationMode& mode : vibration_modes(*model.loaded->system, state, {count, near}).modes)
-    all.push_back({std::move(mode), model.loaded});
-  return all;
+  return computed([&](const StopQuestion&) {
+    State state = equilibrium_of(*model.loaded).state;
+    std::fill(state.v.begin(), state.v.end(), 0.0);
+    std::vector<PyMode> all;
+    for (VibrationMode& mode : vibration_modes(*model.loaded->system, state, {count, near}).modes)
+      all.push_back({std::move(mode), model.loaded});
+    return all;
+  });
 }
 
 py::dict shape(const PyMode& m) {
@@ -79,7 +80,7 @@ py::dict required(const PyJoint& j, double fx, double fy, double m) {
 } // namespace
 
 void add_analysis(py::module_& module) {
-  py::class_<PyMode>(module, "Mode", "One mode of small vibrations about equilibrium.")
+  native_class<PyMode>(module, "Mode", "One mode of small vibrations about equilibrium.")
       .def_property_readonly(
           "frequency", [](const PyMode& m) { return m.mode.frequency(); }, "Hz, of the damped vibration; 0 if it does not oscillate")
       .def_property_readonly(
@@ -98,8 +99,9 @@ void add_analysis(py::module_& module) {
                        "Modes of small vibrations about equilibrium, the slowest first. `count`: so many, 0 all (of large models 20); "
                        "`near`: those nearest to this frequency, Hz. Raises "
                        "NumericalFailure where it does not rest.");
-  py::class_<PyJoint>(module, "Joint",
-                      "A step-lap joint in the reference pose. Wrenches are about the limb's centre of gravity, in the active part's axes.")
+  native_class<PyJoint>(
+      module, "Joint",
+      "A step-lap joint in the reference pose. Wrenches are about the limb's centre of gravity, in the active part's axes.")
       .def_property_readonly("name", [](const PyJoint& j) { return j.view.joint->name; })
       .def_property_readonly("limb", [](const PyJoint& j) { return j.view.joint->limb; })
       .def_property_readonly("active_part", [](const PyJoint& j) { return j.view.joint->active_part; })

@@ -2,16 +2,25 @@
 #pragma once
 
 #include "mbd/run/report.h"
+#include "mbd/run/result_files.h"
+#include "tools/python/computation.h"
 
 #include <pybind11/pybind11.h>
 
+#include <array>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap::python {
 
-namespace py = pybind11;
+/// Class of Python for a C++ type, of the ordinary metaclass: classes have no static properties, which need another one.
+template <class T> py::class_<T> native_class(py::module_& module, const char* name, const char* doc) {
+  return py::class_<T>(module, name, doc, py::metaclass(reinterpret_cast<PyObject*>(&PyType_Type)));
+}
 
 /// A model object in Python.
 struct PyModel {
@@ -22,30 +31,38 @@ struct PyModel {
 /// Returns the model as given, for setting values in it.
 [[nodiscard]] Model given_model(const PyModel& model);
 
-/// A run with its report. NumPy arrays refer to `columns` and keep it alive.
+/// What happened at one instant, as Python shows it.
+struct PyEvent {
+  double t = 0.0; ///< s
+  std::string element, words;
+};
+
+/// Extremes of a channel with their errors, in the order of k_extremes; empty: unknown.
+using PyExtremes = std::array<std::optional<double>, 8>;
+/// Names of the values in PyExtremes.
+inline constexpr std::array<const char*, 8> k_extremes{"low", "t_low", "high", "t_high", "first", "final", "low_error", "high_error"};
+
+/// A run as Python shows it. NumPy arrays refer to `columns` and keep it alive.
 struct PyRun {
-  std::shared_ptr<const Report> report;
+  std::string path, name; ///< of the model
+  std::string verdict, distrust;
+  std::vector<std::string> caps;
+  std::vector<CriterionResult> criteria;
+  std::vector<Finding> findings;
+  double energy_residual = 0.0;
+  std::vector<PyEvent> events;
+  std::optional<std::string> failure;
+  std::vector<std::pair<std::string, PyExtremes>> extremes; ///< by channel
   std::shared_ptr<const Columns> columns;
+  std::function<std::string()> json;              ///< makes the text of summary.json
+  std::function<std::vector<ResultFile>()> files; ///< makes all files of the run; they refer to this run
 };
 
-/// Checks at most twenty times a second whether Ctrl-C was pressed in Python, for RunOptions::stop. Called without the interpreter lock
-/// (GIL).
-class Interruption {
-public:
-  /// Returns the text for RunOptions::stop; "" lets the run continue.
-  [[nodiscard]] std::string ask();
-  /// Raises KeyboardInterrupt, or the exception of a signal handler, if one occurred. Must be called with the GIL held.
-  void raise_if_any();
-
-private:
-  double asked_ = 0.0; ///< time of the last check on a steady clock, s
-  std::shared_ptr<py::error_already_set> raised_;
-};
-
-/// Returns "path=value" for a Python value: numbers with all digits, quoted texts, lists. Throws TypeError for other types.
-[[nodiscard]] std::string override_text(const std::string& path, const py::handle& value);
-/// Converts a dictionary of values, or a list of "path=value".
+/// Returns "path=value" for a dictionary of values, or a list of such texts as it is. Throws TypeError.
 [[nodiscard]] std::vector<std::string> overrides_of(const py::object& given);
+
+/// Returns what `estimate` of Python means. Throws ValueError.
+[[nodiscard]] Estimating estimating_named(const std::string& name);
 
 void add_analysis(py::module_& module);
 void add_errors(py::module_& module);

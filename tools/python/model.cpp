@@ -6,54 +6,33 @@
 #include "transformer/program.h"
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
-#include <chrono>
+#include <filesystem>
 
 namespace steplap::python {
 
 namespace {
-
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
-std::string value_text(const std::string& path, const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::isinstance<py::str>(value)) return quoted(value.cast<std::string>());
-  if (py::hasattr(value, "tolist")) return value_text(path, value.attr("tolist")()); // NumPy numbers and arrays
-  if (py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value)) return py::repr(value).cast<std::string>();
-  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
-    std::string text;
-    for (const py::handle item : value) text += (text.empty() ? "[" : ", ") + value_text(path, item);
-    return text.empty() ? "[]" : text + "]";
-  }
-  throw py::type_error("'" + path + "' takes a number, a text such as \"12 mm\", true or false, or a list of these");
-}
 
 PyModel with_overrides(const PyModel& model, const py::object& values) {
   std::vector<std::string> all = model.loaded->overrides;
   const std::vector<std::string> more = overrides_of(values);
   all.insert(all.end(), more.begin(), more.end());
   const std::string path = model.loaded->path;
-  const py::gil_scoped_release unlocked;
-  if (model.source) return {load_model_text(*model.source, path, all), model.source};
-  return {load_model(path, all)};
+  return computed([&](const StopQuestion&) -> PyModel {
+    if (model.source) return {load_model_text(*model.source, path, all), model.source};
+    return {load_model(path, all)};
+  });
+}
+
+PyModel from_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  return computed([&](const StopQuestion&) {
+    return PyModel{load_model_text(text, path, overrides), std::make_shared<const std::string>(text)};
+  });
 }
 
 py::dict equilibrium(const PyModel& model) {
-  Equilibrium found;
-  {
-    const py::gil_scoped_release unlocked;
-    found = equilibrium_of(*model.loaded);
-  }
+  const Equilibrium found = computed([&](const StopQuestion&) { return equilibrium_of(*model.loaded); });
   py::dict poses;
   const System& system = *model.loaded->system;
   for (std::size_t i = 1; i < system.bodies.size(); ++i)
@@ -63,22 +42,6 @@ py::dict equilibrium(const PyModel& model) {
 
 } // namespace
 
-std::string Interruption::ask() {
-  constexpr double k_between = 0.05; // s; too short to be noticed by a user, and long compared with the cost of a check
-  const double now = seconds();
-  if (now - asked_ < k_between) return "";
-  asked_ = now;
-  const py::gil_scoped_acquire locked;
-  if (!raised_ && PyErr_CheckSignals() != 0) raised_ = std::make_shared<py::error_already_set>();
-  return raised_ ? "interrupted" : "";
-}
-
-void Interruption::raise_if_any() {
-  if (raised_) throw py::error_already_set(*raised_);
-}
-
-std::string override_text(const std::string& path, const py::handle& value) { return path + "=" + value_text(path, value); }
-
 Model given_model(const PyModel& model) {
   const LoadedModel& loaded = *model.loaded;
   return model.source ? parse_given_model(*model.source, loaded.path, program_catalogue(), loaded.overrides)
@@ -86,15 +49,11 @@ Model given_model(const PyModel& model) {
 }
 
 std::vector<std::string> overrides_of(const py::object& given) {
-  std::vector<std::string> texts;
-  if (given.is_none()) return texts;
-  if (!py::isinstance<py::dict>(given)) return given.cast<std::vector<std::string>>();
-  for (const auto& [path, value] : given.cast<py::dict>()) texts.push_back(override_text(path.cast<std::string>(), value));
-  return texts;
+  return py::module_::import("steplap._toml").attr("overrides")(given).cast<std::vector<std::string>>();
 }
 
 void add_model(py::module_& module) {
-  py::class_<PyModel>(module, "Model", "A model that has been read and checked. It does not change; `with_values` makes another one.")
+  native_class<PyModel>(module, "Model", "A model that has been read and checked. It does not change; `with_values` makes another one.")
       .def_property_readonly(
           "path", [](const PyModel& m) { return m.loaded->path; }, "of its file, as given")
       .def_property_readonly("title", [](const PyModel& m) { return m.loaded->model.header.title; })
@@ -125,27 +84,29 @@ void add_model(py::module_& module) {
            "The same model with other values: {'element.rope.stiffness': '2 MN/m', 'simulation.end': 0.5}. Raises ModelError.")
       .def("equilibrium", equilibrium,
            "Where it rests: body -> (x, y, theta) of the centre of gravity, m and rad. Raises NumericalFailure if it does not.")
+      // A model is its text and its overrides: laid over that text again, they change nothing.
+      .def(py::pickle(
+          [](const PyModel& m) { return py::make_tuple(m.source ? *m.source : m.loaded->text, m.loaded->path, m.loaded->overrides); },
+          [](const py::tuple& state) {
+            return from_text(state[0].cast<std::string>(), state[1].cast<std::string>(), state[2].cast<std::vector<std::string>>());
+          }))
       .def("__repr__", [](const PyModel& m) { return "<steplap.Model " + m.loaded->path + ">"; });
   module.def(
       "load",
-      [](const std::string& path, const py::object& values) {
+      [](const std::filesystem::path& path, const py::object& values) {
         const std::vector<std::string> overrides = overrides_of(values);
-        const py::gil_scoped_release unlocked;
-        return PyModel{load_model(path, overrides)};
+        return computed([&](const StopQuestion&) { return PyModel{load_model(path.string(), overrides)}; });
       },
       py::arg("path"), py::arg("values") = py::none(),
-      "Reads a model file. `values`: laid over it, by path. Raises ModelError with all that is wrong, FileError.");
+      "Reads a model file. `values`: laid over it, by path. Raises ModelError with all that is wrong, MissingFileError, FileError.");
   module.def(
       "loads",
-      [](const std::string& text, const py::object& values, const std::string& path) {
-        const std::vector<std::string> overrides = overrides_of(values);
-        const py::gil_scoped_release unlocked;
-        return PyModel{load_model_text(text, path, overrides), std::make_shared<const std::string>(text)};
+      [](const std::string& text, const py::object& values, const std::filesystem::path& path) {
+        return from_text(text, path.string(), overrides_of(values));
       },
       py::arg("text"), py::arg("values") = py::none(), py::arg("path") = "model.toml",
       "Reads a model from a text. `path`: what messages call it, what paths in it are relative to and what its results are named after; "
-      "nothing is read from there. "
-      "Raises ModelError.");
+      "nothing is read from there. Raises ModelError.");
 }
 
 } // namespace steplap::python

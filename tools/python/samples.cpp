@@ -41,16 +41,22 @@ Response response_of(const std::pair<std::string, std::string>& given, const Sys
   throw py::value_error("of '" + channel + "': 'low', 'high', 'first' or 'final', not '" + which + "'");
 }
 
-double value_in(const Report& report, const Response& response) {
+// A value with its estimated error; NaN: unknown.
+struct Answer {
+  double value = k_none, error = k_none;
+};
+
+Answer answer_of(const Report& report, const Response& response) {
   const ChannelRange* const range = report.find(response.channel);
-  if (!range) return k_none;
+  if (!range) return {};
+  const auto error = [&](double ChannelError::*which) { return report.error_of(*range, which).value_or(k_none); };
   switch (response.which) {
-  case Response::ResponseValue::low: return range->low.value;
-  case Response::ResponseValue::high: return range->high.value;
-  case Response::ResponseValue::first: return range->first;
-  case Response::ResponseValue::final: return range->final;
+  case Response::ResponseValue::low: return {range->low.value, error(&ChannelError::low)};
+  case Response::ResponseValue::high: return {range->high.value, error(&ChannelError::high)};
+  case Response::ResponseValue::first: return {range->first, k_none};
+  case Response::ResponseValue::final: return {range->final, error(&ChannelError::final)};
   }
-  return k_none;
+  return {};
 }
 
 // Runs samples that no other thread has taken, with its own copy of the model.
@@ -61,7 +67,8 @@ struct Crew {
   const std::vector<Response>& responses;
   const double* values;
   std::size_t count;
-  double* results;
+  Estimating estimating;
+  double* results; ///< a row a sample: values, then their errors
   std::vector<std::string>& verdicts;
   std::vector<std::string>& troubles;
   std::atomic<std::size_t> next{0}, done{0};
@@ -76,18 +83,23 @@ struct Crew {
   }
 
   void run(Variants& variants, std::size_t i) {
-    double* const row = results + i * responses.size();
-    std::fill(row, row + responses.size(), k_none);
+    const std::size_t width = responses.size();
+    double* const row = results + 2 * i * width;
+    std::fill(row, row + 2 * width, k_none);
     try {
       RunOptions options;
-      options.estimating = Estimating::never;
+      options.estimating = estimating;
       options.stop = [this] { return is_stopped ? std::string("interrupted") : std::string(); };
       std::shared_ptr<const System> system = variants.make(std::vector<double>(values + i * paths.size(), values + (i + 1) * paths.size()));
       const Report report = judged_run(load_completed(variants.model(), std::move(system), path), options);
       verdicts[i] = name_of(report.judgement.verdict);
       troubles[i] = report.run.failure ? report.run.failure->text : report.judgement.distrust;
       if (!report.run.failure)
-        for (std::size_t k = 0; k < responses.size(); ++k) row[k] = value_in(report, responses[k]);
+        for (std::size_t k = 0; k < width; ++k) {
+          const Answer answer = answer_of(report, responses[k]);
+          row[k] = answer.value;
+          row[width + k] = answer.error;
+        }
     } catch (const std::exception& error) { // the values are invalid, or there is no initial state
       verdicts[i] = name_of(Verdict::open);
       troubles[i] = error.what();
@@ -98,45 +110,40 @@ struct Crew {
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 py::tuple samples(const PyModel& model, const std::vector<std::string>& paths, const Numbers& values,
-                  const std::vector<std::pair<std::string, std::string>>& wanted, int threads) {
+                  const std::vector<std::pair<std::string, std::string>>& wanted, int threads, const std::string& estimate) {
   if (values.ndim() != 2 || values.shape(1) != static_cast<py::ssize_t>(paths.size()))
     throw py::value_error("values: an array of shape (samples, " + std::to_string(paths.size()) + "), a column a path");
   std::vector<Response> responses;
   for (const auto& one : wanted) responses.push_back(response_of(one, *model.loaded->system));
   const auto count = static_cast<std::size_t>(values.shape(0));
-  Numbers results({count, responses.size()});
+  Numbers results({count, 2 * responses.size()});
   std::vector<std::string> verdicts(count), troubles(count);
   const Model given = given_model(model);
   for (const std::string& path : paths) static_cast<void>(number_of(given, path)); // checks the paths before threads start
-  Crew crew{given, model.loaded->path, paths, responses, values.data(), count, results.mutable_data(), verdicts, troubles};
+  Crew crew{
+      given,   model.loaded->path, paths, responses, values.data(), count, estimating_named(estimate), results.mutable_data(), verdicts,
+      troubles};
   if (threads > k_most_threads) throw std::invalid_argument("'threads' may be at most " + std::to_string(k_most_threads));
-  Interruption interruption;
-  {
-    const py::gil_scoped_release unlocked;
+  computed([&](const StopQuestion& stop) {
     const auto most = std::max(1U, threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency());
-    std::vector<std::thread> team;
+    std::vector<std::jthread> team;
     for (std::size_t k = 0; k < std::min<std::size_t>(most, count); ++k) team.emplace_back([&crew] { crew.work(); });
     while (crew.done < count && !crew.is_stopped) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      if (!interruption.ask().empty()) crew.is_stopped = true;
+      if (!stop().empty()) crew.is_stopped = true;
     }
-    for (std::thread& thread : team) thread.join();
-  }
-  interruption.raise_if_any();
+    return true;
+  });
   return py::make_tuple(results, verdicts, troubles);
 }
 
 } // namespace
 
 void add_samples(py::module_& module) {
-  module.attr("Model").attr("samples") = py::cpp_function(
-      samples, py::name("samples"), py::is_method(module.attr("Model")), py::arg("paths"), py::arg("values"), py::arg("responses"),
-      py::arg("threads") = 0,
-      "Runs the model with many values side by side. `paths`: what varies; `values`: shape (samples, paths), SI; `responses`: (channel, "
-      "'low' | 'high' | 'first' | "
-      "'final'). Returns the responses, shape (samples, responses), not-a-number where a run did not reach its end; the verdict of each "
-      "run, without estimated errors; "
-      "and what is wrong with it, '' if nothing is. The numbers do not hang on `threads` (0: all processors). Ctrl-C ends it.");
+  module.def(
+      "_samples", samples, py::arg("model"), py::arg("paths"), py::arg("values"), py::arg("responses"), py::arg("threads"),
+      py::arg("estimate"),
+      "Runs the model once a row of `values`. Returns a row of responses, followed by their errors, for each; verdicts and troubles.");
 }
 
 } // namespace steplap::python

@@ -75,24 +75,32 @@ def test_errors_have_fields(tmp_path):
 def test_samples_are_single_runs_whatever_the_threads():
     model = steplap.load(PAPER, SHORT)
     path, channel = "element.front block.preload", "active part.x"
-    base = model.value(path)
-    values = base * np.linspace(0.9, 1.1, 6).reshape(-1, 1)
-    one, verdicts, troubles = model.samples([path], values, [(channel, "high"), (channel, "final")], threads=1)
-    two, verdicts_two, _ = model.samples([path], values, [(channel, "high"), (channel, "final")], threads=3)
-    assert np.array_equal(one, two) and verdicts == verdicts_two and troubles == [""] * 6
-    for row, value in zip(one, values[:, 0]):
-        run = model.with_values({path: value}).run(estimate="never")
-        assert row[0] == run.extremes(channel)["high"] and row[1] == run.extremes(channel)["final"]
+    values = {path: model.value(path) * np.linspace(0.9, 1.1, 6), "gravity.1": -9.81}
+    wanted = [(channel, "high"), (channel, "final"), (channel, "first")]
+    one, two = (model.samples(values, wanted, threads=threads) for threads in (1, 3))
+    assert one.equals(two) and list(one["trouble"]) == [""] * 6
+    assert list(one.columns) == [path, "gravity.1", f"{channel} high", f"error of {channel} high", f"{channel} final", f"error of {channel} final",
+                                 f"{channel} first", f"error of {channel} first", "verdict", "trouble"]
+    assert one.attrs["units"][path] == "N" and one.attrs["units"][f"error of {channel} high"] == "m"
+    for _, row in one.iterrows():
+        run = model.with_values({path: row[path]}).run()
+        extremes = run.extremes(channel)
+        assert row[f"{channel} high"] == extremes["high"] and row[f"{channel} final"] == extremes["final"] and row["verdict"] == run.verdict
+        assert row[f"error of {channel} high"] == extremes["high_error"]
+    assert model.samples(values, wanted, estimate="never")[f"error of {channel} high"].isna().all()
 
 
 def test_what_a_sample_cannot_be_is_said_and_has_no_number():
     model = steplap.load(PAPER, SHORT)
-    values, verdicts, troubles = model.samples(["element.front block.stiffness"], [[-1.0]], [("active part.x", "high")])
-    assert np.isnan(values[0, 0]) and verdicts == ["open"] and "stiffness" in troubles[0]
+    (row,) = model.samples({"element.front block.stiffness": -1.0}, [("active part.x", "high")]).to_dict("records")
+    assert np.isnan(row["active part.x high"]) and row["verdict"] == "open" and "stiffness" in row["trouble"]
     with pytest.raises(steplap.ModelError):
-        model.samples(["element.nobody.stiffness"], [[1.0]], [("active part.x", "high")])
+        model.samples({"element.nobody.stiffness": 1.0}, [("active part.x", "high")])
     with pytest.raises(ValueError):
-        model.samples(["element.front block.stiffness"], [[1.0, 2.0]], [("active part.x", "high")])
+        model.samples({"element.front block.stiffness": np.ones((2, 2))}, [("active part.x", "high")])
+    for threads in (100000, 10**12):
+        with pytest.raises((ValueError, TypeError), match="threads"):
+            model.samples({"gravity.1": -9.81}, [("active part.x", "high")], threads=threads)
 
 
 def test_other_threads_go_on_and_ctrl_c_ends_a_run():
@@ -150,8 +158,8 @@ def test_a_model_from_a_text_is_that_of_its_file(tmp_path):
         assert (tmp_path / "file" / file).read_bytes() == (tmp_path / "text" / file).read_bytes(), file
     changed = {"simulation.end": 0.01}
     assert by_text.with_values(changed).text == by_file.with_values(changed).text
-    values, verdicts, troubles = by_text.with_values(changed).samples(["gravity.1"], [[-9.81]], [("ladder.y", "final")])
-    assert troubles == [""] and values[0, 0] == by_file.with_values(changed).run(estimate="never").extremes("ladder.y")["final"]
+    (row,) = by_text.with_values(changed).samples({"gravity.1": -9.81}, [("ladder.y", "final")]).to_dict("records")
+    assert row["trouble"] == "" and row["ladder.y final"] == by_file.with_values(changed).run(estimate="never").extremes("ladder.y")["final"]
     with pytest.raises(steplap.ModelError) as caught:
         steplap.loads('[[body]]\nname = "a"\nmass = -1\ninertia = 1\n', path="made.toml")
     assert [(d.file, d.line, d.column) for d in caught.value.diagnostics] == [("made.toml", 3, 8)]
@@ -212,6 +220,8 @@ def test_the_page_about_python_says_what_is_true(tmp_path, monkeypatch):
     page = (MODELS.parent / "docs/how-to/use_from_python.md").read_text()
     blocks = [part.split("```")[0] for part in page.split("```python\n")[1:]]
     assert len(blocks) >= 4
+    matplotlib = pytest.importorskip("matplotlib", reason="python3-matplotlib is not installed")
+    matplotlib.use("Agg")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "models").symlink_to(MODELS.resolve())
     names = {}

@@ -47,3 +47,16 @@ def test_the_drawing_is_that_of_the_files(tmp_path):
     model.run(estimate="never").write(str(tmp_path / "run"))
     assert model.drawing == json.loads((tmp_path / "run/drawing.json").read_text())
     assert {"bodies", "elements", "sheets"} <= set(model.drawing)
+
+
+def test_a_run_shows_the_machine_and_its_clock_without_other_files():
+    run = steplap.load(str(MODELS / "paper/interference.toml"), {"simulation.end": 0.05}).run(estimate="never")
+    picture = run.show(height=500)
+    # The page without all but the picture and the timeline; nothing is loaded from anywhere.
+    assert picture.html.replace("<style>header, footer, #verdict, #near, #plots, #results, #sheets, #more { display: none }</style>", "") == run.page()
+    for part in ("machine", "timeline", "verdict", "near", "plots", "results", "sheets", "more"):
+        assert f'id="{part}"' in run.page(), part
+    assert "default-src 'none'" in picture.html
+    shown = picture._repr_html_()
+    assert shown.startswith("<iframe") and "height:500px" in shown and "<script" not in shown  # escaped inside of srcdoc
+    assert run._repr_html_() == steplap.Picture(run.page(), 900)._repr_html_()

@@ -44,7 +44,7 @@ def test_installed_used_and_removed(environment):
     assert said.returncode == 0, said.stderr
     assert said.stdout.startswith(str(environment)) and said.stdout.split()[-1] in ("hold", "open", "inspect", "reject")
     shown = pip(environment, "show", "-f", "steplap").stdout
-    for file in ("steplap/__init__.pyi", "steplap/py.typed", "steplap/_steplap.", "LICENSE", "THIRD_PARTY.md"):
+    for file in ("steplap/_steplap.pyi", "steplap/py.typed", "steplap/_steplap.", "LICENSE", "THIRD_PARTY.md"):
         assert file in shown, shown
     assert re.search(r"^Requires: numpy$", shown, re.M)
     assert pip(environment, "uninstall", "-y", "steplap").returncode == 0
@@ -63,7 +63,20 @@ def test_the_wheel_is_the_same_each_time(environment):
         assert wheel.testzip() is None
         version = names[0].name.split("-")[1]
         assert f"Version: {version}\n" in wheel.read(f"steplap-{version}.dist-info/METADATA").decode()
-        assert {"steplap/__init__.py", "steplap/__init__.pyi", "steplap/py.typed"} < set(wheel.namelist())
+        assert {"steplap/__init__.py", "steplap/_steplap.pyi", "steplap/py.typed"} < set(wheel.namelist())
+
+
+@needs_pip
+def test_a_wheel_is_installed_from_its_folder(environment):
+    built = pip(environment, "wheel", "--no-index", "--no-deps", "-w", str(environment / "wheels"), str(ROOT), "--config-settings", f"build-dir={BUILD}")
+    assert built.returncode == 0, built.stdout + built.stderr
+    done = pip(environment, "install", "--no-index", "--find-links", str(environment / "wheels"), "steplap")
+    assert done.returncode == 0, done.stdout + done.stderr
+    clean = {key: value for key, value in os.environ.items() if not key.startswith("PYTHONPATH")}
+    said = subprocess.run([str(environment / "bin/python"), "-c", f"import steplap; print(steplap.cases('{ROOT}/models/cases/lorry.toml').verdict)"],
+                          capture_output=True, text=True, env=clean, cwd=environment)
+    assert said.stdout == "hold\n", said.stderr
+    assert pip(environment, "uninstall", "-y", "steplap").returncode == 0
 
 
 @needs_pip

@@ -1,32 +1,28 @@
-# What the module offers, for editors and type checkers: held to the module itself by tests/tools/python/test_stubs.py.
-# Docstrings stand in the module; here are types, shapes and units.
-from collections.abc import Mapping, Sequence
+# What the compiled module offers, for editors and type checkers; what is written in Python is annotated there. mypy's stubtest compares
+# it with the module (tests/tools/python/test_stubs.py). Docstrings stand in the module; here are types, shapes and units.
+import os
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from ._frames import Picture
+
 __version__: str
-__all__: list[str]
 
-Values = Mapping[str, Any] | Sequence[str] | None
-"""Values by path, {"body.tank.mass": "47 t"}, or texts "path=value"."""
+_Path = str | os.PathLike[str]
+# _Values by path, {"body.tank.mass": "47 t"}, or texts "path=value".
+_Values = Mapping[str, Any] | Sequence[str] | None
+_Verdict = Literal["hold", "open", "inspect", "reject"]
+_Estimate = Literal["never", "cheap", "always"]
+_Floats = npt.NDArray[np.float64]
 
-Verdict = Literal["hold", "open", "inspect", "reject"]
-Floats = npt.NDArray[np.float64]
-
-class Error(Exception): ...
-
-class ModelError(Error):
-    diagnostics: list[Diagnostic]
-
-class NumericalFailure(Error): ...
-
-class FileError(Error):
-    path: str
-    line: int
+class _Compiled:  # cannot be made in Python
+    def __init__(self, *args: Any, **kwargs: Any) -> None: ...
 
 class Diagnostic:
+    def __init__(self, message: str, file: str = '', line: int = 0, column: int = 0) -> None: ...
     @property
     def file(self) -> str: ...
     @property
@@ -36,7 +32,7 @@ class Diagnostic:
     @property
     def message(self) -> str: ...
 
-class Finding:
+class Finding(_Compiled):
     @property
     def code(self) -> str: ...
     @property
@@ -50,7 +46,7 @@ class Finding:
     @property
     def line(self) -> int: ...
 
-class Criterion:
+class Criterion(_Compiled):
     @property
     def name(self) -> str: ...
     @property
@@ -58,7 +54,7 @@ class Criterion:
     @property
     def reason(self) -> str: ...
     @property
-    def outcome(self) -> Verdict: ...
+    def outcome(self) -> _Verdict: ...
     @property
     def value(self) -> float | None: ...
     @property
@@ -72,7 +68,7 @@ class Criterion:
     @property
     def doubt(self) -> str: ...
 
-class Event:
+class Event(_Compiled):
     @property
     def t(self) -> float: ...
     @property
@@ -80,9 +76,9 @@ class Event:
     @property
     def words(self) -> str: ...
 
-class Run:
+class Run(_Compiled):
     @property
-    def verdict(self) -> Verdict: ...
+    def verdict(self) -> _Verdict: ...
     @property
     def distrust(self) -> str: ...
     @property
@@ -102,22 +98,26 @@ class Run:
     @property
     def units(self) -> list[str]: ...
     @property
-    def values(self) -> Floats: ...  # (rows, names), SI, read only
+    def values(self) -> _Floats: ...  # (rows, names), SI, read only
     @property
-    def t(self) -> Floats: ...  # (rows,), s, read only
+    def t(self) -> _Floats: ...  # (rows,), s, read only
     @property
     def summary(self) -> dict[str, Any]: ...
-    def __getitem__(self, channel: str) -> Floats: ...  # (rows,), SI, read only
+    def __getitem__(self, channel: str) -> _Floats: ...  # (rows,), SI, read only
     def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __contains__(self, channel: str) -> bool: ...
+    def keys(self) -> list[str]: ...
     def extremes(self, channel: str) -> dict[str, float | None]: ...
     def json(self) -> str: ...
-    def write(self, folder: str, overwrite: bool = False) -> None: ...
+    def write(self, folder: _Path, overwrite: bool = False) -> None: ...
     def page(self) -> str: ...
     def to_pandas(self) -> Any: ...
     def plot(self, *channels: str, axes: Any = None) -> Any: ...
+    def show(self, height: int = 620) -> Picture: ...
     def _repr_html_(self) -> str: ...
 
-class Mode:
+class Mode(_Compiled):
     @property
     def frequency(self) -> float: ...  # Hz
     @property
@@ -131,7 +131,7 @@ class Mode:
     @property
     def shape(self) -> dict[str, tuple[complex, complex, complex]]: ...  # m, m, rad
 
-class Joint:
+class Joint(_Compiled):
     @property
     def name(self) -> str: ...
     @property
@@ -146,7 +146,7 @@ class Joint:
     def alone(self) -> list[float]: ...  # N, N, N m
     def required(self, fx: float, fy: float, m: float) -> dict[str, Any]: ...  # of N, N, N m
 
-class Model:
+class Model(_Compiled):
     @property
     def path(self) -> str: ...
     @property
@@ -165,7 +165,7 @@ class Model:
     def drawing_text(self) -> str: ...
     def value(self, path: str) -> float: ...
     def unit(self, path: str) -> str: ...
-    def with_values(self, values: Values) -> Model: ...
+    def with_values(self, values: _Values) -> Model: ...
     def modes(self, count: int = 0, near: float | None = None) -> list[Mode]: ...
     def joints(self) -> list[Joint]: ...
     def equilibrium(self) -> dict[str, tuple[float, float, float]]: ...  # m, m, rad
@@ -176,17 +176,19 @@ class Model:
         step: float | None = None,
         end: float | None = None,
         output_step: float | None = None,
-        estimate: Literal["never", "cheap", "always"] = "cheap",
+        estimate: _Estimate = "cheap",
         second_opinion: bool = False,
     ) -> Run: ...
     def samples(
         self,
-        paths: Sequence[str],
-        values: npt.ArrayLike,
+        values: Mapping[str, Any],
         responses: Sequence[tuple[str, Literal["low", "high", "first", "final"]]],
+        estimate: _Estimate = "cheap",
         threads: int = 0,
-    ) -> tuple[Floats, list[str], list[str]]: ...
+    ) -> Any: ...  # a pandas.DataFrame
 
-def load(path: str, values: Values = None) -> Model: ...
-def loads(text: str, values: Values = None, path: str = 'model.toml') -> Model: ...
-def build(model: Mapping[str, Any], values: Values = None, path: str = 'model.toml') -> Model: ...
+def load(path: _Path, values: _Values = None) -> Model: ...
+def loads(text: str, values: _Values = None, path: _Path = 'model.toml') -> Model: ...
+def _samples(
+    model: Model, paths: Sequence[str], values: npt.ArrayLike, responses: Sequence[tuple[str, str]], threads: int, estimate: str
+) -> tuple[_Floats, list[str], list[str]]: ...
