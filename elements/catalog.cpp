@@ -9,6 +9,7 @@
 #include "elements/joints.h"
 #include "elements/limit.h"
 #include "elements/load.h"
+#include "elements/look.h"
 #include "elements/machinery/band.h"
 #include "elements/machinery/beam.h"
 #include "elements/machinery/beam_part.h"
@@ -81,8 +82,8 @@ const Catalogue& element_catalog() {
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(),   &beam_kind(), &own_state_kind(),  &action_kind(),
-                &channel_kind(), &plot_kind(), &acceptance_kind(), &case_kind()};
+    c.tables = {&shape_kind(), &beam_kind(),       &own_state_kind(), &action_kind(), &channel_kind(),
+                &plot_kind(),  &acceptance_kind(), &case_kind(),      &look_kind()};
     return c;
   }();
   return catalogue;
