@@ -33,6 +33,7 @@
 #include "elements/step_lap/step_lap_joint.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/io/load_case.h"
+#include "mbd/io/look.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/record_signal.h"
 #include "mbd/model/shunting_signal.h"
@@ -81,8 +82,8 @@ const Catalogue& element_catalog() {
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(),   &beam_kind(), &own_state_kind(),  &action_kind(),
-                &channel_kind(), &plot_kind(), &acceptance_kind(), &case_kind()};
+    c.tables = {&shape_kind(), &beam_kind(),       &own_state_kind(), &action_kind(), &channel_kind(),
+                &plot_kind(),  &acceptance_kind(), &case_kind(),      &look_kind()};
     return c;
   }();
   return catalogue;

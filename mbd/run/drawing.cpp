@@ -1,5 +1,6 @@
 #include "mbd/run/drawing.h"
 
+#include "mbd/io/look.h"
 #include "mbd/run/ordered_json.h"
 #include "mbd/run/sketch.h"
 
@@ -58,7 +59,7 @@ public:
   Json json() {
     Json elements = Json::array();
     for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
-    Json json = object_with_room(8);
+    Json json = object_with_room(9);
     append(json, "bodies") = bodies_json(); // after the elements, which define geometry of bodies
     append(json, "elements") = std::move(elements);
     append(json, "ground") = ground_json();
@@ -66,6 +67,7 @@ public:
     append(json, "sheets") = sheets_json();
     append(json, "plots") = plots_json();
     append(json, "cores") = cores_json();
+    append(json, "looks") = looks_json();
     append(json, "seen_from") = model_.output.seen_from;
     return json;
   }
@@ -77,6 +79,23 @@ private:
       if (const auto sheet = views_.sheets.find(entry.kind); sheet != views_.sheets.end())
         cores.push_back({{"name", entry.table->name}, {"svg", sheet->second(*entry.table, model_)}});
     return cores;
+  }
+  [[nodiscard]] Json look_json(const Look& look) const {
+    const Body* const carrier = body(look.body);
+    const Vec2 cg = carrier ? carrier->cg : Vec2(Vec2::Zero());
+    Json json{{"name", look.name}, {"body", look.body}, {"draw", look.draw}, {"at", Json::array()}};
+    for (const Vec2& place : places_of(look)) json["at"].push_back(point_json(place - cg));
+    if (look.size) json["size"] = point_json(*look.size);
+    if (look.radius) json["radius"] = *look.radius;
+    if (look.wall) json["wall"] = *look.wall;
+    if (look.oil) json["oil"] = *look.oil - cg.y();
+    return json;
+  }
+  [[nodiscard]] Json looks_json() const {
+    Json looks = Json::array();
+    for (const TableEntry& entry : model_.tables)
+      if (entry.kind == &look_kind()) looks.push_back(look_json(static_cast<const Look&>(*entry.table)));
+    return looks;
   }
   [[nodiscard]] const Body* body(const std::string& name) const {
     const auto found = bodies_.find(name);
@@ -120,7 +139,8 @@ private:
     for (const Shape& shape : sketch.shapes()) shapes.push_back(shape_json(shape));
     json["shapes"] = std::move(shapes);
     for (const Field& field : entry.kind->fields.fields()) {
-      if (field.type == FieldType::body) json[field.name] = std::get<std::string>(field.get(entry.element.get()));
+      const bool is_name = field.type == FieldType::body || field.type == FieldType::signal || field.name == "as";
+      if (is_name) json[field.name] = std::get<std::string>(field.get(entry.element.get()));
       if (field.type == FieldType::elements) json[field.name] = std::get<std::vector<std::string>>(field.get(entry.element.get()));
     }
     json["at"] = places_json(sketch.places());
@@ -151,7 +171,27 @@ private:
     return found->second;
   }
 
-  // Returns the given outline, or the convex hull of the centre of gravity and of the points of elements that no circle of the body covers.
+  // Returns a rectangle about the centre of gravity of a body whose size only its moment of inertia J = m (a² + b²)/12 and the places where
+  // elements act tell: b is the height of these places, and a follows from J; without a height a is their width. Where J is too small to
+  // contain the places, the rectangle is as large as J permits. Returns nothing if the places are all at the centre of gravity, or if J is
+  // that of a slender rod between them, or is larger than that of a body some times as large as the places.
+  [[nodiscard]] static std::vector<Vec2> rectangle_of(const Body& body, const std::vector<Vec2>& places) {
+    constexpr double k_most_growth = 3.0, k_slender = 0.02;
+    if (body.fixed) return {};
+    Vec2 sides = Vec2::Zero();
+    for (const Vec2& p : places) sides = sides.cwiseMax(2.0 * p.cwiseAbs());
+    const double reached = sides.norm(), square = 12.0 * body.inertia / body.mass, diagonal = std::sqrt(square);
+    if (reached == 0.0 || diagonal > k_most_growth * reached) return {};
+    const int given = sides.y() > k_slender * reached ? 1 : 0, free = 1 - given;
+    if (diagonal > reached) sides[free] = std::sqrt(square - sides[given] * sides[given]);
+    else sides *= diagonal / reached;
+    if (sides.minCoeff() <= k_slender * sides.maxCoeff()) return {};
+    const Vec2 half = 0.5 * sides;
+    return {-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
+  }
+
+  // Returns the given outline. Without one it is a rectangle (rectangle_of), or for bodies that elements give other geometry the convex hull
+  // of the centre of gravity and of the points of elements that no circle of the body covers.
   [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
     std::vector<Vec2> outline;
     for (const Vec2& p : body.outline) outline.push_back(p - body.cg);
@@ -165,6 +205,8 @@ private:
     for (const Vec2& p : geometry.places)
       if (!is_covered(p)) places.push_back(p);
     if (places.empty()) return {};
+    const bool is_bare = geometry.circles.empty() && geometry.segments.empty();
+    if (outline = is_bare ? rectangle_of(body, places) : outline; !outline.empty()) return outline;
     places.push_back(Vec2::Zero());
     outline = hull(std::move(places));
     return outline.size() < 2 ? std::vector<Vec2>() : outline;

@@ -219,7 +219,7 @@ class FirstScreenTest(base.Page):
             ActionChains(self.browser).move_to_element_with_offset(slider, round(-0.2 * box["width"]), 0).click().perform()
             self.until(lambda: self.run_js("return steplap.page.time()") > 0)
             t = self.run_js("return steplap.page.time()")
-            self.assertAlmostEqual(t, 0.3 * 0.8, delta=0.02 * 0.8, msg=str(size))
+            self.assertAlmostEqual(t, 0.3 * base.AXIS, delta=0.02 * base.AXIS, msg=str(size))
             self.assertNotEqual(place(), before)
             # Thumb, line through the lanes and axis stand at one place.
             cursor = self.run_js("return document.querySelector('.time-cursor').getBoundingClientRect().left")
@@ -247,7 +247,7 @@ class FirstScreenTest(base.Page):
         self.run_js("steplap.page.show(0.2)")
         self.assertEqual(self.find("#time").get_attribute("aria-valuetext").replace("\u00a0", " "), "0.2 s")
         self.find("#time").send_keys(Keys.END)
-        self.assertEqual(self.run_js("return steplap.page.time()"), 0.8)
+        self.assertEqual(self.run_js("return steplap.page.time()"), base.AXIS)
         self.find("#time").send_keys(Keys.HOME)
         self.assertEqual(self.run_js("return steplap.page.time()"), 0)
 

@@ -28,6 +28,7 @@ os.environ["no_proxy"] = os.environ["NO_PROXY"] = "localhost,127.0.0.1"  # the d
 KEPT = sys.argv[4] if len(sys.argv) > 4 and sys.argv[3] == "--keep" else None
 WORK = tempfile.TemporaryDirectory(prefix="steplap-browser-")
 SIZES = [(1280, 800), (1920, 1080)]
+AXIS = 0.3  # s: the axis of time of the paper's runs, of 0.8 s, whose last event is at 0.24 s
 
 HOSTILE = """title = "<img src=x onerror='document.title=1'></script><b>bold</b>"
 [simulation]
@@ -192,10 +193,10 @@ class ReportTest(Page):
         self.find("#play").click()
         self.until(lambda: self.run_js("return steplap.page.time()") > 0.11)
         after = self.transforms()
-        self.assertEqual([name for name in before if before[name] == after[name]], ["lower tank"])  # seen from it
+        self.assertEqual([name for name in before if before[name] == after[name]], [])  # the lower tank pitches on its springs
         self.run_js("document.getElementById('speed').value = '10'")
         self.until(lambda: self.find("#play").get_attribute("aria-pressed") == "false")
-        self.assertEqual(self.run_js("return steplap.page.time()"), 0.8)
+        self.assertEqual(self.run_js("return steplap.page.time()"), AXIS)
 
     def test_a_single_body_moves_against_the_ground(self):
         self.open("out/bouncing_mass/report.html")
@@ -232,7 +233,7 @@ class ReportTest(Page):
         body.send_keys(Keys.ARROW_RIGHT)
         self.assertGreater(self.run_js("return steplap.page.time()"), 0)
         body.send_keys(Keys.END)
-        self.assertEqual(self.run_js("return steplap.page.time()"), 0.8)
+        self.assertEqual(self.run_js("return steplap.page.time()"), AXIS)
         body.send_keys(Keys.SPACE)
         self.assertEqual(self.find("#play").get_attribute("aria-pressed"), "true")
         body.send_keys(Keys.SPACE)

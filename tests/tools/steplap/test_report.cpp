@@ -160,7 +160,7 @@ TEST_CASE("short runs keep all samples, as single precision differences from the
   CHECK(json["runs"][0]["model_sha256"] == "5d99dbae019bc0b8ec2fcdf902c8ceb419ff0f476f8ca724e4ca4c278f9ac6e1");
 }
 
-TEST_CASE("bodies without an outline get one from where elements act, but never from their inertia") {
+TEST_CASE("bodies without an outline get one from where elements act and from their inertia") {
   const auto drawing = [](const std::string& text) {
     return nlohmann::json::parse(drawing_json(parse_model(text, "a.toml", program_catalogue()), *program_catalogue().views));
   };
@@ -177,9 +177,32 @@ name = "pivot"
 a = { body = "rod", at = [0, 0] }
 b = "ground"
 )");
+  // A slender rod would have J = 1.3 kg m²: this one stays a line.
   CHECK(pendulum["bodies"][0]["outline"] == nlohmann::json({{-2.0, 0.0}, {0.0, 0.0}}));
   CHECK(pendulum["bodies"][0]["is_outline_given"] == false);
   CHECK(pendulum["elements"][0]["symbol"] == "pin");
+  // Feet at x = ±1, 0.5 below the centre of gravity: 1 high, and J = m (a² + b²)/12 makes it 3 long.
+  const auto box = drawing(R"(
+simulation = { step = 1e-3 }
+[[body]]
+name = "box"
+mass = 12
+inertia = 10
+position = [0, 0.5]
+[[element]]
+kind = "unilateral_contact"
+name = "left"
+a = { body = "box", at = [-1, 0] }
+b = "ground"
+stiffness = 1
+[[element]]
+kind = "unilateral_contact"
+name = "right"
+a = { body = "box", at = [1, 0] }
+b = "ground"
+stiffness = 1
+)");
+  CHECK(box["bodies"][0]["outline"] == nlohmann::json({{-1.5, -0.5}, {1.5, -0.5}, {1.5, 0.5}, {-1.5, 0.5}}));
   // Nothing says how large it is, whatever its inertia.
   const auto free = drawing("simulation = { step = 1e-3 }\n[[body]]\nname = \"stone\"\nmass = 1\ninertia = 0.5\n");
   CHECK(free["bodies"][0]["outline"].empty());

@@ -140,11 +140,8 @@
     document.body.setAttribute('data-ready', 'true');
   }
   function begin() {
-    const standpoint = scenes[0].usualStandpoint(), usual = scenes[0].usualMagnification(standpoint);
-    at('seen-from').replaceChildren(...['ground', ...[...scenes[0].bodies.keys()].slice(0, 40)].map((name) => make('option', { value: name }, name)));
-    at('seen-from').value = standpoint;
-    at('magnification').replaceChildren(...[...new Set([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, usual])].sort((a, b) => a - b).map((f) => make('option', { value: f }, `${f} ×`)));
-    at('magnification').value = String(usual);
+    steplap.pictureChoices(scenes, at('magnification'), at('seen-from'));
+    if (!at('layers').firstChild) steplap.layers.build(at('layers'), at('scenes'));
     const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000], wanted = end / 10;
     at('speed').replaceChildren(...speeds.map((s) => make('option', { value: s }, s >= 1 ? `${s} ×` : `1/${Math.round(1 / s)}`)));
     at('speed').value = String(speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best)));
@@ -155,7 +152,7 @@
   }
   function fit() {
     const widths = scenes.map((s) => Math.max(220, s.svg.parentNode.clientWidth));
-    steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, Math.max(220, Math.min(0.42 * window.innerHeight, 520)));
+    steplap.Scene.fitAll(scenes, at('seen-from').value, steplap.magnificationOf(at('magnification')), widths, Math.max(220, Math.min(0.42 * window.innerHeight, 520)));
     buildTimeline();
   }
   function buildTimeline() {

@@ -40,7 +40,7 @@
   const run = steplap.data.runs[0];
   run.poseOf = () => null; // every body stays in its reference pose
   const scene = new steplap.Scene(run);
-  at('drawing').append(scene.svg, make('p', { class: 'names' }, [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`).join(' · ')));
+  at('drawing').append(scene.svg);
   // Letters as large as one page allows. Below the smallest size the sheet continues on a second page; nothing is left out.
   const height = () => (186 * at('sheet').getBoundingClientRect().height) / at('sheet').getBoundingClientRect().width;
   steplap.Scene.fitAll([scene], 'ground', 1, [at('drawing').clientWidth], 0.34 * at('drawing').clientWidth);

@@ -50,6 +50,7 @@ steplap.Box = class Box {
     for (const i of [0, 1]) { this.low[i] = Math.min(this.low[i], p[i] - reach); this.high[i] = Math.max(this.high[i], p[i] + reach); }
     return this;
   }
+  nearest(p) { return p.map((v, i) => Math.min(Math.max(v, this.low[i]), this.high[i])); }
   get isEmpty() { return !(this.low[0] <= this.high[0] && this.low[1] <= this.high[1]); }
   get span() { return [this.high[0] - this.low[0], this.high[1] - this.low[1]]; }
   get middle() { return [0.5 * (this.low[0] + this.high[0]), 0.5 * (this.low[1] + this.high[1])]; }

@@ -3,6 +3,7 @@
 steplap.Scene = (() => {
   const make = steplap.make, { add, minus, scaled, length, apply } = steplap.geometry, Box = steplap.Box;
   const margin = 36; // for symbols, pixels
+  const nearby = 0.75; // of the machine's size: what comes further from it than this leaves the picture
   const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
 
   class Body {
@@ -12,8 +13,10 @@ steplap.Scene = (() => {
       const names = ['x', 'y', 'theta'].map((c) => run.channel(`${raw.name}.${c}`));
       this.channels = names.every(Boolean) && !raw.fixed ? names : null;
       // What shows that it has moved; of a circle its centre.
-      this.points = [...this.outline, ...this.polygons.flat(), ...this.circles.map((c) => [c[0], c[1]]), ...this.segments.flatMap((s) => [[s[0], s[1]], [s[2], s[3]]])];
+      this.points = [...this.outline, ...steplap.partsOf(run, raw.name),
+        ...this.polygons.flat(), ...this.circles.map((c) => [c[0], c[1]]), ...this.segments.flatMap((s) => [[s[0], s[1]], [s[2], s[3]]])];
       this.isPoint = !this.points.length;
+      this.isLookAlone = !this.isPoint && !this.outline.length && !this.circles.length && !this.segments.length && !this.polygons.length;
       if (this.isPoint) this.points.push([0, 0]);
       this.reach = Math.max(...this.points.map(length), ...this.circles.map((c) => length(c) + c[2]));
       this.moves = this.channels || (run.poseOf && !raw.fixed);
@@ -44,7 +47,8 @@ steplap.Scene = (() => {
       this.bodies = new Map(run.drawing.bodies.map((b) => [b.name, new Body(b, run)]));
       this.ground = new Body({ name: 'ground', fixed: true, ...run.drawing.ground }, run);
       this.limbs = new Map();
-      for (const e of run.drawing.elements) if (e.kind === 'step_lap_joint') this.limbs.set(e.limb, e);
+      this.yokes = new Set();
+      for (const e of run.drawing.elements) if (e.kind === 'step_lap_joint') { this.limbs.set(e.limb, e); this.yokes.add(e.active_part); }
       // Results of older programs have a symbol in place of shapes.
       this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
       this.byName = new Map(run.drawing.elements.map((e) => [e.name, e]));
@@ -90,8 +94,14 @@ steplap.Scene = (() => {
     choose(seenFrom, magnification) {
       this.seenFrom = seenFrom; this.magnification = magnification;
       this.poses = this.samples();
-      const box = new Box().take(this.still.low).take(this.still.high);
-      for (const pose of this.poses) for (const body of this.bodies.values()) body.extend(box, pose(body.name));
+      const still = this.boxOf(this.look(0, seenFrom, magnification)), reach = nearby * Math.max(...still.span);
+      const near = new Box().take(still.low, reach).take(still.high, reach), box = new Box().take(still.low).take(still.high);
+      for (const pose of this.poses)
+        for (const body of this.bodies.values()) {
+          const own = new Box();
+          body.extend(own, pose(body.name));
+          for (const corner of [own.low, own.high]) box.take(near.nearest(corner));
+        }
       // Room for springs that carry from below.
       const isCarried = this.elements.some((e) => e.shapes.some((s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7));
       if (isCarried) box.take([box.middle[0], box.low[1] - 0.12 * this.size]);
@@ -114,9 +124,9 @@ steplap.Scene = (() => {
       this.svg.setAttribute('viewBox', `0 0 ${width} ${this.height}`);
       this.setView(this.view);
       this.fitSymbols();
-      this.spreadMarks();
+      this.spreadNames();
     }
-    // As another picture of the same machine stands: the same part of the plane, numbers of bodies at the same places.
+    // As another picture of the same machine: the same part of the plane, names at the same places.
     fitLike(other) {
       this.choose(other.seenFrom, other.magnification);
       for (const name of ['width', 'u', 'height', 'middle', 'fittedScale']) this[name] = other[name];
@@ -125,7 +135,7 @@ steplap.Scene = (() => {
       this.fitSymbols();
       for (const [name, mark] of this.marks) {
         const same = other.marks.get(name);
-        if (same) Object.assign(mark, { shift: same.shift, places: same.places });
+        if (same) Object.assign(mark, { wanted: same.wanted, places: same.places });
       }
     }
     setView(view) {
@@ -143,12 +153,12 @@ steplap.Scene = (() => {
       this.svg = make('svg', { role: 'img', tabindex: '0', 'aria-label': `Drawing of ${this.run.name}` });
       this.updaters = [];
       this.marks = new Map();
-      const layers = ['grounds', 'bodies', 'trails', 'elements', 'forces', 'texts', 'legend'].map((name) => make('g', { class: name }));
-      [this.groundLayer, this.bodyLayer, this.trailLayer, this.elementLayer, this.forceLayer, this.textLayer, this.legendLayer] = layers;
-      this.svg.append(...layers);
-      this.buildBody(this.ground, 0);
-      let number = 0;
-      for (const body of this.bodies.values()) this.buildBody(body, ++number);
+      for (const name of ['ground', 'body', 'ghost', 'trail', 'element', 'force', 'name', 'text', 'legend']) {
+        this[`${name}Layer`] = make('g', { class: `${name}s` });
+        this.svg.append(this[`${name}Layer`]);
+      }
+      for (const body of [this.ground, ...this.bodies.values()]) this.buildBody(body);
+      this.buildRoads();
       this.buildSymbols();
       this.buildLegend();
     }
@@ -169,7 +179,7 @@ steplap.Scene = (() => {
     }
     // From the outline to the places outside it where contacts and joints act: outriggers, feet, brackets.
     strutsOf(body) {
-      if (!body.is_outline_given || body.outline.length < 3) return [];
+      if (body.outline.length < 3) return [];
       const struts = [], least = 0.01 * body.reach;
       for (const e of this.elements)
         for (const shape of e.shapes)
@@ -201,23 +211,31 @@ steplap.Scene = (() => {
       const arc = (p) => `A${r} ${r} 0 0 0 ${p.join(' ')}`;
       return make('path', { d: `M${add(from, n).join(' ')}${arc(minus(from, n))}L${minus(to, n).join(' ')}${arc(add(to, n))}Z` });
     }
-    buildBody(body, number) {
+    buildBody(body) {
       const isGround = body === this.ground, joint = this.limbs.get(body.name);
-      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${this.isAround(body) ? ' around' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
-        make('title', {}, body.label || body.name), ...this.shapesOf(body));
+      const group = make('g', { class: isGround ? 'floor' : ['body', ...this.kindsOf(body)].join(' '), 'data-body': body.name },
+        make('title', {}, body.label || body.name), ...this.shapesOf(body), ...this.looksShapes(body));
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
       // Where the body's geometry does not say where its mass is.
-      const centre = !isGround && !body.fixed && !body.is_outline_given && !body.circles.length && !body.polygons.length ? this.centreMark(body) : null;
-      if (!isGround && this.bodies.size <= 40) this.addNumber(body, number);
+      const isShown = isGround || body.fixed || body.isLookAlone || body.is_outline_given || body.circles.length || body.polygons.length;
+      const centre = isShown ? null : this.centreMark(body);
+      if (!isGround) this.addGhost(body);
+      if (!isGround && !body.isLookAlone) this.addName(body); // wheels look as what they are
       const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
         const [sx, sy] = this.toScreen([x, y]);
         group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
         if (centre) centre.setAttribute('transform', `translate(${sx} ${sy}) scale(${0.5 * this.u})`);
-        this.showNumber(body, [sx, sy], pose);
+        this.showName(body, pose);
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
       });
+    }
+    // Classes of a body for the style.
+    kindsOf(body) {
+      const { name } = body, kinds = { fixed: body.fixed, unrecorded: body.isUnrecorded, around: this.isAround(body),
+        limb: this.limbs.has(name), yoke: this.yokes.has(name), tank: this.isTank(name) };
+      return Object.keys(kinds).filter((kind) => kinds[kind]);
     }
     // A circle with two quarters filled, as drawings mark a centre of gravity.
     centreMark(body) {
@@ -259,7 +277,7 @@ steplap.Scene = (() => {
 
     show(t) {
       const pose = this.look(t, this.seenFrom, this.magnification);
-      this.settleMarks(pose);
+      this.settleNames(pose);
       for (const update of this.updaters) update(t, pose);
       if (this.trailsOf.size) this.showTrails(t, pose);
       this.showLegend(t);

@@ -2,7 +2,7 @@
 // follows once the browser has painted it.
 (() => {
   const make = steplap.make, runs = steplap.data.runs, at = (id) => document.getElementById(id);
-  const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1;
+  const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1, horizon = steplap.overview.horizonOf(runs);
   const worst = steplap.overview.worstOf(runs);
   let t = 0, last = null, plots = null, isUntouched = true;
   const scenes = [], insets = [];
@@ -35,9 +35,8 @@
       if (!isOne) box.append(make('h3', {}, runs[i].name));
       box.append(scene.svg);
       scene.largestForce = largestForce;
-      const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`);
       const save = steplap.save.buttons({ SVG: () => steplap.onPaper(() => steplap.save.svg(scene.svg, runs[i].name)), PNG: () => steplap.onPaper(() => steplap.save.png(scene.svg, runs[i].name)) });
-      box.append(make('p', { class: 'names' }, names.length <= 40 ? names.join(' · ') : '', ' ', save));
+      box.append(save);
       at('scenes').append(box);
     });
     const undrawn = Math.max(...runs.map((run) => run.bodies_left_out || 0)), remarks = [];
@@ -71,7 +70,8 @@
     const height = isOne ? Math.max(left, heightOf('limits') + heightOf('story') + gaps) : left - heightOf('limits');
     return Math.max(250, Math.min(height - around, 900));
   }
-  const put = (widths, height) => steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, height);
+  const magnification = () => steplap.magnificationOf(at('magnification'));
+  const put = (widths, height) => steplap.Scene.fitAll(scenes, at('seen-from').value, magnification(), widths, height);
   function fit() {
     if (isPrinted.matches) return;
     const widths = scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth));
@@ -87,17 +87,13 @@
     show(t);
   }
   function choices() {
-    const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000], wanted = end / 10;
+    const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000], wanted = horizon / 10;
     for (const s of speeds) at('speed').append(make('option', { value: s }, s >= 1 ? `${s} ×` : `1/${Math.round(1 / s)}`));
     at('speed').value = String(speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best)));
-    const standpoint = scenes[0].usualStandpoint();
-    for (const name of ['ground', ...[...scenes[0].bodies.keys()].slice(0, 40)]) at('seen-from').append(make('option', { value: name }, name));
-    at('seen-from').value = standpoint;
+    steplap.pictureChoices(scenes, at('magnification'), at('seen-from'));
+    steplap.layers.build(at('layers'), at('scenes'));
     const moving = [...scenes[0].bodies.values()].filter((b) => b.moves).map((b) => b.name);
     for (const [value, text] of [['', 'none'], ...(moving.length <= 100 ? [['*', 'all']] : []), ...moving.slice(0, 40).map((n) => [n, n])]) at('trails').append(make('option', { value }, text));
-    const usual = Math.min(...scenes.map((s) => s.usualMagnification(standpoint)));
-    for (const f of [...new Set([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, usual])].sort((a, b) => a - b)) at('magnification').append(make('option', { value: f }, `${f} ×`));
-    at('magnification').value = String(usual);
     at('trails').addEventListener('change', (event) => { for (const s of scenes) s.setTrails(event.target.value === '*' ? moving : [event.target.value]); show(t); });
     for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); view.reset(); });
     at('values').addEventListener('change', (event) => { for (const s of scenes) s.withValues = event.target.checked; show(t); });
@@ -120,7 +116,7 @@
     at('play').setAttribute('aria-pressed', String(isPlaying));
     last = null;
     // The page opens at its worst instant, as a film shows its best picture: it plays from the beginning.
-    if (isPlaying && (t >= end || isUntouched)) show(0);
+    if (isPlaying && (t >= timeline.end || isUntouched)) show(0);
     if (isPlaying) { isUntouched = false; requestAnimationFrame(frame); }
   }
   const isPlaying = () => at('play').getAttribute('aria-pressed') === 'true';
@@ -128,10 +124,20 @@
     if (!isPlaying()) return;
     if (last !== null) show(t + ((now - last) / 1000) * Number(at('speed').value));
     last = now;
-    if (t >= end) setPlaying(false); else requestAnimationFrame(frame);
+    if (t >= timeline.end) setPlaying(false); else requestAnimationFrame(frame);
+  }
+  // The axis of time ends with the last event that counts, or with the run.
+  function setHorizon(wanted) {
+    timeline.end = wanted;
+    at('time').max = String(wanted);
+    const instant = (time) => steplap.data.quantity(time, 's', 3);
+    const more = `No event after ${instant(horizon)}; show all ${instant(end)}`;
+    at('whole-time').textContent = wanted === end ? `Axis to ${instant(horizon)}` : more;
   }
   function listen() {
-    at('time').max = String(end);
+    setHorizon(horizon);
+    at('whole-time').hidden = horizon === end;
+    at('whole-time').addEventListener('click', () => { setHorizon(timeline.end === end ? horizon : end); timeline.build(); show(t); });
     at('time').addEventListener('input', (event) => go(Number(event.target.value)));
     at('play').addEventListener('click', () => setPlaying(!isPlaying()));
     at('worst').hidden = worst === null;
@@ -143,7 +149,8 @@
     document.addEventListener('keydown', (event) => {
       const isSlider = event.target === at('time');
       if ((!isSlider && /^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA)$/.test(event.target.tagName)) || event.ctrlKey || event.altKey || event.metaKey) return;
-      const step = (event.shiftKey ? 0.05 : 0.005) * end, moves = { ArrowRight: t + step, ArrowLeft: t - step, Home: 0, End: end };
+      const step = (event.shiftKey ? 0.05 : 0.005) * timeline.end;
+      const moves = { ArrowRight: t + step, ArrowLeft: t - step, Home: 0, End: timeline.end };
       if (event.key === ' ') setPlaying(!isPlaying());
       else if (event.key in moves) go(moves[event.key]);
       else return;
@@ -223,7 +230,7 @@
   choices();
   steplap.bars.build(at('limits'), runs, jump);
   steplap.story.build(at('story'), runs, go);
-  const timeline = new steplap.Timeline(runs, end, { lanes: at('lanes'), axis: at('time-axis'), slider: at('time'), onTime: go });
+  const timeline = new steplap.Timeline(runs, horizon, { lanes: at('lanes'), axis: at('time-axis'), slider: at('time'), onTime: go });
   const view = new steplap.View(scenes, () => show(t));
   for (const [id, action] of [['closer', () => view.zoomAt(scenes[0], 1.5)], ['further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', () => view.reset()]]) {
     at(id).append(steplap.icon(id));

@@ -35,8 +35,6 @@
   at('footer').textContent = `Written by ${steplap.data.program}.`;
   const scene = new steplap.Scene(run), box = make('div', { class: 'scene', 'data-run': run.name });
   box.append(scene.svg, steplap.save.buttons({ SVG: () => steplap.save.svg(scene.svg, pictureName()), PNG: () => steplap.save.png(scene.svg, pictureName()) }));
-  const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`);
-  if (names.length <= 40) box.append(make('p', { class: 'names' }, names.join(' · ')));
   at('scenes').append(box);
   const pictureName = () => `${run.name}_mode_${modes.indexOf(mode) + 1}`;
 

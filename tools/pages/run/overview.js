@@ -44,5 +44,19 @@ steplap.overview = (() => {
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
     return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
   }
-  return { of, badgeOf, worstOf };
+  // The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten: ends of axes of time.
+  function nice(t) {
+    const power = 10 ** Math.floor(Math.log10(t));
+    return Number((power * [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].find((k) => k * power >= 0.999999 * t)).toPrecision(3));
+  }
+  // Where the axis of time may end: shortly after the last event and worst instant, if most of the run comes later; otherwise, as
+  // without events, at the end of the runs.
+  function horizonOf(runs) {
+    const isCounted = (e) => e[0] > 0 && steplap.signs.has(e[4]);
+    const end = Math.max(...runs.map((run) => run.end)), events = runs.flatMap((run) => run.events.filter(isCounted).map((e) => e[0]));
+    if (!events.length || runs.some((run) => run.events_left_out)) return end;
+    const last = nice(1.08 * Math.max(...events, ...runs.map((run) => of(run).worst_instant ?? 0)));
+    return last < 0.6 * end ? last : end;
+  }
+  return { of, badgeOf, worstOf, horizonOf };
 })();

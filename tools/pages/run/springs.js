@@ -34,6 +34,7 @@
       for (const element of scene.elements)
         for (const shape of element.shapes)
           if (!['friction', 'spring', 'faces'].includes(shape.type)) for (const place of shape.at) this.taken.push(this.screen(place, rest));
+      this.drawnAt = this.taken.map((p) => scene.toPlane(...p));
     },
     occupy(a, b) {
       this.stretches.push([a, b]);
@@ -47,8 +48,9 @@
       spring.lane = lanes.find((k) => this.isClear(...shifted(k))) || 0;
       this.occupy(...shifted(spring.lane));
     },
-    // One whose ends lie together.
+    // One whose ends lie together. On wheels it stands on their axle.
     tieSpring(spring, a, d, rest) {
+      if (this.tieToAxle(spring, a, d, rest)) return;
       const { scene } = this, [placeA, placeB] = spring.shape.at, { u } = this, found = [];
       const upright = Math.abs(d[1]) > Math.abs(d[0]), down = upright ? (d[1] > 0 ? 1 : -1) : d[0] > 0 ? -1 : 1;
       const bodyA = scene.body(placeA.body), bodyB = scene.body(placeB.body), n = across(d);
@@ -68,6 +70,19 @@
       const best = found.reduce((x, y) => (y.cost < x.cost ? y : x)), plane = (p, body) => seenIn(rest(body), scene.toPlane(...p));
       spring.tied = { a: { body: placeA.body, point: plane(best.from, placeA.body) }, b: { body: placeB.body, point: plane(best.to, placeB.body) }, isAnchored: !best.isMet };
       this.occupy(best.from, best.to);
+    },
+    tieToAxle(spring, a, d, rest) {
+      const { scene } = this, [placeA, placeB] = spring.shape.at;
+      const axles = scene.wheelsOf(placeB.body).map((point) => this.screen({ body: placeB.body, point }, rest));
+      const far = (p) => Math.abs(dot(across(d), minus(p, a))), axle = axles.sort((p, q) => far(p) - far(q))[0];
+      if (!axle || Math.abs(d[1]) < 0.7) return false;
+      const n = across(d), lane = lanes.find((k) => this.isClear(add(a, scaled(n, k * this.u)), [a[0] + n[0] * k * this.u, axle[1]])) || 0;
+      const to = [a[0] + n[0] * lane * this.u, axle[1]], edge = this.leaves(scene.body(placeA.body), rest, to, [0, -1], true);
+      const from = add(to, [0, -Math.max(least * this.u, edge || 0)]), plane = (p, body) => seenIn(rest(body), scene.toPlane(...p));
+      const ends = { a: { body: placeA.body, point: plane(from, placeA.body) }, b: { body: placeB.body, point: plane(to, placeB.body) } };
+      spring.tied = { ...ends, isAnchored: false };
+      this.occupy(from, to);
+      return true;
     },
     // Pixels from a place of the screen along e to where a line leaves the body for good, or first meets it; null: never.
     leaves(body, pose, place, e, isFirst) {
@@ -90,7 +105,8 @@
       const strokes = this.scene.isHeld(spring.tied.b.body) ? [-1, -0.4, 0.2, 0.8].map((k) => { const p = add(b, scaled(n, k)); return path([p, add(p, add(scaled(e, 0.6 * u), scaled(n, 0.5)))]); }).join('') : '';
       return path([add(b, n), minus(b, n)]) + strokes;
     },
-    occupied() { return this.taken; },
+    // Pixels along what is drawn, at rest, whatever the zoom.
+    occupied() { return this.drawnAt.map((p) => this.scene.toScreen(p)); },
 
     // The stops of a slide, where they touch the outline of what they stop.
     stops(element, shape) {
@@ -104,7 +120,8 @@
           const stop = shape.sizes[i];
           if (stop === null || stop === undefined) return;
           const reach = this.leaves(body, rest, a0, scaled(d0, sign), false) || 0;
-          const along = dot(d0, minus(a0, b0)) + stop * scene.magnification * scene.scale + sign * reach;
+          const factor = scene.factorOf(shape.at[0].body, scene.seenFrom, scene.magnification);
+          const along = dot(d0, minus(a0, b0)) + stop * factor * scene.scale + sign * reach;
           const at = add(add(b, scaled(d, along)), scaled(across(d), side)), n = scaled(across(d), 1.3 * u), back = scaled(d, 0.7 * sign * u);
           if (!(Math.abs(at[0]) < 3 * scene.width && Math.abs(at[1]) < 3 * scene.height)) return;
           text += path([add(at, n), minus(at, n)]) + [-1, -0.5, 0, 0.5].map((k) => { const p = add(at, scaled(n, k)); return path([p, add(p, add(back, scaled(n, 0.4)))]); }).join('');

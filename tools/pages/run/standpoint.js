@@ -1,96 +1,247 @@
 // From where a machine is seen, and how far its motion is magnified.
 //
-// It is seen from the ground, unless a drive translates a vehicle that carries the rest: then from the vehicle, and what
-// stays behind (the ground, strips of road) is drawn as if it came along, so that springs and wheels stay above their road.
-// Motion is not magnified where a body turns by more than a few degrees: a turn cannot be drawn larger than it is.
+// It is seen from the ground. A vehicle that drives away is followed: its travel is left out ("alongside"). Each body's motion relative
+// to the body that carries it is magnified: what slides in a tank is not hidden by the tank's own motion, and a vehicle that pitches on
+// its springs stays on its road. Motion is not magnified where a body turns by more than a few degrees: a turn cannot be drawn larger.
 (() => {
   const { minus, add, scaled, dot, length, apply, relative, turn } = steplap.geometry;
   const largestTurn = (3 * Math.PI) / 180;
   const drawnTurn = 0.1; // rad, of what is magnified: joints of what turns further would gape
-  const most = 1000; // what would need more is no motion, but how far contacts give way
+  const drawnMotion = 0.05; // of the machine's diagonal: largest magnified motion
+  const drawnSpring = 1 / 3; // of the drawn length of a spring
+  const tiedSpring = 0.036; // of the machine's size: drawn length of a spring whose ends lie together (springs.js)
+  const drawnClearance = 0.8; // of a clearance: nothing is drawn through a wall that it does not touch
+  const most = 500; // what would need more is no motion, but how far contacts give way
   const steps = 120; // at which a run is looked at
+  const alongside = '~alongside'; // the standpoint that moves along with a vehicle
   // Of shapes that hold the vehicle to the ground along its way, which it then does not leave behind.
   const holding = new Set(['pin', 'weld', 'rod', 'rope', 'bushing']);
+  const rolling = new Set(['contact', 'edge_touch', 'faces', 'touch', 'friction', 'arrow']); // between ground and a vehicle without drive
+  const times = (scene) => Array.from({ length: steps + 1 }, (_, k) => (scene.run.end * k) / steps);
+  const wayOf = (scene, name, t) => minus(scene.poseAt(name, t).slice(0, 2), scene.reference(name).slice(0, 2));
 
-  // The drive, its direction, and who goes along.
-  function journeyOf(scene, drive, shape) {
-    const name = shape.at[0].body, run = scene.run, moving = [...scene.bodies.values()].filter((b) => b.moves && b.name !== name);
-    const wayOf = (who, t) => minus(scene.poseAt(who, t), scene.reference(who)), apart = new Map(moving.map((b) => [b.name, 0]));
+  // The vehicle that a drive translates: { name, carried, travel(t) }, or null. What it leaves behind is drawn as if it came along, but a
+  // road on which wheels roll passes.
+  function drivenBy(scene, drive, shape) {
+    const name = shape.at[0].body, moving = [...scene.bodies.values()].filter((b) => b.moves && b.name !== name);
+    const apart = new Map(moving.map((b) => [b.name, 0])), gone = new Map(apart);
+    const most = (map, who, v) => map.set(who, Math.max(map.get(who), v));
     let far = 0;
-    for (let k = 0; k <= steps; ++k) {
-      const t = (run.end * k) / steps, way = wayOf(name, t);
+    for (const t of times(scene)) {
+      const way = wayOf(scene, name, t);
       far = Math.max(far, length(way));
-      for (const body of moving) apart.set(body.name, Math.max(apart.get(body.name), length(minus(wayOf(body.name, t), way))));
+      for (const body of moving) {
+        const own = wayOf(scene, body.name, t);
+        most(apart, body.name, length(minus(own, way)));
+        most(gone, body.name, length(own));
+      }
     }
-    const carried = new Set([name, ...moving.filter((b) => apart.get(b.name) < 0.3 * far).map((b) => b.name)]);
+    const carried = new Set([name, ...moving.filter((b) => apart.get(b.name) < 0.5 * far).map((b) => b.name)]);
     const axis = turn(shape.direction, 0);
     const isLevel = (s) => s.direction && Math.abs(dot(s.direction, axis)) > 0.7;
+    const stays = (who) => scene.isHeld(who) || gone.get(who) < 0.3 * far;
     const isHeld = scene.elements.some((e) => e !== drive && e.shapes.some((s) => {
-      const on = s.at.filter((p) => carried.has(p.body)).length;
-      return on > 0 && on < s.at.length && (holding.has(s.type) || (['spring', 'contact'].includes(s.type) && (!s.direction || isLevel(s))));
+      const isBetween = s.at.some((p) => carried.has(p.body)) && s.at.some((p) => !carried.has(p.body) && stays(p.body));
+      return isBetween && (holding.has(s.type) || (['spring', 'contact'].includes(s.type) && (!s.direction || isLevel(s))));
     }));
     const isVehicle = far > 0 && carried.size > 1 && 2 * carried.size >= moving.length + 1 && !isHeld;
-    return isVehicle ? { name, axis, carried } : null;
+    const rolls = (s) => s.type === 'edge_touch' && carried.has(s.at[0].body) && scene.isHeld(s.at[1].body);
+    const isOnRoad = scene.elements.some((e) => e.shapes.some(rolls));
+    return isVehicle ? { name, carried: isOnRoad ? null : carried, travel: (t) => scaled(axis, dot(axis, wayOf(scene, name, t))) } : null;
   }
+  // Bodies that drive away together without a drive: the ground is drawn as it passes.
+  function rollingAway(scene) {
+    const moving = [...scene.bodies.values()].filter((b) => b.moves);
+    const isOnGround = (e) => e.shapes.some((s) => s.at.some((p) => scene.isHeld(p.body)) && s.at.some((p) => !scene.isHeld(p.body)));
+    if (moving.length < 2 || scene.elements.some((e) => isOnGround(e) && !e.shapes.every((s) => rolling.has(s.type)))) return null;
+    const travel = (t) => scaled(moving.map((b) => wayOf(scene, b.name, t)).reduce(add), 1 / moving.length);
+    let far = 0, apart = 0;
+    for (const t of times(scene)) {
+      const way = travel(t);
+      far = Math.max(far, length(way));
+      for (const b of moving) apart = Math.max(apart, length(minus(wayOf(scene, b.name, t), way)));
+    }
+    const largest = moving.reduce((a, b) => (b.reach > a.reach ? b : a));
+    return far > scene.size && apart < 0.5 * scene.size ? { name: largest.name, carried: null, travel } : null;
+  }
+  // Bodies and the bodies that they are tied to, by all elements.
+  function neighboursOf(scene) {
+    const found = new Map(['ground', ...scene.bodies.keys()].map((name) => [name, new Set()]));
+    for (const e of scene.run.drawing.elements) {
+      const names = new Set([...(e.at || []).map((p) => p.body), e.limb, e.active_part].filter((name) => found.has(name)));
+      for (const a of names) for (const b of names) if (a !== b) found.get(a).add(b);
+    }
+    return found;
+  }
+  const rounded = (wanted) => {
+    const power = 10 ** Math.floor(Math.log10(wanted));
+    return Math.min(most, power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1));
+  };
 
   Object.assign(steplap.Scene.prototype, {
-    // { name, axis, carried } of the vehicle that a drive translates, or null.
+    // { name, carried, travel } of what drives away, or null. `carried` is null if all that is seen passes the ground.
     journey() {
       if (this.foundJourney !== undefined) return this.foundJourney;
       this.foundJourney = null;
+      if (this.run.poseOf) return null;
       for (const e of this.elements) {
-        const shape = e.kind === 'prescribed_motion' && !this.run.poseOf ? e.shapes.find((s) => s.type === 'arrow' && s.direction && s.at.length > 1 && s.at[1].body === 'ground') : null;
-        if (shape && this.bodies.has(shape.at[0].body) && Math.abs(shape.direction[0]) > Math.abs(shape.direction[1])) this.foundJourney = this.foundJourney || journeyOf(this, e, shape);
+        const isAgainstGround = (s) => s.type === 'arrow' && s.direction && s.at.length > 1 && s.at[1].body === 'ground';
+        const shape = e.kind === 'prescribed_motion' ? e.shapes.find(isAgainstGround) : null;
+        const isLevel = shape && this.bodies.has(shape.at[0].body) && Math.abs(shape.direction[0]) > Math.abs(shape.direction[1]);
+        if (isLevel) this.foundJourney = this.foundJourney || drivenBy(this, e, shape);
       }
+      this.foundJourney = this.foundJourney || rollingAway(this);
       return this.foundJourney;
     },
-    usualStandpoint() {
-      const wanted = this.run.drawing.seen_from, journey = this.journey();
-      return wanted || (journey ? journey.name : 'ground');
+    usualStandpoint() { return this.run.drawing.seen_from || (this.journey() ? alongside : 'ground'); },
+    // Standpoints to choose from: [name, text].
+    standpoints() {
+      const journey = this.journey(), bodies = [...this.bodies.keys()].slice(0, 40);
+      return [...(journey ? [[alongside, `alongside ${journey.name}`]] : []), ...['ground', ...bodies].map((name) => [name, name])];
     },
-    // Pose of a body as the standpoint sees it at time t, the frame that stands for it at rest being its reference pose.
-    seenPose(name, t, seenFrom) {
-      const journey = this.journey(), isLeft = journey && journey.carried.has(seenFrom) && !journey.carried.has(name);
-      let from = this.poseAt(seenFrom, t);
-      if (isLeft) {
-        const back = scaled(journey.axis, -dot(journey.axis, minus(from, this.reference(seenFrom))));
-        from = [...add(from, back), from[2]];
+    standpointText(seenFrom) {
+      if (seenFrom === alongside) return this.journey() ? `moves along with ${this.journey().name}` : '';
+      return seenFrom && seenFrom !== 'ground' ? `seen from ${seenFrom}` : '';
+    },
+    // Body that each body stands on or hangs from: its neighbour nearest to the ground, of several the largest.
+    carriers() {
+      if (this.foundCarriers) return this.foundCarriers;
+      const neighbours = neighboursOf(this), level = new Map([['ground', 0]]), carriers = new Map();
+      let front = ['ground', ...[...this.bodies.values()].filter((b) => b.fixed).map((b) => b.name)];
+      for (const name of front) level.set(name, 0);
+      while (front.length) {
+        const next = new Set(front.flatMap((name) => [...neighbours.get(name)]).filter((name) => !level.has(name)));
+        const reachOf = (name) => (name === 'ground' ? 0 : this.body(name).reach);
+        const largest = (names) => names.reduce((a, b) => (reachOf(b) > reachOf(a) ? b : a));
+        for (const name of next) carriers.set(name, largest([...neighbours.get(name)].filter((n) => front.includes(n))));
+        for (const name of next) level.set(name, level.get(front[0]) + 1);
+        front = [...next];
       }
-      return relative(from, this.poseAt(name, t));
+      this.foundCarriers = carriers;
+      return carriers;
     },
-    // Largest displacement of any outline against the reference, and largest turn, seen from a body.
-    largestMotion(seenFrom) {
+    // What turns over or rolls carries nothing that could be told from its own motion: what carries it does.
+    carrierOf(name) {
+      let carrier = this.carriers().get(name) || 'ground';
+      while (carrier !== 'ground' && this.largestTurnOf(carrier) > largestTurn) carrier = this.carriers().get(carrier) || 'ground';
+      return carrier;
+    },
+    largestTurnOf(name) {
+      const body = this.body(name);
+      if (body.turned === undefined) body.turned = Math.max(...times(this).map((t) => Math.abs(body.poseAt(t)[2] - body.pose[2])));
+      return body.turned;
+    },
+    // Pose of a body at time t in the ground's axes, without the travel of what is followed.
+    followedPose(name, t, seenFrom) {
+      const pose = this.poseAt(name, t), journey = seenFrom === 'ground' ? null : this.journey();
+      if (!journey || (journey.carried && !journey.carried.has(name))) return pose;
+      return [...minus(pose.slice(0, 2), journey.travel(t)), pose[2]];
+    },
+    // Pose of a body relative to what carries it, at rest and at time t.
+    onCarrier(name, t, seenFrom) {
+      const carrier = this.carrierOf(name);
+      const followed = (who) => this.followedPose(who, t, seenFrom);
+      return { rest: relative(this.reference(carrier), this.reference(name)), now: relative(followed(carrier), followed(name)) };
+    },
+
+    // --- how far motion is magnified ----------------------------------------------------------------------
+    // Largest displacement of a body's points and largest turn, relative to what carries it.
+    motionOf(body, seenFrom) {
       let displacement = 0, turned = 0;
-      const r0 = this.reference(seenFrom);
-      for (let k = 0; k <= steps; ++k) {
-        const t = (this.run.end * k) / steps;
-        for (const body of this.bodies.values()) {
-          // One whose motion is not written is drawn where it begins: from a body that moves it is seen to move.
-          if (!body.moves && !(body.isUnrecorded && this.body(seenFrom).moves)) continue;
-          const a = relative(r0, body.pose), b = this.seenPose(body.name, t, seenFrom);
-          turned = Math.max(turned, Math.abs(b[2] - a[2]));
-          for (const p of body.points) displacement = Math.max(displacement, length(minus(apply(b, p), apply(a, p))));
-        }
+      if (body.isUnrecorded) return { displacement: Infinity, turned };
+      for (const t of times(this)) {
+        const { rest, now } = this.onCarrier(body.name, t, seenFrom);
+        turned = Math.max(turned, Math.abs(now[2] - rest[2]));
+        for (const p of body.points) displacement = Math.max(displacement, length(minus(apply(now, p), apply(rest, p))));
       }
       return { displacement, turned };
     },
-    // 1, 2, 5, 10 …: the largest displacement becomes some twentieth of the picture.
-    usualMagnification(seenFrom) {
-      const { displacement, turned } = this.largestMotion(seenFrom), wanted = Math.min((0.06 * this.size) / Math.max(displacement, 1e-12), drawnTurn / Math.max(turned, 1e-12));
-      if (!(wanted > 1.5) || wanted > 20 * most || turned > largestTurn) return 1;
-      const power = 10 ** Math.floor(Math.log10(wanted));
-      return Math.min(most, power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1));
+    // How far a body may move to either side before it meets what carries it.
+    clearanceOf(body) {
+      const carrier = this.body(this.carrierOf(body.name)), rest = relative(carrier.pose, body.pose);
+      let least = Infinity;
+      if (carrier === this.ground) return least;
+      for (const p of body.points) {
+        const wall = steplap.forms.isInside(carrier, apply(rest, p)) ? this.wallOf(carrier) : 0;
+        for (const d of [[1, 0], [-1, 0]]) {
+          const hit = steplap.forms.crossings(carrier, [0, 0, 0], apply(rest, p), d).find((s) => s > 1e-3 * this.size);
+          least = Math.min(least, hit === undefined ? Infinity : hit - wall);
+        }
+      }
+      return Math.max(least, 0);
+    },
+    // Drawn length of the shortest spring under a body that the ground carries.
+    shortestSpring(body) {
+      if (this.carrierOf(body.name) !== 'ground') return Infinity;
+      const rest = (name) => this.reference(name), isUnder = (s) => s.type === 'spring' && s.at[0].body === body.name;
+      const springs = this.elements.flatMap((e) => e.shapes.filter(isUnder));
+      const lengthOf = ({ at: [a, b] }) => length(minus(this.placed(a, rest), this.placed(b, rest)));
+      return Math.min(Infinity, ...springs.map((s) => Math.max(lengthOf(s), tiedSpring * this.size)));
+    },
+    // Factor that a body's motion allows: the largest of 1, 2, 5, 10 … within the bounds above; Infinity for one that does not move.
+    factorAllowed(body, seenFrom) {
+      const { displacement, turned } = this.motionOf(body, seenFrom);
+      if (turned > largestTurn) return 1;
+      const room = Math.min(drawnClearance * this.clearanceOf(body), drawnSpring * this.shortestSpring(body));
+      const bound = Math.min(drawnMotion * length(this.still.span), room);
+      const wanted = Math.min(bound / Math.max(displacement, 1e-12), drawnTurn / Math.max(turned, 1e-12));
+      return wanted > most ? Infinity : wanted >= 1 ? rounded(wanted) : 1;
+    },
+    // Name of each body with its factor. Bodies on one carrier share the smallest; one beside bodies whose motion is not known has 1.
+    usualFactors(seenFrom) {
+      if (!this.factors) this.factors = new Map();
+      if (this.factors.has(seenFrom)) return this.factors.get(seenFrom);
+      const ofCarrier = new Map(), moving = [...this.bodies.values()].filter((b) => b.moves || b.isUnrecorded);
+      for (const body of moving) {
+        const carrier = this.carrierOf(body.name);
+        const allowed = this.run.poseOf ? 1 : this.factorAllowed(body, seenFrom);
+        ofCarrier.set(carrier, Math.min(ofCarrier.get(carrier) ?? Infinity, allowed));
+      }
+      const finite = (f) => (Number.isFinite(f) ? f : 1);
+      const found = new Map(moving.map((b) => [b.name, finite(ofCarrier.get(this.carrierOf(b.name)))]));
+      this.factors.set(seenFrom, found);
+      return found;
+    },
+    isUsuallyMagnified(seenFrom) { return [...this.usualFactors(seenFrom).values()].some((f) => f > 1); },
+    // `magnification`: a number for all bodies, or 'usual'.
+    factorOf(name, seenFrom, magnification) {
+      return magnification === 'usual' ? this.usualFactors(seenFrom).get(name) ?? 1 : magnification;
     },
     // Poses as drawn at time t.
     look(t, seenFrom, magnification) {
-      const r0 = this.reference(seenFrom), cache = new Map();
-      return (name) => {
+      const cache = new Map(), compose = (a, b) => [...apply(a, b), a[2] + b[2]];
+      const inGround = (name) => {
         if (cache.has(name)) return cache.get(name);
-        const a = relative(r0, this.reference(name)), b = this.seenPose(name, t, seenFrom);
-        const drawn = a.map((v, i) => v + magnification * (b[i] - v)), pose = [...apply(r0, drawn), drawn[2] + r0[2]];
+        let pose = this.followedPose(name, t, seenFrom);
+        if (this.bodies.has(name) && !this.isHeld(name)) {
+          const { rest, now } = this.onCarrier(name, t, seenFrom), f = this.factorOf(name, seenFrom, magnification);
+          pose = compose(inGround(this.carrierOf(name)), rest.map((v, i) => v + f * (now[i] - v)));
+        }
         cache.set(name, pose);
         return pose;
       };
+      if (!this.bodies.has(seenFrom)) return inGround;
+      const seen = new Map();
+      return (name) => {
+        if (!seen.has(name)) seen.set(name, compose(this.reference(seenFrom), relative(inGround(seenFrom), inGround(name))));
+        return seen.get(name);
+      };
+    },
+    // Where a body would be drawn if it stood on its carrier as at the start.
+    ghostPose(name, pose) {
+      const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name)), on = pose(carrier);
+      return [...apply(on, rest), on[2] + rest[2]];
     },
   });
+  // The choices of a magnification and of a standpoint, of all pages: `scenes` are shown together.
+  steplap.pictureChoices = (scenes, factor, from) => {
+    const standpoint = scenes[0].usualStandpoint(), option = ([value, text]) => steplap.make('option', { value }, text);
+    from.replaceChildren(...scenes[0].standpoints().map(option));
+    from.value = standpoint;
+    const isMagnified = scenes.some((scene) => scene.isUsuallyMagnified(standpoint));
+    const numbers = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].map((f) => [f, f === 1 ? 'true' : `${f} ×`]);
+    factor.replaceChildren(...[...(isMagnified ? [['usual', 'enlarged']] : []), ...numbers].map(option));
+    factor.value = isMagnified ? 'usual' : '1';
+  };
+  steplap.magnificationOf = (choice) => (choice.value === 'usual' ? 'usual' : Number(choice.value));
 })();

@@ -108,7 +108,7 @@ steplap.Symbols = (() => {
     }
     onPicture([x, y], [width, height]) {
       const { scene } = this, half = 0.5 * width + 2;
-      return [Math.min(Math.max(x, half), Math.max(half, scene.width - half)), Math.min(Math.max(y, 0.5 * height + 1), scene.height - 0.5 * height - 2)];
+      return [Math.min(Math.max(x, half), Math.max(half, scene.width - half)), Math.min(Math.max(y, 0.5 * height + 1), scene.height - scene.footHeight() - 0.5 * height)];
     }
     take(at, size) {
       this.scene.takenTexts.push([...at, ...size]);
@@ -320,6 +320,7 @@ steplap.Symbols = (() => {
     rail(element, shape) {
       if (shape.style === 'limit' && shape.sizes) { this.stops(element, shape); return; }
       if (shape.style === 'brake') return; // its words say what it does
+      if (this.scene.wheelsOf(shape.at[0].body).length) return; // they say how it is guided
       if (shape.style === 'skate') { this.blade(element, shape); return; }
       if (shape.at.length > 1 && this.scene.body(shape.at[0].body).is_outline_given && this.hasEdge(shape)) { this.rollers(element, shape); return; }
       const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
@@ -380,7 +381,9 @@ steplap.Symbols = (() => {
     }
     arrow(element, shape) {
       if (shape.style === 'load') { this.load(element, shape); return; }
-      const place = this.frontOf(shape), symbol = this.piece(element, { class: 'symbol drive' }), channel = this.channel(element, shape), text = this.value(element);
+      const symbol = this.piece(element, { class: 'symbol drive' });
+      if (element.as) { this.driven(element, shape, symbol); return; }
+      const place = this.frontOf(shape), channel = this.channel(element, shape), text = this.value(element);
       this.update((t, pose) => {
         const at = this.screen(place, pose), d = this.direction(shape, pose), tip = add(at, scaled(d, 4.5 * this.u));
         symbol.setAttribute('d', path([at, tip]) + arrowHead(tip, d, 0.9 * this.u));
@@ -439,8 +442,9 @@ steplap.Symbols = (() => {
   Object.assign(steplap.Scene.prototype, {
     buildSymbols() {
       this.takenTexts = [];
-      // Room for texts: not on the marks of bodies, nor on texts that are there before.
-      this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.now), 20, 20]); });
+      // Room for texts: not on names of bodies, nor on texts that are there before.
+      const middleAndSize = ([x0, y0, x1, y1]) => [0.5 * (x0 + x1), 0.5 * (y0 + y1), x1 - x0 + 4, y1 - y0];
+      this.updaters.push((t, pose) => { this.takenTexts = this.nameBoxes(pose).map(middleAndSize); });
       this.symbols = new Symbols(this);
       this.updaters.push((t, pose) => { this.symbols.showMoved(t); this.showHappenings(t, pose); this.symbols.placeValues(); });
     },

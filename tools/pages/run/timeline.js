@@ -57,6 +57,7 @@ steplap.Timeline = (() => {
   }
 
   return class Timeline {
+    // `end`: of the axis of time; runs may go on.
     constructor(runs, end, { lanes, axis, slider, onTime }) {
       Object.assign(this, { runs, end, box: lanes, axisBox: axis, slider, onTime });
       this.most = runs.length > 1 ? 3 : 5;
@@ -112,7 +113,7 @@ steplap.Timeline = (() => {
         const y = k * step + (this.isNarrow ? 14 : 0) + laneHeight / 2 + 1;
         svg.append(make('text', this.isNarrow ? { x: 2, y: y - 12, class: 'lane-name' } : { x: this.left - 12, y: y + 4, class: 'lane-name end' }, make('title', {}, lane.who), this.shortened(lane.who)));
         svg.append(make('line', { x1: this.left, x2: this.width - this.right, y1: y, y2: y, class: 'lane' }));
-        for (const { from, to, kind } of stretchesOf(lane, run.end))
+        for (const { from, to, kind } of stretchesOf(lane, Math.min(run.end, this.end)))
           svg.append(make('rect', { x: this.xOf(from), width: Math.max(1.5, this.xOf(to) - this.xOf(from)), y: y - 4, height: 8, class: `stretch ${kind.class}` }, make('title', {}, `${lane.who} ${kind.word}`)));
         for (const group of gathered(lane.events, (t) => this.xOf(t))) svg.append(this.sign(group, y));
       });
@@ -146,7 +147,7 @@ steplap.Timeline = (() => {
       this.axisBox.replaceChildren(svg);
     }
     show(t) {
-      this.cursor.style.left = `${this.xOf(t)}px`;
+      this.cursor.style.left = `${this.xOf(Math.min(t, this.end))}px`;
       this.slider.value = String(t);
       this.slider.setAttribute('aria-valuetext', steplap.numbers.instant(t, this.end));
     }

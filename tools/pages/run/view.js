@@ -10,6 +10,7 @@ steplap.View = class View {
     this.shift = shift;
     for (const scene of this.scenes) {
       scene.setView({ zoom: this.zoom, shift: [...this.shift] });
+      scene.spreadNames();
       scene.svg.classList.toggle('zoomed', this.zoom !== 1 || this.shift.some((v) => v !== 0));
     }
     this.redraw();

@@ -1,0 +1,31 @@
+// The start pose, dashed, of bodies that are drawn elsewhere: where a thing was on what carries it.
+(() => {
+  const make = steplap.make, { minus, length, apply } = steplap.geometry;
+  const least = 3; // pixels between a body and its ghost
+  const most = 40; // bodies
+
+  Object.assign(steplap.Scene.prototype, {
+    addGhost(body) {
+      if (this.bodies.size > most || !body.moves || body.isPoint) return;
+      const shapes = this.shapesOf(body).filter((shape) => !shape.classList.contains('spoke'));
+      const group = make('g', { class: 'ghost', 'data-ghost-of': body.name }, ...shapes);
+      this.ghostLayer.append(group);
+      this.updaters.push((t, pose) => {
+        const at = this.ghostPose(body.name, pose), now = pose(body.name);
+        const isSeen = body.points.some((p) => length(minus(apply(at, p), apply(now, p))) * this.scale > least);
+        group.style.display = isSeen && !this.isLeftBehind(body.name) ? '' : 'none';
+        if (isSeen) this.putAt(group, at);
+      });
+    },
+    // Stands a body's ghost on ground that passes by?
+    isLeftBehind(name) {
+      const journey = this.seenFrom === 'ground' ? null : this.journey();
+      return Boolean(journey) && !journey.carried && this.isHeld(this.carrierOf(name));
+    },
+    // Puts what is drawn in a body's axes where the body is.
+    putAt(group, [x, y, angle]) {
+      const c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle), [sx, sy] = this.toScreen([x, y]);
+      group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
+    },
+  });
+})();
