@@ -6,6 +6,7 @@
 #include "mbd/base/stop.h"
 #include "mbd/trust/criteria.h"
 #include "mbd/trust/element_judgement.h"
+#include "run/drawing.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
 
@@ -355,6 +356,7 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   StaticProof proof;
   proof.model = loaded.name;
   proof.file = loaded.path;
+  proof.drawing = drawing_json(loaded.model);
   proof.overrides = loaded.overrides;
   proof.assumptions = assumptions_of(options.plane);
   proof.plane = options.plane;
