@@ -28,7 +28,7 @@ namespace {
 
 constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "drawing.json", "summary.json"};
 // Files that are later created from the others and are removed when these are replaced.
-constexpr const char* k_report = "report.html";
+constexpr const char* k_pages[] = {"report.html", "sheet.html"};
 constexpr const char* k_partial = "partial_";
 constexpr const char* k_staging = ".steplap-"; // followed by a random part, since processes in containers may have the same number
 constexpr std::chrono::minutes k_locked_within{1};
@@ -148,7 +148,7 @@ void write_all(const fs::path& staging, const fs::path& folder, const std::vecto
 void move_into(const fs::path& staging, const fs::path& folder, const std::vector<ResultFile>& files) {
   std::error_code error;
   std::vector<std::string> outdated = all_names();
-  outdated.emplace_back(k_report);
+  outdated.insert(outdated.end(), std::begin(k_pages), std::end(k_pages));
   for (const std::string& name : outdated)
     if (fs::remove(folder / name, error); error) fail(folder.string(), error.message());
   for (const ResultFile& file : files)

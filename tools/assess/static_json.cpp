@@ -111,6 +111,7 @@ OrderedJson proof_json(const StaticProof& proof, const std::string& sha256) {
                       {"assumptions", proof.assumptions},
                       {"cases", OrderedJson::array()},
                       {"polar", OrderedJson::array()}};
+  json["drawing"] = parse_ordered(proof.drawing);
   for (const StaticCase& one : proof.cases) json["cases"].push_back(case_json(one));
   for (const StaticDirection& one : proof.polar) json["polar"].push_back(direction_json(one));
   return json;

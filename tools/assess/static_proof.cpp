@@ -8,6 +8,7 @@
 #include "mbd/run/quantity_text.h"
 #include "mbd/trust/criteria.h"
 #include "mbd/trust/element_judgement.h"
+#include "mbd/run/drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -352,6 +353,7 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   StaticProof proof;
   proof.model = loaded.name;
   proof.file = loaded.path;
+  proof.drawing = drawing_json(loaded.model, *loaded.views);
   proof.overrides = loaded.overrides;
   proof.assumptions = assumptions_of(options.plane);
   proof.plane = options.plane;

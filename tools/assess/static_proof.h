@@ -70,6 +70,7 @@ struct StaticDirection {
 /// Results of a static proof for one model.
 struct StaticProof {
   std::string model, file;
+  std::string drawing;                  ///< of the model, JSON (run/drawing.h)
   std::vector<std::string> overrides;   ///< "path=value", applied to the file
   std::vector<std::string> assumptions; ///< sentences
   Plane plane = Plane::lengthwise;

@@ -89,7 +89,7 @@ void check_types(const fs::path& file, const Json& json, const std::string& wher
     for (std::size_t i = 0; value.is_array() && i < value.size(); ++i)
       if ((holds_objects && !value[i].is_object()) || (holds_texts && !value[i].is_string()))
         damaged(file, "'" + place + "[" + std::to_string(i) + "]' is not " + (holds_objects ? "an object" : "a text"));
-    if (value.is_structured() && key != "figure") check_types(file, value, place);
+    if (value.is_structured() && key != "figure" && key != "drawing") check_types(file, value, place);
   }
 }
 
@@ -186,16 +186,21 @@ bool is_assessment(const std::string& folder) {
          fs::is_regular_file(fs::path(folder) / "static.json", ignored);
 }
 
-std::string assessment_page(const std::string& folder) {
+OrderedJson assessment_data(const std::string& folder) {
   const fs::path assessed = fs::path(folder) / "assessment.json", proven = fs::path(folder) / "static.json";
   std::error_code ignored;
   Json data{{"program", std::string("steplap ") + k_version}, {"folder", folder}, {"runs", Json::array()}};
   if (fs::is_regular_file(assessed, ignored)) data["assessment"] = read_assessment(assessed);
   if (fs::is_regular_file(proven, ignored)) data["static"] = read_static(proven);
+  return data;
+}
+
+std::string assessment_page(const std::string& folder) {
   namespace assets = report_assets;
+  const Json data = assessment_data(folder);
   return filled_page(assets::k_assessment_html, {{"PAGE_TITLE", escaped_html("steplap assessment: " + folder)},
                                                  {"PAGE_CSS", std::string(assets::k_page_css)},
-                                                 {"ASSESSMENT_CSS", std::string(assets::k_assessment_css)},
+                                                 {"SHEET_CSS", std::string(assets::k_sheet_css)},
                                                  {"DATA", in_script(data.dump(-1, ' ', false, Json::error_handler_t::replace))},
                                                  {"PAGE_JS", std::string(assets::k_assessment_js)}});
 }

@@ -1,6 +1,8 @@
 // Creates the page of an assessment or of a static proof, from assessment.json and static.json in a folder.
 #pragma once
 
+#include "mbd/run/ordered_json.h"
+
 #include <string>
 
 namespace steplap {
@@ -8,8 +10,10 @@ namespace steplap {
 /// Returns true if the folder contains assessment.json or static.json.
 [[nodiscard]] bool is_assessment(const std::string& folder);
 
-/// Returns a self-contained HTML file. Its first printed sheet is one A4 page with room for two signatures. Throws FileError if a file was
-/// not written by `steplap assess`, or if its decision is less severe than one of its reasons.
+/// Returns the content of both files for a page. Throws FileError if a file was not written by `steplap assess`, or if its decision is less
+/// severe than one of its reasons.
+[[nodiscard]] OrderedJson assessment_data(const std::string& folder);
+/// Returns a self-contained HTML file. Its first printed sheet is one A4 page with room for two signatures. Throws as assessment_data().
 [[nodiscard]] std::string assessment_page(const std::string& folder);
 
 } // namespace steplap

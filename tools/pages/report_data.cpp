@@ -242,6 +242,18 @@ OrderedJson still_run(const LoadedModel& loaded) {
           {"drawing", parse_ordered(drawing_json(loaded.model, *loaded.views))}};
 }
 
+OrderedJson still_run(Results run) {
+  Json summary = parsed(run, run.summary, "summary.json"), drawing = parsed(run, run.drawing, "drawing.json");
+  const Json worst = summary.value(Json::json_pointer("/overview/worst_instant"), Json());
+  const double t = worst.is_number() ? worst.get<double>() : run.times.back();
+  const auto distance = [t](double a, double b) { return std::abs(a - t) < std::abs(b - t); };
+  const std::size_t nearest = static_cast<std::size_t>(std::min_element(run.times.begin(), run.times.end(), distance) - run.times.begin());
+  run.times = {run.times[nearest]};
+  for (ResultChannel& channel : run.channels) channel.values = {channel.values[nearest]};
+  const Plan plan = plan_for({run}, {drawing}, std::numeric_limits<std::size_t>::max() / 2);
+  return run_json(run, std::move(summary), std::move(drawing), plan.kept.front(), 0);
+}
+
 std::string in_script(const std::string& json) {
   std::string safe;
   for (const char c : json)

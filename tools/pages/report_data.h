@@ -23,6 +23,9 @@ namespace steplap {
 /// Returns the data of a run without time histories, for pages that draw the model only.
 [[nodiscard]] OrderedJson still_run(const LoadedModel& loaded);
 
+/// Returns the data of a run with its channels at its worst instant only, or at its end if it has none. Throws as report_data().
+[[nodiscard]] OrderedJson still_run(Results run);
+
 /// Returns equivalent JSON without '<'. The character occurs in strings only, where it can be escaped.
 [[nodiscard]] std::string in_script(const std::string& json);
 

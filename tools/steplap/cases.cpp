@@ -3,7 +3,7 @@
 #include "mbd/run/findings.h"
 #include "mbd/run/load_cases.h"
 #include "mbd/run/summary.h"
-#include "tools/pages/cases_page.h"
+#include "tools/pages/sheet_page.h"
 #include "tools/steplap/cases_screen.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/json_screen.h"
@@ -58,7 +58,7 @@ ExitCode cases(const CasesOptions& options, Console& console) {
   const LoadCaseResults results = run_load_cases(options.model, options.overrides, program_catalogue(), run_options(options));
   log_findings(results);
   const OrderedJson document = load_cases_document(results);
-  if (options.sheet) files.write(options.sheet, cases_page(*results.model, document));
+  if (options.sheet) files.write(options.sheet, cases_sheet(*results.model, document));
   if (JsonScreen* const screen = json_screen(console.out)) {
     screen->begin(About{results.model->path});
     screen->put("load_cases", document);

@@ -18,7 +18,7 @@ import report_test as base
 WORK = base.WORK
 DATA = {"plain": (sample.assessment(), None), "long": (sample.long_assessment(), sample.static_proofs()), "hostile": (sample.hostile_assessment(), None),
         "bare": (sample.bare_assessment(), None), "static": (None, sample.static_proofs())}
-SIGNED = ["Name", "Date", "Place", "Signature", "For the receiver", "For the carrier"]
+SIGNED = ["Name", "Date", "Place", "Signature"]
 
 
 def write(name, assessment, static=None):
@@ -184,7 +184,8 @@ class AssessmentPageTest(base.Page):
                 self.show(name)
                 sheets = self.print_page(name)
                 self.assertGreater(len(sheets), 1)
-                for part in [*wanted, *SIGNED]:
+                signers = ["Prepared by", "Approved by"] if name == "static" else ["For the receiver", "For the carrier"]
+                for part in [*wanted, *SIGNED, *signers]:
                     self.assertIn(part, sheets[0])
                 self.assertNotIn("Signature", " ".join(sheets[1:]))
                 self.assertEqual(sheets[0].count("Signature"), 2)

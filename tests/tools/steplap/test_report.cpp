@@ -6,6 +6,7 @@
 #include "mbd/run/sketch.h"
 #include "tests/tools/steplap/workbench.h"
 #include "tools/pages/figure.h"
+#include "tools/pages/load_case.h"
 #include "tools/pages/report_data.h"
 #include "tools/pages/report_page.h"
 #include "tools/pages/thinning.h"
@@ -520,6 +521,50 @@ TEST_CASE("an element's drawing hint is read, checked and kept") {
   const Outcome unknown = steplap_does({"check", bench.write("c.toml", std::string(k_oscillator) + "drew = \"spring\"\n")});
   CHECK(unknown.code == 3);
   CHECK(unknown.err.find("'drew'") == unknown.err.rfind("'drew'")); // once, though two tables are read
+}
+
+TEST_CASE("the load case of a run: gravity, speed, drives and signals, but no other element") {
+  const std::string model = R"(
+source = "drawing 4711"
+gravity = [0.0, -9.81]
+simulation = { end = 1.0, velocity = ["1.1 km/h", 0.0] }
+[[element]]
+name = "drive"
+kind = "prescribed_motion"
+signal = "braking"
+[[element]]
+name = "foot"
+kind = "unilateral_contact"
+[[signal]]
+name = "braking"
+kind = "table"
+times = [0, 1, 2, 3, 4, 5, 6, 7, 8]
+peak = "-0.8 gravity"
+)";
+  const auto drawing = nlohmann::ordered_json::parse(
+      R"({"elements": [{"name": "drive", "shapes": [{"type": "arrow"}]}, {"name": "foot", "shapes": [{"type": "contact"}]}]})");
+  const auto rows = load_case_json(model, drawing).get<std::vector<std::pair<std::string, std::string>>>();
+  const std::vector<std::pair<std::string, std::string>> wanted{{"gravity", "[0, -9.81]"},
+                                                                {"initial velocity", "[1.1 km/h, 0]"},
+                                                                {"element 'drive'", "prescribed_motion, signal = braking"},
+                                                                {"signal 'braking'", "table, times = 9 values, peak = -0.8 gravity"},
+                                                                {"source of the values", "drawing 4711"}};
+  CHECK(rows == wanted);
+}
+
+TEST_CASE("report --sheet: one result, beside it, and gone with it") {
+  const Workbench bench;
+  const std::string a = bench.write("a.toml", k_bouncer);
+  REQUIRE(steplap_does({"simulate", a, "-q", "-o", bench.at("out")}).code == 0);
+  REQUIRE(steplap_does({"report", bench.at("out/a"), "--sheet"}).code == 0);
+  CHECK(bench.content("out/a").count("sheet.html") == 1);
+  CHECK(steplap_does({"report", bench.at("out/a"), "--sheet"}).code == 2); // nothing is overwritten unasked
+  const Outcome two = steplap_does({"report", bench.at("out/a"), bench.at("out/a"), "--sheet"});
+  CHECK(two.code == 2);
+  CHECK(has(two.err, "name one folder instead of 2"));
+  // A sheet of earlier results is not left beside new ones.
+  REQUIRE(steplap_does({"simulate", a, "-q", "-o", bench.at("out"), "-f"}).code == 0);
+  CHECK(bench.content("out/a").count("sheet.html") == 0);
 }
 
 TEST_CASE("report: places, refusals and the page of simulate") {

@@ -17,9 +17,8 @@
       figure(String(count((m) => m.verdict === 'open')), 'in which a verdict is open'), ...(A.voyage.damage_probability ? [figure(A.chanceText(A.voyage.damage_probability), 'probability of damage in the voyage')] : []));
   }
   function decision() {
-    const verdict = given ? given.decision : A.statics.length === 1 ? A.statics[0].verdict : ['reject', 'open', 'hold'].find((v) => A.statics.some((s) => s.verdict === v)) || 'open';
-    const reason = given ? given.reason : A.statics.map((s) => (A.statics.length > 1 ? `${s.model}: ` : '') + (s.reason || steplap.statics.weakestText(s))).join(' ');
-    at('decision').append(make('div', { class: 'verdict-line' }, make('span', { class: `badge ${A.words[verdict] ? verdict : 'open'}` }, A.words[verdict] || 'OPEN'), make('span', { class: 'reason' }, reason || '')),
+    const { verdict, reason } = A.answer();
+    at('decision').append(make('div', { class: 'verdict-line' }, make('span', { class: `badge ${A.words[verdict] ? verdict : 'open'}` }, A.words[verdict] || 'OPEN'), make('span', { class: 'reason' }, reason)),
       ...A.contradictions().map((t) => make('p', { class: 'contradiction' }, `Look at this: ${t}`)));
     if (!given) return;
     at('decision').append(keyFigures());
@@ -53,7 +52,7 @@
 
   at('title').textContent = given ? 'Assessment of a transport' : 'Static proof';
   at('subtitle').textContent = [A.records.map((r) => r.file).join(', '), (A.models.length ? A.models.map((m) => m.name) : A.statics.map((s) => s.model)).join(', ')].filter((t) => t).join(' · ');
-  const kept = steplap.sheet.fit(); // before the page is large: it is laid out some dozen times
+  const sheet = steplap.assessmentSheet(), kept = steplap.sheet.fit(sheet.contentOf, sheet.room); // before the page is large: it is laid out some dozen times
   decision();
   events();
   voyage();

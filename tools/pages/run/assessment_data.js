@@ -55,6 +55,13 @@ steplap.assessment = (() => {
     }
     return found.slice(0, 8);
   }
+  // The decision, or the worst verdict of the static proofs, with its reason.
+  function answer() {
+    if (given) return { verdict: given.decision, reason: given.reason || '' };
+    const verdict = ['reject', 'open', 'hold'].find((v) => statics.some((s) => s.verdict === v)) || 'open';
+    const text = (s) => (statics.length > 1 ? `${s.model}: ` : '') + (s.reason || steplap.statics.weakestText(s));
+    return { verdict, reason: statics.map(text).join(' ') };
+  }
   // The record itself states range and bandwidth of its recorder. They fill fields that the papers leave empty.
   const recorderOf = (record) => ({ record: record.file, range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '', filter: isKnown(record.bandwidth) ? `read up to ${one(record.bandwidth, 'Hz')}` : '' });
   function papers() {
@@ -67,5 +74,5 @@ steplap.assessment = (() => {
   return { papers: papers(), covered: (given && given.covered) || '', coveredShare: given ? given.covered_share : null, journey: (given && given.journey) || '', program: raw.program, folder: raw.folder, given, events, worst, models, statics, records: list(given && given.records), reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)), hangs: list(given && given.hangs_on), tests: list(given && given.tests),
     assumptions: [...list(given && given.assumptions), ...statics.flatMap((s) => list(s.assumptions))], criteria: (given && given.criteria) || null, voyage: (given && given.voyage) || {}, totals: list(given && given.voyage && given.voyage.joints),
     uncertain: models.flatMap((m) => list(m.uncertain).map((u) => ({ ...u, model: m.name }))), unknown: models.map((m) => ({ name: m.name, list: list(m.knows_not) })).filter((m) => m.list.length),
-    list, words, outcomes, acceleration, peakText, chanceText, slipText, slidText, margin, marginText, timeText, contradictions };
+    list, words, outcomes, acceleration, peakText, chanceText, slipText, slidText, margin, marginText, timeText, contradictions, answer };
 })();

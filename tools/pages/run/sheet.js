@@ -1,0 +1,70 @@
+// The sheet that is signed, one page of A4: heading, verdict, parts, room for two signatures. Runs, load cases, static proofs and
+// assessments state their parts; the builder lays them out and shortens them until the page holds them.
+steplap.sheet = (() => {
+  const make = steplap.make;
+  // mm: A4 without the margins of page.css; three more of the height stay free, because paper rounds otherwise than the screen.
+  const width = 186, height = 270;
+
+  function short(text, limit) {
+    const letters = [...String(text)]; // code points: a letter of two UTF-16 units is not cut in half
+    return letters.length > limit ? `${letters.slice(0, limit - 1).join('')}…` : letters.join('');
+  }
+  const part = (title, ...content) => make('div', {}, make('h2', {}, title), ...content);
+  const rest = (all, kept, what) => (all > kept ? [make('p', { class: 'more' }, `${all - kept} more ${what} on the sheets behind.`)] : []);
+  const list = (texts) => make('ul', {}, ...texts.map((t) => make('li', {}, t)));
+  const bullets = (texts, kept, limit, what) => [list(texts.slice(0, kept).map((t) => short(t, limit))), ...rest(texts.length, kept, what)];
+  // A line to be filled in by hand where nothing is stated.
+  const orBlank = (text, limit) => (text ? short(text, limit) : make('span', { class: 'blank' }));
+  const named = (file, sha256) => `${file} (SHA-256 ${String(sha256 || 'unknown').slice(0, 16)}…)`;
+
+  // The machine of a run as it stands at time t, with the names of its bodies.
+  function drawing(run, t, columns = 1) {
+    const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
+    scene.setMoved(moved, story);
+    const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`).join(' · ');
+    const room = 703 / columns, standpoint = scene.usualStandpoint(); // pixels of the style sheet: 186 mm
+    steplap.Scene.fitAll([scene], standpoint, scene.usualMagnification(standpoint), [room], 0.34 * 703);
+    scene.show(t);
+    return make('div', { class: 'drawing' }, scene.svg, make('p', { class: 'names' }, names));
+  }
+  const verdictLine = ({ word, verdict, reason }) => make('div', { class: 'verdict-line' },
+    ...(word ? [make('span', { class: `badge ${verdict}` }, word)] : []), make('span', { class: 'reason' }, reason));
+  const signature = (who) => make('div', {}, make('p', { class: 'who' }, who),
+    ...['Name', 'Date', 'Place'].map((what) => make('p', {}, what)), make('p', { class: 'long' }, 'Signature'));
+  const signatures = (who) => make('div', { class: 'signatures' }, ...who.map(signature));
+
+  // `content`: { title, about, word, verdict, reason, parts, signed }.
+  function fill(place, size, content) {
+    place.style.fontSize = `${size}pt`;
+    place.replaceChildren(make('h1', {}, content.title), make('p', {}, content.about), verdictLine(content), ...content.parts,
+      signatures(content.signed));
+    for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // paper is no telephone, also when printed from one
+  }
+  // Lays out contentOf(keep). `most`: what is kept if there is room, by name; `size` are points of the letters. `cuts`: [name, what is kept
+  // then], in the order in which room is made; `dear`: the name whose cuts are taken back first. Returns what was kept.
+  function fit(contentOf, { most, cuts, dear = '' }) {
+    const place = document.getElementById('sheet');
+    place.classList.add('measured');
+    const measure = () => (width * place.getBoundingClientRect().height) / place.getBoundingClientRect().width;
+    const isFitting = (keep) => { fill(place, keep.size, contentOf(keep)); return measure() <= height; };
+    const cutBy = (count) => ({ ...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last of a name counts
+    // The fewest cuts that suffice, found by bisection.
+    let few = 0, many = cuts.length;
+    while (few < many) {
+      const middle = (few + many) >> 1;
+      if (isFitting(cutBy(middle))) many = middle; else few = middle + 1;
+    }
+    let keep = cutBy(few);
+    // Cuts without need are taken back, the last first.
+    const undone = cuts.slice(0, few).map(([what], i) => [what, cutBy(i)[what]]).reverse();
+    for (const [what, before] of [...undone.filter(([what]) => what === dear), ...undone.filter(([what]) => what !== dear)])
+      if (isFitting({ ...keep, [what]: before })) keep = { ...keep, [what]: before };
+    isFitting(keep);
+    place.dataset.height = measure().toFixed(1);
+    place.classList.remove('measured');
+    return keep;
+  }
+  // Cuts that make letters smaller and leave nothing out: below the smallest the sheet continues on a second page.
+  const smaller = (from, to) => Array.from({ length: Math.round((from - to) / 0.25) }, (_, k) => ['size', from - 0.25 * (k + 1)]);
+  return { short, part, rest, list, bullets, orBlank, named, drawing, fit, smaller };
+})();

@@ -1,0 +1,7 @@
+// The page of a sheet alone: what it shows depends on which results the page holds.
+(() => {
+  const { loadCases, runs } = steplap.data, { given, statics } = steplap.assessment;
+  const sheet = given || statics.length ? steplap.assessmentSheet() : loadCases ? steplap.casesSheet(loadCases) : steplap.runSheet(runs[0]);
+  steplap.page = { kept: steplap.sheet.fit(sheet.contentOf, sheet.room) };
+  document.body.setAttribute('data-ready', 'true');
+})();
