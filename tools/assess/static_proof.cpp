@@ -4,11 +4,11 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/base/stop.h"
+#include "mbd/run/drawing.h"
 #include "mbd/run/prominence.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/trust/criteria.h"
 #include "mbd/trust/element_judgement.h"
-#include "mbd/run/drawing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -17,15 +17,14 @@ steplap.sheet = (() => {
   const orBlank = (text, limit) => (text ? short(text, limit) : make('span', { class: 'blank' }));
   const named = (file, sha256) => `${file} (SHA-256 ${String(sha256 || 'unknown').slice(0, 16)}…)`;
 
-  // The machine of a run as it stands at time t, with the names of its bodies.
+  // The machine of a run as it stands at time t.
   function drawing(run, t, columns = 1) {
     const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
     scene.setMoved(moved, story);
-    const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`).join(' · ');
     const room = 703 / columns, standpoint = scene.usualStandpoint(); // pixels of the style sheet: 186 mm
     steplap.Scene.fitAll([scene], standpoint, scene.usualMagnification(standpoint), [room], 0.34 * 703);
     scene.show(t);
-    return make('div', { class: 'drawing' }, scene.svg, make('p', { class: 'names' }, names));
+    return make('div', { class: 'drawing' }, scene.svg);
   }
   const verdictLine = ({ word, verdict, reason }) => make('div', { class: 'verdict-line' },
     ...(word ? [make('span', { class: `badge ${verdict}` }, word)] : []), make('span', { class: 'reason' }, reason));
