@@ -1,5 +1,5 @@
 // Friction of a step-lap joint: three rows that hold the limb, the limit surface of the overlapping sheets, which bounds their wrench, and
-// the slip law (physics.md §4).
+// the slip law (theory.md §4).
 //
 // Wrench W = (Fx, Fy, M) on the limb about its centre of gravity, slip twist ν = (vx, vy, ω) of the limb relative to the active part, both
 // in the axes of the active part; ν is the rate of the rows.
