@@ -52,7 +52,8 @@ double value_in(const Report& report, const Response& response) {
   return k_none;
 }
 
-// Runs samples that no other thread has taken, with its own copy of the model.
+// Samples of one call, shared by its worker threads. work() runs samples that no other thread has taken, with the thread's own copy of the
+// model.
 struct Crew {
   const Model& given;
   const std::string& path;
