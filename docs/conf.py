@@ -40,7 +40,8 @@ made_pages = [name for name in ("models", "command_line") if (complete / f"{name
 def read_complete_page(app, name, source):
     folder, _, page = name.rpartition("/")
     if folder == "docs/reference" and page in made_pages:
-        source[0] = (complete / f"{page}.md").read_text()
+        pictures = os.path.relpath(complete / "pictures", root / "docs/reference")
+        source[0] = (complete / f"{page}.md").read_text().replace("](pictures/", f"]({pictures}/")
 
 
 def setup(app):

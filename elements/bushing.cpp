@@ -47,6 +47,14 @@ const ElementKind& bushing_kind() {
     f.add("damping", &Bushing::damping).in("N s/m").doc("[along x, along y]");
     f.add("rotational_stiffness", &Bushing::rotational_stiffness).in("N m/rad").not_negative().doc("about b");
     f.add("rotational_damping", &Bushing::rotational_damping).in("N m s/rad").not_negative().doc("about b");
+    k.example = R"([[element]]
+name = 'mount'
+kind = 'bushing'
+a = { body = 'a', at = [0.0, 0.0] }
+b = { body = 'b', at = [0.0, 0.0] }
+stiffness = [1e6, 1e6]
+damping = [1e3, 1e3]
+)";
     k.holds<Bushing>();
     k.compile = compile_bushing;
     return k;

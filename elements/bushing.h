@@ -1,4 +1,4 @@
-// Bushing: springs and dampers along x and y of marker b and about it, between two coincident markers (physics.md §2).
+// Bushing: springs and dampers along x and y of marker b and about it, between two coincident markers (theory.md §2).
 //
 // Force on a for each of the three coordinates, in the frame of b: −k δ − c δ̇. The opposite acts on b.
 #pragma once

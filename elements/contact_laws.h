@@ -7,7 +7,7 @@
 //   AdhesiveKelvinVoigtContact       f = −kδ − cδ̇                     as in the paper; f < 0 is possible just before opening
 //   HuntCrossleyContact  f = max(0, k|δ|ⁿ (1 − αδ̇))       damping proportional to the elastic force
 //
-// each for δ < 0; f = 0 for δ ≥ 0. Every law dissipates (elastic_force − f) δ̇. Source: docs/explanation/physics.md, section 2.
+// each for δ < 0; f = 0 for δ ≥ 0. Every law dissipates (elastic_force − f) δ̇. Source: docs/explanation/theory.md, section 2.
 //
 // Modes: open (δ ≥ 0), pressed (δ < 0, f > 0), released (δ < 0, f = 0: the bodies separate faster than the damped spring recovers).
 // Within a mode the force is smooth, also a little beyond the mode's limit, where the stages of a step may lie before the event is

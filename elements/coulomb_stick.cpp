@@ -249,8 +249,8 @@ const ElementKind& coulomb_stick_kind() {
     k.example = R"([[element]]
 name = 'foot'
 kind = 'unilateral_contact'
-a = 'a'
-b = 'b'
+a = { body = 'a', point = [0.0, -0.5] }
+b = { body = 'b', point = [0.0, 0.5] }
 stiffness = 1e6
 [[element]]
 name = 'sole'

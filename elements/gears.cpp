@@ -82,6 +82,14 @@ const ElementKind& gear_kind() {
     f.add("radius_a", &T::radius_a).in("m").positive().required().doc("pitch radius of the first gear");
     f.add("radius_b", &T::radius_b).in("m").positive().required().doc("pitch radius of the second gear");
     f.add("inside", &T::inside).doc("true: the second is a ring with the first inside");
+    k.example = R"([[element]]
+name = 'gears'
+kind = 'gear'
+a = 'a'
+b = 'b'
+radius_a = 0.8
+radius_b = 1.2
+)";
     k.holds<T>();
     k.compile = compile_gear;
     return k;
@@ -100,6 +108,13 @@ const ElementKind& rack_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker on the rack");
     f.add("radius", &T::radius).in("m").positive().required().doc("pitch radius of the pinion");
     f.add("axis", &T::axis).doc("direction of the rack, in marker b's axes");
+    k.example = R"([[element]]
+name = 'rack'
+kind = 'rack'
+a = 'a'
+b = { body = 'b', at = [0.0, 0.5] }
+radius = 0.5
+)";
     k.holds<T>();
     k.compile = compile_rack;
     return k;

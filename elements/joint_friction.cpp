@@ -216,6 +216,15 @@ const ElementKind& joint_friction_kind() {
     f.add("signal", &T::signal)
         .as(FieldType::signal)
         .doc("multiplies holds, drags and viscous, as a brake's pressure does; never below zero");
+    k.example = R"([[element]]
+name = 'brake'
+kind = 'joint_friction'
+a = 'a'
+b = 'b'
+coordinate = 'angle'
+holds = 100.0
+drags = 80.0
+)";
     k.holds<T>();
     k.compile = compile_joint_friction;
     return k;

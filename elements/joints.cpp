@@ -183,6 +183,12 @@ const ElementKind& revolute_kind() {
         .in("rad")
         .doc("of marker a's axes against marker b's in the reference pose: places the body that has no pose of its own");
     k.fields.add("angular_velocity", &Joint::angular_velocity).in("rad/s").doc("with 'angle': its rate at the start; 0 if not given");
+    k.example = R"([[element]]
+name = 'pin'
+kind = 'revolute'
+a = { body = 'a', at = [0.0, 0.0] }
+b = { body = 'b', at = [0.0, 0.0] }
+)";
     return k;
   }();
   return kind;
@@ -196,6 +202,13 @@ const ElementKind& prismatic_kind() {
         .doc("of marker a from marker b along the axis in the reference pose: places the body that has no pose of its own");
     k.fields.add("angle", &Joint::angle).in("rad").doc("with 'displacement': of marker a's axes against marker b's; 0 if not given");
     k.fields.add("speed", &Joint::speed).in("m/s").doc("with 'displacement': its rate at the start; 0 if not given");
+    k.example = R"([[element]]
+name = 'guide'
+kind = 'prismatic'
+a = { body = 'a', at = [0.0, 0.0] }
+b = { body = 'b', at = [0.0, 0.0] }
+axis = [0.0, 1.0]
+)";
     return k;
   }();
   return kind;
@@ -207,6 +220,12 @@ const ElementKind& weld_kind() {
     k.fields.add("angle", &Joint::angle)
         .in("rad")
         .doc("of marker a's axes against marker b's: places the body that has no pose of its own, marker on marker");
+    k.example = R"([[element]]
+name = 'weld'
+kind = 'weld'
+a = { body = 'a', at = [0.0, 0.0] }
+b = { body = 'b', at = [0.0, 0.0] }
+)";
     return k;
   }();
   return kind;
@@ -215,6 +234,12 @@ const ElementKind& distance_kind() {
   static const ElementKind kind = [] {
     ElementKind k = joint_kind("distance", "A massless rod: the markers keep their distance.", compile_distance);
     k.fields.add("length", &Joint::length).in("m").positive().doc("default: the distance in the reference pose");
+    k.example = R"([[element]]
+name = 'rod'
+kind = 'distance'
+a = { body = 'a', point = [0.0, -0.5] }
+b = { body = 'b', point = [0.0, 0.5] }
+)";
     return k;
   }();
   return kind;
@@ -223,6 +248,13 @@ const ElementKind& point_on_line_kind() {
   static const ElementKind kind = [] {
     ElementKind k = joint_kind("point_on_line", "Marker a stays on a line of b and may turn and slide on it.", compile_point_on_line);
     add_axis(k.fields);
+    k.example = R"([[element]]
+name = 'slot'
+kind = 'point_on_line'
+a = { body = 'a', at = [0.0, 0.0] }
+b = { body = 'b', at = [0.0, 0.0] }
+axis = [1.0, 0.0]
+)";
     return k;
   }();
   return kind;

@@ -156,6 +156,16 @@ const ElementKind& limit_kind() {
         .at_most(1.0)
         .doc("instead of damping: rate after a blow over that before it, of its bodies with the joints that hold them, in the reference "
              "pose");
+    k.example = R"([[element]]
+name = 'stops'
+kind = 'limit'
+a = 'a'
+b = 'b'
+coordinate = 'y'
+lower = -0.1
+upper = 0.1
+stiffness = 1e6
+)";
     k.holds<T>();
     k.compile = compile_limit;
     return k;

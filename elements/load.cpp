@@ -124,6 +124,12 @@ const ElementKind& load_kind() {
     f.add("force_y", &Load::force_y).as(FieldType::signal).in("N").doc("signal added to the force along y");
     f.add("torque", &Load::torque).as(FieldType::signal).in("N m").doc("signal added to the couple");
     f.add("frame", &Load::frame).one_of({"ground", "body"}).doc("axes of the force: ground, or the marker's");
+    k.example = R"([[element]]
+name = 'push'
+kind = 'load'
+at = 'a'
+force = [1e3, 0.0]
+)";
     k.holds<Load>();
     k.compile = compile_load;
     k.has_constant_load = [](const Element& element) {

@@ -180,6 +180,14 @@ const ElementKind& motor_kind() {
     f.add("target", &T::target).as(FieldType::signal).in("rad|m").doc("wanted value; not given: the reference pose");
     f.add("proportional", &T::proportional).in("N m/rad|N/m").not_negative().doc("of the servo");
     f.add("derivative", &T::derivative).in("N m s/rad|N s/m").not_negative().doc("of the servo");
+    k.example = R"([[element]]
+name = 'motor'
+kind = 'motor'
+a = 'a'
+b = 'b'
+coordinate = 'angle'
+constant_effort = 10.0
+)";
     k.holds<T>();
     k.compile = compile_motor;
     k.has_constant_load = [](const Element& element) { return static_cast<const T&>(element).constant_effort != 0.0; };

@@ -116,6 +116,19 @@ const ElementKind& prescribed_motion_kind() {
     f.add("zero", &T::zero)
         .one_of({"origin", "reference"})
         .doc("as = \"position\": the signal is the coordinate itself, or counts from its value in the reference pose");
+    k.example = R"([[signal]]
+name = 'stroke'
+kind = 'half_sine'
+peak = 0.1
+duration = 1.0
+[[element]]
+name = 'shaker'
+kind = 'prescribed_motion'
+a = 'a'
+coordinate = 'x'
+as = 'velocity'
+signal = 'stroke'
+)";
     k.holds<T>();
     k.compile = compile_prescribed;
     return k;

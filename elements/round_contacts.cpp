@@ -200,6 +200,15 @@ const ElementKind& circle_contact_kind() {
     f.add("radius_b", &T::radius_b).in("m").not_negative().doc("of the second circle; 0: a point");
     f.add("inside", &T::inside).doc("true: the first circle is inside the second, a ring");
     add_fields<T>(f);
+    k.example = R"([[element]]
+name = 'rollers'
+kind = 'circle_contact'
+a = 'a'
+b = 'b'
+radius_a = 1.0
+radius_b = 1.0
+stiffness = 1e6
+)";
     k.holds<T>();
     k.compile = compile_circle;
     k.contact = describe_circle;
@@ -223,6 +232,16 @@ const ElementKind& segment_contact_kind() {
     f.add("to", &T::to).in("m").required().doc("the other end");
     f.add("thickness", &T::thickness).in("m").not_negative().doc("of the segment; its ends are half circles");
     add_fields<T>(f);
+    k.example = R"([[element]]
+name = 'roller on a plate'
+kind = 'segment_contact'
+a = 'a'
+b = 'b'
+radius = 0.5
+from = [-1.5, 1.5]
+to = [1.5, 1.5]
+stiffness = 1e6
+)";
     k.holds<T>();
     k.compile = compile_segment;
     k.contact = describe_segment;

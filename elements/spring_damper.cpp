@@ -141,6 +141,14 @@ const ElementKind& spring_damper_kind() {
     f.add("between", &T::between)
         .one_of({"lines", "curve"})
         .doc("how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
+    k.example = R"([[element]]
+name = 'spring'
+kind = 'spring_damper'
+a = { body = 'a', point = [0.0, -0.5] }
+b = { body = 'b', point = [0.0, 0.5] }
+stiffness = 1e5
+damping = 1e3
+)";
     k.holds<T>();
     k.compile = compile_spring_damper;
     return k;
@@ -169,6 +177,14 @@ const ElementKind& rotational_spring_damper_kind() {
     f.add("between", &T::between)
         .one_of({"lines", "curve"})
         .doc("how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
+    k.example = R"([[element]]
+name = 'torsion spring'
+kind = 'rotational_spring_damper'
+a = 'a'
+b = 'b'
+stiffness = 1e4
+damping = 100.0
+)";
     k.holds<T>();
     k.compile = compile_rotational;
     return k;

@@ -2,7 +2,7 @@
 //
 // Elongation δ = measure − free length. The force f = −k δ − c δ̇ acts on a along the gradient of the measure (away from b if positive),
 // its opposite on b. Stored energy U = kδ²/2, dissipated power cδ̇². Optional: a dead band (gap) and tabulated characteristics, whose kinks
-// are events. Source: physics.md §2, Eqs. (2), (4).
+// are events. Source: theory.md §2, Eqs. (2), (4).
 #pragma once
 
 #include "mbd/model/model.h"

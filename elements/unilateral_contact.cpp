@@ -191,6 +191,14 @@ const ElementKind& unilateral_contact_kind() {
     f.add("ends", &T::ends)
         .in("m")
         .doc("where the face ends, [low, high] along (n_y, -n_x) from marker b; beyond it nothing is carried; default: endless");
+    k.example = R"([[element]]
+name = 'foot'
+kind = 'unilateral_contact'
+a = { body = 'a', point = [0.0, -0.5] }
+b = { body = 'b', point = [0.0, 0.5] }
+stiffness = 1e6
+damping = 1e4
+)";
     k.holds<T>();
     k.compile = compile_contact;
     k.contact = describe;

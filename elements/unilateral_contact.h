@@ -3,7 +3,7 @@
 // Gap δ = n·(p_A − p_B)/(n·a) − offset, contact for δ < 0; the force acts at the tip p_A − δ a along n/(n·a). The contact axis a is the
 // normal, or fixed in body a (a shaft whose tip is on b's line, as the foot of Eq. 8). Laws: Kelvin–Voigt without adhesion f = max(0, −kδ −
 // cδ̇); the paper's f = −kδ − cδ̇, which may pull; Hunt–Crossley f = k|δ|ⁿ(1 − α δ̇). The line is infinite, or a face from ends[0] to
-// ends[1] of the coordinate along t = (n_y, −n_x) from marker b. Source: physics.md §2.
+// ends[1] of the coordinate along t = (n_y, −n_x) from marker b. Source: theory.md §2.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -142,6 +142,13 @@ const ElementKind& freewheel_kind() {
     f.add("free", &T::free).one_of({"counter_clockwise", "clockwise"}).doc("how a may turn against b");
     f.add("holds", &T::holds).in("N m").positive().doc("largest couple while it is locked; not given: whatever it takes");
     f.add("drags", &T::drags).in("N m").not_negative().doc("couple that brakes a while it overruns");
+    k.example = R"([[element]]
+name = 'ratchet'
+kind = 'freewheel'
+a = 'a'
+b = 'b'
+free = 'counter_clockwise'
+)";
     k.holds<T>();
     k.compile = compile_freewheel;
     return k;

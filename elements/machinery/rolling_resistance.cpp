@@ -91,9 +91,9 @@ name = 'roller'
 kind = 'segment_contact'
 a = 'a'
 b = 'b'
-radius = 0.3
-from = [-1.0, 0.0]
-to = [1.0, 0.0]
+radius = 0.5
+from = [-1.0, 1.5]
+to = [1.0, 1.5]
 stiffness = 1e6
 [[element]]
 name = 'resistance'

@@ -361,6 +361,14 @@ const ElementKind& rope_kind() {
     f.add("length", &T::length).in("m").positive().doc("without load; default: the way over its points in the reference pose");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");
+    k.example = R"([[element]]
+name = 'lashing'
+kind = 'rope'
+a = { body = 'a', point = [0.0, -0.5] }
+b = { body = 'b', point = [0.0, 0.5] }
+stiffness = 1e5
+pretension = 1e3
+)";
     k.holds<T>();
     k.compile = compile_rope;
     return k;

@@ -299,6 +299,15 @@ const ElementKind& tie_kind() {
     f.add("consequence", &T::consequence)
         .one_of({"reject", "inspect", "none"})
         .doc("what its breaking means for the verdict; none: it is meant to give way first, such as resin");
+    k.example = R"([[element]]
+name = 'tie plate'
+kind = 'tie'
+a = { body = 'a', point = [0.0, -0.5] }
+b = { body = 'b', point = [0.0, 0.5] }
+acts = 'both'
+stiffness = 1e7
+strength = 1e5
+)";
     k.holds<T>();
     k.compile = compile_tie;
     k.judge = judge_tie;

@@ -140,8 +140,8 @@ const ElementKind& tyre_kind() {
 name = 'wheel'
 kind = 'tyre'
 a = 'a'
-b = 'b'
-radius = 0.3
+b = { body = 'b', point = [0.0, 1.5] }
+radius = 0.5
 stiffness = 2e5
 friction = 0.8
 slip_stiffness = 5e4

@@ -170,6 +170,15 @@ const ElementKind& wound_rope_kind() {
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("while it is taut; never pushes");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");
     f.add("slack", &T::slack).in("m").not_negative().doc("by which it is longer than the way in the reference pose");
+    k.example = R"([[element]]
+name = 'rope'
+kind = 'wound_rope'
+a = 'a'
+b = 'b'
+radius_a = 0.3
+radius_b = 0.3
+stiffness = 1e6
+)";
     k.holds<T>();
     k.compile = compile_wound_rope;
     return k;

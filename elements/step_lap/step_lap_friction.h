@@ -1,5 +1,5 @@
 // Friction of a step-lap joint: three rows that hold the limb, the limit surface of the overlapping sheets, which bounds their wrench, and
-// the slip law (physics.md §4).
+// the slip law (theory.md §4).
 //
 // Wrench W = (Fx, Fy, M) on the limb about its centre of gravity, slip twist ν = (vx, vy, ω) of the limb relative to the active part, both
 // in the axes of the active part; ν is the rate of the rows.
@@ -132,7 +132,7 @@ public:
   [[nodiscard]] Vec3 direction_of(const Evaluation& e, const Pose& slid, const Vec3& force) const;
   /// Returns the radius of curvature of the limit surface at direction y, relative to the capacity; small at a corner.
   [[nodiscard]] double roundness(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
-  /// Returns the force on the limit surface for which the joint yields along y.
+  /// Returns the force on the limit surface at which the joint yields along `direction`.
   [[nodiscard]] Vec3 bound_along(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
   /// Returns 1 − u, or, far from the limit surface, a positive lower bound of it.
   [[nodiscard]] double spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;

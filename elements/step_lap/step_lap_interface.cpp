@@ -204,6 +204,20 @@ const ElementKind& step_lap_interface_kind() {
         .doc("direction from the yoke to the limb, in which a limb moves away from the yoke; axes "
              "by "
              "'frame'; default: from the middle of one sheet to that of the other");
+    k.example = R"([[element]]
+name = 'joint'
+kind = 'step_lap_joint'
+limb = 'a'
+active_part = 'b'
+[[element]]
+name = 'sheets'
+kind = 'step_lap_interface'
+joint = 'joint'
+yoke = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.2], [-0.5, 0.2]]
+limb = [[-0.3, 0.0], [0.3, 0.0], [0.3, 1.0], [-0.3, 1.0]]
+pressure = 1e6
+static_friction = 0.3
+)";
     k.holds<T>();
     k.compile = compile_interface;
     return k;

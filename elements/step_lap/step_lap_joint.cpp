@@ -388,11 +388,6 @@ name = 'press'
 kind = 'constant'
 value = 1.0
 [[element]]
-name = 'stiff'
-kind = 'step_lap_joint'
-limb = 'a'
-active_part = 'b'
-[[element]]
 name = 'sheets of it'
 kind = 'step_lap_interface'
 joint = 'stiff'
@@ -402,6 +397,11 @@ pressure = 1e6
 static_friction = 0.3
 part = 'one packet'
 part_share = 0.5
+[[element]]
+name = 'stiff'
+kind = 'step_lap_joint'
+limb = 'a'
+active_part = 'b'
 [[element]]
 name = 'sheets below'
 kind = 'step_lap_interface'

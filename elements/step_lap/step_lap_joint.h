@@ -8,7 +8,7 @@
 // friction (step_lap_elastic.h), which for large stiffness tends to the rigid joint, the default. With edge_stiffness the edges of its
 // sheets are in contact where a clearance has closed (step_lap_edges.h).
 //
-// Assumptions: pressures do not change during sliding, no friction at edges, motion in the plane of the sheets. Source: physics.md §4.
+// Assumptions: pressures do not change during sliding, no friction at edges, motion in the plane of the sheets. Source: theory.md §4.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -165,7 +165,7 @@ void add_active(Layout& layout, const ActiveRow& row) {
   if (row.spec->drive) layout.driven_rows.push_back(static_cast<int>(layout.active.size()) - 1);
 }
 
-// Bilateral rows: a lock where a drive prescribes one coordinate of a body that is alone, otherwise a row.
+// Sorts the bilateral constraints: one that prescribes a coordinate of a single body locks that coordinate; all others become wanted rows.
 void want_bilateral(const System& system, const std::vector<char>& is_block_merged, const std::vector<char>& is_pin, Layout& layout,
                     std::vector<ActiveRow>& wanted) {
   for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {

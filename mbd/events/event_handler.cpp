@@ -88,7 +88,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
 
 } // namespace
 
-// The event functions are bound ∓ λ in one dimension; in three dimensions the first one is 1 − u.
+// In one dimension the two event functions are bound − λ and bound + λ, so the share is |λ|/bound; in three the first one is 1 − u.
 double share_of_bound(const FrictionUnit& unit, const std::vector<double>& event_value) {
   const double one = event_value[unit.first_event], other = event_value[unit.first_event + 1];
   return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;

@@ -45,7 +45,7 @@ public:
     for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
   }
 
-  // Solves with μ_s first; slipping elements then get μ_k and the problem is solved again. The slipping set only grows (physics.md §3).
+  // Solves with μ_s first; slipping elements then get μ_k and the problem is solved again. The slipping set only grows (theory.md §3).
   const std::vector<BlockSolution>& solve() {
     for (std::size_t pass = 0; pass <= elements_.size(); ++pass) {
       if (is_flat_) solve_flat();

@@ -1,6 +1,6 @@
 // Decides which friction elements stick and which begin to slip, for all of them together.
 //
-// At zero relative velocity the accelerations minimise Gauss' function plus the support functions of the admissible sets (physics.md §3).
+// At zero relative velocity the accelerations minimise Gauss' function plus the support functions of the admissible sets (theory.md §3).
 // Here the dual is solved: find wrenches w in ΠK_e that minimise ½ wᵀA w + bᵀw, with A the constrained compliance of the candidates' rows
 // and b their relative acceleration without friction. A w + b is the relative acceleration with friction, zero for elements that stick.
 // Only elements whose sticking wrench is not admissible, and those that they affect, enter the problem.

@@ -122,21 +122,24 @@ void enter(const Channel& channel, const std::string& name, std::vector<KindChan
   if (std::find(known->units.begin(), known->units.end(), channel.unit) == known->units.end()) known->units.push_back(channel.unit);
 }
 
-// Adds the channels of the system that belong to `owner`.
+// Adds the channels of the system that belong to `owner`, without those of markers inside it ("owner.a.x").
 void enter_all(const System& system, const std::string& owner, std::vector<KindChannel>& list) {
   for (const Channel& channel : system.channels)
-    if (channel.name.starts_with(owner + ".")) enter(channel, general_name(channel.name.substr(owner.size() + 1)), list);
+    if (channel.name.starts_with(owner + ".") && channel.name.find('.', owner.size() + 1) == std::string::npos)
+      enter(channel, general_name(channel.name.substr(owner.size() + 1)), list);
 }
 
-// Adds the channels of a sample model. Returns false if the model is not valid.
-bool try_scene(const std::string& text, const Catalogue& catalogue, const std::string& kind, std::vector<KindChannel>& list) {
+// Adds the channels of elements of this kind in a model. Throws ModelError if it is not valid.
+void enter_scene(const std::string& text, const Catalogue& catalogue, const std::string& kind, std::vector<KindChannel>& list) {
+  const std::unique_ptr<System> system = compile(parse_model(text, "example.toml", catalogue));
+  for (std::size_t e = 0; e < system->element_names.size(); ++e)
+    if (system->element_kinds[e] == kind) enter_all(*system, system->element_names[e], list);
+}
+
+void try_scene(const std::string& text, const Catalogue& catalogue, const std::string& kind, std::vector<KindChannel>& list) {
   try {
-    const std::unique_ptr<System> system = compile(parse_model(text, "example.toml", catalogue));
-    for (std::size_t e = 0; e < system->element_names.size(); ++e)
-      if (system->element_kinds[e] == kind) enter_all(*system, system->element_names[e], list);
-    return true;
+    enter_scene(text, catalogue, kind, list);
   } catch (const ModelError&) { // incompatible values; other samples work
-    return false;
   }
 }
 
@@ -156,23 +159,25 @@ std::vector<KindChannel> channels_in_scene(const Catalogue& catalogue, const std
 std::vector<KindChannel> channels_of_kind(const Catalogue& catalogue, const ElementKind& kind) {
   std::vector<KindChannel> list;
   if (!kind.compile) return list;
-  if (!kind.example.empty()) {
-    const std::unique_ptr<System> system =
-        compile(parse_model(k_scene + kind.example, "example.toml", catalogue)); // built-in example: errors are not expected
-    for (std::size_t e = 0; e < system->element_names.size(); ++e)
-      if (system->element_kinds[e] == kind.name) enter_all(*system, system->element_names[e], list);
-    return sorted(std::move(list));
-  }
   const std::string head = std::string(k_scene) + k_signal + "[[element]]\nname = \"e\"\nkind = \"" + kind.name + "\"\n" +
                            required_fields(kind) + (kind.fields.find("b") && !is_required(kind, "b") ? "b = \"b\"\n" : "");
   for (const std::string& choice : choices_of(kind))
     for (const std::string& extra : extras_of(kind)) try_scene(head + choice + extra, catalogue, kind.name, list);
+  enter_scene(example_model(kind), catalogue, kind.name, list);
   return sorted(std::move(list));
 }
 
 std::vector<KindChannel> channels_of_bodies(const Catalogue& catalogue) { return channels_in_scene(catalogue, "a"); }
 std::vector<KindChannel> channels_of_markers(const Catalogue& catalogue) { return channels_in_scene(catalogue, "M"); }
 std::vector<KindChannel> channels_of_whole(const Catalogue& catalogue) { return channels_in_scene(catalogue, "whole"); }
+
+std::string example_model(const ElementKind& kind) { return k_scene + kind.example; }
+
+std::string example_text(const ElementKind& kind) {
+  const std::string heading = "\nkind = '" + kind.name + "'\n";
+  const std::size_t next = kind.example.find("\n[[", kind.example.find(heading));
+  return next == std::string::npos ? kind.example : kind.example.substr(0, next + 1);
+}
 
 std::string units_text(const KindChannel& channel) {
   std::string text;

@@ -1,5 +1,5 @@
-// Finds the channels of each element kind by compiling sample elements, with each of their choices and each optional field. So the list
-// always agrees with the results of a run.
+// Finds the channels of each element kind by compiling its example and sample elements, with each of their choices and each optional field.
+// So the list always agrees with the results of a run.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -19,6 +19,11 @@ struct KindChannel {
 [[nodiscard]] std::vector<KindChannel> channels_of_bodies(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_markers(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_whole(const Catalogue& catalogue);
+
+/// Returns a whole model of two boxes 'a' and 'b' with the example of the kind, as TOML.
+[[nodiscard]] std::string example_model(const ElementKind& kind);
+/// Returns the tables of the example up to the first element of the kind: the element and what it needs.
+[[nodiscard]] std::string example_text(const ElementKind& kind);
 
 /// Returns the units as text: "N or N m"; "-" if there are none.
 [[nodiscard]] std::string units_text(const KindChannel& channel);

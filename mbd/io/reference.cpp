@@ -65,6 +65,12 @@ std::string markdown(const ReferenceRows& rows) {
   return text;
 }
 
+// Returns the example of a kind of element; "" for others.
+std::string example_of(const Catalogue& catalogue, const Described& kind) {
+  const ElementKind* const element = kind.role == "element" ? catalogue.find_element(kind.name) : nullptr;
+  return element ? example_text(*element) : std::string{};
+}
+
 // Returns the channels of elements of a kind, of bodies or of markers.
 std::vector<KindChannel> channels_of(const Catalogue& catalogue, const Described& kind) {
   if (kind.role == "table" && kind.name == "body") return channels_of_bodies(catalogue);
@@ -108,12 +114,20 @@ std::vector<KindReference> kind_references(const Catalogue& catalogue, const std
   for (const Described& kind : describe(catalogue)) {
     if (kind.name == name) {
       const std::vector<KindChannel> channels = channels_of(catalogue, kind);
-      found.push_back({heading(kind), kind.doc, rows_of(kind), channels.empty() ? ReferenceRows{} : rows_of(owner_of(kind), channels)});
+      found.push_back({heading(kind), kind.doc, rows_of(kind), channels.empty() ? ReferenceRows{} : rows_of(owner_of(kind), channels),
+                       example_of(catalogue, kind)});
     }
     known.push_back(kind.name);
   }
   if (!found.empty()) return found;
   throw ModelError(Location{}, "there is no kind '" + name + "'" + did_you_mean(name, known));
+}
+
+std::string example_model(const Catalogue& catalogue, const std::string& name) {
+  if (const ElementKind* const element = catalogue.find_element(name)) return example_model(*element);
+  std::vector<std::string> known;
+  for (const ElementKind* kind : catalogue.elements) known.push_back(kind->name);
+  throw ModelError(Location{}, "there is no kind of element '" + name + "'" + did_you_mean(name, known));
 }
 
 std::string reference_markdown(const Catalogue& catalogue) {
@@ -125,6 +139,7 @@ std::string reference_markdown(const Catalogue& catalogue) {
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));
     if (const std::vector<KindChannel> channels = channels_of(catalogue, kind); !channels.empty())
       text += "\n" + markdown(rows_of(owner_of(kind), channels));
+    if (const std::string example = example_of(catalogue, kind); !example.empty()) text += "\n```toml\n" + example + "```\n";
   }
   return text + events_markdown();
 }

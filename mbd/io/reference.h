@@ -16,11 +16,14 @@ struct KindReference {
   std::string heading, doc;
   ReferenceRows fields;
   ReferenceRows channels; ///< channels of its elements; empty if they have none
+  std::string example;    ///< TOML of an element with what it needs; empty for kinds that are no elements
 };
 
 /// Returns the references of all kinds with this name (a table and a signal may share one), or of "body", "marker", "simulation", "output" or "model" (the top-level keys). Throws ModelError for
 /// an unknown name, with the most similar known one.
 [[nodiscard]] std::vector<KindReference> kind_references(const Catalogue& catalogue, const std::string& name);
+/// Returns a whole model with an element of the kind, as TOML. Throws ModelError for a name that is not one of a kind of element.
+[[nodiscard]] std::string example_model(const Catalogue& catalogue, const std::string& name);
 /// Returns the whole reference in Markdown.
 [[nodiscard]] std::string reference_markdown(const Catalogue& catalogue);
 

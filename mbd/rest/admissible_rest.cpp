@@ -199,7 +199,7 @@ private:
       }
     rows.middleRows(2 * count, normal_.size()) = -normal_by_;
     constant.segment(2 * count, normal_.size()) = -normal_;
-    // Bounds on δq: only poses that contacts can reach by their deformation belong to the same configuration.
+    // |δq| is bounded by what the contacts can deform: beyond it other contacts may be closed, and these inequalities would not apply.
     rows.block(forces, 0, places, free_.cols()) = free_ / kappa_ * (force_scale_ / give_);
     rows.block(forces + places, 0, places, free_.cols()) = -rows.block(forces, 0, places, free_.cols());
     for (Eigen::Index k = 0; k < places; ++k) {

@@ -126,9 +126,10 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
   return place;
 }
 
-// Sets the band of a force or rate: its values at the ends and in the middle of the step, and three times their difference on either side.
-// A value in the middle that the ends do not show is compared with the cubic through two more places: no stage may have seen a peak there,
-// and then it is outside. Returns false without a finite value at one of the places.
+// Sets the band in which a force or rate may vary without a search for peaks: the range of its values at the ends and in the middle of the
+// step, and three times that range on either side. A middle value far outside the range of the ends belongs to the band only if it agrees
+// with the cubic through the ends and the quarter points; otherwise it may be a peak and is left outside. Returns false if a value is not
+// finite.
 bool FormulaSearch::set_band(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const auto seen = [&](double theta, const std::vector<double>& operands) { return value(sought, operands.data(), t0 + theta * h); };

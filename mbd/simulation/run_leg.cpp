@@ -108,8 +108,8 @@ double RunLeg::next_motion_limit() const {
   return next == system_.motion_breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
 
-// Returns the limit of a step of length `step` for methods that average forces: breakpoints of forces that are too near for a step of their
-// own are passed.
+// Returns the time at which a step of length `step` must end for methods that average forces over it. Breakpoints of forces nearer than
+// k_own_step of the step are ignored.
 double RunLeg::next_limit_of_steps(double step) const {
   constexpr double k_own_step = 1e-4; // relative to a step; far above the tolerance for rounding in time stepping
   const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);

@@ -7,7 +7,7 @@
 //   value, rate
 //   gradient   as a unit wrench: direction d at a common point of both bodies plus a couple, acting on a, and its opposite on b, so that
 //              Newton's third law is satisfied by construction
-//   bias       second time derivative at zero accelerations, q̇ᵀ f_qq q̇ (γ of physics.md §1 is −bias)
+//   bias       second time derivative at zero accelerations, q̇ᵀ f_qq q̇ (γ of theory.md §1 is −bias)
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -109,7 +109,7 @@ struct AngleMeasure {
   }
 };
 
-/// Gap of a contact, δ = n·(p_A − p_B)/(n·a); gradient: force n/(n·a) at the tip p_A − δ a (physics.md §2). If the contact axis a is the
+/// Gap of a contact, δ = n·(p_A − p_B)/(n·a); gradient: force n/(n·a) at the tip p_A − δ a (theory.md §2). If the contact axis a is the
 /// normal n, δ is the distance from b's line. Precondition: n·a > 0.
 struct GapMeasure {
   Vec2 point_a, point_b, normal; ///< in the frames of a, b and b

@@ -56,6 +56,10 @@ def main():
     events = re.findall(r"^\| ([^|]+) \| [^|]+ \|$", models[models.index("## Events"):], flags=re.M)
     events = [event for event in events if event not in ("event", "---")]
     assert len(kinds) > 50 and len(events) > 15
+    drawn = re.findall(r"^## \[\[element\]\].*\n.*\n\n!\[.*\]\(pictures/(\w+)\.svg\)", models, flags=re.M)
+    elements = [row["kind"] for row in table["results"][0]["tables"]["kinds"] if row["role"] == "element"]
+    faults += [f"models.md has no picture of {kind}" for kind in elements if kind not in drawn]
+    faults += [f"models.md has no example of {kind}" for kind in elements if f"\nkind = '{kind}'\n" not in models]
     short = (root / "docs/reference/models.md").read_text()
     faults += missing(short, kinds + events, "models.md") + unknown(short, r"[a-z_]+", kinds + events, "models.md")
     top = commands[:commands.index("## steplap ")]

@@ -1,6 +1,6 @@
 // The paper's transformer by a scheme like the paper's: fixed steps of Runge-Kutta, stick tested once a step, no event located.
 //
-// The equations are those of docs/explanation/physics.md in seven coordinates. They share no code with the product: parameters alone come
+// The equations are those of docs/explanation/theory.md in seven coordinates. They share no code with the product: parameters alone come
 // from a model file. Limbs are held to the active part (their joints carry less than half of what they can).
 #pragma once
 

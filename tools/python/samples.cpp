@@ -59,7 +59,8 @@ Answer answer_of(const Report& report, const Response& response) {
   return {};
 }
 
-// Runs samples that no other thread has taken, with its own copy of the model.
+// Samples of one call, shared by its worker threads. work() runs samples that no other thread has taken, with the thread's own copy of the
+// model.
 struct Crew {
   const Model& given;
   const std::string& path;

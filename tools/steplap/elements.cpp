@@ -14,7 +14,7 @@ namespace {
 
 struct ElementsOptions {
   std::string kind;
-  bool is_markdown = false;
+  bool is_markdown = false, is_example = false;
 };
 
 // Prints rows, the first of which contains the heads.
@@ -28,27 +28,43 @@ void print_rows(std::ostream& out, const std::string& name, const ReferenceRows&
 void print_kind(std::ostream& out, const KindReference& kind) {
   out << kind.heading << "\n" << kind.doc << "\n\n";
   print_rows(out, "fields", kind.fields);
-  if (kind.channels.empty()) return;
-  out << "\n";
-  print_rows(out, "channels", kind.channels);
+  if (!kind.channels.empty()) {
+    out << "\n";
+    print_rows(out, "channels", kind.channels);
+  }
+  if (!kind.example.empty()) out << "\nExample:\n" << kind.example;
+}
+
+void print_kinds(std::ostream& out, const std::string& name) {
+  const char* separator = "";
+  for (const KindReference& kind : kind_references(program_catalogue(), name)) {
+    out << separator;
+    print_kind(out, kind);
+    separator = "\n";
+  }
+}
+
+void print_named(const ElementsOptions& options, std::ostream& out) {
+  try {
+    if (options.is_example) {
+      out << example_model(program_catalogue(), options.kind);
+    } else {
+      print_kinds(out, options.kind);
+    }
+  } catch (const ModelError& error) {
+    throw UsageError(error.diagnostics().front().message);
+  }
 }
 
 ExitCode print_reference(const ElementsOptions& options, Console& console) {
+  if (options.is_example && options.kind.empty())
+    throw UsageError("--example needs a kind of element, such as: steplap elements rope --example");
   if (options.is_markdown) {
     console.out << reference_markdown(program_catalogue());
   } else if (options.kind.empty()) {
     print_rows(console.out, "kinds", kinds_rows(program_catalogue()));
   } else {
-    try {
-      const char* separator = "";
-      for (const KindReference& kind : kind_references(program_catalogue(), options.kind)) {
-        console.out << separator;
-        print_kind(console.out, kind);
-        separator = "\n";
-      }
-    } catch (const ModelError& error) {
-      throw UsageError(error.diagnostics().front().message);
-    }
+    print_named(options, console.out);
   }
   return ExitCode::done;
 }
@@ -63,9 +79,11 @@ Command elements_command() {
   command.examples = R"(  steplap elements
   steplap elements unilateral_contact
   steplap elements simulation
+  steplap elements rope --example > rope.toml
   steplap elements --markdown > reference.md
 )";
   command.options = {{"KIND", &o->kind, "KIND", "a kind of element or signal, body, marker, simulation, output, model"},
+                     {"--example", &o->is_example, "", "a whole model with an element of the kind"},
                      {"--markdown", &o->is_markdown, "", "the whole reference in Markdown"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return print_reference(*o, console); };

@@ -62,7 +62,7 @@ private:
     return usable;
   }
 
-  // Returns the densities relative to the standard normal density.
+  // Returns the density of the wide normal component at u, with its weight k_wide, divided by the standard normal density.
   [[nodiscard]] double wide_part(const double* u) const {
     const double distance = length_of(u, dimension_);
     return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
