@@ -39,8 +39,8 @@ std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
 
 // Returns true if the difference is more than rounding of a pose given with few digits.
 bool jumps(double now, double wanted) {
-  constexpr double k_rough = 1e-3, k_rounding = 1e-9; // relative to the coordinate; m, rad
-  return std::abs(wanted - now) > std::max(k_rounding, k_rough * std::max(std::abs(now), std::abs(wanted)));
+  constexpr double k_rough = 1e-3, k_least_jump = 1e-9; // relative to the coordinate; m, rad
+  return std::abs(wanted - now) > std::max(k_least_jump, k_rough * std::max(std::abs(now), std::abs(wanted)));
 }
 
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {

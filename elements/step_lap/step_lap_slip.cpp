@@ -24,7 +24,7 @@ constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
 constexpr double k_no_end = 2.0; // factor on that |ν|: beyond it the joint has not come to rest
 // Rounding limits: |ν| relative to velocities at which its direction is lost, and that time relative to t at which steps are still well
 // above rounding.
-constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
+constexpr double k_rounded_speed = 2.5e-13, k_time_rounding = 2e-12;
 
 // Values of FrictionState::stage, initially 0: for a starting slip, and for an ending slip.
 constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
@@ -80,7 +80,7 @@ double StepLapFriction::end_speed(const Evaluation& e) const {
   const double lever = gyration_ + arm_.norm();
   const double speed = std::abs(l.vx) + std::abs(l.vy) + std::abs(p.vx) + std::abs(p.vy) + lever * (std::abs(l.omega) + std::abs(p.omega));
   const double time = std::max(static_cast<const Scratch&>(*e.scratch[index_]).end_time, k_time_rounding * std::abs(e.t));
-  return std::max(time * grip_acceleration_, k_rounding * speed);
+  return std::max(time * grip_acceleration_, k_rounded_speed * speed);
 }
 
 void StepLapFriction::set_onset_direction(const Evaluation& e, FrictionState& state, const double* wrench) const {

@@ -502,11 +502,11 @@ void RunLeg::finish_extremes() {
 // Reports a part of a load that a time step has averaged: bodies get its impulse, but no force or acceleration shows it.
 void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
-  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
+  constexpr double k_same_time = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
   const std::vector<double>& times = system_.breakpoints;
   for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;
        ++next)
-    if (*(next + 1) - *next > k_rounding * *(next + 1)) statistics_.passed_pulse = *next;
+    if (*(next + 1) - *next > k_same_time * *(next + 1)) statistics_.passed_pulse = *next;
 }
 
 // Takes over the modes from a method that determines them itself, and reports the changes.
