@@ -1,3 +1,4 @@
+#include "mbd/base/number_text.h"
 #include "mbd/run/results.h"
 #include "tools/pages/report_page.h"
 #include "tools/python/bindings.h"
@@ -8,6 +9,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 
@@ -107,8 +109,19 @@ PyRun shown(const std::shared_ptr<const Report>& report) {
   return run;
 }
 
+// Returns a question that also stops after `seconds` of wall time, like `steplap simulate --time-limit`.
+StopQuestion limited(const StopQuestion& stop, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  return [&stop, seconds, began = Clock::now()] {
+    const bool is_over = std::chrono::duration<double>(Clock::now() - began).count() > seconds;
+    return is_over ? "stopped by the time limit of " + number_text(seconds) + " s" : stop();
+  };
+}
+
 PyRun run_of(const PyModel& model, std::optional<std::string> method, std::optional<double> tolerance, std::optional<double> step,
-             std::optional<double> end, std::optional<double> output_step, const std::string& estimate, bool second_opinion) {
+             std::optional<double> end, std::optional<double> output_step, const std::string& estimate, bool second_opinion,
+             std::optional<double> time_limit) {
+  if (time_limit && !(*time_limit > 0.0)) throw py::value_error("time_limit: seconds, more than zero");
   RunOptions options;
   options.method = std::move(method);
   options.tolerance = tolerance;
@@ -118,7 +131,7 @@ PyRun run_of(const PyModel& model, std::optional<std::string> method, std::optio
   options.estimating = estimating_named(estimate);
   options.has_second_opinion = second_opinion;
   return computed([&](const StopQuestion& stop) {
-    options.stop = stop;
+    options.stop = time_limit ? limited(stop, *time_limit) : stop;
     return shown(std::make_shared<const Report>(judged_run(model.loaded, options)));
   });
 }
@@ -226,12 +239,13 @@ void add_run(py::module_& module) {
                        &PyRun::energy_residual, &PyRun::events, &PyRun::failure, &PyRun::extremes, &PyRun::columns, &PyRun::json,
                        &PyRun::files))
       .def("__repr__", [](const PyRun& r) { return "<steplap.Run of " + r.path + ": " + r.verdict + ">"; });
-  module.attr("Model").attr("run") =
-      py::cpp_function(run_of, py::name("run"), py::is_method(module.attr("Model")), py::arg("method") = py::none(),
-                       py::arg("tolerance") = py::none(), py::arg("step") = py::none(), py::arg("end") = py::none(),
-                       py::arg("output_step") = py::none(), py::arg("estimate") = "cheap", py::arg("second_opinion") = false,
-                       "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. Other "
-                       "threads of Python go on meanwhile; Ctrl-C ends it.");
+  module.attr("Model").attr("run") = py::cpp_function(
+      run_of, py::name("run"), py::is_method(module.attr("Model")), py::arg("method") = py::none(), py::arg("tolerance") = py::none(),
+      py::arg("step") = py::none(), py::arg("end") = py::none(), py::arg("output_step") = py::none(), py::arg("estimate") = "cheap",
+      py::arg("second_opinion") = false, py::arg("time_limit") = py::none(),
+      "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. Other "
+      "threads of Python go on meanwhile; Ctrl-C ends it. `time_limit`: s, after which `failure` says so and the "
+      "verdict is open.");
 }
 
 } // namespace steplap::python

@@ -197,3 +197,13 @@ def test_ctrl_c_stops_samples_within_a_fifth_of_a_second():
     model = steplap.load(MODELS / "paper/interference_rk4.toml", ENDLESS)
     wanted = [("active part.x", "high")]
     assert seconds_to_stop(lambda: model.samples({"gravity.1": np.full(8, -9.81)}, wanted), 0.5) < 0.2 * os.cpu_count()
+
+
+def test_a_run_beyond_its_time_limit_is_open_and_has_what_was_found():
+    model = steplap.load(MODELS / "paper/interference_rk4.toml", ENDLESS)
+    began = time.monotonic()
+    run = model.run(time_limit=0.5)
+    assert time.monotonic() - began < 20.0  # of hours, on a busy machine, too
+    assert run.verdict == "open" and "time limit of 0.5 s" in run.failure and 0.0 < run.t[-1] < 2000.0
+    with pytest.raises(ValueError, match="time_limit"):
+        model.run(time_limit=0.0)

@@ -178,6 +178,7 @@ class Model(_Compiled):
         output_step: float | None = None,
         estimate: _Estimate = "cheap",
         second_opinion: bool = False,
+        time_limit: float | None = None,  # s
     ) -> Run: ...
     def samples(
         self,
