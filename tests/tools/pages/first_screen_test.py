@@ -223,7 +223,7 @@ class FirstScreenTest(base.Page):
             self.assertNotEqual(place(), before)
             # Thumb, line through the lanes and axis stand at one place.
             cursor = self.run_js("return document.querySelector('.time-cursor').getBoundingClientRect().left")
-            self.assertAlmostEqual(cursor, box["x"] + 8 + (box["width"] - 16) * t / 0.8, delta=1.5)  # pixels; the thumb is 16 wide
+            self.assertAlmostEqual(cursor, box["x"] + 8 + (box["width"] - 16) * t / base.AXIS, delta=1.5)  # pixels; the thumb is 16 wide
 
     def test_signs_of_events_stand_at_their_instants(self):
         self.show("told.html", SIZES[0])

@@ -256,6 +256,9 @@ class GalleryTest(base.Page):
         self.assertEqual(at(0.15), ("road braking 0.4 g", True))  # half of the rise from 0.1 s to 0.2 s
         self.assertEqual(at(0.05), ("road braking, 0.8 g at most", False))
         self.assertEqual(len(self.all("[data-load]")), 1)  # the road strips stand still: nothing loads them
+        # The drive of a truck that tips does not act at its centre of gravity: its size is not known, and none is said.
+        self.open("gallery_forklift.html")
+        self.assertEqual((len(self.all("[data-load]")), len(self.all(".drive"))), (0, 1))
 
     def test_the_picture_keeps_the_machine_when_a_part_flies_off(self):
         with open(os.path.join(WORK.name, "thrown.toml"), "w", encoding="utf-8") as file:

@@ -1,11 +1,11 @@
 // Loads at the instant shown: a drive's acceleration, speed or travel as an arrow with its size. It is filled while it acts; before and
 // after it is hollow, with the largest size of the run.
 (() => {
-  const make = steplap.make, { add, minus, scaled } = steplap.geometry;
+  const make = steplap.make, { add, minus, scaled, length } = steplap.geometry;
   const g = 9.80665; // m/s²
   const acting = 0.02; // of the largest size: less is none
   const least = 0.25; // of the largest arrow: one that is seen
-  const rows = 120; // of a run, at which its largest size is looked for
+  const onCentre = 1e-6; // of the machine's size: only at its centre of gravity a body moves as its channels say
 
   const inG = (a) => `${steplap.data.plain(a / g, 2)}\u00a0g`;
   const quantities = {
@@ -13,22 +13,25 @@
     velocity: { channels: ['vx', 'vy'], text: (v) => steplap.data.quantity(v, 'm/s', 3) },
     position: { channels: ['x', 'y'], isFromStart: true, text: (x) => steplap.data.quantity(x, 'm', 3) },
   };
-  // { at(t), peak, text } of a drive along one axis; null where the results do not have it.
+  // { at(t), peak, isBackward, text } of a drive along one axis against the ground; null where the results do not have it.
   function motionOf(scene, element, shape) {
-    const quantity = quantities[element.as], axis = Math.abs((shape.direction || [1, 0])[1]) > 0.7 ? 1 : 0;
-    const channel = quantity && scene.run.channel(`${shape.at[0].body}.${quantity.channels[axis]}`);
-    if (!channel) return null;
+    const quantity = quantities[element.as], axis = Math.abs((shape.direction || [1, 0])[1]) > 0.7 ? 1 : 0, [driven, base] = shape.at;
+    const channel = quantity && scene.run.channel(`${driven.body}.${quantity.channels[axis]}`);
+    if (!channel || length(driven.point) > onCentre * scene.size || !base || !scene.isHeld(base.body)) return null;
     const sign = Math.sign((shape.direction || [1, 0])[axis]) || 1, start = quantity.isFromStart ? channel.at(0) : 0;
-    const at = (t) => sign * (channel.at(t) - start), extreme = scene.run.summary.extremes[channel.name];
-    const sampled = Array.from({ length: rows + 1 }, (_, k) => Math.abs(at((k * scene.run.end) / rows)));
-    const known = extreme && extreme.min !== null ? [extreme.min, extreme.max].map((v) => Math.abs(v - start)) : [];
-    return { at, peak: Math.max(...sampled, ...known), text: quantity.text };
+    const reaction = scene.run.channel(`${element.name}.reaction`), isReleased = (t) => Boolean(reaction) && reaction.at(t) === 0;
+    const at = (t) => (isReleased(t) ? 0 : sign * (channel.at(t) - start));
+    let largest = 0;
+    for (const t of channel.times) if (Math.abs(at(t)) > Math.abs(largest)) largest = at(t);
+    return { at, peak: Math.abs(largest), isBackward: largest < 0, text: quantity.text };
   }
 
   Object.assign(steplap.Symbols.prototype, {
+    // False if its size is not known.
     driven(element, shape, symbol) {
       const { scene } = this, motion = motionOf(scene, element, shape);
-      if (!motion || !(motion.peak > 1e-9)) { symbol.remove(); return; }
+      if (!motion) return false;
+      if (!(motion.peak > 1e-9)) { symbol.remove(); return true; }
       const place = this.frontOf(shape), text = make('text', { class: 'load-text', 'data-load': element.name });
       symbol.classList.add('load');
       scene.textLayer.append(text);
@@ -36,7 +39,8 @@
         const value = motion.at(t), isActing = Math.abs(value) > acting * motion.peak;
         const size = 4.5 * this.u * (isActing ? Math.max(least, Math.abs(value) / motion.peak) : 1);
         const from = this.screen(place, pose), d = this.direction(shape, pose), far = add(from, scaled(d, size));
-        const [tail, tip] = value < 0 ? [far, from] : [from, far], ahead = scaled(d, value < 0 ? -1 : 1);
+        const isBackward = isActing ? value < 0 : motion.isBackward;
+        const [tail, tip] = isBackward ? [far, from] : [from, far], ahead = scaled(d, isBackward ? -1 : 1);
         symbol.setAttribute('d', broadArrow(tail, tip, ahead, this.u));
         symbol.classList.toggle('acting', isActing);
         const name = element.signal || element.name;
@@ -46,6 +50,7 @@
         const ways = [-16, 18, -32, 34, -48, 50, -66, 68];
         this.put(text, middle, [width, 14], ways.map((dy) => [0, dy]));
       });
+      return true;
     },
   });
   // Closed, so that it can be filled or hollow.

@@ -103,7 +103,8 @@ steplap.Scene = (() => {
           for (const corner of [own.low, own.high]) box.take(near.nearest(corner));
         }
       // Room for springs that carry from below.
-      const isCarried = this.elements.some((e) => e.shapes.some((s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7));
+      const isBelow = (s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7;
+      const isCarried = this.elements.some((e) => e.shapes.some((s) => isBelow(s) && !this.wheelsOf(s.at[1].body).length));
       if (isCarried) box.take([box.middle[0], box.low[1] - 0.12 * this.size]);
       this.trails = null;
       return box;

@@ -122,7 +122,7 @@
   const isPlaying = () => at('play').getAttribute('aria-pressed') === 'true';
   function frame(now) {
     if (!isPlaying()) return;
-    if (last !== null) show(t + ((now - last) / 1000) * Number(at('speed').value));
+    if (last !== null) show(Math.min(timeline.end, t + ((now - last) / 1000) * Number(at('speed').value)));
     last = now;
     if (t >= timeline.end) setPlaying(false); else requestAnimationFrame(frame);
   }
@@ -130,7 +130,7 @@
   function setHorizon(wanted) {
     timeline.end = wanted;
     at('time').max = String(wanted);
-    const instant = (time) => steplap.data.quantity(time, 's', 3);
+    const instant = (time) => `${steplap.data.plain(time, 3)} s`;
     const more = `No event after ${instant(horizon)}; show all ${instant(end)}`;
     at('whole-time').textContent = wanted === end ? `Axis to ${instant(horizon)}` : more;
   }

@@ -382,7 +382,7 @@ steplap.Symbols = (() => {
     arrow(element, shape) {
       if (shape.style === 'load') { this.load(element, shape); return; }
       const symbol = this.piece(element, { class: 'symbol drive' });
-      if (element.as) { this.driven(element, shape, symbol); return; }
+      if (element.as && this.driven(element, shape, symbol)) return;
       const place = this.frontOf(shape), channel = this.channel(element, shape), text = this.value(element);
       this.update((t, pose) => {
         const at = this.screen(place, pose), d = this.direction(shape, pose), tip = add(at, scaled(d, 4.5 * this.u));
