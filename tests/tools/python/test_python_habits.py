@@ -154,6 +154,14 @@ def test_a_list_in_itself_is_an_error():
             make({"gravity": endless})
 
 
+@pytest.mark.parametrize("name", ["Criterion", "Event", "Finding", "Joint", "Mode", "Model", "Run"])
+def test_no_object_is_without_contents(name):
+    cls = getattr(steplap, name)
+    for make in (cls, lambda: cls.__new__(cls), type("Own", (cls,), {})):
+        with pytest.raises(TypeError, match="constructor"):
+            make()
+
+
 # The model takes minutes; the interpreter ends after half a second, whatever its daemon thread computes.
 def test_exit_while_a_thread_runs_is_an_exit():
     code = f"""if True:

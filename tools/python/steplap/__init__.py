@@ -10,7 +10,7 @@
 from collections import abc
 from typing import TYPE_CHECKING, Any
 
-from . import _frames, _pickling, _steplap
+from . import _compiled, _frames, _steplap
 from ._commands import Assessment, LoadCases, Result, Study, assess, cases, command, study
 from ._errors import Error, FileError, MissingFileError, ModelError, NumericalFailure
 from ._frames import Picture

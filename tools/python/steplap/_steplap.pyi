@@ -19,6 +19,7 @@ _Estimate = Literal["never", "cheap", "always"]
 _Floats = npt.NDArray[np.float64]
 
 class _Compiled:  # cannot be made in Python
+    def __new__(cls, *args: Any, **kwargs: Any) -> Any: ...
     def __init__(self, *args: Any, **kwargs: Any) -> None: ...
 
 class Diagnostic:
