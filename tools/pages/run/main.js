@@ -43,9 +43,10 @@
     if (undrawn) remarks.push(`${undrawn} more bodies, and all elements, are not drawn: the page would be too slow.`);
     if (scenes.some((scene) => [...scene.bodies.values()].some((body) => body.isUnrecorded))) remarks.push('Dashed bodies are drawn where they begin: their motion is not among the channels.');
     at('legend').textContent = remarks.join(' ');
-    const help = ['Wedges and dots are contacts, filled while they press. Arrows are forces, all to one scale. Hatched is what is solid. What slipped, lifted or broke is orange, with the sign that it has in the timeline.', 'Displacements are drawn against the reference pose, as seen from the body chosen.',
+    const help = ['Wedges and dots are contacts, filled while they press. Arrows are forces, all to one scale. Hatched is what is solid. What slipped, lifted or broke is orange, with the sign that it has in the timeline.', 'Motion is enlarged relative to what carries a body, by at most 5 % of the machine. Dashed is the start pose.',
+      'A blue arrow is the load, hollow while it does not act.',
       'Closer: Ctrl and wheel, two fingers, or + and - on the picture. 0 or a double click shows all. Drag to move.'];
-    if (runs.some((run) => run.drawing.sheets.length)) help.splice(1, 0, 'Limbs turn orange once their joint has slipped.');
+    if (runs.some((run) => run.drawing.sheets.length)) help.splice(1, 0, 'Limbs have an orange edge once their joint has slipped.');
     at('picture-help').append(make('summary', {}, 'How to read the picture'), make('p', { class: 'note' }, help.join(' ')));
   }
   function buildInsets() {
