@@ -28,8 +28,8 @@
       const size = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1), width = size * this.scale, y = this.height - 9, left = 10;
       this.scaleBar.setAttribute('d', `M${left} ${y - 4}V${y + 4}M${left} ${y}H${(left + width).toFixed(1)}M${(left + width).toFixed(1)} ${y - 4}V${y + 4}`);
       this.put(this.scaleText, steplap.data.quantity(size, 'm', 3), left + width + 6, y + 4, 'start');
-      const usual = document.getElementById('magnification') ? this.usualOf() : 1;
-      const isNarrow = this.width < 520, factor = steplap.data.plain(this.magnification, 3);
+      const canChoose = Boolean(document.getElementById('magnification')), usual = canChoose ? this.usualOf() : 1;
+      const isNarrow = this.width < 520 || !canChoose, factor = steplap.data.plain(this.magnification, 3);
       const motion = this.magnification !== 1 ? `motion × ${factor}${isNarrow ? '' : ' – show true scale'}` : usual !== 1 ? `true scale${isNarrow ? '' : ` – magnify × ${usual}`}` : '';
       this.put(this.motionText, motion, this.width - 10, y + 4, 'end');
       const from = this.seenFrom && this.seenFrom !== 'ground' ? `seen from ${this.seenFrom}` : '';
