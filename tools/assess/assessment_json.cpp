@@ -1,4 +1,6 @@
 // Writes assessment.json, which the printed page and scripts read. SI unless a unit is given; null for unknown values.
+#include "mbd/model/completion.h"
+#include "mbd/run/drawing.h"
 #include "mbd/run/ordered_json.h"
 #include "mbd/run/version.h"
 #include "tools/assess/assessment.h"
@@ -112,7 +114,8 @@ Json models(const Assessment& a) {
                    {"replaced", r.replaces},
                    {"notes", model.notes},
                    {"knows_not", unknown},
-                   {"uncertain", uncertain_of_model(a, m)}});
+                   {"uncertain", uncertain_of_model(a, m)},
+                   {"drawing", parse_ordered(drawing_json(completed(model.given)))}});
   }
   return all;
 }
@@ -150,8 +153,10 @@ Json limits(const std::vector<LimitPassage>& all, const char* value_name) {
   return list;
 }
 
-Json passage(const Passage& p, const Assessment& a, const Probability* slip) {
-  Json joints = Json::array(), feet = Json::array();
+// `begin` is that of the event, s of the record.
+Json passage(const Passage& p, const Assessment& a, double begin, const Probability* slip) {
+  Json joints = Json::array(), feet = Json::array(), poses = Json::object();
+  for (const BodyPose& pose : p.poses) append(poses, pose.body) = {pose.x, pose.y, pose.angle};
   for (const JointPassage& joint : p.joints)
     joints.push_back({{"name", joint.name},
                       {"slips", joint.slips},
@@ -177,6 +182,8 @@ Json passage(const Passage& p, const Assessment& a, const Probability* slip) {
           {"clearances", limits(p.clearances, "left")},
           {"criteria", limits(p.others, "value")},
           {"findings", p.findings},
+          {"worst_time", p.worst_instant ? Json(begin + *p.worst_instant) : Json(nullptr)},
+          {"poses", poses},
           {"still_moving", p.still_moving},
           {"slip_probability", slip ? probability(*slip) : Json(nullptr)}};
 }
@@ -201,8 +208,9 @@ Json event(const Assessment& a, std::size_t number_) {
                      {"up_to_100_Hz", number(axis.at_cfc60)},
                      {"up_to_17_Hz", number(axis.at_cfc10)}});
   }
+  const double begin = recorded.window.times.empty() ? shock.begin : recorded.window.times.front();
   for (std::size_t m = 0; m < e.passages.size(); ++m)
-    passages.push_back(passage(e.passages[m], a, m < e.slip.size() ? &e.slip[m] : nullptr));
+    passages.push_back(passage(e.passages[m], a, begin, m < e.slip.size() ? &e.slip[m] : nullptr));
   const double time = shock.axes.empty() ? shock.begin : shock.axes[shock.worst].peak_time;
   Json clock = nullptr;
   if (record.clock_ns) {

@@ -5,6 +5,7 @@
 #include "transformer/program.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace steplap::assess {
@@ -40,6 +41,38 @@ LimitPassage limit_of(const CriterionResult& criterion, bool is_assumed, const O
 
 // Returns true for findings caused by the removal of replaced elements.
 bool is_of_replaced(const Finding& finding) { return finding.code == "unused_signal" || finding.code == "unused_marker"; }
+
+constexpr std::array<const char*, 3> k_pose = {".x", ".y", ".theta"};
+
+// Poses of the moving bodies in the sample next to time t, s.
+std::vector<BodyPose> poses_at(const System& system, const Trajectory& samples, double t) {
+  const auto& times = samples.times();
+  if (times.empty()) return {};
+  const auto is_nearer = [t](double a, double b) { return std::abs(a - t) < std::abs(b - t); };
+  const auto row = static_cast<std::size_t>(std::min_element(times.begin(), times.end(), is_nearer) - times.begin());
+  const auto& channels = samples.channels();
+  std::vector<BodyPose> poses;
+  for (std::size_t i = 1; i < system.bodies.size(); ++i) {
+    const std::string& name = system.bodies[i].name;
+    std::array<double, 3> pose{};
+    bool is_written = true;
+    for (std::size_t k = 0; k < pose.size(); ++k) {
+      const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return c->name == name + k_pose[k]; });
+      is_written = is_written && found != channels.end();
+      if (is_written) pose[k] = samples.value(row, static_cast<std::size_t>(found - channels.begin()));
+    }
+    if (is_written) poses.push_back({name, pose[0], pose[1], pose[2]});
+  }
+  return poses;
+}
+
+// Returns the channels that are read from the samples: poses of all bodies, and what shared frictions need.
+std::vector<std::string> sampled_channels(const Model& model, const std::vector<std::string>& traced) {
+  std::vector<std::string> channels = traced_channels(traced);
+  for (const Body& body : model.bodies)
+    for (const char* const part : k_pose) channels.push_back(body.name + part);
+  return channels;
+}
 
 std::vector<FootPassage> feet_of(const Report& report) {
   std::vector<FootPassage> feet;
@@ -93,6 +126,9 @@ void Traveller::look(const Report& report, Passage& passage) {
     if (report.estimate.errors) p.error = joint_errors(joint, *report.run.loaded->system, result, *report.estimate.errors).smallest_margin;
     passage.joints.push_back(std::move(p));
   }
+  passage.worst_instant = overview.worst_instant;
+  if (overview.worst_instant && result.trajectory)
+    passage.poses = poses_at(*report.run.loaded->system, *result.trajectory, *overview.worst_instant);
   passage.feet = feet_of(report);
   for (std::size_t i = 0; i < report.judgement.criteria.size(); ++i) {
     const CriterionResult& criterion = report.judgement.criteria[i];
@@ -113,10 +149,8 @@ Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
   if (!ended_.empty()) return broken(std::string(ended_));
   Model model = model_.given;
   drive_by(model, {history}, history.end() + (history.goes_on ? 0.0 : model_.recorder.settle));
-  if (!model_.traced.empty()) {
-    model.output.step = std::min(trace_step(history), model.simulation.end);
-    model.output.channels = traced_channels(model_.traced);
-  }
+  model.output.step = std::min(trace_step(history), model.simulation.end);
+  model.output.channels = sampled_channels(model, model_.traced);
   const std::shared_ptr<const LoadedModel> loaded = load_given(model, model_.name);
   RunOptions options;
   options.estimating = estimating;

@@ -44,6 +44,12 @@ struct LimitPassage {
   Verdict outcome = Verdict::hold;
 };
 
+/// Pose of a body.
+struct BodyPose {
+  std::string body;
+  double x = 0.0, y = 0.0, angle = 0.0; ///< centre of gravity, m; rad
+};
+
 /// Results of one event in one model.
 struct Passage {
   std::size_t event = 0, model = 0; ///< indices
@@ -57,8 +63,10 @@ struct Passage {
   std::vector<FootPassage> feet;
   std::vector<LimitPassage> reactions, clearances, others;
   std::vector<std::string> findings;
-  double still_moving = 0.0;         ///< largest speed of a body relative to the tank at the end, m/s
-  std::vector<FrictionTrace> traces; ///< traces of the elements in DrivenModel::traced
+  std::optional<double> worst_instant; ///< when a limit is nearest, s after the begin of the event
+  std::vector<BodyPose> poses;         ///< of the written sample next to it; empty without one
+  double still_moving = 0.0;           ///< largest speed of a body relative to the tank at the end, m/s
+  std::vector<FrictionTrace> traces;   ///< traces of the elements in DrivenModel::traced
 };
 
 /// State of a model during the voyage.

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Screenshots of pages for the docs: photograph_report.py PAGES IMAGES.
 
-PAGES holds paper.html and weak_clamping.html, and the pages of the studies slip_probability.html and tornado.html.
+PAGES holds paper.html, weak_clamping.html, the sheet arrival.html, and the pages of the studies slip_probability.html and tornado.html.
 """
 import base64
 import os
@@ -18,6 +18,7 @@ IMAGES = {
     "report_verdict": ("weak_clamping.html", 1300, None, None),
     "report_machine": ("paper.html", 1280, 0.1218, "#scenes"),
     "report_slipped": ("weak_clamping.html", 1280, 0.1535, "#sheets"),
+    "assessment_page": ("arrival.html", 800, None, "#sheet"),
 }
 
 # Image: page of a study, width of the window, elements of the page from which and to whose end

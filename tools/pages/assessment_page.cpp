@@ -60,9 +60,9 @@ void check_probability(const fs::path& file, const Json& object, const char* key
 
 // Keys that must be numbers wherever they occur, unless missing or null.
 const std::set<std::string_view> k_numbers{
-    "acceleration", "allowed",      "angle_deg",     "at",    "ax",         "ay",     "bandwidth",      "error",
-    "from",         "height",       "high",          "left",  "low",        "margin", "nominal",        "overlap_left",
-    "runs",         "sensor_range", "covered_share", "share", "slid_total", "value",  "velocity_change"};
+    "acceleration", "allowed",      "angle_deg",     "at",    "ax",         "ay",     "bandwidth",       "error",
+    "from",         "height",       "high",          "left",  "low",        "margin", "nominal",         "overlap_left",
+    "runs",         "sensor_range", "covered_share", "share", "slid_total", "value",  "velocity_change", "worst_time"};
 const std::set<std::string_view> k_texts{"arrival",     "axis",   "calibrated",  "covered",   "departure", "filter", "journey", "place",
                                          "range",       "serial", "transformer", "criterion", "file",      "first",  "law",     "marker",
                                          "model",       "name",   "outcome",     "plane",     "preset",    "reason", "sha256",  "source",
@@ -89,8 +89,17 @@ void check_types(const fs::path& file, const Json& json, const std::string& wher
     for (std::size_t i = 0; value.is_array() && i < value.size(); ++i)
       if ((holds_objects && !value[i].is_object()) || (holds_texts && !value[i].is_string()))
         damaged(file, "'" + place + "[" + std::to_string(i) + "]' is not " + (holds_objects ? "an object" : "a text"));
-    if (value.is_structured() && key != "figure" && key != "drawing") check_types(file, value, place);
+    if (value.is_structured() && key != "figure" && key != "drawing" && key != "poses") check_types(file, value, place);
   }
+}
+
+// Checks what the page needs to begin a drawing.
+void check_drawing(const fs::path& file, const Json& holder, const std::string& where) {
+  if (!holder.contains("drawing") || holder["drawing"].is_null()) return;
+  const Json& drawing = holder["drawing"];
+  for (const char* key : {"bodies", "elements", "planes", "sheets"})
+    if (!drawing.is_object() || !drawing.contains(key) || !drawing[key].is_array())
+      damaged(file, "the drawing of " + where + " has no list '" + key + "'");
 }
 
 void check_event(const fs::path& file, const Json& event, const std::string& where) {
@@ -109,6 +118,7 @@ void check_assessment(const fs::path& file, const Json& assessment) {
     if (gravity_of(text_in(reason, "outcome")) > gravity_of(decision))
       damaged(file, "the decision is '" + decision + "', but criterion '" + text_in(reason, "criterion") + "' asks for '" +
                         text_in(reason, "outcome") + "'");
+  for (const Json& model : list_in(assessment, "models")) check_drawing(file, model, "model '" + text_in(model, "name") + "'");
   std::size_t place = 0;
   for (const Json& event : assessment["events"]) check_event(file, event, "event " + std::to_string(++place));
   if (assessment.contains("voyage")) check_probability(file, assessment["voyage"], "damage_probability", "the voyage");
@@ -168,6 +178,7 @@ Json read_static(const fs::path& file) {
   const Json list = proofs.contains("static_proofs") ? list_in(proofs, "static_proofs") : Json::array({proofs});
   if (list.empty()) damaged(file, "it holds no proof");
   for (const Json& proof : list) {
+    check_drawing(file, proof, "model '" + text_in(proof, "model") + "'");
     const std::string verdict = text_in(proof, "verdict");
     if (verdict != "hold" && verdict != "reject" && verdict != "open")
       damaged(file, "'verdict' is '" + verdict + "' instead of hold, reject or open");

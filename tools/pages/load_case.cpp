@@ -32,7 +32,7 @@ std::string text_of(const Node& node) {
   case Node::Type::number: return number_text(std::get<double>(node.scalar));
   case Node::Type::text:
   case Node::Type::date: return node.text();
-  case Node::Type::table: return joined(node);
+  case Node::Type::table: return "{" + joined(node) + "}";
   case Node::Type::array: break;
   }
   return node.children.size() > k_most_entries ? std::to_string(node.children.size()) + " values" : "[" + joined(node) + "]";
@@ -54,6 +54,13 @@ template <class Choice> void add_entries(OrderedJson& rows, const Node& model, c
   }
 }
 
+// Adds the texts of a node and of what it contains, without names and kinds: whatever refers to a signal is among them.
+void add_texts(const Node& node, std::set<std::string>& texts) {
+  if (node.key == "name" || node.key == "kind") return;
+  if (node.type == Node::Type::text) texts.insert(node.text());
+  for (const Node& child : node.children) add_texts(child, texts);
+}
+
 // Returns the elements that are drawn by an arrow.
 std::set<std::string> arrows_in(const OrderedJson& drawing) {
   std::set<std::string> names;
@@ -69,11 +76,13 @@ OrderedJson load_case_json(const std::string& model_text, const OrderedJson& dra
   const std::string file = "model.toml";
   const Node model = parse_toml(model_text, &file);
   const std::set<std::string> arrows = arrows_in(drawing);
+  std::set<std::string> texts;
+  add_texts(model, texts);
   OrderedJson rows = OrderedJson::array();
   add_value(rows, &model, "gravity", "gravity");
   add_value(rows, model.find("simulation"), "velocity", "initial velocity");
   add_entries(rows, model, "element", [&arrows](const std::string& name) { return arrows.contains(name); });
-  add_entries(rows, model, "signal", [](const std::string&) { return true; });
+  add_entries(rows, model, "signal", [&texts](const std::string& name) { return texts.contains(name); });
   add_value(rows, &model, "source", "source of the values");
   return rows;
 }

@@ -8,6 +8,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <numbers>
+
 using namespace steplap;
 using namespace steplap::assess;
 using namespace assess_test;
@@ -54,6 +57,23 @@ TEST_CASE("a body that is held moves everywhere alike: the place of the recorder
     CHECK(final_value(model, pulse, "bar.vy") == doctest::Approx(-0.1).epsilon(1e-9));
     CHECK(final_value(model, pulse, "bar.omega") == doctest::Approx(0.0));
   }
+}
+
+TEST_CASE("the poses of an event are those at its worst instant, when the limited speed is largest") {
+  // a = a0 cos(πt/T): v = (a0 T/π) sin(πt/T) is largest at T/2, where x = (a0 T²/π²)(1 − cos(π/2)).
+  constexpr double a0 = 2.0, duration = 0.1;
+  DriveHistory pulse = constant(0.0, 0.0, duration);
+  for (std::size_t i = 0; i < pulse.x.size(); ++i) pulse.x[i] = a0 * std::cos(std::numbers::pi * static_cast<double>(i) / 100.0);
+  const std::string limit = "[[acceptance]]\nname = \"speed\"\nchannel = \"bar.vx\"\nwithin = 1.0\n";
+  const DrivenModel model = driven(bar_text(1.5, "held") + limit);
+  const Passage passage = Traveller(model).pass(pulse, Estimating::never);
+  REQUIRE(passage.is_made);
+  REQUIRE(passage.worst_instant.has_value());
+  CHECK(*passage.worst_instant == doctest::Approx(0.5 * duration).epsilon(1e-3)); // the cosine is drawn by 100 chords
+  REQUIRE(passage.poses.size() == 2);
+  CHECK(passage.poses[0].body == "bar");
+  CHECK(passage.poses[0].x == doctest::Approx(a0 * duration * duration / (std::numbers::pi * std::numbers::pi)).epsilon(2e-3)); // chords
+  CHECK(passage.poses[0].angle == doctest::Approx(0.0));
 }
 
 TEST_CASE("axes of a record are mapped with their signs onto those of the marker, which may be turned") {

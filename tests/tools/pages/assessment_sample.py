@@ -19,6 +19,7 @@ def lengthwise(verdict, joints, chance):
     return {"model": "transformer, lengthwise", "verdict": verdict, "trust": "Errors are estimated by a finer run.", "joints": joints,
             "feet": [{"name": "rear foot", "lifts": True, "from": 0.107, "height": 0.0012}, {"name": "front foot", "lifts": False, "from": None, "height": None}],
             "reactions": [{"name": "bottom arresting", "value": -193529.3, "allowed": 300000.0, "unit": "N", "share": 0.645}],
+            "worst_time": None, "poses": {"tank": [10.0, 1.5, 0.0], "active part": [10.02, 1.5, 0.0]},  # 20 mm forward in the tank
             "clearances": [{"name": "core to tank", "left": 0.012, "allowed": 0.005, "unit": "m"}],
             "findings": ["The wooden block above the rear foot closes."],
             "slip_probability": {"value": chance, "low": 0.5 * chance, "high": min(1.0, 1.5 * chance + 1e-3), "runs": 200}}
@@ -36,6 +37,15 @@ def event(number, time, peak, verdict, joints, chance):
             "figure": figure(peak, 0.1), "models": [lengthwise(verdict, joints, chance), crosswise()]}
 
 
+def drawing():
+    """A tank of 4 by 3 m with an active part in it."""
+    def box(name, w, h):
+        return {"name": name, "label": "", "pose": [0.0, 1.5, 0.0], "fixed": False, "is_outline_given": True, "circles": [], "segments": [], "polygons": [], "holes": [],
+                "outline": [[-w, -h], [w, -h], [w, h], [-w, h]]}
+    return {"bodies": [box("tank", 2.0, 1.5), box("active part", 1.2, 1.0)], "ground": {"circles": [], "segments": [], "polygons": []}, "planes": [], "elements": [], "sheets": [],
+            "cores": [], "plots": [], "seen_from": ""}
+
+
 def assessment():
     """Three events: the second slips by 0.8 mm, the third comes near to it."""
     events = [event(1, 12.34, 9.80665, "hold", [joint("front joint", 1.62), joint("back joint", 1.66)], 0.0),
@@ -47,7 +57,7 @@ def assessment():
                     {"criterion": "3 g on each axis", "outcome": "energise", "text": "29.4 m/s² along x is within 3 g.", "source": "Chinese construction and acceptance code, clause 3.3.1"}],
         "records": [{"file": "voyage.csv", "sha256": "ab" * 32, "taken_for": ["time: column 'time', s", "unit: g, of the header"], "warnings": ["2 samples are clipped at 16 g."]}],
         "models": [{"name": "transformer, lengthwise", "file": "lengthwise.toml", "sha256": "cd" * 32, "plane": "lengthwise",
-                    "recorder": {"marker": "lid recorder", "x": "x", "y": "-z"}, "knows_not": ["bending of sheets and yokes", "torsion of the tank"],
+                    "recorder": {"marker": "lid recorder", "body": "tank", "x": "x", "y": "-z"}, "drawing": drawing(), "knows_not": ["bending of sheets and yokes", "torsion of the tank"],
                     "uncertain": [{"path": "element.front joint.friction", "name": "friction of the sheets", "nominal": 0.2, "unit": "", "law": "lognormal, mean 0.2, cov 0.2", "low": 0.13,
                                    "high": 0.3, "source": "assumed", "source_text": "no measured value is published", "share": 0.61},
                                   {"path": "core.core.pressure", "name": "clamping pressure", "nominal": 26000.0, "unit": "Pa", "law": "normal, mean 26 kPa, cov 0.1", "low": 21000.0,

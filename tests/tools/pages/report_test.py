@@ -10,11 +10,13 @@ import base64
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import zlib
 
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -289,6 +291,67 @@ class ReportTest(Page):
         for plot in self.all(".plot"):
             self.assertRegex(plot.find_element(By.CSS_SELECTOR, ".dygraph-ylabel").get_attribute("textContent"), r"^\[.+\]$")
             self.assertEqual(plot.find_element(By.CSS_SELECTOR, ".dygraph-xlabel").get_attribute("textContent"), "t [s]")
+
+    def event_lines(self):
+        return self.run_js("return steplap.page.plots.plots.map((p) => [p.figure.name, p.eventLines().map((line) => line.text)])")
+
+    def choose_events(self, value):
+        self.run_js("const s = document.getElementById('events-of'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))", value)
+
+    def test_curves_show_events_of_their_own_elements_or_of_the_chosen_one(self):
+        self.open("out/weak_clamping/report.html")
+        own = dict(self.event_lines())
+        self.assertEqual({line.split(" slips")[0].split(" sticks")[0] for line in own["Margin"]}, {"front joint", "back joint"})
+        self.assertEqual(own["Fig. 4"], [])  # accelerations of bodies, which have no events
+        self.choose_events("of tank bottom")
+        for _, lines in self.event_lines():
+            self.assertTrue(lines and all(line.startswith("tank bottom ") for line in lines))
+        self.choose_events("none")
+        self.assertEqual([lines for _, lines in self.event_lines() if lines], [])
+        self.choose_events("all")
+        for _, lines in self.event_lines():
+            self.assertGreater(len(lines), max(len(some) for some in own.values()))
+
+    def test_the_pointer_on_an_event_line_names_the_event(self):
+        self.open("out/weak_clamping/report.html")
+        place = "const p = steplap.page.plots.plots.find((q) => q.figure.name === 'Margin'), line = p.eventLines()[0];"
+        self.run_js(place + "p.area.scrollIntoView({ block: 'center' })")
+        text = self.run_js(place + """const box = p.area.getBoundingClientRect(), at = (x) => p.area.dispatchEvent(new MouseEvent('mousemove', { clientX: box.left + x }));
+            at(p.graph.toDomXCoord(line.t)); const named = [line.text, p.eventName.textContent, p.eventName.hidden];
+            at(p.graph.toDomXCoord(line.t) - 30); return [...named, p.eventName.hidden]""")
+        self.assertIn(text[0], text[1].split("\n"))
+        self.assertEqual(text[2:], [False, True])  # and not where there is none
+
+    def test_the_motion_is_saved_as_an_animated_png(self):
+        """80 frames of 50 ms for 0.8 s at a fifth of its speed, in the chunks that the PNG specification asks for."""
+        self.open("out/weak_clamping/report.html")
+        self.browser.set_script_timeout(300)
+        name, data, before, after = self.browser.execute_async_script("""const done = arguments[0], before = steplap.page.time();
+            steplap.save.file = (name, type, content) => setTimeout(() => done([name, btoa(content.reduce((s, c) => s + String.fromCharCode(c), '')), before, steplap.page.time()]));
+            document.getElementById('speed').value = '0.2'; document.querySelector('[data-save=animation]').click()""")
+        content = base64.b64decode(data)
+        self.assertEqual((name, content[:8]), ("weak_clamping_motion.png", b"\x89PNG\r\n\x1a\n"))
+        chunks, at = [], 8
+        while at < len(content):
+            size, = struct.unpack(">I", content[at:at + 4])
+            kind, body = content[at + 4:at + 8], content[at + 8:at + 8 + size]
+            self.assertEqual(zlib.crc32(kind + body), struct.unpack(">I", content[at + 8 + size:at + 12 + size])[0])
+            chunks.append((kind, body))
+            at += 12 + size
+        frames = [body for kind, body in chunks if kind == b"fcTL"]
+        self.assertEqual(struct.unpack(">I", dict(chunks)[b"acTL"][:4])[0], len(frames))
+        self.assertEqual([struct.unpack(">HH", f[20:24]) for f in frames], [(50, 1000)] * 80)
+        numbers = [struct.unpack(">I", body[:4])[0] for kind, body in chunks if kind in (b"fcTL", b"fdAT")]
+        self.assertEqual(numbers, list(range(len(numbers))))
+        pictures, packed = [], b""
+        for kind, body in chunks:
+            if kind in (b"fcTL", b"IEND") and packed:
+                pictures.append(zlib.decompress(packed))
+                packed = b""
+            packed += body if kind == b"IDAT" else body[4:] if kind == b"fdAT" else b""
+        self.assertEqual(len(pictures), 80)
+        self.assertNotEqual(pictures[0], pictures[40])  # the machine has moved
+        self.assertEqual(before, after)  # the page is where it was
 
     # --- verdict ---------------------------------------------------------------------------------
 

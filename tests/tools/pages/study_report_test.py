@@ -11,6 +11,7 @@ import csv
 import io
 import json
 import os
+import re
 import shutil
 import sqlite3
 import struct
@@ -291,6 +292,24 @@ class StudyReportTest(unittest.TestCase):
             self.assertLessEqual(right, width)
         self.open("sample") # some of its runs have no result
         self.assertEqual(self.find(".badge").text, "NOT MET")
+
+    def test_the_answer_comes_first_and_large_as_a_sentence(self):
+        """Of 600 samples of a known law the share beyond the limit, in per cent to two digits of its interval."""
+        self.open("sample")
+        first = self.find("#answer .sentence")
+        sentence = first.text.replace("\u202f", " ")
+        found = self.run_js("return study.data.findings.find((f) => f.role === 'probability')")
+        value, low, high = (float(x) for x in re.fullmatch(r"The probability of 'strength' is ([\d.]+) % \(([\d.]+) to ([\d.]+) %\)\.", sentence).groups())
+        for shown, exact in ((value, found["value"]), (low, found["low"]), (high, found["high"])):
+            self.assertAlmostEqual(shown, 100 * exact, delta=0.05 * 100 * (found["high"] - found["low"]))  # half a second digit of the width, or less
+        size = self.run_js("return [arguments[0], document.body].map((e) => parseFloat(getComputedStyle(e).fontSize))", first)
+        self.assertGreater(size[0], 1.4 * size[1])
+        for name, words in (("tornado", "'r' depends most on"), ("map", "The border runs through"), ("sweep", "'r' goes from 0.75 to 6")):
+            self.open(name)
+            self.assertIn(words, self.find("#answer .card > :first-child").text)
+            self.assertNotIn("has ended", self.find("#answer").text)
+        self.open("distrusted")
+        self.assertEqual(self.find("#answer .card > :first-child").text, "NOT TO BE TRUSTED")  # before an answer that is none
 
     def test_failed_runs_are_counted_with_their_reasons(self):
         samples = self.export("sample")

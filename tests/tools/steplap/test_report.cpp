@@ -523,7 +523,7 @@ TEST_CASE("an element's drawing hint is read, checked and kept") {
   CHECK(unknown.err.find("'drew'") == unknown.err.rfind("'drew'")); // once, though two tables are read
 }
 
-TEST_CASE("the load case of a run: gravity, speed, drives and signals, but no other element") {
+TEST_CASE("the load case of a run: gravity, speed, drives and their signals, but no other element or signal") {
   const std::string model = R"(
 source = "drawing 4711"
 gravity = [0.0, -9.81]
@@ -531,6 +531,7 @@ simulation = { end = 1.0, velocity = ["1.1 km/h", 0.0] }
 [[element]]
 name = "drive"
 kind = "prescribed_motion"
+a = { body = "lorry", at = [0, 1] }
 signal = "braking"
 [[element]]
 name = "foot"
@@ -540,15 +541,20 @@ name = "braking"
 kind = "table"
 times = [0, 1, 2, 3, 4, 5, 6, 7, 8]
 peak = "-0.8 gravity"
+[[signal]]
+name = "humping"
+kind = "half_sine"
+peak = "2 gravity"
 )";
   const auto drawing = nlohmann::ordered_json::parse(
       R"({"elements": [{"name": "drive", "shapes": [{"type": "arrow"}]}, {"name": "foot", "shapes": [{"type": "contact"}]}]})");
   const auto rows = load_case_json(model, drawing).get<std::vector<std::pair<std::string, std::string>>>();
-  const std::vector<std::pair<std::string, std::string>> wanted{{"gravity", "[0, -9.81]"},
-                                                                {"initial velocity", "[1.1 km/h, 0]"},
-                                                                {"element 'drive'", "prescribed_motion, signal = braking"},
-                                                                {"signal 'braking'", "table, times = 9 values, peak = -0.8 gravity"},
-                                                                {"source of the values", "drawing 4711"}};
+  const std::vector<std::pair<std::string, std::string>> wanted{
+      {"gravity", "[0, -9.81]"},
+      {"initial velocity", "[1.1 km/h, 0]"},
+      {"element 'drive'", "prescribed_motion, a = {body = lorry, at = [0, 1]}, signal = braking"},
+      {"signal 'braking'", "table, times = 9 values, peak = -0.8 gravity"},
+      {"source of the values", "drawing 4711"}};
   CHECK(rows == wanted);
 }
 

@@ -18,7 +18,8 @@
   }
   function decision() {
     const { verdict, reason } = A.answer();
-    at('decision').append(make('div', { class: 'verdict-line' }, make('span', { class: `badge ${A.words[verdict] ? verdict : 'open'}` }, A.words[verdict] || 'OPEN'), make('span', { class: 'reason' }, reason)),
+    const badge = make('span', { class: `badge ${A.words[verdict] ? verdict : 'open'}` }, A.words[verdict] || 'OPEN');
+    at('decision').append(make('div', { class: 'verdict-line' }, badge, make('span', { class: 'reason' }, reason)),
       ...A.contradictions().map((t) => make('p', { class: 'contradiction' }, `Look at this: ${t}`)));
     if (!given) return;
     at('decision').append(keyFigures());
@@ -43,6 +44,10 @@
       A.models.length ? make('div', {}, make('h3', {}, 'Models'), table(['model', 'plane', 'file', 'recorder at', 'its axes', 'SHA-256'], A.models.map((m) => [m.name, m.plane || '', m.file || '', m.recorder ? m.recorder.marker : 'not stated',
         m.recorder ? `x = ${m.recorder.x}, y = ${m.recorder.y}` : '', m.sha256 || '']))) : null);
   }
+  function worstEvent() {
+    const found = A.worst.length ? steplap.eventMachine.of(A.worst[0], 1) : null;
+    if (found) put('worst-event', make('div', {}, found.picture, make('p', {}, found.text)), E.curve(A.worst[0]));
+  }
   function events() {
     if (!A.events.length) return;
     const shown = A.worst.slice(0, 6), drawn = A.worst.slice(0, 12);
@@ -52,8 +57,10 @@
 
   at('title').textContent = given ? 'Assessment of a transport' : 'Static proof';
   at('subtitle').textContent = [A.records.map((r) => r.file).join(', '), (A.models.length ? A.models.map((m) => m.name) : A.statics.map((s) => s.model)).join(', ')].filter((t) => t).join(' · ');
-  const sheet = steplap.assessmentSheet(), kept = steplap.sheet.fit(sheet.contentOf, sheet.room); // before the page is large: it is laid out some dozen times
+  const sheet = steplap.assessmentSheet();
+  const kept = steplap.sheet.fit(sheet.contentOf, sheet.room); // before the page is large: it is laid out some dozen times
   decision();
+  worstEvent();
   events();
   voyage();
   hangs();

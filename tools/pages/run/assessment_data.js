@@ -74,5 +74,6 @@ steplap.assessment = (() => {
   return { papers: papers(), covered: (given && given.covered) || '', coveredShare: given ? given.covered_share : null, journey: (given && given.journey) || '', program: raw.program, folder: raw.folder, given, events, worst, models, statics, records: list(given && given.records), reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)), hangs: list(given && given.hangs_on), tests: list(given && given.tests),
     assumptions: [...list(given && given.assumptions), ...statics.flatMap((s) => list(s.assumptions))], criteria: (given && given.criteria) || null, voyage: (given && given.voyage) || {}, totals: list(given && given.voyage && given.voyage.joints),
     uncertain: models.flatMap((m) => list(m.uncertain).map((u) => ({ ...u, model: m.name }))), unknown: models.map((m) => ({ name: m.name, list: list(m.knows_not) })).filter((m) => m.list.length),
-    list, words, outcomes, acceleration, peakText, chanceText, slipText, slidText, margin, marginText, timeText, contradictions, answer };
+    list, rankOf, words, outcomes, acceleration, peakText, chanceText, slipText, slidText, margin, marginText, timeText, contradictions,
+    answer };
 })();

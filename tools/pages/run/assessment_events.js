@@ -47,6 +47,9 @@ steplap.events = (() => {
     text('0', { x: left - 3, y: y(0) + 3, 'text-anchor': 'end' });
     text(one(t0, 's'), { x: left, y: h - 5 });
     text(one(t1, 's'), { x: w - right, y: h - 5, 'text-anchor': 'end' });
+    for (const { worst_time: t } of e.models.filter((m) => isKnown(m.worst_time) && m.worst_time >= t0 && m.worst_time <= t1))
+      svg.append(make('line', { class: 'worst-instant', x1: x(t), x2: x(t), y1: top, y2: h - bottom },
+        make('title', {}, 'a limit is nearest')));
     const m = e.models.find((q) => q.slipping.length);
     return make('figure', { class: 'curve', 'data-event': e.number }, svg, make('figcaption', {}, `Event ${e.number}, ${A.timeText(e)}: ${named.map((axis) => `${axis} ${{ x: 'full', y: 'dashed', z: 'dotted' }[axis]}`).join(', ')}. ${m ? `${m.model} ${A.slipText(m)}.` : ''}`));
   }

@@ -14,7 +14,8 @@ steplap.casesSheet = (found) => {
   const marked = (text, outcome) => ({ text, class: outcome === 'hold' ? 'met' : 'beyond' });
   function caseRow(one, k) {
     const governing = one.governing_limit, plane = { text: one.plane || '–', class: 'word' };
-    return [String(k + 1), one.name, plane, one.source, marked(one.verdict, one.verdict), governing || '–', governing ? used(one, governing) : '–'];
+    return [String(k + 1), one.name, plane, one.source, marked(one.verdict, one.verdict), governing || '–',
+      governing ? used(one, governing) : '–'];
   }
   function limitRow({ limit, governing_case: governing }) {
     const worst = cases.find((one) => one.name === governing), i = limitOf(worst, limit);
@@ -28,7 +29,8 @@ steplap.casesSheet = (found) => {
   const numbers = cases.map((_, k) => k + 1), last = [1, 2, 3, 4].map((k) => cases.length + k);
   const [{ name, drawing: machine }] = steplap.data.runs;
   const parts = [drawing(steplap.data.still(name, machine), 0),
-    part('Cases', make('div', { id: 'cases' }, table(['no.', 'case', 'plane', 'source', 'verdict', 'governing limit', 'used'], cases.map(caseRow), [6]))),
+    part('Cases', make('div', { id: 'cases' },
+      table(['no.', 'case', 'plane', 'source', 'verdict', 'governing limit', 'used'], cases.map(caseRow), [6]))),
     part('Limits: utilisation in each case', make('div', { id: 'limits' },
       table(['limit', ...numbers.map(String), 'governs', 'value', 'margin', 'error'], found.limits.map(limitRow), [...numbers, ...last]))),
     part('Values of each case', ...cases.map(values))];

@@ -136,7 +136,9 @@ steplap.data = (() => {
   const raw = JSON.parse(document.getElementById('data').textContent);
   // A machine of which only the drawing is known, as it is given.
   const still = (name, drawing) => new Run({ name, drawing, summary: { extremes: {} }, events: [], channels: [], poseOf: () => null });
-  return { program: raw.program, modes: raw.modes, loadCases: raw.load_cases, still, runs: raw.runs.map((r) => new Run(r)), Run, indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
+  const runs = raw.runs.map((r) => new Run(r));
+  return { program: raw.program, modes: raw.modes, loadCases: raw.load_cases, still, runs,
+    Run, indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
 })();
 
 // Elements of the page; texts only ever as text.

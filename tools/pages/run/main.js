@@ -35,7 +35,9 @@
       if (!isOne) box.append(make('h3', {}, runs[i].name));
       box.append(scene.svg);
       scene.largestForce = largestForce;
-      const save = steplap.save.buttons({ SVG: () => steplap.onPaper(() => steplap.save.svg(scene.svg, runs[i].name)), PNG: () => steplap.onPaper(() => steplap.save.png(scene.svg, runs[i].name)) });
+      const save = steplap.save.buttons({ SVG: () => steplap.onPaper(() => steplap.save.svg(scene.svg, runs[i].name)),
+        PNG: () => steplap.onPaper(() => steplap.save.png(scene.svg, runs[i].name)),
+        Animation: (event) => saveAnimation(scene, event.currentTarget) });
       box.append(save);
       at('scenes').append(box);
     });
@@ -48,6 +50,17 @@
       'Closer: Ctrl and wheel, two fingers, or + and - on the picture. 0 or a double click shows all. Drag to move.'];
     if (runs.some((run) => run.drawing.sheets.length)) help.splice(1, 0, 'Limbs have an orange edge once their joint has slipped.');
     at('picture-help').append(make('summary', {}, 'How to read the picture'), make('p', { class: 'note' }, help.join(' ')));
+  }
+  // The motion at the chosen speed, as it is drawn now.
+  async function saveAnimation(scene, button) {
+    const before = t, label = button.textContent;
+    setPlaying(false);
+    button.disabled = true;
+    const tell = (done, all) => { button.textContent = `${Math.round((100 * done) / all)} %`; };
+    await steplap.animation.save(scene, scene.run.name, scene.run.end, Number(at('speed').value), tell);
+    button.textContent = label;
+    button.disabled = false;
+    show(before);
   }
   function buildInsets() {
     runs.forEach((run, i) => { for (const sheet of steplap.data.corners(run).slice(0, 8)) insets.push(new steplap.Inset(run, scenes[i], sheet)); });
@@ -177,8 +190,17 @@
     for (const p of plots.plots) p.box.classList.toggle('chosen', p === plot);
     plot.box.scrollIntoView({ block: 'center', behavior: window.matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth' });
   }
+  // Events of which element the curves show.
+  function chooseEvents() {
+    const names = steplap.data.unique(runs.map((run) => run.events.filter((e) => steplap.signs.has(e[4])).map((e) => e[1])));
+    const elements = names.slice(0, 100).map((name) => [`of ${name}`, name]);
+    const choices = [['own', 'those of each figure'], ['all', 'all'], ['none', 'none'], ...elements];
+    at('events-of').append(...choices.map(([value, text]) => make('option', { value }, text)));
+    at('events-of').addEventListener('change', (event) => { plots.eventsOf = event.target.value; plots.build(); show(t); });
+  }
   function buildPlots() {
     plots = new steplap.Plots(at('plot-grid'), go);
+    chooseEvents();
     at('layout-control').hidden = isOne;
     at('layout').addEventListener('change', (event) => { plots.layout = event.target.value; plots.build(); show(t); });
     at('zoom-out').addEventListener('click', () => plots.zoomOut());

@@ -29,6 +29,11 @@ steplap.Plots = (() => {
       this.box.append(this.area, steplap.save.buttons({ CSV: () => steplap.save.file(`${name}.csv`, 'text/csv', this.csv()),
         SVG: () => steplap.onPaper(() => steplap.save.svg(this.paperDrawing(), name)), PNG: () => steplap.onPaper(() => steplap.save.png(this.paperDrawing(), name)) }));
       this.cursor = make('div', { class: 'cursor' });
+      this.eventName = make('div', { class: 'event-name', role: 'status', hidden: '' });
+      this.area.addEventListener('mousemove', ({ clientX }) => {
+        if (this.graph) this.nameEvents(clientX - this.area.getBoundingClientRect().left);
+      });
+      this.area.addEventListener('mouseleave', () => { this.eventName.hidden = true; });
       this.overlay = make('svg', { class: 'marks', 'aria-hidden': 'true' });
       this.area.addEventListener('dblclick', () => setTimeout(() => this.owner.zoomOut())); // back to the scale of all
     }
@@ -61,7 +66,7 @@ steplap.Plots = (() => {
         underlayCallback: (context, rect, g) => this.drawEvents(context, rect, g),
         clickCallback: (event, x) => this.owner.onTime(this.graph.toDataXCoord(event.offsetX) || x),
       });
-      this.area.append(this.overlay, this.cursor);
+      this.area.append(this.overlay, this.cursor, this.eventName);
       this.mark();
       this.show(this.owner.t);
     }
@@ -131,9 +136,26 @@ steplap.Plots = (() => {
       const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // one on either side of zero is told of once
       if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
     }
-    // Instants that are marked by lines, with their style.
+    // Whether events of an element are marked: of the chosen one, or of those whose channels the figure shows.
+    isMarked(element) {
+      const { eventsOf } = this.owner;
+      if (eventsOf === 'own') return this.series.some((s) => s.name.startsWith(`${element}.`));
+      return eventsOf === 'all' || eventsOf === `of ${element}`;
+    }
+    // Instants that are marked by lines, with their style and their words.
     eventLines() {
-      return this.runs.flatMap((run) => run.events.filter((e) => styleOf(e[4])).map((e) => ({ t: e[0], style: styleOf(e[4]) })));
+      const of = (run) => run.events.filter(([, who, , , role]) => styleOf(role) && this.isMarked(who));
+      const words = (run, [, who, what, text]) => `${who} ${what} at ${text}${this.runs.length > 1 ? `, ${run.name}` : ''}`;
+      return this.runs.flatMap((run) => of(run).map((e) => ({ t: e[0], style: styleOf(e[4]), text: words(run, e) })));
+    }
+    // Names the events whose line is under the pointer, `x` pixels from the left of the figure.
+    nameEvents(x) {
+      const reach = 4, mostNamed = 4; // pixels; lines of text
+      const near = this.eventLines().filter(({ t }) => Math.abs(this.graph.toDomXCoord(t) - x) <= reach).map((line) => line.text);
+      const more = near.length > mostNamed ? [`and ${near.length - mostNamed} more`] : [];
+      this.eventName.textContent = [...near.slice(0, mostNamed), ...more].join('\n');
+      this.eventName.hidden = !near.length;
+      this.eventName.style.left = `${Math.min(x + 8, 0.5 * this.area.clientWidth)}px`;
     }
     drawEvents(context, rect, g) {
       const lines = this.eventLines(), isDense = lines.length > 120; // a hatching of lines would hide the curves
@@ -191,7 +213,7 @@ steplap.Plots = (() => {
 
   return class Plots {
     constructor(grid, onTime) {
-      Object.assign(this, { grid, onTime, t: 0, plots: [], extra: [], isFollowing: false, layout: 'beside' });
+      Object.assign(this, { grid, onTime, t: 0, plots: [], extra: [], isFollowing: false, layout: 'beside', eventsOf: 'own' });
       this.full = [0, Math.max(...steplap.data.runs.map((r) => r.end))];
       this.window = this.full;
       this.figures = steplap.figures.of(steplap.data.runs);

@@ -1,7 +1,7 @@
 // The sheet of a run: the machine where a limit is nearest, its load case, limits with their sources and utilisation, what happened.
 steplap.runSheet = (run) => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, instant, isKnown } = steplap.numbers, q = steplap.quantities;
-  const { part, list, named, drawing, smaller } = steplap.sheet, overview = steplap.overview.of(run), { model } = run.summary;
+  const { part, rest, list, named, drawing, smaller } = steplap.sheet, overview = steplap.overview.of(run), { model } = run.summary;
   const usual = 8.5; // pt
 
   // Criteria name an element or a channel of it; the utilisation of the same value and limit is theirs.
@@ -30,9 +30,7 @@ steplap.runSheet = (run) => {
   const badge = steplap.overview.badgeOf(run), word = badge.name === 'none' ? '' : badge.word; // without criteria there is no verdict
   function story(kept) {
     if (!overview.story.length) return [make('p', {}, 'Nothing slipped, lifted, opened or broke.')];
-    const more = overview.story.length - kept;
-    return [list(overview.story.slice(0, kept).map((entry) => entry.text)),
-      ...(more > 0 ? [make('p', { class: 'more' }, `${more} more are on the page of the run.`)] : [])];
+    return [list(overview.story.slice(0, kept).map((entry) => entry.text)), ...rest(overview.story.length, kept, 'happenings')];
   }
   const inputs = model.inputs.map((file) => named(file.file, file.sha256));
   const digests = [...inputs, named('effective model.toml', run.model_sha256)].join('; ');

@@ -10,18 +10,20 @@ steplap.sheet = (() => {
     return letters.length > limit ? `${letters.slice(0, limit - 1).join('')}…` : letters.join('');
   }
   const part = (title, ...content) => make('div', {}, make('h2', {}, title), ...content);
-  const rest = (all, kept, what) => (all > kept ? [make('p', { class: 'more' }, `${all - kept} more ${what} on the sheets behind.`)] : []);
+  // What is left out: the page of an assessment has it behind its sheet, a sheet alone has nothing behind it.
+  const elsewhere = document.body.classList.contains('assessment') ? 'on the sheets behind' : 'in the report';
+  const rest = (all, kept, what) => (all > kept ? [make('p', { class: 'more' }, `${all - kept} more ${what} ${elsewhere}.`)] : []);
   const list = (texts) => make('ul', {}, ...texts.map((t) => make('li', {}, t)));
   const bullets = (texts, kept, limit, what) => [list(texts.slice(0, kept).map((t) => short(t, limit))), ...rest(texts.length, kept, what)];
   // A line to be filled in by hand where nothing is stated.
   const orBlank = (text, limit) => (text ? short(text, limit) : make('span', { class: 'blank' }));
   const named = (file, sha256) => `${file} (SHA-256 ${String(sha256 || 'unknown').slice(0, 16)}…)`;
 
-  // The machine of a run as it stands at time t.
-  function drawing(run, t, columns = 1) {
+  // The machine of a run as it stands at time t, seen from the usual body or from another.
+  function drawing(run, t, columns = 1, seenFrom = '') {
     const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
     scene.setMoved(moved, story);
-    const room = 703 / columns, standpoint = scene.usualStandpoint(); // pixels of the style sheet: 186 mm
+    const room = 703 / columns, standpoint = seenFrom || scene.usualStandpoint(); // pixels of the style sheet: 186 mm
     steplap.Scene.fitAll([scene], standpoint, scene.usualMagnification(standpoint), [room], 0.34 * 703);
     scene.show(t);
     return make('div', { class: 'drawing' }, scene.svg);

@@ -94,14 +94,18 @@ steplap.save = (() => {
     return { text: new XMLSerializer().serializeToString(copy), width, height };
   }
   const svg = (drawing, name) => file(`${name}.svg`, 'image/svg+xml', alone(drawing).text);
-  function png(drawing, name, magnified = 2) {
+  // A canvas with the drawing as it is now; the promise is kept once the browser has drawn it.
+  async function raster(drawing, magnified) {
     const { text, width, height } = alone(drawing), image = new Image(), canvas = document.createElement('canvas');
-    image.onload = () => {
-      canvas.width = magnified * width; canvas.height = magnified * height;
-      canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);
-      canvas.toBlob((blob) => file(`${name}.png`, 'image/png', blob), 'image/png');
-    };
     image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+    await image.decode();
+    canvas.width = magnified * width; canvas.height = magnified * height;
+    canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);
+    return canvas;
+  }
+  async function png(drawing, name, magnified = 2) {
+    const canvas = await raster(drawing, magnified);
+    canvas.toBlob((blob) => file(`${name}.png`, 'image/png', blob), 'image/png');
   }
   // Buttons that save: { SVG: action, ... }.
   function buttons(actions) {
@@ -113,7 +117,7 @@ steplap.save = (() => {
     }
     return box;
   }
-  return { file, svg, png, alone, buttons };
+  return { file, svg, png, raster, alone, buttons };
 })();
 
 // Icons drawn, not typed: no font is asked for a sign that it may lack.

@@ -4,9 +4,7 @@ study.estimates = (() => {
   const { make, table, data, charts } = study;
   const at = (id) => document.getElementById(id);
   const { colours, cycle, axis, safe, band } = charts;
-  const minus = (text) => text.replace(/-(?=[\d.])/g, '−');
-  const quantity = (f) => (f.text ? minus(f.text) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '–');
-  const interval = (f) => (f.interval ? minus(f.interval) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '');
+  const minus = (text) => text.replace(/-(?=[\d.])/g, '−'), { quantity, interval } = study.answers;
   const isJudged = new Set(['probability', 'beta', 'critical', 'elasticity', 'first order', 'total', 'estimate', 'swing', 'mu*']);
   const status = (f) => ({ text: f.status, class: `words${f.status && (isJudged.has(f.role) || study.kind.isJudged) ? ' doubt' : ''}` });
   const scroll = (...content) => make('div', { class: 'scroll' }, ...content);
@@ -32,8 +30,9 @@ study.estimates = (() => {
   }
 
   // --- the answer ----------------------------------------------------------------------------------
+  // A study that is done has its answer; the others have a badge that warns of it.
   const standings = {
-    done: ['done', 'DONE', 'The study has ended.'],
+    done: ['', '', ''],
     'not met': ['not-met', 'NOT MET', 'The study has ended, but the wanted accuracy was not reached, or not everything has an answer: see the remarks beside the numbers.'],
     'not to be trusted': ['not-trusted', 'NOT TO BE TRUSTED', 'The study has ended, but its answer is not to be trusted: see the remarks beside the numbers.'],
     '': ['unfinished', 'NOT FINISHED', 'The study has not ended: what is here is what it had found so far. It goes on when it is run again.'] };
@@ -50,7 +49,10 @@ study.estimates = (() => {
   }
   function answer() {
     const [kind, word, sentence] = standings[data.standing] || ['not-trusted', data.standing.toUpperCase(), ''];
-    const card = make('div', { class: 'card' }, make('span', { class: `badge ${kind}` }, word), make('p', {}, sentence));
+    const sentences = study.answers.list(), card = make('div', { class: 'card' });
+    if (word) card.append(make('span', { class: `badge ${kind}` }, word), make('p', {}, sentence));
+    const told = sentences.length || word ? sentences : ['The study has ended.'];
+    card.append(...told.map((text) => make('p', { class: 'sentence' }, text)));
     const found = main(), most = 20;
     if (found.length) card.append(stacked(found.slice(0, most).map(row)));
     if (found.length > most) card.append(make('p', { class: 'note' }, `${most} of ${found.length} are here, all below.`));
