@@ -51,14 +51,15 @@ study.estimates = (() => {
   function answer() {
     const [kind, word, sentence] = standings[data.standing] || ['not-trusted', data.standing.toUpperCase(), ''];
     const card = make('div', { class: 'card' }, make('span', { class: `badge ${kind}` }, word), make('p', {}, sentence));
-    const found = main(), most = 20;
+    const found = main(), most = 20, notes = [...data.notes];
+    if (study.kind.beginsWithSentence && notes.length) card.append(make('p', {}, make('strong', {}, notes.shift())));
     if (found.length) card.append(stacked(found.slice(0, most).map(row)));
     if (found.length > most) card.append(make('p', { class: 'note' }, `${most} of ${found.length} are here, all below.`));
     if (!data.standing && data.growth.length) {
       const last = data.growth.map((g) => [g.method, g.subject, g.quantity, data.plain(g.value.at(-1), 4), `${data.plain(g.low.at(-1), 4)} … ${data.plain(g.high.at(-1), 4)}`, String(g.samples.at(-1)), { text: 'not finished', class: 'doubt' }]);
       card.append(stacked(last));
     }
-    if (data.notes.length) card.append(make('ul', { class: 'notes' }, ...data.notes.map((n) => make('li', {}, n))));
+    if (notes.length) card.append(make('ul', { class: 'notes' }, ...notes.map((n) => make('li', {}, n))));
     card.append(...failures());
     at('answer').append(card);
   }
