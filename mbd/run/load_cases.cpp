@@ -18,40 +18,22 @@ namespace {
 
 using SharedModel = std::shared_ptr<const LoadedModel>;
 
-// Errors of overrides are located at the case, because the model without them has none.
-void add_problems(const LoadCase& one, const ModelError& error, std::vector<Diagnostic>& problems) {
-  for (const Diagnostic& found : error.diagnostics()) {
-    const std::string where = found.where.file.empty() ? "" : " (" + found.where.file + ")";
-    problems.push_back({one.place("set"), "case '" + one.name + "': " + found.message + where});
-  }
-}
-
 bool applies(const LoadCase& one, const Criterion& criterion) {
   return one.criteria.empty() || std::any_of(one.criteria.begin(), one.criteria.end(),
                                              [&](const std::string& pattern) { return matches_pattern(criterion.name, pattern); });
-}
-
-void check_criteria(const LoadCase& one, const Model& model, std::vector<Diagnostic>& problems) {
-  std::vector<std::string> known;
-  for (const Criterion& criterion : model.criteria) known.push_back(criterion.name);
-  for (const std::string& pattern : one.criteria)
-    if (std::none_of(known.begin(), known.end(), [&](const std::string& name) { return matches_pattern(name, pattern); }))
-      problems.push_back(
-          {one.place("criteria"), "case '" + one.name + "': no [[acceptance]] is called '" + pattern + "'" + did_you_mean(pattern, known)});
-  if (!is_judged(model)) problems.push_back({one.where, "case '" + one.name + "' has no criteria: add an [[acceptance]] to the model"});
 }
 
 SharedModel load_case(const LoadCase& one, const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
                       const RunCatalogue& catalogue, std::vector<Diagnostic>& problems) {
   try {
     SharedModel loaded = load_model_text(text, path, overrides, catalogue);
-    check_criteria(one, loaded->model, problems);
+    check_case_criteria(one, loaded->model, problems);
     if (one.criteria.empty()) return loaded;
     auto judged = std::make_shared<LoadedModel>(*loaded);
-    std::erase_if(judged->model.criteria, [&one](const Criterion& criterion) { return !applies(one, criterion); });
+    keep_case_criteria(one, judged->model);
     return judged;
   } catch (const ModelError& error) {
-    add_problems(one, error, problems);
+    add_case_problems(one, error, problems);
     return nullptr;
   }
 }
@@ -111,6 +93,27 @@ bool is_less_severe(const CaseLimit& a, const CaseLimit& b) {
 }
 
 } // namespace
+
+void add_case_problems(const LoadCase& one, const ModelError& error, std::vector<Diagnostic>& problems) {
+  for (const Diagnostic& found : error.diagnostics()) {
+    const std::string where = found.where.file.empty() ? "" : " (" + found.where.file + ")";
+    problems.push_back({one.place("set"), "case '" + one.name + "': " + found.message + where});
+  }
+}
+
+void check_case_criteria(const LoadCase& one, const Model& model, std::vector<Diagnostic>& problems) {
+  std::vector<std::string> known;
+  for (const Criterion& criterion : model.criteria) known.push_back(criterion.name);
+  for (const std::string& pattern : one.criteria)
+    if (std::none_of(known.begin(), known.end(), [&](const std::string& name) { return matches_pattern(name, pattern); }))
+      problems.push_back(
+          {one.place("criteria"), "case '" + one.name + "': no [[acceptance]] is called '" + pattern + "'" + did_you_mean(pattern, known)});
+  if (!is_judged(model)) problems.push_back({one.where, "case '" + one.name + "' has no criteria: add an [[acceptance]] to the model"});
+}
+
+void keep_case_criteria(const LoadCase& one, Model& model) {
+  std::erase_if(model.criteria, [&one](const Criterion& criterion) { return !applies(one, criterion); });
+}
 
 const CaseLimit* CaseResult::governing() const {
   return limits.empty() ? nullptr : &*std::max_element(limits.begin(), limits.end(), is_less_severe);

@@ -54,6 +54,14 @@ struct LimitRow {
   std::size_t governing = 0;             ///< index of the governing case
 };
 
+/// Adds the errors of a model that was read with the overrides of a case. They are located at the case, because the model without these
+/// overrides does not have them.
+void add_case_problems(const LoadCase& one, const ModelError& error, std::vector<Diagnostic>& problems);
+/// Adds an error for each pattern of the case that names no criterion of the model, and one if the case has no criteria at all.
+void check_case_criteria(const LoadCase& one, const Model& model, std::vector<Diagnostic>& problems);
+/// Removes the criteria of a completed model that do not apply to the case.
+void keep_case_criteria(const LoadCase& one, Model& model);
+
 /// Runs all cases in parallel. `overrides` apply to every case, before its own. Throws ModelError with the location of the [[case]] if a
 /// case sets what does not exist, names no criterion of the model or has none at all, and if the model has no case.
 [[nodiscard]] LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides,

@@ -224,4 +224,15 @@ std::vector<Utilisation> utilisations_of(const Report& report, const RangeIndex&
   return Finder(report, ranges, digits).find();
 }
 
+double reserve_of(const Report& report) {
+  constexpr double k_least = 1e-9; // the verdict decides the sign: caps and errors that no share contains can forbid "hold"
+  double least = 1.0;
+  for (const Utilisation& u : utilisations_of(report, RangeIndex(report.ranges()))) {
+    if (!u.criterion) continue;
+    const double error = u.error.value_or(0.0); // unknown errors have made the verdict open
+    least = std::min(least, 1.0 - u.share - (std::isnan(error) ? 0.0 : error));
+  }
+  return report.judgement.verdict == Verdict::hold ? std::max(least, k_least) : std::min(least, -k_least);
+}
+
 } // namespace steplap

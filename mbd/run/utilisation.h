@@ -36,4 +36,8 @@ struct Utilisation {
 /// Returns utilisations in descending order, with at most a hundred friction elements.
 [[nodiscard]] std::vector<Utilisation> utilisations_of(const Report& report, const RangeIndex& ranges, ShownDigits digits = {});
 
+/// Returns what is left of the limits of a run: the least over all criteria of 1 − share − its estimated error, 0.2: 20 %; 1 if no criterion
+/// has a share. It is positive if the verdict is "hold", and negative otherwise.
+[[nodiscard]] double reserve_of(const Report& report);
+
 } // namespace steplap

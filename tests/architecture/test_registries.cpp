@@ -129,7 +129,9 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
       {"sweep", {{"tools/study/program/show.cpp", "its samples are its answer"}}},
       {"reliability",
        {{"tools/study/limit_function.h", "hands its settings to the methods of reliability"},
-        {"tools/study/limit_function.cpp", "the same"}}},
+        {"tools/study/limit_function.cpp", "the same"},
+        {"tools/study/design.h", "a design seeks a reliability: its settings are these and more"}}},
+      {"design", {{"tools/study/sweep.cpp", "how samples are arranged"}, {"tools/study/sample.cpp", "how samples are arranged"}}},
   };
   const std::string& list = sources.at("tools/study/kinds.cpp");
   const std::regex entry("(\\w+)_kind\\(\\)"); // read from the source: builds without studies have this test, too

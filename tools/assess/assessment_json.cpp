@@ -8,6 +8,7 @@
 #include "transformer/recorder/time_text.h"
 
 #include "mbd/io/digest.h"
+#include "transformer/program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,7 +116,7 @@ Json models(const Assessment& a) {
                    {"notes", model.notes},
                    {"knows_not", unknown},
                    {"uncertain", uncertain_of_model(a, m)},
-                   {"drawing", parse_ordered(drawing_json(completed(model.given)))}});
+                   {"drawing", parse_ordered(drawing_json(completed(model.given), *program_catalogue().views))}});
   }
   return all;
 }

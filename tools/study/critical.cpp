@@ -1,6 +1,7 @@
 #include "tools/study/critical.h"
 
 #include "tools/study/crossing.h"
+#include "tools/study/line_scan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,59 +55,14 @@ private:
   long bad_ = 0;
 };
 
-struct LineSamples {
-  std::vector<double> x, g;
-};
-
-void sample_line(Line& line, std::vector<double> more, LineSamples& line_samples) {
-  std::sort(more.begin(), more.end());
-  more.erase(std::unique(more.begin(), more.end()), more.end());
-  const std::vector<double> values = line.at(more);
-  std::vector<std::pair<double, double>> all;
-  for (std::size_t i = 0; i < line_samples.x.size(); ++i) all.emplace_back(line_samples.x[i], line_samples.g[i]);
-  for (std::size_t i = 0; i < more.size(); ++i) all.emplace_back(more[i], values[i]);
-  std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
-  line_samples = {};
-  for (const auto& [x, g] : all) line_samples.x.push_back(x), line_samples.g.push_back(g);
-}
-
-// Finds points at which the expression has the same sign as, and is closer to zero than, both neighbours: it may touch zero or cross it
-// twice. The closest to zero come first.
-std::vector<std::size_t> turns_of(const LineSamples& line_samples) {
-  constexpr std::size_t k_most = 6;
-  std::vector<std::size_t> turns;
-  for (std::size_t i = 1; i + 1 < line_samples.x.size(); ++i) {
-    const double before = line_samples.g[i - 1], here = line_samples.g[i], after = line_samples.g[i + 1];
-    const bool is_one_side = before * after > 0.0 && here * before >= 0.0;
-    if (is_one_side && std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after)) turns.push_back(i);
-  }
-  std::stable_sort(turns.begin(), turns.end(),
-                   [&](std::size_t l, std::size_t r) { return std::abs(line_samples.g[l]) < std::abs(line_samples.g[r]); });
-  if (turns.size() > k_most) turns.resize(k_most);
-  return turns;
-}
-
-void refine_line(Line& line, LineSamples& line_samples) {
-  constexpr int k_rounds = 4, k_parts = 8;
-  for (int round = 0; round < k_rounds; ++round) {
-    std::vector<double> more;
-    for (const std::size_t i : turns_of(line_samples))
-      for (int k = 1; k < k_parts; ++k)
-        for (const std::size_t from : {i - 1, i})
-          more.push_back(line_samples.x[from] + (line_samples.x[from + 1] - line_samples.x[from]) * k / k_parts);
-    if (more.empty()) return;
-    sample_line(line, std::move(more), line_samples);
-  }
-}
-
 // Decides for neighbouring points at which the expression is zero whether it is zero everywhere between or only at these points.
-void sample_flats(Line& line, LineSamples& line_samples) {
+void sample_flats(const LineFunction& line, LineSamples& line_samples) {
   constexpr int k_parts = 4;
   std::vector<double> more;
   for (std::size_t i = 1; i < line_samples.x.size(); ++i)
     for (int k = 1; k < k_parts && line_samples.g[i - 1] == 0.0 && line_samples.g[i] == 0.0; ++k)
       more.push_back(line_samples.x[i - 1] + (line_samples.x[i] - line_samples.x[i - 1]) * k / k_parts);
-  if (!more.empty()) sample_line(line, std::move(more), line_samples);
+  if (!more.empty()) add_samples(line, std::move(more), line_samples);
 }
 
 std::string where_nearest(const LineSamples& line_samples) {
@@ -186,14 +142,13 @@ void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems
 Answer run_critical(StudyRun& run) {
   const auto& s = settings_of<CriticalSettings>(run.study());
   const Variable& v = run.study().variables[static_cast<std::size_t>(run.study().index_of_variable(s.variable))];
-  const double low = v.range[0], width = v.range[1] - v.range[0];
+  const double width = v.range[1] - v.range[0];
   Line line(run);
+  const LineFunction function = [&line](const std::vector<double>& xs) { return line.at(xs); };
   LineSamples line_samples;
-  for (long k = 0; k < s.points; ++k)
-    line_samples.x.push_back(k + 1 == s.points ? v.range[1] : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
-  line_samples.g = line.at(line_samples.x);
-  sample_flats(line, line_samples);
-  refine_line(line, line_samples);
+  add_samples(function, evenly_spaced(v.range[0], v.range[1], s.points), line_samples);
+  sample_flats(function, line_samples);
+  refine_turns(function, line_samples);
 
   Answer answer;
   std::vector<Crossing> crossings = crossings_of(line_samples, s.variable, run.evaluator.asked(), answer);

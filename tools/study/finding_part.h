@@ -1,6 +1,8 @@
 // Describes how a page presents a finding, depending on its quantity.
 #pragma once
 
+#include "tools/study/finding.h"
+
 #include <string>
 
 namespace steplap::study {
@@ -25,6 +27,10 @@ struct FindingPart {
 struct PointRole {
   std::string method; ///< method of the finding
   std::string role;
+  bool is_for_page = false; ///< true if the points are many: only the page shows them
+
+  /// Returns true if the finding is a coordinate of such a point.
+  [[nodiscard]] bool has(const Finding& finding) const { return finding.method == method && finding.subject.starts_with(role + " "); }
 };
 
 } // namespace steplap::study

@@ -1,6 +1,7 @@
 #include "tools/study/kinds.h"
 
 #include "tools/study/critical.h"
+#include "tools/study/design.h"
 #include "tools/study/fit.h"
 #include "tools/study/map.h"
 #include "tools/study/needs.h"
@@ -23,8 +24,8 @@ const char* name_of(Standing standing) {
 }
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds{sweep_kind(),    sample_kind(), reliability_kind(), sensitivity_kind(),
-                                            critical_kind(), map_kind(),    needs_kind(),       fit_kind()};
+  static const std::vector<StudyKind> kinds{sweep_kind(),  sample_kind(), reliability_kind(), sensitivity_kind(), critical_kind(),
+                                            design_kind(), map_kind(),    needs_kind(),       fit_kind()};
   return kinds;
 }
 

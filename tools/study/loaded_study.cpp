@@ -6,7 +6,9 @@
 
 namespace steplap::study {
 
-bool is_set_in(const Variable& v, const StudyModel& model) { return v.model.empty() || v.model == model.name; }
+bool is_set_in(const Variable& v, const StudyModel& model) {
+  return v.model.empty() || v.model == model.name || v.model == model.file_name;
+}
 
 std::vector<const Channel*> channels_of(const Response& response, const System& system) {
   std::vector<const Channel*> found;

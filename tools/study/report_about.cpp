@@ -24,6 +24,8 @@ std::string range_text(const Variable& v) {
   return text.empty() ? "kept" : text + unit;
 }
 
+bool is_sought_mean(const Variable& v) { return v.has_distribution() && (!v.range.empty() || !v.values.empty()); }
+
 // Describes a distribution by its quantiles at fixed probabilities.
 Json quantiles_of(const JointLaw& law, std::size_t place) {
   Json p = Json::array(), x = Json::array();
@@ -45,7 +47,7 @@ Json variable_json(const LoadedStudy& loaded, const JointLaw& law, std::size_t i
   const auto place = std::find(law.random().begin(), law.random().end(), i);
   if (v.has_distribution() && place != law.random().end()) {
     const auto k = static_cast<std::size_t>(place - law.random().begin());
-    json["varies"] = law.text(k);
+    json["varies"] = is_sought_mean(v) ? law.text(k) + "; its mean is sought: " + range_text(v) : law.text(k);
     json["law"] = quantiles_of(law, k);
   }
   json["value"] = law.nominal()[i];
@@ -110,7 +112,8 @@ std::string about_of(const LoadedStudy& loaded, const JointLaw& law) {
   json["settings"] = settings_json(study);
   json["histories"] = history_count_json(study);
   json["models"] = Json::array();
-  for (const auto& m : loaded.models) json["models"].push_back(m->path);
+  for (const auto& m : loaded.models) // load cases share the file of their model
+    if (json["models"].empty() || json["models"].back() != m->path) json["models"].push_back(m->path);
   json["variants"] = Json::array();
   for (const ModelVariant& v : loaded.variants) json["variants"].push_back(v.name);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -8,6 +8,7 @@
 #include "mbd/run/report.h"
 #include "mbd/system/instance.h"
 #include "mbd/trust/judge.h"
+#include "mbd/run/load_cases.h"
 #include "tools/study/history.h"
 #include "transformer/program.h"
 
@@ -94,8 +95,9 @@ double of_events(const Response& r, const std::vector<Event>& events) {
   return r.measure == Measure::event_count ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
 }
 
-double value_of(const Response& r, const RunResult& result, const Judgement& judgement) {
+double value_of(const Response& r, const RunResult& result, const Judgement& judgement, double reserve) {
   if (r.measure == Measure::verdict) return static_cast<double>(judgement.verdict);
+  if (r.measure == Measure::reserve) return reserve;
   if (r.measure == Measure::event_count || r.measure == Measure::first_event) return of_events(r, result.events);
   if (needs_samples(r.measure)) return along(r, *result.trajectory);
   if (r.measure == Measure::final_value || r.measure == Measure::initial_value) {
@@ -203,7 +205,8 @@ struct SampleSimulator::SharedRunData {
     double factor;
   };
   const StudyModel& model;
-  bool is_judged = false;                    ///< a response is the verdict, for which criteria may use any channel
+  bool is_judged = false;                    ///< a response needs the judgement, for which criteria may use any channel
+  bool needs_closed_verdict = false;         ///< a response has no meaning if the verdict is open
   std::vector<std::string> channels;         ///< names of the channels
   std::map<std::string, AskedEnds> extremes; ///< the channels whose extremes are requested
   std::size_t races = 0;
@@ -239,7 +242,8 @@ struct SampleSimulator::SharedRunData {
 
 private:
   void ask(const Response& r) {
-    is_judged = is_judged || r.measure == Measure::verdict;
+    is_judged = is_judged || study::is_judged(r.measure);
+    needs_closed_verdict = needs_closed_verdict || r.measure == Measure::reserve;
     if (needs_samples(r.measure)) sampled.push_back(r.channel);
     const bool is_largest = r.measure == Measure::largest_magnitude;
     const bool is_low = r.measure == Measure::lowest, is_high = r.measure == Measure::highest;
@@ -284,7 +288,7 @@ void SampleSimulator::compare(const SharedRunData& runner, const RunResult& resu
   }
 }
 
-void SampleSimulator::evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result,
+void SampleSimulator::evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result, double reserve,
                                          Outcome& outcome) {
   if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
   if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
@@ -293,7 +297,7 @@ void SampleSimulator::evaluate_responses(const SharedRunData& runner, const Judg
   for (std::size_t i = 0; i < loaded_.study.responses.size(); ++i) {
     const Response& r = loaded_.study.responses[i];
     if (!r.expression.empty() || r.model != runner.model.name) continue;
-    outcome.numbers[i] = value_of(r, result, judgement);
+    outcome.numbers[i] = value_of(r, result, judgement, reserve);
     if (is_extreme(r.measure) && is_singular(r, result.ranges))
       worsen(outcome, SampleStatus::untrusted,
              "'" + r.name + "' was met beside a singular position of the joints, where reactions may be of any size");
@@ -323,7 +327,7 @@ void SampleSimulator::run_system(const SharedRunData& runner, const Model& whole
   }
   const RunResult result = std::move(simulation).result();
   outcome.evaluations += static_cast<double>(result.statistics.evaluations);
-  if (failure.empty()) evaluate_responses(runner, judge(whole, system, result, ""), result, outcome);
+  if (failure.empty()) evaluate_responses(runner, judge(whole, system, result, ""), result, k_nan, outcome);
   else worsen(outcome, SampleStatus::gave_up, failure);
 }
 
@@ -332,12 +336,15 @@ void SampleSimulator::run_judged(const SharedRunData& runner, Model whole, std::
   if (!whole.output.channels.empty())
     whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
   if (runner.sampling.step > 0.0) whole.output.step = runner.sampling.step;
+  if (runner.model.load) keep_case_criteria(*runner.model.load, whole);
   const Report report = judged_run(load_completed(std::move(whole), std::move(system), runner.model.path));
   const RunResult& result = report.run.result;
   outcome.evaluations += static_cast<double>(result.statistics.evaluations);
   if (report.estimate.errors) outcome.evaluations += static_cast<double>(report.estimate.errors->cost.evaluations);
-  if (report.run.failure) worsen(outcome, SampleStatus::gave_up, report.run.failure->text);
-  else evaluate_responses(runner, report.judgement, result, outcome);
+  if (report.run.failure) return worsen(outcome, SampleStatus::gave_up, report.run.failure->text);
+  evaluate_responses(runner, report.judgement, result, reserve_of(report), outcome);
+  if (runner.needs_closed_verdict && report.judgement.verdict == Verdict::open)
+    worsen(outcome, SampleStatus::untrusted, "the verdict is open: " + overview_of(report).reason);
 }
 
 void SampleSimulator::run_model(SharedRunData& runner, const double* values, Outcome& outcome) {

@@ -57,7 +57,8 @@ private:
   void run_model(SharedRunData& runner, const double* values, Outcome& outcome);
   void run_system(const SharedRunData& runner, const Model& whole, System& system, Outcome& outcome);
   void run_judged(const SharedRunData& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome);
-  void evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome);
+  void evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result, double reserve,
+                          Outcome& outcome);
   void compare(const SharedRunData& runner, const RunResult& result, Outcome& outcome) const;
 
   const LoadedStudy& loaded_;

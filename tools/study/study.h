@@ -55,13 +55,16 @@ enum class Measure : std::uint8_t {
   path,              ///< sum of a channel's absolute changes over the written samples
   event_count,       ///< number of events
   first_event,       ///< time of the first event, s
-  verdict            ///< 0 hold, 1 open, 2 inspect, 3 reject
+  verdict,           ///< 0 hold, 1 open, 2 inspect, 3 reject
+  reserve            ///< what is left of all limits (run/utilisation.h); negative unless the verdict is "hold"
 };
 
 /// Returns true for extremes of channels.
 [[nodiscard]] constexpr bool is_extreme(Measure m) {
   return m == Measure::highest || m == Measure::lowest || m == Measure::largest_magnitude;
 }
+/// Returns true if it needs the judgement of the run.
+[[nodiscard]] constexpr bool is_judged(Measure m) { return m == Measure::verdict || m == Measure::reserve; }
 /// Returns true if it needs the samples that a run writes.
 [[nodiscard]] constexpr bool needs_samples(Measure m) { return m == Measure::mean || m == Measure::path; }
 

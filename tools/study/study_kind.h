@@ -27,12 +27,14 @@ struct StudyKind {
   std::string doc;
   FieldTable fields; ///< fields of its table
   std::shared_ptr<KindSettings> (*create)() = nullptr;
-  std::vector<std::string> shown{}; ///< fields of its table that the page shows
-  bool takes_histories = false;     ///< true if it uses measured records
-  bool draws_jointly = false;       ///< true if variables are drawn with their correlations, not set one by one
-  bool shows_running_means = false; ///< true if samples are independent: the page shows how failure fractions and means converge
-  std::vector<FindingPart> parts{}; ///< presentation of its findings, by quantity
-  std::vector<PointRole> points{};  ///< findings that are points in the space of the variables
+  std::vector<std::string> shown{};  ///< fields of its table that the page shows
+  bool takes_histories = false;      ///< true if it uses measured records
+  bool draws_jointly = false;        ///< true if variables are drawn with their correlations, not set one by one
+  bool seeks_a_mean = false;         ///< true if a variable may have a distribution and the values that are tried for its mean
+  bool begins_with_sentence = false; ///< true if the first note of the answer is the answer as a sentence
+  bool shows_running_means = false;  ///< true if samples are independent: the page shows how failure fractions and means converge
+  std::vector<FindingPart> parts{};  ///< presentation of its findings, by quantity
+  std::vector<PointRole> points{};   ///< findings that are points in the space of the variables
   /// Adds required data that is not in the file: limit states, variables, variants of the model.
   void (*prepare)(LoadedStudy& loaded) = nullptr;
   /// Appends errors of the study for this kind to `problems`. Called before anything runs.

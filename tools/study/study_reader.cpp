@@ -138,16 +138,7 @@ private:
         continue;
       }
       try {
-        const InputFiles inputs;
-        auto model = std::make_shared<StudyModel>();
-        model->path = path;
-        model->name = given.stem().string();
-        model->given = read_given_model(path, program_catalogue());
-        model->text = effective_model_text(path, program_catalogue());
-        Model whole = completed(model->given);
-        model->system = compile(whole);
-        (void)check_presentation(whole, *model->system);
-        model->files = inputs.files();
+        std::shared_ptr<StudyModel> model = read_study_model(path);
         for (const auto& other : models_)
           if (other->name == model->name) add(node->children[i].where(), "two models are called '" + model->name + "'");
         models_.push_back(std::move(model));
@@ -243,7 +234,10 @@ private:
   void check_variable(const Node& entry, const Variable& v) {
     const std::string subject = "variable '" + v.name + "'";
     const int ways = !v.values.empty() + !v.range.empty() + v.has_distribution();
-    if (ways > 1) add(v.where, subject + ": 'values', 'range' and 'distribution' exclude each other");
+    const bool is_mean_sought = kind_ && kind_->seeks_a_mean && v.has_distribution() && ways == 2;
+    if (ways > 1 && !is_mean_sought) add(v.where, subject + ": 'values', 'range' and 'distribution' exclude each other");
+    if (const Node* mean = entry.find("mean"); mean && is_mean_sought)
+      add(mean->where_key(), subject + ": its 'mean' is sought in its range: leave 'mean' out");
     if (ways == 0 && !v.value) add(v.where, subject + " needs 'values', 'range', 'distribution' or 'value'");
     if (entry.find("values") && v.values.empty()) add(entry.find("values")->where(), subject + ": 'values' is empty");
     if (entry.find("range") && v.range.size() != 2) add(entry.find("range")->where(), subject + ": 'range' is [low, high]");
@@ -284,7 +278,8 @@ private:
                                                             {"time_of_highest", Measure::highest},
                                                             {"time_of_lowest", Measure::lowest},
                                                             {"time_of_largest", Measure::largest_magnitude},
-                                                            {"verdict", Measure::verdict}};
+                                                            {"verdict", Measure::verdict},
+                                                            {"reserve", Measure::reserve}};
     const auto found = measures.find(r.what);
     if (found != measures.end()) r.measure = found->second;
     r.takes_time = is_extreme(r.measure) && r.what.starts_with("time_of_");
@@ -311,8 +306,9 @@ private:
       for (const char* key : {"event", "element", "otherwise"})
         if (const Node* node = entry.find(key)) add(node->where_key(), "'" + std::string(key) + "' of " + subject + " is for events only");
     if (is_of_events) return check_events(entry, r, *model);
-    if (r.measure == Measure::verdict) {
-      if (const Node* node = entry.find("channel")) add(node->where_key(), subject + ": a verdict is of the whole run, not of a channel");
+    if (is_judged(r.measure)) {
+      if (const Node* node = entry.find("channel"))
+        add(node->where_key(), subject + ": '" + r.what + "' is of the whole run, not of a channel");
       return;
     }
     check_channel(entry, r, *model);
@@ -528,6 +524,21 @@ private:
 };
 
 } // namespace
+
+std::shared_ptr<StudyModel> read_study_model(const std::string& path, const std::vector<std::string>& overrides) {
+  const InputFiles inputs;
+  auto model = std::make_shared<StudyModel>();
+  model->path = path;
+  model->name = std::filesystem::path(path).stem().string();
+  model->overrides = overrides;
+  model->given = read_given_model(path, program_catalogue(), overrides);
+  model->text = effective_model_text(path, program_catalogue(), overrides);
+  Model whole = completed(model->given);
+  model->system = compile(whole);
+  (void)check_presentation(whole, *model->system);
+  model->files = inputs.files();
+  return model;
+}
 
 LoadedStudy read_study(const std::string& path) {
   std::error_code ignored;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mbd/io/input_files.h"
+#include "mbd/io/load_case.h"
 #include "mbd/system/system.h"
 #include "tools/study/study.h"
 
@@ -12,7 +13,10 @@ namespace steplap::study {
 
 /// A model of a study: as given, for setting values, and once completed and compiled for checks.
 struct StudyModel {
-  std::string path, name; ///< name: file name without extension
+  std::string path, name;             ///< name: file name without extension, or name of the load case
+  std::string file_name;              ///< for a load case: name of the model whose case it is
+  std::optional<LoadCase> load;       ///< set for a load case; its criteria apply
+  std::vector<std::string> overrides; ///< "path=value" with which the model was read
   Model given;
   std::string text;             ///< effective model as self-contained TOML
   std::vector<InputFile> files; ///< files from which it was read: the model, extended files, records
@@ -48,6 +52,8 @@ struct LoadedStudy {
   [[nodiscard]] int index_of_number(const std::string& name) const;
 };
 
+/// Reads a model of a study, with overrides "path=value". Throws ModelError.
+[[nodiscard]] std::shared_ptr<StudyModel> read_study_model(const std::string& path, const std::vector<std::string>& overrides = {});
 /// Reads a study file. Throws ModelError with all errors.
 [[nodiscard]] LoadedStudy read_study(const std::string& path);
 /// As read_study(), for a text in memory.

@@ -49,18 +49,18 @@ study.estimates = (() => {
   }
   function answer() {
     const [kind, word, sentence] = standings[data.standing] || ['not-trusted', data.standing.toUpperCase(), ''];
-    const sentences = study.answers.list(), card = make('div', { class: 'card' });
+    const found = main(), most = 20, notes = [...data.notes], card = make('div', { class: 'card' });
+    const sentences = study.kind.beginsWithSentence && notes.length ? [notes.shift()] : study.answers.list();
     if (word) card.append(make('span', { class: `badge ${kind}` }, word), make('p', {}, sentence));
     const told = sentences.length || word ? sentences : ['The study has ended.'];
     card.append(...told.map((text) => make('p', { class: 'sentence' }, text)));
-    const found = main(), most = 20;
     if (found.length) card.append(stacked(found.slice(0, most).map(row)));
     if (found.length > most) card.append(make('p', { class: 'note' }, `${most} of ${found.length} are here, all below.`));
     if (!data.standing && data.growth.length) {
       const last = data.growth.map((g) => [g.method, g.subject, g.quantity, data.plain(g.value.at(-1), 4), `${data.plain(g.low.at(-1), 4)} … ${data.plain(g.high.at(-1), 4)}`, String(g.samples.at(-1)), { text: 'not finished', class: 'doubt' }]);
       card.append(stacked(last));
     }
-    if (data.notes.length) card.append(make('ul', { class: 'notes' }, ...data.notes.map((n) => make('li', {}, n))));
+    if (notes.length) card.append(make('ul', { class: 'notes' }, ...notes.map((n) => make('li', {}, n))));
     card.append(...failures());
     at('answer').append(card);
   }

@@ -5,6 +5,7 @@ study.kind = (() => {
   const none = () => false, one = (...roles) => (f) => roles.includes(f.role);
   // title: of the study. isAnswer: which estimates stand at the top. plane: which drawing samples get, '' for none.
   // isJudged: a remark beside any of its estimates is a doubt. isCounted: what failed runs count as is told.
+  // beginsWithSentence: the first note is the answer as a sentence.
   // showsLaws: the variables' distributions are shown where samples do not follow them.
   const kinds = {
     sweep: { title: 'sweep', isAnswer: none, plane: 'sweep' },
@@ -13,8 +14,9 @@ study.kind = (() => {
     // Designs that change one variable at a time show nothing in a plane.
     sensitivity: { title: 'sensitivity', isAnswer: none, plane: ['tornado', 'elasticity'].includes(data.about.settings.method) ? '' : 'scatter' },
     critical: { title: 'critical values', isAnswer: one('critical'), plane: 'critical' },
+    design: { title: 'design', isAnswer: one('holds from', 'holds to'), plane: 'design', isJudged: false, beginsWithSentence: true },
     map: { title: 'map', isAnswer: none, plane: 'map' },
     needs: { title: 'what the scene needs', isAnswer: none, plane: '' },
     fit: { title: 'fit', isJudged: true } };
-  return { title: data.kind, isAnswer: () => true, plane: 'scatter', isJudged: false, isCounted: false, showsLaws: false, ...(Object.hasOwn(kinds, data.kind) ? kinds[data.kind] : {}) };
+  return { title: data.kind, isAnswer: () => true, plane: 'scatter', isJudged: false, isCounted: false, showsLaws: false, beginsWithSentence: false, ...(Object.hasOwn(kinds, data.kind) ? kinds[data.kind] : {}) };
 })();

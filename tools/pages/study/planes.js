@@ -79,6 +79,24 @@ study.planes = (() => {
       layout: { xaxis: axis(x.head), yaxis: axis(g.is || g.head, { zeroline: true, zerolinewidth: 1.5, zerolinecolor: study.charts.ink }), shapes: found.map((f) => line(f.value * x.factor)) } });
   }
 
+  // --- design ----------------------------------------------------------------------------------------
+  // Values that were tried with their margins; where limits hold the background is shaded.
+  function design() {
+    const points = new Map(), ends = (role) => data.findings.filter((f) => f.role === role && f.value !== null);
+    for (const f of data.findings.filter((one) => one.method === 'design' && one.place)) points.set(f.subject, { ...points.get(f.subject), [f.role === 'margin' ? 'margin' : 'value']: f.value, ...(f.status ? { doubt: f.status } : {}) });
+    const from = ends('holds from'), to = ends('holds to'), x = data.named(data.findings.find((f) => f.role === 'value')?.variable);
+    if (!x || !points.size) return scatter();
+    const tried = [...points.values()].sort((a, b) => a.value - b.value), isSure = data.about.settings.beta === '' && data.about.settings.p === '';
+    const trace = (name, list, look) => ({ type: 'scatter', mode: 'markers', name: `${name} (${list.length})`, x: list.map((p) => p.value * x.factor), y: list.map((p) => p.margin), marker: look, hovertemplate: `${safe(x.name)} %{x:.6g}<br>margin %{y:.4g}<extra></extra>` });
+    const traces = [{ type: 'scatter', mode: 'lines', showlegend: false, hoverinfo: 'skip', x: tried.map((p) => p.value * x.factor), y: tried.map((p) => p.margin), line: { color: colours.grey, width: 1 } },
+      trace('holds', tried.filter((p) => p.margin >= 0), looks[0].marker), trace('does not hold', tried.filter((p) => p.margin < 0 && !p.doubt), looks[1].marker), trace('no trusted result', tried.filter((p) => p.doubt), looks[2].marker)].filter((t) => t.x.length);
+    const shade = (f, i) => ({ type: 'rect', layer: 'below', x0: f.value * x.factor, x1: to[i].value * x.factor, y0: 0, y1: 1, yref: 'paper', fillcolor: `${colours.green}22`, line: { color: colours.green, width: 1 } });
+    const box = start(`Where ${isSure ? 'all limits hold' : 'the target is reached'}`);
+    section.append(box);
+    charts.add(box, { name: 'design', traces, height: 400, note: `Shaded: ${isSure ? 'all limits hold' : 'the probability of failure is at most the target'}. The ${points.size} values that were tried are drawn.`,
+      layout: { xaxis: axis(x.head), yaxis: axis(isSure ? 'least margin of all limits' : 'reliability index less the target', { zeroline: true, zerolinewidth: 1.5, zerolinecolor: study.charts.ink }), shapes: from.map(shade) } });
+  }
+
   // --- sweep -----------------------------------------------------------------------------------------
   function sweep() {
     const varying = data.variables.filter((v) => v.varies);
@@ -141,7 +159,7 @@ study.planes = (() => {
     build();
   }
   function draw() {
-    const drawings = { map, critical, sweep, scatter };
+    const drawings = { map, critical, design, sweep, scatter };
     if (study.kind.plane) drawings[study.kind.plane]();
   }
   return { draw };

@@ -216,6 +216,7 @@ ExitCode replay(const Options& o, Console& console) {
   int worst = 0;
   for (const auto& model : loaded.models) {
     std::vector<std::string> arguments{"simulate", model->path, "-o", o.output.value_or("out/replay"), "--force", "--report"};
+    for (const std::string& setting : model->overrides) arguments.insert(arguments.end(), {"--set", setting});
     for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
       const Variable& v = loaded.study.variables[i];
       if (!is_set_in(v, *model)) continue;

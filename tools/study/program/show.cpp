@@ -1,6 +1,7 @@
 #include "tools/study/program/show.h"
 
 #include "tools/steplap/text_table.h"
+#include "tools/study/kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,6 +88,12 @@ void show_files(Store& store, std::ostream& out) {
 } // namespace
 
 void show(Store& store, const std::string& title, std::ostream& out) {
+  const StudyKind* kind = find_kind(store.identity().kind);
+  std::vector<std::string> notes = store.notes();
+  if (kind && kind->begins_with_sentence && !notes.empty()) {
+    out << notes.front() << "\n";
+    notes.erase(notes.begin());
+  }
   if (!title.empty()) out << title << "\n";
   const std::string standing = store.setting("standing");
   out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": " << store.size() << " samples"
@@ -103,11 +110,14 @@ void show(Store& store, const std::string& title, std::ostream& out) {
   if (!findings.empty())
     table.set_head("findings", {"method", "of", "quantity", "value", "interval", "samples", ""},
                    {"method", "of", "quantity", "value", "interval", "samples", "status"});
-  for (const Finding& f : findings)
+  for (const Finding& f : findings) {
+    if (kind && std::any_of(kind->points.begin(), kind->points.end(), [&](const PointRole& p) { return p.is_for_page && p.has(f); }))
+      continue;
     table.add_row({f.method, f.subject, f.quantity, Cell(digits(f.value), f.value), interval_text(f),
                    count_cell(static_cast<std::size_t>(f.samples)), f.status});
+  }
   out << table;
-  for (const std::string& note : store.notes()) out << note << "\n";
+  for (const std::string& note : notes) out << note << "\n";
   show_files(store, out);
   if (!standing.empty() && standing != "done") out << "Standing: " << standing << "\n";
 }
