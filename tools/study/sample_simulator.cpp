@@ -5,10 +5,10 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/rest/start.h"
+#include "mbd/run/load_cases.h"
 #include "mbd/run/report.h"
 #include "mbd/system/instance.h"
 #include "mbd/trust/judge.h"
-#include "mbd/run/load_cases.h"
 #include "tools/study/history.h"
 #include "transformer/program.h"
 
