@@ -24,7 +24,7 @@ steplap.sheet = (() => {
     const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
     scene.setMoved(moved, story);
     const room = 703 / columns, standpoint = seenFrom || scene.usualStandpoint(); // pixels of the style sheet: 186 mm
-    steplap.Scene.fitAll([scene], standpoint, scene.usualMagnification(standpoint), [room], 0.34 * 703);
+    steplap.Scene.fitAll([scene], standpoint, 'usual', [room], 0.34 * 703);
     scene.show(t);
     return make('div', { class: 'drawing' }, scene.svg);
   }
