@@ -49,6 +49,7 @@
       const named = [...this.usualFactors(this.seenFrom)].filter(([name]) => !this.body(name).isLookAlone);
       for (const [name, factor] of named) byFactor.set(factor, [...(byFactor.get(factor) || []), name]);
       const factors = [...byFactor].filter(([f]) => f > 1).sort((a, b) => b[0] - a[0]);
+      if (!factors.length) return '';
       if (factors.length === 1 && byFactor.size === 1) return `motion × ${plain(factors[0][0])}${end}`;
       const listed = (names) => (names.length > 2 ? `${names[0]} and ${names.length - 1} others` : names.join(', '));
       const whole = `motion: ${factors.map(([f, names]) => `${listed(names)} × ${plain(f)}`).join('; ')}${end}`;
