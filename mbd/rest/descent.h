@@ -14,6 +14,8 @@
 #include "mbd/rest/clearance.h"
 #include "mbd/rest/landscape.h"
 
+#include <numbers>
+
 namespace steplap {
 
 enum class DescentEnd {
@@ -29,6 +31,8 @@ public:
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
+  /// A body that moves further than `reach`, in sizes of the model and rad, counts as moving without end.
+  void stay_within(double reach) { far_ = many_turns_ = reach; }
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< size of the model, m
@@ -89,6 +93,8 @@ private:
   std::unique_ptr<Landscape> landscape_;
   std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
+  double far_ = 1e4;                            ///< sizes of the model; beyond it a body counts as moving without end
+  double many_turns_ = 40.0 * std::numbers::pi; ///< the same for rotations, rad
   double residual_ = 0.0;
   std::vector<Hold> hold_;     ///< per friction element
   std::vector<char> left_out_; ///< per friction row: dependent on other sticking rows and left out

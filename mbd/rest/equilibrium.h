@@ -38,6 +38,7 @@ struct Equilibrium {
   int more_indifferent = 0;            ///< number of further such directions
   std::vector<MotionPart> left;        ///< unstable equilibria on the way
   std::vector<int> slid;               ///< friction elements that slid before they stuck
+  std::vector<int> sliding;            ///< of a load that grows in increments: friction elements that slide on as it grows
   int turned_body = 0;                 ///< body without joints to the ground that turned furthest, if it tipped over; else 0
   double turned = 0.0;                 ///< its rotation, rad
   std::vector<int> moving_drives;      ///< elements whose drives have a velocity or acceleration; they are held in statics

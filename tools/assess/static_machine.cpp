@@ -5,11 +5,13 @@
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/start.h"
 #include "run/failure.h"
+#include "run/prominence.h"
 #include "run/rest_values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace steplap::assess {
@@ -18,11 +20,27 @@ namespace {
 
 constexpr double k_beyond = -1e-3; // reserve of friction that has slid on the way; the amount beyond the limit is not measured
 
+constexpr double k_near = 1e-3;    // of a pull: friction that has k_reserve left does not slide within it
+constexpr double k_reserve = 1e-2; // of its capacity
+
 int channel_index(const System& system, const std::string& name) {
   for (std::size_t i = 0; i < system.channels.size(); ++i)
     if (system.channels[i].name == name) return static_cast<int>(i);
   return -1;
 }
+
+// Sets a machine's gravity during its lifetime.
+class PulledMachine {
+public:
+  PulledMachine(System& system, const Vec2& gravity) : system_(system), before_(system.gravity) { system.gravity = gravity; }
+  PulledMachine(const PulledMachine&) = delete;
+  PulledMachine& operator=(const PulledMachine&) = delete;
+  ~PulledMachine() { system_.gravity = before_; }
+
+private:
+  System& system_;
+  const Vec2 before_;
+};
 
 Model with_monitors(Model model) {
   for (ElementEntry& entry : model.elements)
@@ -31,6 +49,15 @@ Model with_monitors(Model model) {
 }
 
 } // namespace
+
+void Probe::append_equilibrium(std::vector<double> next) {
+  if (low.empty()) low = high = next;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    if (!(next[i] >= low[i])) low[i] = next[i]; // NaN is the worst
+    if (!(next[i] <= high[i])) high[i] = next[i];
+  }
+  values = std::move(next);
+}
 
 const char* name_of(LimitKind kind) {
   switch (kind) {
@@ -52,9 +79,19 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
     throw NumericalFailure("without any acceleration: " + failure_of(failure, model_, *system_, 0.0).text);
   }
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
-  at_rest_.values = values_at_rest(*system_, at_rest_.rest->state);
+  at_rest_.append_equilibrium(values_at_rest(*system_, at_rest_.rest->state));
   find_watches();
   at_rest_.left = left_of(at_rest_);
+}
+
+std::vector<std::vector<double>> StaticMachine::forces_at(const Equilibrium& rest) {
+  const std::vector<double> values = values_at_rest(*system_, rest.state);
+  std::map<std::string, std::vector<double>> forces; // by unit
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (is_reaction(system_->channels[i])) forces[system_->channels[i].unit].push_back(values[i]);
+  std::vector<std::vector<double>> lists;
+  for (auto& [unit, list] : forces) lists.push_back(std::move(list));
+  return lists;
 }
 
 void StaticMachine::find_watches() {
@@ -92,7 +129,7 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
   std::vector<double> left(watches_.size(), 1.0);
   for (std::size_t w = 0; w < watches_.size(); ++w) {
     if (channel_[w] >= 0) {
-      const double value = probe.values[static_cast<std::size_t>(channel_[w])];
+      const double value = probe.high[static_cast<std::size_t>(channel_[w])];
       left[w] = watches_[w].kind == LimitKind::lifts ? -value / rest_gap_[w] : 1.0 - value;
       continue;
     }
@@ -104,51 +141,99 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
   return left;
 }
 
-Probe StaticMachine::probe(const State& start, const Vec2& pull) {
-  struct Restored { // restores the machine in every case
-    System& system;
-    Vec2 gravity;
-    ~Restored() { system.gravity = gravity; }
-  } const restored{*system_, gravity_};
-  system_->gravity = gravity_ + pull;
+Probe StaticMachine::probe(const Equilibrium& start, const Vec2& before, const Vec2& pull) {
+  RampQuestions questions;
   Probe probe;
+  questions.forces = [this](const Equilibrium& rest) { return forces_at(rest); };
+  questions.on_rest = [&](const Equilibrium& rest, double share) {
+    probe.append_equilibrium(values_at_rest(*system_, rest.state));
+    probe.rest = rest;
+    probe.pull = before + share * (pull - before);
+  };
+  questions.on_jump = [&](int f, double share) {
+    const int element = system_->frictions[static_cast<std::size_t>(f)].element;
+    if (!probe.jump)
+      probe.jump = Jump{system_->element_names[static_cast<std::size_t>(element)], Vec2(before + share * (pull - before)).norm()};
+  };
   try {
-    Equilibrium found = find_ramped_rest(*system_, start);
-    if (!found.left.empty()) {
-      probe.failure = "the pose balances, but a nudge of " + part_text(*system_, found.left.front()) + " leaves it";
-      return probe;
+    probe.rest = find_ramped_rest(*system_, start, {gravity_ + before, gravity_ + pull}, questions);
+    probe.pull = pull;
+    probe.left = left_of(probe);
+    probe.is_still = probe.rest->slid.empty();
+  } catch (const RunStopped&) {
+    throw;
+  } catch (const NumericalFailure& failure) {
+    Probe none;
+    if (probe.rest) {
+      probe.left = left_of(probe);
+      probe.is_still = probe.rest->slid.empty();
+      none.reached = std::make_shared<Probe>(std::move(probe));
     }
-    if (found.turned != 0.0) {
-      probe.failure = "'" + system_->bodies[static_cast<std::size_t>(found.turned_body)].name + "' tips over";
-      return probe;
-    }
-    probe.values = values_at_rest(*system_, found.state);
-    probe.rest = std::move(found);
+    none.pull = pull;
+    none.failure = failure.what();
+    none.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
+    return none;
+  }
+  return probe;
+}
+
+Probe StaticMachine::ramped(const Vec2& pull) { return probe(*at_rest_.rest, Vec2::Zero(), pull); }
+
+Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) {
+  if (before.is_still) {
+    Probe found = still(pull);
+    // Near a rest in which friction is far from sliding the machine leaves its place with all friction sticking.
+    if (found.rest || (!found.is_unknown && (pull - before.pull).norm() <= k_near * pull.norm() && has_reserve(before))) return found;
+  }
+  Probe found = probe(*before.rest, before.pull, pull);
+  found.is_still = found.is_still && before.is_still;
+  if (found.reached) found.reached->is_still = found.reached->is_still && before.is_still;
+  return found;
+}
+
+Probe StaticMachine::still(const Vec2& pull) {
+  const PulledMachine pulled(*system_, gravity_ + pull);
+  Probe probe;
+  probe.pull = pull;
+  try {
+    probe.rest = find_still_rest(*system_, *at_rest_.rest);
+    probe.is_unknown = !probe.rest;
+    if (!probe.rest) return probe;
+    probe.append_equilibrium(values_at_rest(*system_, probe.rest->state));
     probe.left = left_of(probe);
   } catch (const RunStopped&) {
     throw;
   } catch (const NumericalFailure& failure) {
     probe.failure = failure.what();
-    probe.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
     probe.rest.reset();
   }
   return probe;
 }
 
-Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->state, pull); }
-
-Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(before.rest->state, pull); }
-
-Probe StaticMachine::worked_loose(const Vec2& pull) {
-  State loose = at_rest_.rest->state;
+bool StaticMachine::has_reserve(const Probe& probe) const {
   for (std::size_t w = 0; w < watches_.size(); ++w)
-    if (watches_[w].kind == LimitKind::slides) loose.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
-  return probe(loose, pull);
+    if (watches_[w].kind != LimitKind::lifts && probe.left[w] < k_reserve) return false;
+  return true;
 }
 
-double StaticMachine::value(const Probe& probe, const std::string& channel) const {
+Probe StaticMachine::loaded_again(const Probe& before, const Vec2& pull) {
+  const Probe unloaded = probe(*before.rest, before.pull, Vec2::Zero());
+  if (!unloaded.rest) return unloaded;
+  Probe again = probe(*unloaded.rest, Vec2::Zero(), pull);
+  if (unloaded.jump) again.jump = unloaded.jump;
+  return again;
+}
+
+Probe StaticMachine::worked_loose(const Vec2& pull) {
+  Equilibrium loose = *at_rest_.rest;
+  for (std::size_t w = 0; w < watches_.size(); ++w)
+    if (watches_[w].kind == LimitKind::slides) loose.state.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
+  return probe(loose, Vec2::Zero(), pull);
+}
+
+double StaticMachine::value_in(const std::vector<double>& values, const std::string& channel) const {
   const int index = channel_index(*system_, channel);
-  return index < 0 || probe.values.empty() ? std::numeric_limits<double>::quiet_NaN() : probe.values[static_cast<std::size_t>(index)];
+  return index < 0 || values.empty() ? std::numeric_limits<double>::quiet_NaN() : values[static_cast<std::size_t>(index)];
 }
 
 } // namespace steplap::assess
